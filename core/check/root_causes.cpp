@@ -24,14 +24,14 @@ constexpr double kMostOverGravity = 1.05;
 constexpr double kSameAngle_deg = 0.5, kSameAngleShare = 0.15;
 
 struct Unit {
-  const char* name;
+  const char *name, *one;
   double per_m;
 };
 
 /// Of centimetres and millimetres the one in which the value comes closest to the usual one.
 Unit likely_unit(double value, double usual_m) {
   const auto off = [&](const Unit& unit) { return std::abs(std::log(value / unit.per_m / usual_m)); };
-  const Unit centimetres{"centimetres", 100.0}, millimetres{"millimetres", 1000.0};
+  const Unit centimetres{"centimetres", "centimetre", 100.0}, millimetres{"millimetres", "millimetre", 1000.0};
   return off(centimetres) < off(millimetres) ? centimetres : millimetres;
 }
 
@@ -86,11 +86,11 @@ std::vector<Root> stated_roots(const Experiment& experiment, double longest_m) {
   if (experiment.scale && experiment.scale->px_per_m < kLeastScale_px_m) {
     const double value = experiment.scale->px_per_m;
     const Unit unit = likely_unit(1.0 / value, 1.0 / kUsualScale_px_m);
-    roots.push_back({{Severity::unusable, "scale",
-                      fmt::format("px_per_m = {:.6g} looks like pixels in one of the {} ({:.6g} px a metre)", value,
-                                  unit.name, value * unit.per_m),
-                      fmt::format("state it for a metre: px_per_m = {:.6g}", value * unit.per_m)},
-                     kByLength});
+    roots.push_back(
+        {{Severity::unusable, "scale",
+          fmt::format("px_per_m = {:.6g} looks like pixels a {} ({:.6g} a metre)", value, unit.one, value * unit.per_m),
+          fmt::format("state it for a metre: px_per_m = {:.6g}", value * unit.per_m)},
+         kByLength});
   }
   if (experiment.marker) {
     add(long_length("diameter_m", experiment.marker->diameter_m, kLargestMarker_m, kUsualMarker_m,

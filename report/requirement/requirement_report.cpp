@@ -170,7 +170,8 @@ std::string judged_by_text(const Requirement& requirement) {
   }
   return fmt::format(
       "Where it allows the target, {} runs of tracks with that noise are made, and rendered runs judge, by the better "
-      "estimator: {} of each, more of those that these do not decide, and {} of the cheapest that reaches the target. "
+      "estimator: {} of each with a calibration of its own, more of those that these do not decide, and {} of the "
+      "cheapest that reaches the target, which share these calibrations. "
       "What tracks miss, by their clock, fewer than {} rendered runs cannot reach: it is undecided.",
       requirement.track_runs, std::min(validate::kLeastRendered, requirement.runs), requirement.runs,
       validate::kRunsForQuantile);

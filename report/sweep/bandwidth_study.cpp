@@ -217,10 +217,10 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 double positive(double value) {
-  return value > 0.0 ? value : kNan;
+  return value > 0.0 ? value : kNothing;
 }
 
 /// A level line over the whole axis.
@@ -258,7 +258,7 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   for (const auto& [h, of] : curve) {
     const double bias = std::abs(of->bias), noise = std::sqrt(std::max(0.0, of->rms * of->rms - bias * bias));
     errors.rows.push_back({h, positive(of->rms), positive(noise), positive(bias), positive(of->sd),
-                           bias > 2.0 * of->bias_sd ? positive(bias) : kNan});
+                           bias > 2.0 * of->bias_sd ? positive(bias) : kNothing});
     if (of->least_sd) bound = std::max(bound, *of->least_sd);
     bandwidths_s.push_back(h);
     if (of->rms == least_total(curve)) best.rows = {{h, of->rms}};

@@ -144,13 +144,16 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
                                    Confirm confirm) {
   const std::uint64_t seed = seed_of(sweep_, point_ * options_.runs + run);
   if (confirm == Confirm::clips) {
-    std::unique_ptr<FilmStudio>& studio = studios_[run];
-    if (!studio) {
-      studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_,
-                                            [this](std::string_view, double) { options_.watch(); });
+    Studio& own = studios_[run % studios_.size()];
+    const std::lock_guard lock(own.busy);
+    if (!own.studio) {
+      // The stills' noise is that of the first run that the studio serves, whichever comes to it first.
+      const std::uint64_t first = seed_of(sweep_, point_ * options_.runs + run % studios_.size());
+      own.studio = std::make_unique<FilmStudio>(setting.scenario, first, 1, stage_,
+                                                [this](std::string_view, double) { options_.watch(); });
     }
-    return studio->film(setting.scenario, seed, 1,
-                        setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
+    return own.studio->film(setting.scenario, seed, 1,
+                            setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
   }
   // Clips of one scenario have about one noise: their root mean square.
   const std::vector<double> noise_m = noise_of(setting, clean.truth);

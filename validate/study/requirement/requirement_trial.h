@@ -2,8 +2,10 @@
 /// what limits it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -36,13 +38,13 @@ double hardest(const std::vector<TargetResult>& results, const std::vector<Targe
 /// How many times smaller `need` were without one limitation, the largest gain first.
 std::vector<Limit> limits_of(const Setting& setting, double need, const std::vector<Target>& targets);
 
-/// The runs of one point, on options.jobs threads. Rendered ones share what stands still, and each run's calibration
-/// when limitations are removed.
+/// The runs of one point, on options.jobs threads. Rendered ones share what stands still and kLeastRendered
+/// calibrations, each with the noise of its own stills, as the recordings of some afternoons do.
 class RecordedRuns {
  public:
   /// As RequirementOptions::confirm says, tracks or clips: options.runs of them at most. All outlive this.
   RecordedRuns(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options)
-      : sweep_(sweep), setting_(setting), point_(point), options_(options), studios_(options.runs) {}
+      : sweep_(sweep), setting_(setting), point_(point), options_(options) {}
 
   /// Fills `results` (one for each target) with the better estimator's errors over the runs; reached, missed (any of
   /// them), or undecided. Of tracks all runs; rendered ones until they decide.
@@ -68,9 +70,14 @@ class RecordedRuns {
   const Setting& setting_;
   std::uint64_t point_;
   const RequirementOptions& options_;
-  std::vector<Outcome> done_;                         ///< of the setting itself, the first runs
-  std::vector<std::unique_ptr<FilmStudio>> studios_;  ///< of each run, once it was filmed
-  std::shared_ptr<const render::Stage> stage_;        ///< once any was
+  std::vector<Outcome> done_;  ///< of the setting itself, the first runs
+  /// A camera with its calibration: run r is filmed by number r % kLeastRendered, one at a time, once it is there.
+  struct Studio {
+    std::mutex busy;
+    std::unique_ptr<FilmStudio> studio;
+  };
+  std::array<Studio, kLeastRendered> studios_;
+  std::shared_ptr<const render::Stage> stage_;  ///< once any was
 };
 
 }  // namespace glidelab::validate
