@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include "base/text/number_text.h"
 #include "fit/estimators.h"
@@ -178,14 +179,6 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
   const std::vector<double>& all = curves.bandwidths_s;
   if (all.size() < kLeastBandwidths) return std::nullopt;
   BandwidthAnswer answer;
-  const auto best = std::min_element(
-      all.begin(), all.end(), [&](double a, double b) { return loss_to_best(curves, a) < loss_to_best(curves, b); });
-  answer.use_s = *best;
-  auto from = best, to = best;
-  while (from != all.begin() && loss(curves, *(from - 1), answer.use_s) <= kNearlyAsGood) --from;
-  while (to + 1 != all.end() && loss(curves, *(to + 1), answer.use_s) <= kNearlyAsGood) ++to;
-  answer.from_s = *from;
-  answer.to_s = *to;
   answer.unanswered_s = curves.unanswered_s;
   for (const double h : all) {
     const auto any = [&](bool (*wrong)(const ErrorStatistics&)) {
@@ -195,6 +188,21 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
     if (any(holds_too_seldom)) answer.narrow_s.push_back(h);
     if (any(too_wide)) answer.wide_s.push_back(h);
   }
+  const auto wrong = [&](double h) {
+    return std::find(answer.narrow_s.begin(), answer.narrow_s.end(), h) != answer.narrow_s.end() ||
+           std::find(answer.wide_s.begin(), answer.wide_s.end(), h) != answer.wide_s.end();
+  };
+  const bool any_right = !std::all_of(all.begin(), all.end(), wrong);
+  const auto best = std::min_element(all.begin(), all.end(), [&](double a, double b) {
+    return std::pair(any_right && wrong(a), loss_to_best(curves, a)) <
+           std::pair(any_right && wrong(b), loss_to_best(curves, b));
+  });
+  answer.use_s = *best;
+  auto from = best, to = best;
+  while (from != all.begin() && loss(curves, *(from - 1), answer.use_s) <= kNearlyAsGood) --from;
+  while (to + 1 != all.end() && loss(curves, *(to + 1), answer.use_s) <= kNearlyAsGood) ++to;
+  answer.from_s = *from;
+  answer.to_s = *to;
   answer.text = fmt::format("Use h = {}", seconds_text(answer.use_s));
   answer.text += answer.from_s < answer.to_s
                      ? fmt::format("; anything from {} to {} errs at most {:.0f} % more", base::number_text(*from, 3),

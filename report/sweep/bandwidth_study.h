@@ -6,7 +6,7 @@
 ///     total² = mean of e²,  bias = mean of e,  noise² = total² - bias²
 ///
 /// The h to use is the one whose worst quantity loses least: the least over h of the largest over the quantities of
-/// total(h) / (least total over h).
+/// total(h) / (least total over h); of those whose stated intervals hold, where there is one.
 #pragma once
 
 #include <optional>

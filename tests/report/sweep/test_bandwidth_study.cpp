@@ -66,6 +66,16 @@ TEST_CASE("a bandwidth study says which h to use, what is nearly as good, and wh
   CHECK(report::sweep_text(study()).starts_with(answer->text + "\n"));
 }
 
+TEST_CASE("a bandwidth whose intervals hold is preferred to one that errs a little less") {
+  validate::SweepSummary summary = study();
+  summary.overall[3].groups[0].statistics.sd *= 4.0;  // at 0.04 s, the least error
+  summary.overall[3].groups[0].statistics.coverage = 1.0;
+  const std::optional<report::BandwidthAnswer> answer = report::bandwidth_answer(summary);
+  REQUIRE(answer);
+  CHECK(answer->use_s == 0.05);
+  CHECK(answer->from_s == 0.04);
+}
+
 TEST_CASE("the plot of a bandwidth study has bias, noise and total, and the choices beside them") {
   const std::vector<report::Plot> plots = report::bandwidth_plots(study());
   REQUIRE(plots.size() == 1);
