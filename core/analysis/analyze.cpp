@@ -60,15 +60,28 @@ void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipS
 namespace {
 
 /// What a file on its own does not say and nobody states.
-std::string assumption(const TrackFileOptions& stated, const ClipSetup& clip) {
-  std::string what;
-  if (!stated.mass_kg && stated.masses_kg.empty()) what = fmt::format("a mass of {:g} kg", clip.mass_kg);
-  if (!stated.incline_deg) what += what.empty() ? "an inclination of 0°" : " and an inclination of 0°";
-  if (what.empty()) return {};
+std::string assumption(const TrackFileOptions& stated, double mass_kg) {
+  const bool mass = !stated.mass_kg && stated.masses_kg.empty(), incline = !stated.incline_deg;
+  if (!mass && !incline) return {};
+  const std::string of_mass = fmt::format("a mass of {:g} kg", mass_kg), of_incline = "an inclination of 0°";
   return fmt::format(
-      "{} assumed, for nobody states it (--mass, --incline): K/m, µ and α come from the motion and do not "
+      "{} assumed, for nobody states {} (--mass, --incline): K/m, µ and α come from the motion and do not "
       "depend on that",
-      what + (what.find(" and ") == std::string::npos ? " is" : " are"));
+      mass && incline ? of_mass + " and " + of_incline + " are" : (mass ? of_mass : of_incline) + " is",
+      mass && incline ? "them" : "it");
+}
+
+void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetup>& setups,
+                      const std::vector<const Experiment*>& experiment_of,
+                      std::vector<ConfigurationResult>& configurations) {
+  for (ConfigurationResult& configuration : configurations) {
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+      if (setups[i].name != configuration.clips.front() || !is_bare_track(experiment_of[i]->file)) continue;
+      const std::string assumed = assumption(stated, setups[i].mass_kg);
+      if (!assumed.empty()) configuration.notes.push_back(assumed);
+      break;
+    }
+  }
 }
 
 }  // namespace
@@ -95,10 +108,6 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
-      if (is_bare_track(experiment.file)) {
-        const std::string assumed = assumption(options.bare, experiment.clips[i]);
-        if (!assumed.empty()) tracks.back().notes.push_back(assumed);
-      }
       experiment_of.push_back(&experiment);
     }
     modes += seen.modes;
@@ -121,6 +130,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   results.gravity_m_s2 = experiments.front().gravity_m_s2;
   results.configurations = join_configurations(setups, results.clips, experiments.front().gravity_m_s2, options.lines);
   results.estimator = name_of(options.lines);
+  note_assumptions(options.bare, setups, experiment_of, results.configurations);
   return results;
 }
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/math/angles.h"
 #include "core/check/motion_look.h"
 #include "core/check/recording_check.h"
 #include "core/check/root_causes.h"
@@ -274,6 +275,13 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
         findings.push_back(std::move(finding));
       }
     }
+  }
+  for (const ClipSetup& setup : experiment.clips) {
+    if (setup.launched != Launched::unknown) continue;
+    findings.push_back({Severity::note, setup.name,
+                        fmt::format("a file on its own: its mass is taken as {:.6g} kg and its inclination as {:.4g}°",
+                                    setup.mass_kg, setup.incline_rad * base::kDegreesPerRad + 0.0),
+                        "--mass and --incline state others; K/m, µ and α do not depend on them"});
   }
   findings = with_root_causes(experiment, check, std::move(findings));
   if (!check.plumb_failure.empty()) findings.push_back({Severity::unusable, "plumb line", check.plumb_failure, {}});

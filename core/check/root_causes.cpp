@@ -176,12 +176,13 @@ std::vector<Finding> with_root_causes(const Experiment& experiment, const Record
                                       std::vector<Finding> findings) {
   double longest_m = 0.0;
   for (const ClipCheck& clip : check.clips) longest_m = std::max(longest_m, clip.distance_m);
+  std::optional<Root> tracks = long_tracks(experiment, check);
+  if (tracks) longest_m = 0.0;  // a distance in another unit lets no mass pass
   std::vector<Root> roots = stated_roots(experiment, longest_m);
   const bool length_known = std::none_of(roots.begin(), roots.end(), [](const Root& root) {
     return std::find(root.explains.begin(), root.explains.end(), Topic::incline) != root.explains.end();
   });
   if (length_known) {
-    std::optional<Root> tracks = long_tracks(experiment, check);
     add(tracks ? std::move(tracks) : wrong_angle_or_rate(experiment, check), roots);
   }
   std::vector<Finding> result;

@@ -192,25 +192,21 @@ std::string r2_of(const core::ConfigurationResult& configuration, int direction)
   return line == nullptr ? "–" : base::r2_text(line->r2);
 }
 
-/// "K/m = 2.7630 ± 0.0060 1/s" of one configuration, "K/m = 0.86 to 2.76 1/s" of several; empty where none has it.
+/// "K/m = 2.7630 ± 0.0060 1/s" of one configuration, "K/m = 0.86 ± 0.01 to 2.76 ± 0.02 1/s" of several; empty where
+/// none has it.
 std::string value_words(const core::AnalysisResults& results, std::size_t which) {
-  double least = HUGE_VAL, most = -HUGE_VAL;
-  const core::Quantity* only = nullptr;
+  const core::Estimate *least = nullptr, *most = nullptr;
   const QuantityName& name = kQuantities[which];
   for (const core::ConfigurationResult& c : results.configurations) {
     const core::Quantity& quantity = *quantities_of(c)[which].quantity;
     if (!quantity.estimate) continue;
-    only = &quantity;
-    least = std::min(least, quantity.estimate->value);
-    most = std::max(most, quantity.estimate->value);
+    if (least == nullptr || quantity.estimate->value < least->value) least = &*quantity.estimate;
+    if (most == nullptr || quantity.estimate->value > most->value) most = &*quantity.estimate;
   }
-  if (only == nullptr) return {};
-  if (results.configurations.size() == 1) {
-    return fmt::format("{} = {}{}", name.symbol, base::value_and_sd_text(only->estimate->value, only->estimate->sd),
-                       unit_suffix(name.unit));
-  }
-  return fmt::format("{} = {} to {}{}", name.symbol, base::number_text(least, 3), base::number_text(most, 3),
-                     unit_suffix(name.unit));
+  if (least == nullptr) return {};
+  std::string values = base::value_and_sd_text(least->value, least->sd);
+  if (most != least) values += " to " + base::value_and_sd_text(most->value, most->sd);
+  return fmt::format("{} = {}{}", name.symbol, values, unit_suffix(name.unit));
 }
 
 /// The answer in one line: the values, or that the law does not fit.

@@ -147,9 +147,9 @@ std::string rule_words(const SweepSummary& summary, const Curves& curves, double
   if (chosen == summary.bandwidths.end()) return {};
   const std::string errs =
       factor > 1.05 ? fmt::format("errs up to {} times as much", base::number_text(factor, 2)) : "errs no more";
-  return fmt::format("; the default rule chooses {} ({} to {} in eight of ten clips) and {}",
-                     seconds_text(chosen->median_s), base::number_text(chosen->low_s, 2),
-                     base::number_text(chosen->high_s, 2), errs);
+  const std::string low = base::number_text(chosen->low_s, 2), high = base::number_text(chosen->high_s, 2);
+  return fmt::format("; the default rule chooses {}{} and {}", seconds_text(chosen->median_s),
+                     low == high ? "" : fmt::format(" ({} to {} in eight of ten clips)", low, high), errs);
 }
 
 /// "the fit of the whole motion, which needs no h, errs 4 to 8 times less".
