@@ -312,8 +312,9 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
                      const std::vector<core::Preview>& previews, const base::Progress& progress) {
   Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n", escape(title),
                           escape(estimator_name(results.estimator)), size_words(results));
-  body += value_tiles(results) + recovered_section(results);
-  body += meaning_of(results);
+  // Where the law is in doubt the doubt comes before the numbers.
+  const std::string values = value_tiles(results) + recovered_section(results), meaning = meaning_of(results);
+  body += doubts_about(results).empty() ? values + meaning : meaning + values;
   body += fitted_section(results);
   body += phase_section(results);
   body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));

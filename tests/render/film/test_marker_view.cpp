@@ -48,5 +48,5 @@ TEST_CASE("a camera that sees the whole motion loses no frame, a narrower one th
   CHECK(part[0].seen_m == Approx(1.0).margin(0.03));
   CHECK(static_cast<double>(part[0].outside) == Approx((1.2 - part[0].seen_m) / 0.005).margin(2.5));
   CHECK_THAT(render::sentence(part[0]),
-             Contains("m1: the marker leaves the image in") && Contains("of the 1.20 m that it moves"));
+             Contains("m1: the marker leaves the image in") && Contains("of the 1.19 m that it moves"));
 }

@@ -25,7 +25,7 @@ core::AnalysisResults moving(double k, double v0, double off_m) {
     core::MotionPoint point;
     const double t = 0.002 * i;
     point.t_s = 1.0 + t;
-    const double phi = k == 0.0 ? t : (1.0 - std::exp(-k * t)) / k;
+    const double phi = k == 0.0 ? t : -std::expm1(-k * t) / k;
     const double psi = k == 0.0 ? 0.5 * t * t : (t - phi) / k;
     point.measured_m = 0.3 + v0 * phi + a0 * psi + off_m * std::sin(40.0 * std::numbers::pi * t);
     point.smoothed = true;
@@ -55,7 +55,8 @@ TEST_CASE("the fitted curve of a motion that obeys the recovered law is that mot
       const auto curves = report::fitted_curves(results.clips[0], results.configurations[0], kG);
       REQUIRE(curves.size() == 1);
       CHECK(curves[0].t_s.size() == 200);
-      CHECK(curves[0].rms_m < 1e-12);  // a solution of two equations with condition 1e3, of numbers about 1
+      // Of numbers about 1, divided by k twice: 1e-16 / 1e-4 in this oracle, and a condition of 1e3 in the solution.
+      CHECK(curves[0].rms_m < 1e-11);
     }
   }
 }
