@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 
+#include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
@@ -16,8 +16,8 @@
 #include "base/text/nearest_word.h"
 #include "core/analysis/analyze.h"
 #include "core/analysis/preview.h"
-#include "core/experiment/experiment.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/track/bare_track.h"
 #include "diagnose/verdict/fit_given_causes.h"
 #include "fit/estimators.h"
 #include "report/analysis/analysis_report.h"
@@ -37,7 +37,7 @@ struct AnalyzeOptions {
   std::string estimator{fit::default_estimator().name};
   bool robust = false;
   std::vector<std::string> with;
-  core::BareTrackOptions bare;
+  core::TrackFileOptions bare;
 };
 
 /// A checked text: a number of seconds or the name of a rule.
@@ -51,21 +51,10 @@ void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
   }
 }
 
-std::string title_of(const std::vector<fs::path>& folders, const core::BareTrackOptions& bare) {
-  std::string title = core::read_input(folders.front(), bare).name;
+std::string title_of(const std::vector<fs::path>& folders, const core::TrackFileOptions& bare) {
+  std::string title = core::read_tracks(folders.front(), bare).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
   return title;
-}
-
-/// Options for files have no meaning for folders, whose experiment.toml says the same.
-void check_file_options(const AnalyzeOptions& options, const std::vector<fs::path>& inputs) {
-  const core::BareTrackOptions& bare = options.bare;
-  if (bare.column.empty() && !bare.mass_kg && !bare.incline_deg) return;
-  for (const fs::path& input : inputs) {
-    if (core::is_bare_track(input)) continue;
-    throw base::InputError(base::Issue{input.string(), 0, "--column, --mass, --incline", "not a file with a track",
-                                       "a file; for a folder, experiment.toml states column, mass_kg and incline_deg"});
-  }
 }
 
 constexpr const char* kWith = "--with";
@@ -77,7 +66,7 @@ std::optional<diagnose::GivenCauses> with_causes(const AnalyzeOptions& options, 
   std::vector<core::ClipSetup> setups;
   std::vector<std::optional<core::CameraSettings>> cameras;
   for (const fs::path& folder : folders) {
-    const core::Experiment experiment = core::read_input(folder, options.bare);
+    const core::Experiment experiment = core::read_tracks(folder, options.bare);
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     cameras.resize(setups.size(), experiment.camera);
   }
@@ -94,7 +83,7 @@ void analyze(const AnalyzeOptions& options) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   const fs::path out = output_folder(options.common, "analyze", folders.front());
   refuse_scenarios(options.experiments);
-  check_file_options(options, folders);
+  check_bare_options(options.bare, options.experiments);
   diagnose::check_given_causes(options.with, kWith);
   const std::string title = title_of(folders, options.bare);
   report::check_gnuplot();
@@ -134,13 +123,6 @@ std::string check_bandwidth(const std::string& text) {
   if (check_above_0(text).empty()) return {};
   return fmt::format("\"{}\" is neither a number of seconds above 0 nor one of {}{}", text, fmt::join(rules, ", "),
                      base::did_you_mean(text, rules));
-}
-
-std::string check_incline(const std::string& text) {
-  constexpr double kSteepest_deg = 90.0;  // a fall
-  double value_deg = 0.0;
-  if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
-  return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}", text, kSteepest_deg);
 }
 
 std::string estimator_help() {
@@ -186,19 +168,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
                    "docs/reference/effects.md); may be repeated")
       ->type_name("EFFECT")
       ->allow_extra_args(false);
-  command
-      ->add_option(
-          "--column", options->bare.column,
-          "For a file: the column that holds x, by header or number; default: found by its header. Of a Tracker "
-          "project: the point mass; default: the only one")
-      ->type_name("NAME|NUMBER");
-  command->add_option("--mass", options->bare.mass_kg, "For a file: mass of the glider in kilograms")
-      ->type_name("KG")
-      ->check(check_above_0);
-  command->add_option("--incline", options->bare.incline_deg, "For a file: stated inclination in degrees")
-      ->type_name("DEG")
-      ->check(check_incline);
-  add_permissions(*command, options->bare.permitted);
+  add_bare_options(*command, options->bare);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });

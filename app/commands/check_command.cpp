@@ -1,15 +1,17 @@
-/// glidelab check FOLDER: a look at a recording before any analysis; check.json and report.html out.
+/// glidelab check FOLDER|FILE: a look at a recording before any analysis; check.json and report.html out.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/check/check_recording.h"
+#include "core/track/bare_track.h"
 #include "report/check/check_report.h"
 #include "report/html/gnuplot.h"
 
@@ -20,14 +22,15 @@ namespace fs = std::filesystem;
 
 struct CheckOptions {
   CommonOptions common;
-  std::string folder;
-  core::Permissions permitted;
+  std::string input;
+  core::TrackFileOptions bare;
 };
 
 void check(const CheckOptions& options) {
-  const fs::path out = output_folder(options.common, "check", options.folder);
-  refuse_scenarios({options.folder});
-  const core::Experiment experiment = core::read_experiment(options.folder, options.permitted);
+  const fs::path out = output_folder(options.common, "check", options.input);
+  refuse_scenarios({options.input});
+  check_bare_options(options.bare, {options.input});
+  const core::Experiment experiment = core::read_tracks(options.input, options.bare);
   report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);
@@ -44,7 +47,7 @@ void check(const CheckOptions& options) {
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (!found.usable) {
     const core::Finding& worst = found.findings.front();
-    throw base::NotMet(fmt::format("{}: not usable as it is: {}: {}", options.folder, worst.about, worst.found));
+    throw base::NotMet(fmt::format("{}: not usable as it is: {}: {}", options.input, worst.about, worst.found));
   }
 }
 
@@ -54,11 +57,13 @@ void add_check(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand(
       "check", "Check a recording before any analysis: pattern, marker, exposure, blur, frame times; with advice");
-  command->add_option("FOLDER", options->folder, "A folder that holds an experiment.toml")
-      ->type_name("DIR")
+  command
+      ->add_option("RECORDING", options->input,
+                   "A folder that holds an experiment.toml, or a file with a track, as analyze takes it")
+      ->type_name("DIR|FILE")
       ->required();
-  add_permissions(*command, options->permitted);
-  add_common_options(*command, options->common, "glidelab-out/check-<name of the folder>",
+  add_bare_options(*command, options->bare);
+  add_common_options(*command, options->common, "glidelab-out/check-<name of the folder or file>",
                      "Accepted for consistency; has no effect here");
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/reference/check.md).");
   command->callback([options, &chosen] { chosen = [options] { check(*options); }; });

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/program_texts.h"
@@ -39,7 +40,7 @@ struct DiagnoseCommand {
   std::string twin;
   bool plan = false;
   std::optional<double> noise_m;  // of a plan
-  core::Permissions permitted;
+  core::TrackFileOptions bare;
 };
 
 /// A plan of folders that were recorded, and not of a scenario.
@@ -73,7 +74,7 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
     const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
     std::vector<core::ClipSetup> setups;
     for (const fs::path& folder : folders) {
-      const core::Experiment experiment = diagnose::read_recording(folder, options.permitted);
+      const core::Experiment experiment = diagnose::read_recording(folder, options.bare);
       if (experiment.lines) {
         throw base::InputError(
             base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
@@ -82,11 +83,7 @@ diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& pro
       setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     }
     return diagnose::plan_of(
-        core::analyze(folders,
-                      {.bandwidth_s = {},
-                       .jobs = options.common.jobs,
-                       .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .permitted = options.permitted}},
-                      progress),
+        core::analyze(folders, {.bandwidth_s = {}, .jobs = options.common.jobs, .bare = options.bare}, progress),
         setups);
   }
   const render::Scenario scenario = render::read_scenario(first);
@@ -118,7 +115,8 @@ void diagnose(const DiagnoseCommand& options) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   const fs::path out = output_folder(options.common, "diagnose", folders.front());
   refuse_scenarios(options.experiments);
-  std::string title = diagnose::read_recording(folders.front(), options.permitted).name;
+  check_bare_options(options.bare, options.experiments);
+  std::string title = diagnose::read_recording(folders.front(), options.bare).name;
   if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
   if (!options.twin.empty()) {
     check_file_writable(options.twin);
@@ -129,12 +127,10 @@ void diagnose(const DiagnoseCommand& options) {
   base::StagedOutput staged(out);
 
   ProgressDisplay display(options.common.quiet, options.common.verbose);
-  const diagnose::Diagnosis diagnosis = diagnose::diagnose(folders,
-                                                           {.without = options.without,
-                                                            .jobs = options.common.jobs,
-                                                            .twin = !options.twin.empty(),
-                                                            .permitted = options.permitted},
-                                                           display.callback());
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose(
+      folders,
+      {.without = options.without, .jobs = options.common.jobs, .twin = !options.twin.empty(), .bare = options.bare},
+      display.callback());
   base::write_file(staged.dir() / "diagnosis.json", report::diagnosis_json(diagnosis));
   if (!options.no_page) {
     const bool twin = !options.twin.empty() && !diagnosis.twin.empty();
@@ -173,7 +169,8 @@ void add_diagnose(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "EXPERIMENT", options->experiments,
-          "Folders that hold an experiment.toml; several share the glider and the track. Or one .csv, a table of lines")
+          "Folders that hold an experiment.toml; several share the glider and the track. Or files with a track, as "
+          "analyze takes them; or one .csv, a table of lines")
       ->type_name("DIR|FILE")
       ->required();
   CLI::Option* without =
@@ -206,7 +203,7 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       ->check(check_noise_m)
       ->needs(plan);
   command->add_flag("--no-page", options->no_page, "Write diagnosis.json only, no report.html");
-  add_permissions(*command, options->permitted);
+  add_bare_options(*command, options->bare);
   add_common_options(
       *command, options->common, "glidelab-out/diagnose-<name of the first folder>",
       "Seed of a plan's noise, default the scenario's, and of the noise shown with a twin on the page; a "

@@ -8,6 +8,7 @@
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
 #include "base/files/file_io.h"
+#include "render/film/marker_view.h"
 #include "render/film/render_experiment.h"
 #include "render/scenario/scenario.h"
 #include "report/text/json_numbers.h"
@@ -33,6 +34,9 @@ void render_command(const RenderCommandOptions& options) {
   base::StagedOutput staged_experiment(out);
   base::StagedOutput staged_truth(truth);
 
+  for (const render::ClipView& view : render::views_of(scenario)) {
+    if (view.outside > 0) say(options.common, render::sentence(view));
+  }
   ProgressDisplay display(options.common.quiet, options.common.verbose);
   const std::uint64_t seed = options.common.seed.value_or(scenario.seed);
   const render::RenderSummary summary = render::render_experiment(

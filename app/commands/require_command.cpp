@@ -24,22 +24,26 @@ struct RequireOptions {
   CommonOptions common;
   std::string sweep;
   std::vector<std::string> targets;
-  std::string confirm = "tracks";
-  std::uint64_t runs = 12, track_runs = 200;
+  std::string confirm;  // empty: rendered where the sweep has images
+  std::uint64_t runs = 20, track_runs = 200;
 };
+
+validate::Confirm confirm_of(const std::string& confirm, const validate::Sweep& sweep) {
+  if (confirm == "none") return validate::Confirm::none;
+  const bool images = confirm.empty() ? sweep.level == validate::Level::clips : confirm == "clips";
+  return images ? validate::Confirm::clips : validate::Confirm::tracks;
+}
 
 void require_command(const RequireOptions& options) {
   validate::RequirementOptions how;
   of_command_line([&] {
     for (const std::string& target : options.targets) how.targets.push_back(validate::parse_target(target));
   });
-  how.confirm = options.confirm == "none"    ? validate::Confirm::none
-                : options.confirm == "clips" ? validate::Confirm::clips
-                                             : validate::Confirm::tracks;
   how.runs = options.runs;
   how.track_runs = options.track_runs;
   how.jobs = options.common.jobs;
   validate::Sweep sweep = validate::read_sweep(options.sweep);
+  how.confirm = confirm_of(options.confirm, sweep);
   if (options.common.seed) sweep.seed = *options.common.seed;
   report::check_gnuplot();
   const fs::path out = output_folder(options.common, "require", options.sweep);
@@ -49,8 +53,8 @@ void require_command(const RequireOptions& options) {
   how.before_rendering = [&](const validate::ConfirmationSize& size) {
     display.clear();
     say(options.common,
-        fmt::format("{} of {} are close to the target: {} recordings to render, about {:.2g} min on {} threads, and "
-                    "longer to find what limits those that miss it",
+        fmt::format("the bound allows {} of {}: {} recordings to render, about {:.2g} min on {} threads, and longer "
+                    "for those that are close to the target and to find what limits those that miss it",
                     size.close, size.points, size.recordings, size.seconds / 60.0, options.common.jobs));
   };
   how.watch = throw_if_interrupted;
@@ -81,19 +85,22 @@ void add_require(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "--target", options->targets,
-          fmt::format("QUANTITY=VALUE or QUANTITY:sd=VALUE (root mean square error), QUANTITY:error95=VALUE (what 95 % "
-                      "of the errors stay within) or QUANTITY:bias=VALUE (mean error); quantities are {}",
-                      fmt::join(core::quantity_keys(), ", ")))
+          fmt::format(
+              "QUANTITY=VALUE (what 95 % of the errors stay within), QUANTITY:sd=VALUE (root mean square error) "
+              "or QUANTITY:bias=VALUE (mean error); quantities are {}",
+              fmt::join(core::quantity_keys(), ", ")))
       ->type_name("TARGET")
       ->required();
   command
       ->add_option("--confirm", options->confirm,
-                   "How to confirm what the bound allows: by \"tracks\" with the predicted noise, by rendered "
-                   "\"clips\" as well where these come close to the target, or by \"none\"")
+                   "How to judge what the bound allows: by rendered \"clips\" (the default for a sweep of level "
+                   "clips), by \"tracks\" with the predicted noise (the default else), or by \"none\"")
       ->type_name("HOW")
-      ->check(CLI::IsMember({"tracks", "clips", "none"}))
-      ->capture_default_str();
-  CLI::Option* runs = command->add_option("--runs", options->runs, "Rendered runs per camera, with --confirm clips")
+      ->check(CLI::IsMember({"tracks", "clips", "none"}));
+  CLI::Option* runs = command
+                          ->add_option("--runs", options->runs,
+                                       "Rendered runs of a camera, at most: of the one to buy, and of those "
+                                       "that are close to the target")
                           ->type_name("N")
                           ->check(CLI::Range(2, 100000))
                           ->capture_default_str();
@@ -104,7 +111,9 @@ void add_require(CLI::App& app, Command& chosen) {
   add_common_options(*command, options->common, "glidelab-out/require-<name of the sweep file>",
                      "Seed of the runs; default: the sweep's");
   command->callback([options, runs, &chosen] {
-    if (runs->count() > 0 && options->confirm != "clips") throw CLI::RequiresError("--runs", "--confirm clips");
+    if (runs->count() > 0 && !options->confirm.empty() && options->confirm != "clips") {
+      throw CLI::RequiresError("--runs", "--confirm clips");
+    }
     chosen = [options] { require_command(*options); };
   });
 }

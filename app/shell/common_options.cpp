@@ -159,10 +159,19 @@ void write_whole(const fs::path& file, std::string_view text) {
   }
 }
 
+std::string decimal_point_for(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos || text.find_first_not_of("+-0123456789,") != std::string::npos) return {};
+  if (text.find(',', comma + 1) != std::string::npos || comma == 0 || comma + 1 == text.size()) return {};
+  std::string with_point = text;
+  with_point[comma] = '.';
+  return "; use a decimal point: " + with_point;
+}
+
 std::string check_above_0(const std::string& text) {
   double value = 0.0;
   if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
-  return fmt::format("\"{}\" is not a number above 0", text);
+  return fmt::format("\"{}\" is not a number above 0{}", text, decimal_point_for(text));
 }
 
 std::string check_noise_m(const std::string& text) {

@@ -110,4 +110,7 @@ void add_max_megapixels(CLI::App& command, std::size_t& most_pixels);
 /// InputError if one of these is a scenario or a sweep, which hold no recording.
 void refuse_scenarios(const std::vector<std::string>& inputs);
 
+/// "; use a decimal point: 0.335" for "0,335"; empty for any other text.
+std::string decimal_point_for(const std::string& text);
+
 }  // namespace glidelab::app

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <regex>
 #include <utility>
 
 namespace glidelab::base {
@@ -30,13 +32,35 @@ void TomlNode::reject(std::string_view key, const toml::node* found, std::string
   reject(key, found, show(found), std::move(expected));
 }
 
+namespace {
+
+/// The line of that number, counted from 1.
+std::string line_of(std::string_view text, std::size_t number) {
+  for (; number > 1 && !text.empty(); --number) {
+    text.remove_prefix(std::min(text.size(), text.find('\n') == text.npos ? text.size() : text.find('\n') + 1));
+  }
+  return std::string(text.substr(0, text.find('\n')));
+}
+
+/// "mass_kg = 0.335" of "mass_kg = 0,335"; empty for a line that has no such number as its value.
+std::string with_decimal_point(const std::string& line) {
+  static const std::regex kComma(R"(^(\s*[A-Za-z0-9_-]+\s*=\s*[-+]?[0-9]+),([0-9]+)\s*(#.*)?$)");
+  std::smatch parts;
+  return std::regex_match(line, parts, kComma) ? parts[1].str() + "." + parts[2].str() : std::string();
+}
+
+}  // namespace
+
 toml::table parsed_toml(std::string_view text, const std::string& shown_as) {
   try {
     return toml::parse(text, shown_as);
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
-    throw InputError(Issue{shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
-                           fmt::format("no valid TOML ({})", error.description()), "TOML 1.0"});
+    const std::string expected = with_decimal_point(line_of(text, at.line));
+    throw InputError(Issue{
+        shown_as, static_cast<int>(at.line), fmt::format("column {}", at.column),
+        expected.empty() ? fmt::format("no valid TOML ({})", error.description()) : std::string("a decimal comma"),
+        expected.empty() ? "TOML 1.0" : fmt::format("a decimal point: {}", expected)});
   }
 }
 

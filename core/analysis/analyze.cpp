@@ -13,7 +13,7 @@
 namespace glidelab::core {
 namespace {
 
-std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folders, const BareTrackOptions& bare) {
+std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folders, const TrackFileOptions& bare) {
   if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
   std::vector<Experiment> experiments;
   std::set<std::filesystem::path> seen;
@@ -22,7 +22,7 @@ std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folde
     if (!seen.insert(std::filesystem::weakly_canonical(file)).second) {
       throw base::InputError(base::Issue{folder.string(), 0, "", "the folder a second time", "each folder once"});
     }
-    experiments.push_back(read_input(folder, bare));
+    experiments.push_back(read_tracks(folder, bare));
     const Experiment& read = experiments.back();
     require_clips(read);
     if (read.gravity_m_s2 != experiments.front().gravity_m_s2) {
@@ -52,6 +52,31 @@ void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipS
   }
 }
 
+/// What a file on its own does not say and nobody states.
+std::string assumption(const TrackFileOptions& stated, double mass_kg) {
+  const bool mass = !stated.mass_kg && stated.masses_kg.empty(), incline = !stated.incline_deg;
+  if (!mass && !incline) return {};
+  const std::string of_mass = fmt::format("a mass of {:g} kg", mass_kg), of_incline = "an inclination of 0°";
+  return fmt::format(
+      "{} assumed, for nobody states {} (--mass, --incline): K/m, µ and α come from the motion and do not "
+      "depend on that",
+      mass && incline ? of_mass + " and " + of_incline + " are" : (mass ? of_mass : of_incline) + " is",
+      mass && incline ? "them" : "it");
+}
+
+void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetup>& setups,
+                      const std::vector<const Experiment*>& experiment_of,
+                      std::vector<ConfigurationResult>& configurations) {
+  for (ConfigurationResult& configuration : configurations) {
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+      if (setups[i].name != configuration.clips.front() || !is_bare_track(experiment_of[i]->file)) continue;
+      const std::string assumed = assumption(stated, setups[i].mass_kg);
+      if (!assumed.empty()) configuration.notes.push_back(assumed);
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
@@ -70,9 +95,6 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
-      if (is_bare_track(experiment.file) && !options.bare.mass_kg) {
-        tracks.back().notes.emplace_back(kMassAssumed);
-      }
       experiment_of.push_back(&experiment);
     }
     modes += seen.modes;
@@ -89,6 +111,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = experiment_of[i]->name;
   results.calibrations = std::move(calibrations);
   results.plumbs = std::move(plumbs);
+  note_assumptions(options.bare, setups, experiment_of, results.configurations);
   return results;
 }
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "base/long_work.h"
-#include "core/experiment/experiment.h"
 #include "core/motion/analyze_motion.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/result/results.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 
@@ -26,7 +26,7 @@ struct AnalysisOptions {
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
   bool pictures = false;       ///< keep what the clips' images show besides the motion (ClipResult::pictures)
-  BareTrackOptions bare = {};  ///< for inputs that are a track's file
+  TrackFileOptions bare = {};  ///< for inputs that are a track's file
 };
 
 /// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, but not the camera.

@@ -13,6 +13,7 @@
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/result/results.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 namespace {
@@ -169,11 +170,11 @@ constexpr int kVideos = 2;  // more would make the page heavy
 }  // namespace
 
 std::vector<Preview> previews_of(const std::vector<std::filesystem::path>& folders, const AnalysisResults& results,
-                                 const base::Progress& progress, const BareTrackOptions& bare) {
+                                 const base::Progress& progress, const TrackFileOptions& bare) {
   std::vector<Preview> previews;
   int videos = 0;
   for (const std::filesystem::path& folder : folders) {
-    const Experiment experiment = read_input(folder, bare);
+    const Experiment experiment = read_tracks(folder, bare);
     for (const ClipSetup& setup : experiment.clips) {
       if (!setup.file.empty())
         progress("preparing images", static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));

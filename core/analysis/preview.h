@@ -12,7 +12,7 @@
 namespace glidelab::core {
 
 struct AnalysisResults;
-struct BareTrackOptions;
+struct TrackFileOptions;
 struct Experiment;
 struct ClipSetup;
 struct ClipResult;
@@ -44,6 +44,6 @@ Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const
 /// One preview for each clip of the results, which come from these folders in this order. The first two clips with
 /// images get a video, the others one frame.
 std::vector<Preview> previews_of(const std::vector<std::filesystem::path>& folders, const AnalysisResults& results,
-                                 const base::Progress& progress, const BareTrackOptions& bare);
+                                 const base::Progress& progress, const TrackFileOptions& bare);
 
 }  // namespace glidelab::core

@@ -175,16 +175,17 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
                     a / gravity_m_s2),
         fmt::format("x may be in {} instead of metres, or an angle, or the times in another unit: convert the file, "
                     "or state the scale",
-                    units));
+                    units),
+        Topic::length);
   } else if (a > kFreeFall * gravity_m_s2 && std::abs(setup.incline_rad) < kShallow_rad) {
     book.add(
         Severity::unusable,
         fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
                     a / gravity_m_s2, setup.incline_rad * base::kDegreesPerRad),
-        "state incline_deg = 90 for a fall; otherwise check the unit of x");
+        "state incline_deg = 90 for a fall; otherwise check the unit of x", Topic::incline);
   } else if (look.distance_m > (std::abs(setup.incline_rad) < kShallow_rad ? kLongRange_m : kLongFall_m)) {
     book.add(Severity::change, fmt::format("x covers {:.3g} m", look.distance_m),
-             "check the unit of x: it may be centimetres, millimetres, or an angle");
+             "check the unit of x: it may be centimetres, millimetres, or an angle", Topic::length);
   }
   if (look.frame_s > kSlowFrames_s) {
     book.add(Severity::change, fmt::format("its positions are {:.3g} s apart", look.frame_s),

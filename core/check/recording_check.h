@@ -23,12 +23,25 @@ enum class Severity {
   unusable  ///< no analysis, or an untrustworthy one
 };
 
+/// What a finding is about, as far as one wrong statement explains several (root_causes.h).
+enum class Topic {
+  other,
+  length,   ///< a distance, a speed or an acceleration
+  size,     ///< of the marker beside its stated diameter
+  incline,  ///< the stated inclination against the motion
+  time,     ///< frame times
+  mass,
+  failure  ///< a clip that could not be tracked
+};
+
 /// One finding, and what to do about it.
 struct Finding {
   Severity severity = Severity::note;
   std::string about;   ///< "pattern", "masses", "plumb line", or clips' names
   std::string found;   ///< "the marker is 4.1 px wide"
   std::string advice;  ///< "move closer or use a bigger one"; empty if nothing is to be done
+  Topic topic = Topic::other;
+  std::vector<std::string> follow = {};  ///< findings that follow from this one, which is their root cause
 };
 
 struct PixelPlace {
@@ -141,8 +154,8 @@ inline std::string first_names(const std::vector<std::string>& names) {
 class FindingBook {
  public:
   FindingBook(std::vector<Finding>& findings, std::string about) : findings_(findings), about_(std::move(about)) {}
-  void add(Severity severity, std::string found, std::string advice = {}) {
-    findings_.push_back({severity, about_, std::move(found), std::move(advice)});
+  void add(Severity severity, std::string found, std::string advice = {}, Topic topic = Topic::other) {
+    findings_.push_back({severity, about_, std::move(found), std::move(advice), topic});
   }
 
  private:

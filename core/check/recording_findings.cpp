@@ -7,8 +7,10 @@
 #include <tuple>
 #include <utility>
 
+#include "base/math/angles.h"
 #include "core/check/motion_look.h"
 #include "core/check/recording_check.h"
+#include "core/check/root_causes.h"
 #include "core/check/statement_findings.h"
 #include "core/pictures/frames/frame_source.h"
 
@@ -96,7 +98,8 @@ void judge_times(const Experiment& experiment, const ClipCheck& clip, FindingBoo
         fmt::format("the file states {:.6g} frames per second, experiment.toml {:.6g}", *clip.container_rate_hz,
                     clip.frame_rate_hz),
         fmt::format("check that the clip was filmed at {:.6g} frames per second: a wrong rate scales every speed{}",
-                    clip.frame_rate_hz, by_rate ? "; a slow-motion file states its playback rate" : ""));
+                    clip.frame_rate_hz, by_rate ? "; a slow-motion file states its playback rate" : ""),
+        Topic::time);
   }
   if (clip.drift_frames > kMostDriftFrames) {
     book.add(
@@ -220,7 +223,8 @@ void judge_marker(const ClipCheck& clip, FindingBook& book) {
 void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook book) {
   if (!clip.failure.empty()) {
     book.add(Severity::unusable, clip.failure,
-             "check that the file plays, that the marker is in the image and moves, and that [marker] describes it");
+             "check that the file plays, that the marker is in the image and moves, and that [marker] describes it",
+             Topic::failure);
     return;
   }
   if (clip.pictures) {
@@ -272,6 +276,14 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
       }
     }
   }
+  for (const ClipSetup& setup : experiment.clips) {
+    if (setup.launched != Launched::unknown) continue;
+    findings.push_back({Severity::note, setup.name,
+                        fmt::format("a file on its own: its mass is taken as {:.6g} kg and its inclination as {:.4g}°",
+                                    setup.mass_kg, setup.incline_rad * base::kDegreesPerRad + 0.0),
+                        "--mass and --incline state others; K/m, µ and α do not depend on them"});
+  }
+  findings = with_root_causes(experiment, check, std::move(findings));
   if (!check.plumb_failure.empty()) findings.push_back({Severity::unusable, "plumb line", check.plumb_failure, {}});
   std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
     return static_cast<int>(a.severity) > static_cast<int>(b.severity);

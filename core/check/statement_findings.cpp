@@ -9,6 +9,7 @@
 #include "core/check/recording_check.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/result/estimate.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 namespace {
@@ -51,7 +52,7 @@ void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) 
   findings.push_back({Severity::unusable, "masses",
                       fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", first_names(heavy),
                                   kMassRatio, least->name, least->mass_kg),
-                      "state every mass in kilograms: one of them looks like grams"});
+                      "state every mass in kilograms: one of them looks like grams", Topic::mass});
 }
 
 /// One finding for all clips: they share the marker and the scale.
@@ -75,7 +76,8 @@ void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clip
        fmt::format(
            "measure diameter_m and {} again: one of these lengths is wrong; if it is not diameter_m, all speeds and "
            "accelerations are wrong too",
-           length)});
+           length),
+       Topic::size});
 }
 
 /// A marker cannot run farther than the track is long.
@@ -92,7 +94,7 @@ void judge_distance(const Experiment& experiment, const std::vector<ClipCheck>& 
   findings.push_back({Severity::unusable, first_names(names),
                       fmt::format("the glider runs {:.3g} m, but length_m in [track] is {:.3g} m", distance_m,
                                   *experiment.track.length_m),
-                      fmt::format("measure the track again, and check {}", lengths_of(experiment))});
+                      fmt::format("measure the track again, and check {}", lengths_of(experiment)), Topic::length});
 }
 
 /// The configuration of a group that contradicts the stated inclination most.
@@ -115,11 +117,12 @@ void keep_worse(const ConfigurationResult& configuration, const std::optional<In
 /// One finding for a group: its clips share the inclination.
 void judge_incline(const Experiment& experiment, const RecordingCheck& check, std::vector<Finding>& findings) {
   std::map<std::string, Worst> by_key, by_plumb;
+  const bool any_assumed = std::any_of(experiment.clips.begin(), experiment.clips.end(), incline_is_assumed);
   for (const ConfigurationResult& configuration : check.configurations) {
     const auto against = [&](const StatedIncline& stated) {
       return incline_contradiction(configuration, experiment.gravity_m_s2, stated);
     };
-    keep_worse(configuration, against(stated_incline(configuration)), by_key);
+    if (!any_assumed) keep_worse(configuration, against(stated_incline(configuration)), by_key);
     for (const PlumbResult& plumb : check.plumbs) {
       if (plumb.group != configuration.group || !plumb.plumb_deg.estimate) continue;
       const Estimate& angle = *plumb.plumb_deg.estimate;
@@ -133,7 +136,8 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
                           first_names(worst.configuration->clips), worst.contradiction.sentence,
                           fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}",
                                       worst_of == &by_key ? "incline_deg" : "the plumb line", lengths_of(experiment),
-                                      experiment.camera ? ", frame_rate_hz (its square enters)" : "")});
+                                      experiment.camera ? ", frame_rate_hz (its square enters)" : ""),
+                          Topic::incline});
     }
   }
 }

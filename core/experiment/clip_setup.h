@@ -83,4 +83,8 @@ void check_names(const std::vector<ClipSetup>& clips, const std::vector<base::To
 /// Rejects an inclination that another clip of the group contradicts(): a group has one.
 void check_readings(const std::vector<ClipSetup>& clips, const std::vector<base::TomlTable>& clip_tables);
 
+/// Whether the inclination of a clip is that of a file on its own (nobody says how it was launched) that stands for
+/// what nobody states, 0: no motion contradicts it.
+bool incline_is_assumed(const ClipSetup& clip);
+
 }  // namespace glidelab::core

@@ -319,7 +319,11 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   for (const std::vector<MemberClip>& members : configurations) {
     results.push_back(join_members(members, gravity_m_s2, lines));
   }
-  note_statements(results, gravity_m_s2);
+  note_statements(results, gravity_m_s2, [&](const ConfigurationResult& result) {
+    return std::none_of(setups.begin(), setups.end(), [&](const ClipSetup& setup) {
+      return incline_is_assumed(setup) && setup.name == result.clips.front();
+    });
+  });
   return results;
 }
 

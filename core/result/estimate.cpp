@@ -128,7 +128,8 @@ StatedIncline stated_incline(const ConfigurationResult& configuration) {
   return {configuration.incline_deg, configuration.incline_sd_deg, "incline_deg"};
 }
 
-void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2) {
+void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2,
+                     const std::function<bool(const ConfigurationResult&)>& states_incline) {
   double least_kg = std::numeric_limits<double>::infinity();
   for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
   for (ConfigurationResult& result : results) {
@@ -138,6 +139,12 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
                       "looks like grams",
                       result.mass_kg, least_kg));
     }
+    if (result.mass_kg >= kLargestMass_kg) {
+      result.notes.push_back(
+          fmt::format("mass_kg = {:.6g}: masses are in kilograms, and this one looks like grams ({:.6g} kg)",
+                      result.mass_kg, result.mass_kg / 1000.0));
+    }
+    if (!states_incline(result)) continue;
     const auto contradiction = incline_contradiction(result, gravity_m_s2, stated_incline(result));
     if (contradiction && contradiction->gross) {
       result.notes.push_back(

@@ -2,6 +2,7 @@
 /// shows.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ Quantity undetermined(std::string why);
 /// above zero by 1.96 standard deviations. `k_is` begins the sentence: "K/m".
 std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view k_is, const Estimate& a0_m_s2);
 
+/// A glider of a laboratory is lighter; grams for kilograms are not.
+inline constexpr double kLargestMass_kg = 20.0;
 inline constexpr double kMassRatio = 100.0;  ///< gliders of one track differ by less; grams for kilograms make 1000
 
 /// An angle that somebody states, in degrees.
@@ -64,6 +67,11 @@ std::optional<InclineContradiction> incline_contradiction(const ConfigurationRes
 StatedIncline stated_incline(const ConfigurationResult& configuration);
 
 /// Adds to the notes: masses that look like grams, stated inclinations that the motion contradicts grossly.
-void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2);
+/// Of configurations whose inclination nobody states that is no contradiction.
+void note_statements(
+    std::vector<ConfigurationResult>& results, double gravity_m_s2,
+    const std::function<bool(const ConfigurationResult&)>& states_incline = [](const ConfigurationResult&) {
+      return true;
+    });
 
 }  // namespace glidelab::core

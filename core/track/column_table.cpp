@@ -87,6 +87,15 @@ TableColumn column_of(const std::string& text) {
     name = std::string(trimmed(std::string_view(name).substr(colon + 1)));
   }
   const std::string small = lower(name);
+  // Of several sensors the channel says which: "Position, Ch 1 (m)".
+  if (const auto channel = small.find(", ch "); channel != std::string::npos && channel > 0) {
+    std::string_view rest_of = std::string_view(name).substr(channel + 2);
+    const auto run = lower(rest_of).find(", run");
+    column.run = std::string(trimmed(run == std::string::npos ? rest_of : rest_of.substr(run)));
+    name = std::string(trimmed(std::string_view(name).substr(0, channel)));
+    column.name = name;
+    return column;
+  }
   for (const char* const mark : {", run", " run #", " run "}) {
     const auto at = small.find(mark);
     if (at == std::string::npos || at == 0) continue;
@@ -108,6 +117,26 @@ TableColumn column_of(const std::string& text) {
 
 }  // namespace
 
+bool is_time_name(std::string_view name) {
+  static constexpr std::array<std::string_view, 8> kNames{"t",      "time",  "zeit", "temps",
+                                                          "tiempo", "tempo", "tijd", "elapsed time"};
+  return std::find(kNames.begin(), kNames.end(), lower(name)) != kNames.end();
+}
+
+bool is_time_column(const TableColumn& column) {
+  return column.unit.empty() ? is_time_name(column.name) : seconds_per(column.unit).has_value();
+}
+
+bool is_place_column(const TableColumn& column) {
+  static const std::vector<std::string> kPlaces{
+      "x", "position", "pos", "distance", "displacement", "position x", "x-position", "position (x)",
+      // German, Spanish, French, Italian, Portuguese
+      "weg", "ort", "abstand", "strecke", "entfernung", "posici\xC3\xB3n", "posici\xC3\x93n", "posicion", "distancia",
+      "desplazamiento", "d\xC3\xA9placement", "distance x", "posizione", "spostamento", "distanza",
+      "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento"};
+  return !is_time_column(column) && std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
+}
+
 std::optional<double> metres_per(std::string_view unit) {
   return factor(kLengths, unit);
 }
@@ -116,10 +145,28 @@ std::optional<double> seconds_per(std::string_view unit) {
   return factor(kTimes, unit);
 }
 
+namespace {
+
+/// A line of names of bodies or runs over the columns' own names, each over several columns: Tracker writes the mass
+/// over its t, x and y and pads the line.
+bool names_several_columns(const std::vector<std::string>& line, const std::vector<std::string>& below) {
+  const auto filled = [](const std::vector<std::string>& fields) {
+    return std::count_if(fields.begin(), fields.end(), [](const std::string& field) { return !field.empty(); });
+  };
+  const bool has_time = std::any_of(below.begin(), below.end(),
+                                    [](const std::string& field) { return is_time_name(column_of(field).name); });
+  return filled(line) > 0 && filled(line) < filled(below) && has_time &&
+         !std::any_of(line.begin(), line.end(),
+                      [](const std::string& field) { return is_time_name(column_of(field).name); });
+}
+
+}  // namespace
+
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
   auto header = lines;
   std::vector<std::string> runs, units;
-  if (header.size() > 1 && all_that_is_there(header.front(), speaks_of_a_run)) {
+  if (header.size() > 1 &&
+      (all_that_is_there(header.front(), speaks_of_a_run) || names_several_columns(header.front(), header[1]))) {
     runs = header.front();
     header.erase(header.begin());
   }
@@ -210,15 +257,38 @@ struct Line {
   std::string_view text;
 };
 
-std::vector<Line> lines_of(std::string_view text) {
-  std::vector<Line> lines;
+struct Lines {
+  std::vector<Line> all;
+  std::vector<Line> comments;  ///< behind their '#'
+};
+
+Lines lines_of(std::string_view text) {
+  Lines lines;
   for (int at = 1; !text.empty(); ++at) {
     const auto newline = text.find('\n');
     const std::string_view line = trim(text.substr(0, newline));
     text.remove_prefix(newline == std::string_view::npos ? text.size() : newline + 1);
-    if (line.find_first_not_of("\t;, ") != std::string_view::npos && line.front() != '#') lines.push_back({at, line});
+    if (line.find_first_not_of("\t;, ") == std::string_view::npos) continue;
+    if (line.front() == '#') {
+      lines.comments.push_back({at, trim(line.substr(1))});
+    } else {
+      lines.all.push_back({at, line});
+    }
   }
   return lines;
+}
+
+/// The names that stand behind a '#': of the last comment before the numbers that has as many fields as these. Empty
+/// without one.
+std::vector<std::string> commented_header(const std::vector<Line>& comments, int first_data, std::size_t width,
+                                          const Format& format) {
+  std::vector<std::string> header;
+  for (const Line& comment : comments) {
+    if (comment.number > first_data) break;
+    const std::vector<std::string_view> fields = split(comment.text, format.delimiter);
+    if (fields.size() == width && !is_data(fields, format.decimal)) header.assign(fields.begin(), fields.end());
+  }
+  return header;
 }
 
 /// Nothing where no line holds two numbers.
@@ -250,7 +320,8 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
                                        "text in UTF-8 with a track; a video goes into a folder, which glidelab new "
                                        "FOLDER makes"});
   }
-  const std::vector<Line> lines = lines_of(rest);
+  const Lines read = lines_of(rest);
+  const std::vector<Line>& lines = read.all;
   const auto format = format_of(lines);
   if (!format) {
     throw base::InputError(base::Issue{table.file, 0, "", "no line with two numbers",
@@ -268,6 +339,10 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   for (std::size_t r = 0; r < first_data; ++r) {
     if (rows[r].size() < 2) continue;  // a title
     header.emplace_back(rows[r].begin(), rows[r].end());
+  }
+  if (header.empty()) {
+    std::vector<std::string> names = commented_header(read.comments, lines[first_data].number, width, *format);
+    if (!names.empty()) header.push_back(std::move(names));
   }
   table.has_header = !header.empty();
   table.columns = columns_of_header(header, width);

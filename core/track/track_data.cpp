@@ -101,16 +101,11 @@ void check_gaps(const TrackData& track, const std::string& file, const std::stri
                   gap->longest_s, kLongestGapSteps)});
 }
 
-const std::vector<std::string> kPlaces{"x",   "position", "pos",        "distance",     "displacement",    "position x",
-                                       "weg", "ort",      "x-position", "position (x)", "posici\xC3\xB3n", "distancia"};
-const std::vector<std::string> kTimeNames{"t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "elapsed time"};
-
-bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), lower(name)) != names.end();
-}
-
-bool is_time(const TableColumn& column) {
-  return column.unit.empty() ? is_one_of(kTimeNames, column.name) : seconds_per(column.unit).has_value();
+bool is_acceleration(const TableColumn& column) {
+  const std::string name = lower(column.name);
+  return column.unit.starts_with("m/s^2") || column.unit.starts_with("m/s\xC2\xB2") ||
+         name.find("accel") != std::string::npos || name.find("beschleunigung") != std::string::npos ||
+         name.find("aceler") != std::string::npos || name.find("acc\xC3\xA9l") != std::string::npos;
 }
 
 std::string columns_text(const ColumnTable& table) {
@@ -136,11 +131,20 @@ bool is_asked(const TableColumn& column, std::size_t index, const std::string& a
          small == lower(column.run + ": " + column.text) || small == lower(column.run + ": " + column.name);
 }
 
+/// Accelerations alone are no track, and a person who exported them from a phone should know why.
+void refuse_accelerations(const ColumnTable& table) {
+  if (std::none_of(table.columns.begin(), table.columns.end(), is_acceleration)) return;
+  throw wrong_column(table, "accelerations without positions, " + columns_text(table),
+                     "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
+                     "integrated, and a phone on an incline measures gravity besides. Film the glider, or record its "
+                     "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
+}
+
 std::size_t place_column(const ColumnTable& table, const std::string& asked) {
   std::vector<std::size_t> found;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
-    if (asked.empty() ? !is_time(column) && is_one_of(kPlaces, column.name) : is_asked(column, c, asked)) {
+    if (asked.empty() ? is_place_column(column) : is_asked(column, c, asked)) {
       found.push_back(c);
     }
   }
@@ -150,10 +154,12 @@ std::size_t place_column(const ColumnTable& table, const std::string& asked) {
     throw wrong_column(table, fmt::format("{} of the name or number \"{}\"", found.empty() ? "none" : "several", asked),
                        "one of the " + columns_text(table));
   }
-  throw wrong_column(table, columns_text(table),
-                     fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
-                                 "experiment.toml) by its header or its number",
-                                 found.empty() ? "one" : "just one"));
+  if (found.empty()) refuse_accelerations(table);
+  throw wrong_column(
+      table, columns_text(table),
+      fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
+                  "experiment.toml) by its header or its number{}",
+                  found.empty() ? "one" : "just one", found.empty() ? "" : ", or take all as clips (--runs all)"));
 }
 
 std::size_t time_column(const ColumnTable& table, std::size_t place) {
@@ -161,7 +167,7 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
   std::vector<std::size_t> times;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const bool same_run = table.columns[c].run == table.columns[place].run || table.columns[c].run.empty();
-    if (c != place && is_time(table.columns[c]) && same_run) times.push_back(c);
+    if (c != place && is_time_column(table.columns[c]) && same_run) times.push_back(c);
   }
   const auto right = std::lower_bound(times.begin(), times.end(), place);
   if (right != times.begin()) return *std::prev(right);

@@ -275,6 +275,13 @@ bool is_tracker_project(const fs::path& file) {
   return is_zip_archive(first) || is_xml(first);
 }
 
+std::vector<std::string> point_masses_of(const fs::path& file) {
+  const std::vector<TrackerProject> projects = projects_of(file);
+  std::vector<std::string> names;
+  for (const Candidate& candidate : candidates_of(projects)) names.push_back(candidate.full_name);
+  return names;
+}
+
 TrackData read_tracker_project(const fs::path& file, std::optional<Downhill> downhill, const std::string& point_mass) {
   const std::vector<TrackerProject> projects = projects_of(file);
   const Candidate chosen = choose(file, projects, point_mass);

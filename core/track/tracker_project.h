@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/experiment/clip_setup.h"
 #include "core/track/track_data.h"
@@ -32,6 +33,10 @@ bool is_tracker_project(const std::filesystem::path& file);
 /// kMostProjectBytes, whatever an archive claims, and an archive at most kMostProjects projects.
 TrackData read_tracker_project(const std::filesystem::path& file, std::optional<Downhill> downhill,
                                const std::string& point_mass);
+
+/// The names of a project's point masses, or of all of an archive, as `point_mass` above takes them.
+/// InputError as read_tracker_project() for what is no project.
+std::vector<std::string> point_masses_of(const std::filesystem::path& file);
 
 inline constexpr std::size_t kMostProjects = 50;  ///< of one archive: a course's worth of tabs
 

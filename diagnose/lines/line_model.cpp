@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <numbers>
 #include <set>
@@ -49,10 +50,27 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file) {
   return lines;
 }
 
-core::Experiment read_recording(const std::filesystem::path& path, core::Permissions permitted) {
-  std::error_code ignored;  // what cannot be looked at is read as a folder, which says what is wrong
-  if (path.extension() != ".csv" || !std::filesystem::is_regular_file(path, ignored)) {
-    return core::read_experiment(path, permitted);
+namespace {
+
+/// The first line that is neither empty nor a comment names the lines' K/m.
+bool is_table_of_lines(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  while (std::getline(in, line)) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    return line.find("k_over_m_1_s") != std::string::npos;
+  }
+  return false;
+}
+
+}  // namespace
+
+core::Experiment read_recording(const std::filesystem::path& path, const core::TrackFileOptions& bare) {
+  if (!core::is_bare_track(path) || !is_table_of_lines(path)) return core::read_tracks(path, bare);
+  if (!bare.column.empty() || bare.mass_kg || bare.incline_deg || !bare.runs.empty()) {
+    throw base::InputError(base::Issue{path.string(), 0, "--column, --mass, --incline, --runs", "a table of lines",
+                                       "none of them: the table has its masses and inclinations"});
   }
   core::Experiment experiment;
   experiment.folder = path.parent_path();

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "core/experiment/experiment.h"
+#include "core/track/bare_track.h"
 #include "diagnose/result/line_comparison.h"
 
 namespace glidelab::diagnose {
@@ -46,9 +46,10 @@ inline constexpr std::size_t kFewestLines = 6;
 /// range and for fewer than kFewestLines.
 std::vector<TableLine> read_lines(const std::filesystem::path& file);
 
-/// An experiment folder; or a table of lines that lies in no folder, a CSV file: an experiment named after the file, of
-/// its lines alone, with the default gravity. InputError as read_experiment(); what is in the table is not looked at.
-core::Experiment read_recording(const std::filesystem::path& path, core::Permissions permitted);
+/// An experiment folder; or a table of lines that lies in no folder, a CSV file whose header has k_over_m_1_s: an
+/// experiment named after the file, of its lines alone, with the default gravity; or any other file, a track.
+/// InputError as read_input() (core/track/bare_track.h); what is in a table is not looked at.
+core::Experiment read_recording(const std::filesystem::path& path, const core::TrackFileOptions& bare);
 
 /// The issue of a table with too few lines.
 base::Issue too_few_lines(const std::string& file, std::size_t lines);

@@ -97,7 +97,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
   std::vector<std::optional<core::CameraSettings>> cameras;
   std::vector<core::Experiment> experiments;
   for (const std::filesystem::path& folder : folders) {
-    const core::Experiment experiment = read_recording(folder, options.permitted);
+    const core::Experiment experiment = read_recording(folder, options.bare);
     if (experiment.lines) {
       if (folders.size() > 1) {
         throw base::InputError(base::Issue{experiment.file.string(), 0, "lines", "a table of lines with other folders",
@@ -110,14 +110,13 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     experiments.push_back(experiment);
   }
   indices(options.without);  // what is misspelt shows before the clips are read
-  const core::AnalysisResults results =
-      core::analyze(folders,
-                    {.bandwidth_s = {},
-                     .jobs = options.jobs,
-                     .lost_frames = core::LostFrameTimes::kept,
-                     .pictures = true,
-                     .bare = {.column = {}, .mass_kg = {}, .incline_deg = {}, .permitted = options.permitted}},
-                    progress);
+  const core::AnalysisResults results = core::analyze(folders,
+                                                      {.bandwidth_s = {},
+                                                       .jobs = options.jobs,
+                                                       .lost_frames = core::LostFrameTimes::kept,
+                                                       .pictures = true,
+                                                       .bare = options.bare},
+                                                      progress);
   return diagnose_results(results, setups, options, progress, cameras, experiments);
 }
 

@@ -13,6 +13,7 @@
 #include "base/long_work.h"
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
+#include "core/track/bare_track.h"
 #include "diagnose/result/diagnosis.h"
 
 namespace glidelab::diagnose {
@@ -21,7 +22,7 @@ struct DiagnoseOptions {
   std::vector<std::string> without;  ///< effects that are not considered
   int jobs = 1;
   bool twin = false;  ///< a twin is wanted, with the camera as the folders tell of it; else it has a scenario's own
-  core::Permissions permitted = {};
+  core::TrackFileOptions bare = {};  ///< for inputs that are a track's file; whether a folder may name files outside
 };
 
 /// InputError for what is wrong with a folder, for data that carry no verdict (too few positions, nothing that moves

@@ -103,7 +103,7 @@ py::tuple told(
 }
 
 py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisChoices& choices,
-                        const core::BareTrackOptions& bare, const py::object& progress_told) {
+                        const core::TrackFileOptions& bare, const py::object& progress_told) {
   const std::vector<fs::path> folders(inputs.begin(), inputs.end());
   const fit::Estimator& estimator = estimator_of(choices);
   std::string title;
@@ -115,7 +115,7 @@ py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisCh
     how.lines = estimator.lines;
     how.bare = bare;
     core::AnalysisResults of_lines = core::analyze(folders, how, progress);
-    title = core::read_input(folders.front(), bare).name;
+    title = core::read_tracks(folders.front(), bare).name;
     if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
     return estimator.estimate(std::move(of_lines), {.robust = choices.robust});
   });
@@ -152,11 +152,11 @@ void bind_analysis(py::module_& module) {
   module.def("analyze_files", [](const std::vector<std::string>& inputs, const AnalysisChoices& choices,
                                  std::string column, std::optional<double> mass_kg, std::optional<double> incline_deg,
                                  bool allow_outside, const py::object& progress) {
-    const core::BareTrackOptions bare{
-        std::move(column),
-        mass_kg,
-        incline_deg,
-        {.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused}};
+    core::TrackFileOptions bare;
+    bare.column = std::move(column);
+    bare.mass_kg = mass_kg;
+    bare.incline_deg = incline_deg;
+    bare.permitted.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
     return analyze_files(inputs, choices, bare, progress);
   });
   module.def("analyze_arrays", &analyze_arrays);

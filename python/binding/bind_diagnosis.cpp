@@ -71,11 +71,11 @@ py::tuple diagnose_files(const std::vector<std::string>& inputs, const std::vect
   if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
   std::string title;
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
-    title = diagnose::read_recording(folders.front(), {.outside = outside_of(allow_outside)}).name;
+    diagnose::DiagnoseOptions how{.without = without, .jobs = jobs, .twin = false};
+    how.bare.permitted.outside = outside_of(allow_outside);
+    title = diagnose::read_recording(folders.front(), how.bare).name;
     if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
-    return diagnose::diagnose(
-        folders, {.without = without, .jobs = jobs, .twin = false, .permitted = {.outside = outside_of(allow_outside)}},
-        progress);
+    return diagnose::diagnose(folders, how, progress);
   });
   return told(std::move(diagnosis), title);
 }

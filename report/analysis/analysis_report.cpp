@@ -9,8 +9,10 @@
 
 #include "base/text/number_text.h"
 #include "report/analysis/doubts.h"
+#include "report/analysis/fitted_curve.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/sections.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -149,6 +151,36 @@ std::string r2_of(const core::ConfigurationResult& configuration, int direction)
   return line == nullptr ? "–" : base::r2_text(line->r2);
 }
 
+/// "K/m = 2.7630 ± 0.0060 1/s" of one configuration, "K/m = 0.86 ± 0.01 to 2.76 ± 0.02 1/s" of several; empty where
+/// none has it.
+std::string value_words(const core::AnalysisResults& results, std::size_t which) {
+  const core::Estimate *least = nullptr, *most = nullptr;
+  const QuantityName& name = kQuantities[which];
+  for (const core::ConfigurationResult& c : results.configurations) {
+    const core::Quantity& quantity = *quantities_of(c)[which].quantity;
+    if (!quantity.estimate) continue;
+    if (least == nullptr || quantity.estimate->value < least->value) least = &*quantity.estimate;
+    if (most == nullptr || quantity.estimate->value > most->value) most = &*quantity.estimate;
+  }
+  if (least == nullptr) return {};
+  std::string values = base::value_and_sd_text(least->value, least->sd);
+  if (most != least) values += " to " + base::value_and_sd_text(most->value, most->sd);
+  return fmt::format("{} = {}{}", name.symbol, values, unit_suffix(name.unit));
+}
+
+/// The answer in one line: the values, or that the law does not fit.
+std::string analysis_answer(const core::AnalysisResults& results) {
+  std::string values;
+  for (std::size_t which = 0; which < kQuantities.size(); ++which) {
+    const std::string words = value_words(results, which);
+    if (!words.empty()) values += (values.empty() ? "" : ", ") + words;
+  }
+  if (values.empty()) return "The data determine none of K/m, µ, α and the limit velocity; why stands below the table.";
+  const std::string doubted = doubts_about(results).empty() ? "" : " (but the law is in doubt: see below the table)";
+  const std::size_t many = results.configurations.size();
+  return fmt::format("{}{}{}.", values, many == 1 ? "" : fmt::format(" over {} configurations", many), doubted);
+}
+
 }  // namespace
 
 std::string analysis_text(const core::AnalysisResults& results) {
@@ -168,7 +200,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
       }
     }
   }
-  std::string text = text_table(rows, 3);
+  std::string text = analysis_answer(results) + "\n\n" + text_table(rows, 3);
   if (!doubts.empty()) text += fmt::format("* {}\n", kIfItHeld);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
   rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
@@ -191,28 +223,64 @@ std::string analysis_text(const core::AnalysisResults& results) {
   return text;
 }
 
-Page analysis_report(const std::string& title, const core::AnalysisResults& results,
-                     const std::vector<core::Preview>& previews, const base::Progress& progress,
-                     const Html& with_causes) {
-  std::size_t frames = 0;
-  std::size_t detected = 0;
+namespace {
+
+/// K/m, µ, α and the limit velocity with ±, of each of few configurations; of many the table has them.
+std::string value_tiles(const core::AnalysisResults& results) {
+  constexpr std::size_t kMostTiled = 2;
+  if (results.configurations.size() > kMostTiled) return {};
+  std::string html;
+  for (const core::ConfigurationResult& c : results.configurations) {
+    html += "<div class=\"tiles\">";
+    for (const auto& [name, quantity] : quantities_of(c)) {
+      std::string what = with_unit(name.symbol, name.unit);
+      if (results.configurations.size() > 1) what += ", " + configuration_name(results, c);
+      html += tile(quantity_text(*quantity), what);
+    }
+    html += "</div>\n";
+  }
+  return html;
+}
+
+/// "12 clips, 2400 frames, the marker found in 2388".
+std::string size_words(const core::AnalysisResults& results) {
+  std::size_t frames = 0, detected = 0;
   bool pictures = false;
   for (const core::ClipResult& clip : results.clips) {
     pictures = pictures || !clip.sightings.empty();
     frames += clip.frames;
     detected += clip.detected;
   }
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, estimator {}.</p>\n", escape(title),
-                          escape(results.estimator));
-  body += fmt::format("<div class=\"tiles\">{}{}{}{}</div>\n",
-                      tile(std::to_string(results.configurations.size()), "configurations"),
-                      tile(std::to_string(results.clips.size()), "clips"), tile(std::to_string(frames), "frames"),
-                      tile(std::to_string(detected), pictures ? "with the marker found" : "positions"));
-  body += meaning_of(results);
-  body += recovered_section(results);
+  const std::size_t clips = results.clips.size();
+  const std::string seen = pictures ? fmt::format("{} frames, the marker found in {}", frames, detected)
+                                    : fmt::format("{} positions", detected);
+  return fmt::format("{} {}, {}", clips, clips == 1 ? "clip" : "clips", seen);
+}
+
+/// x(t) with the law over it, of the first clips.
+Html fitted_section(const core::AnalysisResults& results) {
+  constexpr std::size_t kMostFitted = 4;
+  const std::vector<Plot> plots = fitted_plots(results, kMostFitted);
+  if (plots.empty()) return {};
+  Html html = "<h2 id=\"fitted\">Does the law fit the positions?</h2>\n";
+  html += figures(plots);
+  return html;
+}
+
+}  // namespace
+
+Page analysis_report(const std::string& title, const core::AnalysisResults& results,
+                     const std::vector<core::Preview>& previews, const base::Progress& progress,
+                     const Html& with_causes) {
+  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n", escape(title),
+                          escape(estimator_name(results.estimator)), size_words(results));
+  // Where the law is in doubt the doubt comes before the numbers.
+  const std::string values = value_tiles(results) + recovered_section(results), meaning = meaning_of(results);
+  body += doubts_about(results).empty() ? values + meaning : meaning + values;
   body += with_causes;
+  body += fitted_section(results);
   body += phase_section(results);
-  body += details_sections(results, previews, progress);
+  body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));
   return page(title, body);
 }
 

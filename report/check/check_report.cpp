@@ -108,7 +108,8 @@ std::string check_json(const core::RecordingCheck& check) {
     json["findings"].push_back({{"severity", name_of(finding.severity)},
                                 {"about", finding.about},
                                 {"found", finding.found},
-                                {"advice", finding.advice}});
+                                {"advice", finding.advice},
+                                {"follow", finding.follow}});
   }
   if (check.pattern) json["pattern"] = pattern_json(*check.pattern);
   json["clips"] = Json::array();
@@ -152,6 +153,14 @@ std::string word_of(core::Severity severity) {
   return "";
 }
 
+/// What was found, and folded what follows from it. HTML.
+std::string found_html(const core::Finding& finding) {
+  if (finding.follow.empty()) return escape(finding.found);
+  std::string list;
+  for (const std::string& one : finding.follow) list += "<li>" + escape(one) + "</li>";
+  return fmt::format("<details><summary>{}</summary><ul>{}</ul></details>", escape(finding.found), list);
+}
+
 std::string findings_section(const core::RecordingCheck& check) {
   std::string text = "<h2>What was found, and what to do</h2>\n";
   if (check.findings.empty()) return text + "<p>Nothing needs to change.</p>\n";
@@ -159,7 +168,7 @@ std::string findings_section(const core::RecordingCheck& check) {
   for (const core::Finding& finding : check.findings) {
     const char* mark = finding.severity == core::Severity::unusable ? "bad" : "soft";
     table.row({fmt::format("<span class=\"{}\">{}</span>", mark, word_of(finding.severity)), escape(finding.about),
-               escape(finding.found), escape(finding.advice)});
+               found_html(finding), escape(finding.advice)});
   }
   return text + table.str();
 }

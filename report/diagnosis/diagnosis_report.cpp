@@ -14,6 +14,7 @@
 #include "report/diagnosis/gap_plots.h"
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/verdict_words.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -200,12 +201,6 @@ constexpr const char* kMethod =
     "those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all "
     "clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
     "waves or positions, which frames are lost, the shape of a curve without a name) comes from all clips.</p>\n";
-
-/// A part of the page that opens where its heading is clicked; nothing of an empty one.
-Html folded(const std::string& heading, const Html& part) {
-  if (part.plots().empty() && part.texts().front().empty()) return {};
-  return Html("<details class=\"part\"><summary>" + heading + "</summary>\n") + part + "</details>\n";
-}
 
 Html gap_parts(const diagnose::Diagnosis& diagnosis) {
   const std::vector<Plot> domains = domain_plots(diagnosis);

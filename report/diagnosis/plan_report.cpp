@@ -34,9 +34,10 @@ std::string lead(const diagnose::Plan& plan) {
     alone += effect.seen && effect.alike.empty() ? 1 : 0;
   }
   return fmt::format(
-      "{} clips, {} positions, with {} µm of noise found in them. Of {} effects with a single direction (a push or a "
-      "displacement), these motions can show {}, and distinguish {} of those from every other.",
-      plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2), plan.effects.size(), seen, alone);
+      "These motions can show {} of {} effects with a single direction (a push or a displacement), and distinguish {} "
+      "of "
+      "those from every other: {} clips, {} positions, with {} µm of noise found in them.",
+      seen, plan.effects.size(), alone, plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2));
 }
 
 /// What follows from what can be seen; plain text.

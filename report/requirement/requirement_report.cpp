@@ -8,7 +8,9 @@
 #include <limits>
 
 #include "base/text/number_text.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
+#include "report/requirement/requirement_answer.h"
 #include "report/requirement/requirement_plot.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
@@ -20,8 +22,6 @@ using validate::Candidate;
 using validate::Requirement;
 using validate::Target;
 using validate::Verdict;
-
-constexpr double kLeastNamedGain = 1.05;  // times smaller with one limitation less: below it nothing is worth a name
 
 /// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
 struct Scale {
@@ -82,7 +82,7 @@ std::string next_step(const Requirement& requirement) {
   });
   return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not included.{}",
                      ran ? "Judged by tracks, not by images" : "Judged by the bound alone, without a run",
-                     forbidden ? "" : " With --confirm clips those that are near the target are rendered as well.");
+                     forbidden ? "" : " With --confirm clips all that the bound allows are rendered.");
 }
 
 std::string found_text(const validate::TargetResult& result, double scale) {
@@ -104,13 +104,13 @@ std::string limit_text(const Candidate& candidate) {
   return text;
 }
 
-/// Bound, error by runs and runs beyond, of each target.
+/// Error by runs, bound and runs beyond, of each target.
 std::vector<std::string> result_cells(const Requirement& requirement, const Candidate& candidate) {
   std::vector<std::string> cells;
   for (std::size_t t = 0; t < candidate.results.size(); ++t) {
     const double scale = scale_of(requirement.targets[t]).size;
-    cells.push_back(bound_text(candidate.results[t].bound, scale));
     cells.push_back(found_text(candidate.results[t], scale));
+    cells.push_back(bound_text(candidate.results[t].bound, scale));
     cells.push_back(beyond_text(candidate.results[t]));
   }
   return cells;
@@ -121,148 +121,102 @@ std::string noise_cell(const Candidate& candidate) {
   return std::isfinite(candidate.noise_m) ? base::number_text(candidate.noise_m * 1e6, 3) : "–";
 }
 
-/// Name and number in the tables: "6. webcam".
-std::string numbered(const Requirement& requirement, std::size_t i) {
-  return fmt::format("<b>{}. {}</b>", i + 1, escape(requirement.candidates[i].name));
+/// "5 of 16 reach it, 2 are undecided, 9 do not."
+std::string counts_text(const Requirement& requirement) {
+  std::size_t reaching = 0, undecided = 0, possible = 0;
+  for (const Candidate& candidate : requirement.candidates) {
+    reaching += reached(candidate) ? 1 : 0;
+    undecided += candidate.verdict == Verdict::undecided ? 1 : 0;
+    possible += candidate.verdict == Verdict::unconfirmed ? 1 : 0;
+  }
+  std::string text = fmt::format("{} of {} reach it", reaching, requirement.candidates.size());
+  if (undecided > 0) text += fmt::format(", {} may (more runs would decide)", undecided);
+  if (possible > 0) text += fmt::format(", {} can by the bound, but nothing was run", possible);
+  const std::size_t not_at_all = requirement.candidates.size() - reaching - undecided - possible;
+  if (not_at_all > 0) text += fmt::format(", {} {} not", not_at_all, not_at_all == 1 ? "does" : "do");
+  return text + ".";
 }
 
-/// "rms error of µ is (5.66 ± 0.30) · 10⁻⁶".
-std::string found_words(const Target& target, const validate::TargetResult& result) {
-  const Scale scale = scale_of(target);
-  const std::string name = target_name(target), unit = unit_of(target.quantity);
-  const std::string number = found_text(result, scale.size);
-  return fmt::format("{} is {}{}", name.substr(0, name.find(" (")),
-                     scale.factor.empty() ? number : fmt::format("({}) · {}", number, scale.factor),
-                     unit.empty() ? "" : " " + unit);
-}
-
-/// What the answer is, in some sentences.
-std::string meaning(const Requirement& requirement) {
-  std::vector<std::size_t> reaching, undecided, possible, missed;
-  for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
-    const Candidate& candidate = requirement.candidates[i];
-    if (reached(candidate)) {
-      reaching.push_back(i);
-    } else if (candidate.verdict == Verdict::undecided) {
-      undecided.push_back(i);
-    } else if (candidate.verdict == Verdict::unconfirmed) {
-      possible.push_back(i);
-    } else {
-      missed.push_back(i);
-    }
-  }
-  std::string text = fmt::format("<p>{} of {} reach the target.", reaching.size(), requirement.candidates.size());
-  if (!reaching.empty()) {
-    const Candidate& first = requirement.candidates[reaching.front()];
-    text += fmt::format(" {} is {} that does", numbered(requirement, reaching.front()),
-                        requirement.by_price ? "the cheapest" : "the one with the fewest pixels a second");
-    if (!first.price_class.empty()) text += fmt::format(" ({})", escape(first.price_class));
-    if (!first.results.empty() && first.results.front().found && std::isfinite(*first.results.front().found)) {
-      const validate::TargetResult& result = first.results.front();
-      text += fmt::format(": its {}, {} times below the target", found_words(requirement.targets.front(), result),
-                          base::number_text(requirement.targets.front().value / *result.found, 2));
-    }
-    text += ".";
-  }
-  if (!undecided.empty()) {
-    text +=
-        fmt::format(" For {} more, the target lies within one standard deviation of the error: more runs will decide.",
-                    undecided.size());
-  }
-  if (!possible.empty()) {
-    text += fmt::format(" For {} the bound allows it, but nothing was run.", possible.size());
-  }
-  if (!missed.empty() && !requirement.candidates[missed.front()].limits.empty()) {
-    const validate::Limit& limit = requirement.candidates[missed.front()].limits.front();
-    text +=
-        limit.gain < kLeastNamedGain
-            ? fmt::format(" No single limitation prevents {} from reaching it.", numbered(requirement, missed.front()))
-            : fmt::format(" What most limits {}: {}; without that its error would be {} times smaller.",
-                          numbered(requirement, missed.front()), escape(limit.name), base::number_text(limit.gain, 2));
-  }
-  return meaning_section(text + "</p>\n");
-}
-
-/// Those that reach the targets, and the others with what limits them.
-struct CandidateTables {
-  HtmlTable good, others;
-};
-
-CandidateTables candidate_tables(const Requirement& requirement) {
-  std::vector<std::string> header = {"no.", "camera", "cost", "verdict", "frames/s", "position noise (µm)"};
+/// All of them, the cheapest first.
+std::string candidate_table(const Requirement& requirement) {
+  std::vector<std::string> header = {"no.", "camera", "cost", "verdict"};
+  const std::size_t first_number = header.size();
   for (const Target& target : requirement.targets) {
-    header.push_back("bound: " + escape(target_name(target, scale_of(target).factor)));
-    header.push_back("by runs" + escape(same_unit(target)));
+    header.push_back(escape(target_name(target, scale_of(target).factor)));
+    header.push_back("bound" + escape(same_unit(target)));
     header.push_back("runs beyond the target");
   }
-  std::vector<std::string> with_limits = header;
-  with_limits.insert(with_limits.begin() + 4, "what limits it");
-  CandidateTables tables{HtmlTable(header, 4), HtmlTable(with_limits, 5)};
+  header.insert(header.end(), {"frames/s", "position noise (µm)", "what limits it"});
+  HtmlTable table(header, first_number);
   for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
     const Candidate& candidate = requirement.candidates[i];
-    std::vector<std::string> row = {std::to_string(i + 1),
-                                    escape(candidate.name),
+    const std::string verdict = escape(describe(candidate));
+    std::vector<std::string> row = {std::to_string(i + 1), escape(candidate.name),
                                     escape(cost_text(requirement, candidate)),
-                                    escape(describe(candidate)),
-                                    base::number_text(candidate.frame_rate_hz, 4),
-                                    noise_cell(candidate)};
+                                    reached(candidate) ? "<b>" + verdict + "</b>" : verdict};
     for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
-    if (reached(candidate)) {
-      tables.good.row(row);
-    } else {
-      row.insert(row.begin() + 4, escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
-      tables.others.row(row);
-    }
+    row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
+    row.push_back(reached(candidate) ? "" : escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
+    table.row(row);
   }
-  return tables;
+  return table.str();
 }
 
-/// What the tables' numbers are, below them.
+std::string judged_by_text(const Requirement& requirement) {
+  if (requirement.confirm == validate::Confirm::none) return "Nothing was run.";
+  if (requirement.confirm == validate::Confirm::tracks) {
+    return fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
+                       requirement.track_runs);
+  }
+  return fmt::format(
+      "Where it allows the target, {} runs of tracks with that noise are made, and rendered runs judge, by the better "
+      "estimator: {} of each with a calibration of its own, more of those that these do not decide, and {} of the "
+      "cheapest that reaches the target, which share these calibrations. "
+      "What tracks miss, by their clock, fewer than {} rendered runs cannot reach: it is undecided.",
+      requirement.track_runs, std::min(validate::kLeastRendered, requirement.runs), requirement.runs,
+      validate::kRunsForQuantile);
+}
+
+/// What the table's numbers are.
 std::string how_judged(const Requirement& requirement) {
   std::string text = fmt::format(
-      "<p class=\"soft\">The bound is the Cramér-Rao bound for the motion at this frame rate and position noise; the "
-      "noise itself is the bound on the marker's centre for the camera's light and noise. {} \"What limits "
-      "it\" says how many times smaller the bound of the hardest target (\"by runs\": the error) would be without one "
-      "limitation. A lens, a codec, a rolling shutter and the calibration enter in rendered runs only (--confirm "
-      "clips).</p>\n",
-      requirement.confirm == validate::Confirm::none ? std::string("Nothing was run.")
-      : requirement.confirm == validate::Confirm::clips
-          ? fmt::format("Where it allows the target, runs judge, by the better estimator: {} rendered ones where a "
-                        "verdict says so, else {} tracks with that noise.",
-                        requirement.runs, requirement.track_runs)
-          : fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
-                        requirement.track_runs));
-  text += fmt::format(
-      "<p class=\"soft\">An rms error includes the bias; 95 % of the runs stay within the 95 % error. ± is one "
-      "standard deviation, from {} bootstrap resamples of the runs (bias: that of the errors over the root of their "
-      "number); where it spans the target, nothing is decided. \"Runs beyond the target\" err by more than its value: "
-      "a few that are far off come from frames lost without a trace, not from noise.</p>\n",
-      validate::kResamples);
-  return text;
+      "<p>Errors are those of the worst configuration; {} first. The bound is the Cramér-Rao bound for the motion at "
+      "this frame rate and position noise; the noise itself is the bound on the marker's centre for the camera's light "
+      "and noise. {} “What limits it” says how many times smaller the bound of the hardest target (“by runs”: the "
+      "error) would be without one limitation. A lens, a codec, a rolling shutter and the calibration enter in "
+      "rendered runs only.</p>\n",
+      order_text(requirement), judged_by_text(requirement));
+  return text +
+         fmt::format(
+             "<p>95 % of the runs stay within the 95 % error (of fewer than 20 runs: 1.96 times their rms error). A "
+             "target is reached where the upper limit of the error, of 95 % confidence, is within it, and missed "
+             "where the lower limit is beyond it: with {} runs or more the limits are two of their errors, with fewer "
+             "they take the errors as normal. ± is one standard deviation, from {} bootstrap resamples of the runs "
+             "(bias: that of the errors over the root of their number). “Runs beyond the target” err by more than its "
+             "value: a few that are far off come from frames lost without a trace, not from noise.</p>\n",
+             validate::kRunsForQuantile, validate::kResamples);
 }
 
 }  // namespace
 
 Page requirement_report(const Requirement& requirement) {
-  Html body = fmt::format("<h1>{}</h1>\n<p>What reaches {} on the worst configuration; {} first.</p>\n",
-                          escape(requirement.name), escape(targets_text(requirement)), order_text(requirement));
-  body += meaning(requirement);
+  Html body =
+      fmt::format("<h1>Which of these reaches {}?</h1>\n<p><b>{}</b> {}</p>\n<p>{} From <i>{}</i>.</p>\n",
+                  escape(targets_text(requirement)), escape(requirement_answer(requirement)),
+                  escape(enough_words(requirement)), escape(counts_text(requirement)), escape(requirement.name));
   const std::string next = next_step(requirement);
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
-  const CandidateTables tables = candidate_tables(requirement);
-  body +=
-      tables.good.empty() ? "<p class=\"note bad\">None reaches it.</p>\n" : "<h2>These do</h2>\n" + tables.good.str();
   body += figures({requirement_plot(requirement)});
-  if (!tables.others.empty()) body += "<h2>The others</h2>\n" + tables.others.str();
-  body += how_judged(requirement);
+  body += candidate_table(requirement);
+  body += folded("How this was judged", how_judged(requirement));
   return page(requirement.name, body);
 }
 
 std::string requirement_text(const Requirement& requirement) {
   std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "frames/s", "noise (µm)"}};
   for (const Target& target : requirement.targets) {
-    rows.front().push_back("bound: " + target_name(target, scale_of(target).factor));
-    rows.front().push_back("by runs" + same_unit(target));
+    rows.front().push_back(target_name(target, scale_of(target).factor));
+    rows.front().push_back("bound" + same_unit(target));
     rows.front().push_back("runs beyond");
   }
   std::string below;
@@ -274,9 +228,11 @@ std::string requirement_text(const Requirement& requirement) {
     const std::string limits = candidate.why.empty() ? limit_text(candidate) : candidate.why;
     if (!limits.empty()) below += fmt::format("{}: {}\n", candidate.name, limits);
   }
-  std::string text = fmt::format("What reaches {} on the worst configuration; {} first.\n\n", targets_text(requirement),
-                                 order_text(requirement)) +
-                     text_table(rows, 3);
+  std::string text = requirement_answer(requirement) + "\n";
+  if (const std::string enough = enough_words(requirement); !enough.empty()) text += enough + "\n";
+  text += fmt::format("\n{} on the worst configuration; {} first. {}\n\n", targets_text(requirement),
+                      order_text(requirement), counts_text(requirement)) +
+          text_table(rows, 3);
   if (!below.empty()) text += "\nWhat limits the others (how many times smaller the bound is without it)\n" + below;
   const std::string next = next_step(requirement);
   if (!next.empty()) text += "\n" + next + "\n";
@@ -287,6 +243,8 @@ std::string requirement_json(const Requirement& requirement) {
   Json document;
   document["format"] = 1;
   document["name"] = requirement.name;
+  document["answer"] = requirement_answer(requirement);
+  if (const std::string enough = enough_words(requirement); !enough.empty()) document["better_than_needed"] = enough;
   document["order"] = requirement.by_price ? "price" : "pixels_s";
   for (const Target& target : requirement.targets) {
     document["targets"].push_back(target.name());
@@ -315,9 +273,12 @@ std::string requirement_json(const Requirement& requirement) {
       put(of, "found", result.found, "not run");
       if (result.found) {
         put(of, "found_sd", result.found_sd);
+        put(of, "found_low", result.low);
+        put(of, "found_high", result.high);
         of["runs"] = result.runs;
         of["runs_beyond_target"] = result.beyond;
       }
+      if (result.by_tracks) put(of, "found_by_tracks", *result.by_tracks);
       if (!result.estimator.empty()) of["estimator"] = result.estimator;
       object["targets"].push_back(std::move(of));
     }

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "base/text/number_text.h"
+#include "report/html/folded.h"
 #include "report/html/html.h"
+#include "report/sweep/bandwidth_study.h"
 #include "report/sweep/sweep_meaning.h"
 #include "report/sweep/sweep_plots.h"
 #include "report/text/display_text.h"
@@ -201,29 +203,18 @@ void put_alike(Json& object, const validate::Series& series, const validate::Gro
   object["alike"] = group.alike ? statistics_json(*group.alike) : Json(nullptr);
 }
 
-}  // namespace
-
-Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
-  Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">Sweep by Glidelab. Errors are recovered minus true "
-      "values, over all configurations of the scenario.</p>\n",
-      escape(summary.name));
-  body += fmt::format(
-      "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>runs</span></div><div class=\"tile\"><b{}>{}</b>"
-      "<span>failed</span></div><div class=\"tile\"><b>{} s</b><span>run time, summed over the "
-      "threads</span></div></div>\n",
-      summary.runs, summary.planned, summary.failed > 0 ? " class=\"bad\"" : "", summary.failed,
-      base::number_text(summary.cpu_s, 3));
-  for (const std::string& failure : summary.failures)
-    body += fmt::format("<p class=\"note\">{}</p>\n", escape(failure));
-  if (summary.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*summary.outside)));
-  body += sweep_meaning(summary) + mass_study_section(summary.masses);
-  body += "<h2>All runs</h2>\n" + overall_table(summary);
+Html tables_of(const SweepSummary& summary) {
+  Html body = "<h2>All runs</h2>\n" + overall_table(summary);
   body +=
       "<p class=\"soft\">Stated sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares "
       "over the runs; coverage is the fraction of the stated 95 % intervals that hold the truth.</p>\n";
   body += sweep_advice(summary) + configuration_table(summary);
   body += acceleration_table(summary);
+  return body;
+}
+
+Html axis_plots(const SweepSummary& summary, const base::Progress& progress) {
+  Html body;
   double done = 0.0;
   for (const validate::AxisSummary& axis : summary.axes) {
     Html drawn;
@@ -235,13 +226,49 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
     }
     if (!drawn.plots().empty()) body += fmt::format("<h2>Over {}</h2>\n", escape(axis.name)) + drawn;
   }
+  return body;
+}
+
+std::string runs_of(const SweepSummary& summary) {
+  std::string html = fmt::format(
+      "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>runs</span></div><div class=\"tile\"><b{}>{}</b>"
+      "<span>failed</span></div><div class=\"tile\"><b>{} s</b><span>run time, summed over the "
+      "threads</span></div></div>\n",
+      summary.runs, summary.planned, summary.failed > 0 ? " class=\"bad\"" : "", summary.failed,
+      base::number_text(summary.cpu_s, 3));
+  for (const std::string& failure : summary.failures)
+    html += fmt::format("<p class=\"note\">{}</p>\n", escape(failure));
+  if (summary.outside) html += fmt::format("<p>{}.</p>\n", escape(outside_text(*summary.outside)));
+  return html;
+}
+
+}  // namespace
+
+Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
+  const std::string soft =
+      "<p class=\"soft\">Sweep by Glidelab. Errors are recovered minus true values, over all configurations of the "
+      "scenario.</p>\n";
+  if (const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary)) {
+    Html body =
+        fmt::format("<h1>Which bandwidth? {}</h1>\n<p><b>{}</b></p>\n", escape(summary.name), escape(answer->text));
+    body += figures(bandwidth_plots(summary));
+    body += bandwidth_table(summary) + soft + runs_of(summary);
+    body += folded("In words", sweep_meaning(summary) + mass_study_section(summary.masses));
+    body += folded("All runs, estimators and configurations", tables_of(summary));
+    body += folded("Over each key of the sweep", axis_plots(summary, progress));
+    return page(summary.name, body);
+  }
+  Html body = fmt::format("<h1>{}</h1>\n", escape(summary.name)) + soft + runs_of(summary);
+  body += sweep_meaning(summary) + mass_study_section(summary.masses);
+  body += tables_of(summary) + axis_plots(summary, progress);
   return page(summary.name, body);
 }
 
 std::string sweep_text(const SweepSummary& summary) {
   std::vector<std::vector<std::string>> rows = rows_of(summary.overall);
   rows.insert(rows.begin(), kHeader);
-  std::string text = text_table(rows, 2);
+  const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary);
+  std::string text = (answer ? answer->text + "\n\n" : std::string()) + text_table(rows, 2);
   text += fmt::format("{} of {} runs, {} failed\n", summary.runs, summary.planned, summary.failed);
   for (const std::string& failure : summary.failures) text += fmt::format("  {}\n", failure);
   if (summary.outside) text += outside_text(*summary.outside) + "\n";
@@ -257,6 +284,15 @@ std::string sweep_json(const SweepSummary& summary) {
   document["failed"] = summary.failed;
   document["failures"] = summary.failures;
   if (summary.outside) document["outside"] = outside_json(*summary.outside);
+  if (const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary)) {
+    document["bandwidth"] = {{"answer", answer->text},
+                             {"use_s", answer->use_s},
+                             {"nearly_as_good_from_s", answer->from_s},
+                             {"nearly_as_good_to_s", answer->to_s},
+                             {"too_narrow_at_s", answer->narrow_s},
+                             {"too_wide_at_s", answer->wide_s},
+                             {"no_line_at_s", answer->unanswered_s}};
+  }
   document["overall"] = Json::array();
   for (const validate::Series& series : summary.overall) {
     Json object = statistics_json(series.groups.front().statistics);

@@ -13,6 +13,7 @@
 #include "fit/estimators.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/sections.h"
+#include "report/html/folded.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
@@ -58,6 +59,8 @@ std::string comparison_json(const validate::Comparison& comparison) {
   put(positions, "field_m", restitution.field_m);
   document["frames"] = comparison.frames;
   document["detected"] = comparison.detected;
+  document["frames_out_of_view"] = comparison.frames_out_of_view;
+  document["out_of_view"] = comparison.out_of_view;
   put(document, "wall_s", comparison.wall_s);
   if (comparison.outside) document["outside"] = outside_json(*comparison.outside);
   return json_text(document);
@@ -248,10 +251,9 @@ std::string headline(const validate::Comparison& comparison) {
     for (std::size_t i = 0; i < column.size(); ++i) rows[i + 1].push_back(column[i]);
   }
   return fmt::format(
-      "Recovered from the images alone by the {}, ± one standard deviation, and in brackets the truth:\n\n{}\n{}{}\n",
-      estimator_name(estimator), text_table(rows, 1),
-      no_constant ? "A truth \"–\": the law of friction in this scenario has no such constant.\n" : "",
-      printable(agreement_of(comparison)));
+      "{}\n\nRecovered from the images alone by the {}, ± one standard deviation, and in brackets the truth:\n\n{}\n{}",
+      printable(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
+      no_constant ? "A truth \"–\": the law of friction in this scenario has no such constant.\n" : "");
 }
 
 /// How far measured positions are off, in a line.
@@ -340,8 +342,9 @@ std::string comparison_text(const validate::Comparison& comparison) {
   text += '\n';
   text += text_table(rows, 2);
   text += restitution_text(comparison.restitution);
-  text += fmt::format("marker found in {} of {} frames\ntime to render and analyse: {:.1f} s\n", comparison.detected,
-                      comparison.frames, comparison.wall_s);
+  text += fmt::format("marker found in {} of {} frames\n", comparison.detected, comparison.frames);
+  for (const std::string& sentence : comparison.out_of_view) text += printable(sentence) + "\n";
+  text += fmt::format("time to render and analyse: {:.1f} s\n", comparison.wall_s);
   if (comparison.outside) text += outside_text(*comparison.outside) + "\n";
   return text;
 }
@@ -359,6 +362,9 @@ std::string meaning_of(const validate::Comparison& comparison) {
         base::number_text(100.0 * restitution.max_m / restitution.field_m, 2),
         base::number_text(restitution.field_m, 3));
   }
+  for (const std::string& sentence : comparison.out_of_view) {
+    text += fmt::format("<p class=\"note\">{}.</p>\n", escape(sentence));
+  }
   return meaning_section(text);
 }
 
@@ -374,6 +380,9 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
       escape(title));
   body += "<div class=\"tiles\">" +
           tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +
+          (comparison.frames_out_of_view == 0
+               ? std::string()
+               : tile(std::to_string(comparison.frames_out_of_view), "frames lost: the marker is outside the image")) +
           tile(restitution.points.empty() ? "–" : base::number_text(restitution.rms_m * 1e3, 2) + " mm",
                "position error (rms)") +
           tile(comparison.lines.empty() ? "–" : base::r2_text(lowest_r2), "lowest R² of a line") +
@@ -388,7 +397,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   body += figures(validation_plots(results, comparison));
   body += phase_section(results);
   body += recovered_section(results);
-  body += details_sections(results, previews, progress);
+  body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));
   return page(title, body);
 }
 

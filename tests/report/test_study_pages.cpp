@@ -27,6 +27,7 @@ validate::Requirement one_camera(const std::string& quantity, double target, dou
   candidate.pixels_s = 1e7;
   candidate.frame_rate_hz = 30.0;
   candidate.noise_m = 2.46e-5;
+  candidate.mode = {640, 480, 0.002, "MJPEG of quality 70"};
   candidate.results = {{bound, 1.1 * bound, 0.3 * bound, 200, 3, "trajectory"}};
   requirement.candidates = {candidate};
   return requirement;
@@ -51,14 +52,14 @@ validate::CoverageRow row(const std::string& estimator, const std::string& quant
 TEST_CASE("require says its target, and its columns in the thousandths, millionths … in which the target has digits") {
   const std::string mu = report::requirement_text(one_camera("mu", 0.0005, 1.8e-5));
   CHECK(has(mu, "rms error of µ at most 0.0005 on the worst configuration"));
-  CHECK(has(mu, "bound: rms error of µ (10⁻⁶)  by runs (10⁻⁶)"));
+  CHECK(has(mu, "rms error of µ (10⁻⁶)  bound (10⁻⁶)"));
   CHECK(has(mu, "3 of 200"));
-  CHECK(has(mu, "18      19.8 ± 5.4"));
+  CHECK(has(mu, "19.8 ± 5.4"));
   CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
   const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
-  CHECK(has(k, "bound: rms error of K/m (10⁻³ 1/s)  by runs (10⁻³ 1/s)"));
+  CHECK(has(k, "rms error of K/m (10⁻³ 1/s)  bound (10⁻³ 1/s)"));
   const std::string alpha = report::requirement_text(one_camera("alpha_deg", 1.0, 0.5));
-  CHECK(has(alpha, "bound: rms error of α (°)  by runs (°)"));
+  CHECK(has(alpha, "rms error of α (°)  bound (°)"));
   validate::Requirement rendered = one_camera("mu", 0.0005, 1.8e-5);
   rendered.confirm = validate::Confirm::clips;
   CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));
@@ -84,8 +85,7 @@ TEST_CASE("the numbers in the plot of require are those of its tables, the cheap
   CHECK(has(plotted, "# met\n10,1.98e-05,1,1.507"));
   CHECK(has(plotted, "e-05,2.600"));
   CHECK(has(plotted, "# missed\n10,0.002,2,"));
-  CHECK(has(page.html, "1 of 2 reach the target. <b>1. webcam</b> is the one with the fewest pixels"));
-  CHECK(has(page.html, "its rms error of µ is (19.8\u00a0±\u00a05.4) · 10⁻⁶, 25 times below the target"));
+  CHECK(has(page.html, "1 of 2 reach it, 1 does not."));
 }
 
 TEST_CASE("points of require that lie close together share one label") {

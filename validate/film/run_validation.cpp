@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "fit/estimators.h"
+#include "render/film/marker_view.h"
 #include "validate/tracks/outside_runs.h"
 #include "validate/truth/cramer_rao.h"
 #include "validate/truth/truth_folder.h"
@@ -55,6 +56,11 @@ ValidationResult run_validation(const render::Scenario& scenario, const std::fil
   }
   result.comparison.quantities = with_bounds(
       std::move(quantities), least_sds(truth, noise_of(result.results, truth), scenario.motion.gravity_m_s2));
+  for (const render::ClipView& view : render::views_of(scenario)) {
+    if (view.outside == 0) continue;
+    result.comparison.frames_out_of_view += view.outside;
+    result.comparison.out_of_view.push_back(render::sentence(view));
+  }
   result.comparison.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

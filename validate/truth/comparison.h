@@ -60,6 +60,9 @@ struct Comparison {
   RestitutionComparison restitution;
   std::size_t frames = 0;
   std::size_t detected = 0;
+  /// Where the camera does not see all of a motion; set by who filmed it.
+  std::size_t frames_out_of_view = 0;             ///< with the marker's centre outside the image
+  std::vector<std::string> out_of_view;           ///< in words, of each clip with such frames
   double wall_s = 0.0;                            ///< of simulation, rendering and analysis; set by who measures it
   std::optional<fit::OutsideTally> outside = {};  ///< how an outside estimator's run went
 };

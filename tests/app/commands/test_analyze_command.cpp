@@ -148,6 +148,23 @@ TEST_CASE("analyze takes a file that another program exported, its column of x b
   CHECK(std::abs(k.at("value").get<double>() - 2.0) < 4.0 * k.at("sd").get<double>());
   CHECK(fs::exists(temp / "out/motion-glider.csv"));
   CHECK(fs::exists(temp / "out/report.html"));
+  // What analyze takes, check and diagnose take as well, with the same options.
+  const tests::ProcessResult checked = tests::glidelab(
+      {"check", file, "--column", "Run 2: Position", "--mass", "0.3", "--out", (temp / "check").string()});
+  INFO(checked.err);
+  CHECK(checked.status == 0);
+  const tests::ProcessResult diagnosed = tests::glidelab(
+      {"diagnose", file, "--column", "Run 2: Position", "--no-page", "--out", (temp / "diagnosis").string()});
+  INFO(diagnosed.err);
+  CHECK(diagnosed.status == 0);
+  const tests::ProcessResult runs =
+      tests::glidelab({"analyze", file, "--runs", "all", "--masses", "0.3,0.4", "--out", out, "--json"});
+  INFO(runs.err);
+  REQUIRE(runs.status == 0);
+  CHECK(json::parse(runs.out).at("configurations").size() == 2);
+  const tests::ProcessResult comma = tests::glidelab({"analyze", file, "--mass", "0,335"});
+  CHECK(comma.status == 2);
+  CHECK(comma.err.find("use a decimal point: 0.335") != std::string::npos);
   const tests::ProcessResult without = tests::glidelab({"analyze", file, "--column", "4", "--out", out});
   CHECK(without.status == 0);
   tests::write_track_experiment(temp / "made");

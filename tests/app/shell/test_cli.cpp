@@ -89,7 +89,7 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
       {"pattern", "--square-mm", "nan"},
       {"pattern", "--square-mm", "0"},
       {"pattern", "--marker-mm", "8,nan"},
-      {"require", "a.toml", "--target", "mu=1", "--runs", "20"},
+      {"require", "a.toml", "--target", "mu=1", "--confirm", "tracks", "--runs", "20"},
       {"diagnose", "folder", "--noise-m", "1e-5"},
       {"diagnose", "--plan", "folder", "--without", "stribeck"},
       {"diagnose", "--plan", "folder", "--twin", "twin.toml"},

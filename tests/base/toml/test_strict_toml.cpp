@@ -124,3 +124,18 @@ TEST_CASE("A file takes missing keys over from another, and messages name the on
     CHECK(error.issues()[0].key == "a.y");
   }
 }
+
+TEST_CASE("a decimal comma is named with the number as it is written with a point, other mistakes as before") {
+  const auto message = [](const std::string& text) {
+    try {
+      TomlFile::parse(text, "t.toml");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(message("a = 1\nmass_kg = 0,335  # of the glider\n").find("t.toml:2") != std::string::npos);
+  CHECK(message("a = 1\nmass_kg = 0,335  # of the glider\n").find("a decimal point: mass_kg = 0.335") !=
+        std::string::npos);
+  CHECK(message("a = = 1\n").find("decimal") == std::string::npos);
+}

@@ -1,5 +1,8 @@
 #include "core/check/statement_findings.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -102,7 +105,8 @@ TEST_CASE("an acceleration that no inclination has is told as that, and a track 
   const auto findings = Recorded(kBoth, 4.3, 1000.0).findings();
   REQUIRE_FALSE(findings.empty());
   CHECK(findings[0].severity == core::Severity::unusable);
-  CHECK_THAT(findings[0].found, Contains("is more than gravity_m_s2 = 9.80665"));
+  CHECK_THAT(findings[0].found, Contains("looks like millimetres (0.92 m)"));
+  CHECK_THAT(fmt::format("{}", fmt::join(findings[0].follow, "\n")), Contains("is more than gravity_m_s2 = 9.80665"));
 }
 
 TEST_CASE("motion in one direction bounds the inclination by friction, and contradicts it on one side only") {

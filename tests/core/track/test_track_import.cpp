@@ -110,6 +110,29 @@ TEST_CASE("two columns without a header are time and place, and a byte-order mar
   check_motion(Made("zeit_ms,weg_mm\n" + rows("{0}00,{1}0\n")).read());
 }
 
+TEST_CASE("Tracker's table with a padded line of masses, each over its t, x and y, and one behind a '#'") {
+  const std::string text = "mass A\t\t\tmass B\t\t\nt\tx\ty\tt\tx\ty\n" + rows("0.{0}\t7.0\t0.5\t0.{0}\t{1}E-2\t0.5\n");
+  const Made several(text);
+  check_motion(several.read("mass B: x"));
+  CHECK_THROWS_WITH(several.read(), Contains("--runs all"));
+  check_motion(Made("mass A\t\t\nt\tx\ty\n" + rows("0.{0}\t{1}E-2\t0.5\n")).read());
+  check_motion(Made("# exported by Tracker\n#t\tx\ty\n" + rows("0.{0}\t{1}E-2\t0.5\n")).read());
+}
+
+TEST_CASE("channels of a sensor and words of other languages are positions") {
+  for (const char* name : {"Position, Ch 1 (m)", "Position, Ch 1, Run #2 (m)", "Abstand (m)", "Weg (m)",
+                           "Posici\u00f3n (m)", "D\u00e9placement (m)", "Dist\u00e2ncia (m)"}) {
+    INFO(name);
+    check_motion(Made(fmt::format("\"Time (s)\";\"{}\"\n", name) + rows("0.{0};{1}e-2\n")).read());
+  }
+}
+
+TEST_CASE("accelerations alone are refused with the reason") {
+  const Made phone("\"Time (s)\",\"Linear Acceleration x (m/s^2)\",\"Linear Acceleration y (m/s^2)\"\n" +
+                   rows("0.{0},0.{0},0.1\n"));
+  CHECK_THROWS_WITH(phone.read(), Contains("accelerations without positions") && Contains("integrated"));
+}
+
 TEST_CASE("a name that only contains t_s, as zeit_s, is another program's and imported") {
   check_motion(Made("zeit_s,weg_mm\n" + rows("0.{0},{1}0\n")).read());
   check_motion(Made("t_sec,x_mm\n" + rows("0.{0},{1}0\n")).read());

@@ -14,18 +14,21 @@ namespace glidelab::validate {
 
 enum class Confirm { none, tracks, clips };
 
+/// Rendered runs of every point that the bound allows; more where these do not decide.
+inline constexpr std::uint64_t kLeastRendered = 4;
+
 /// What is about to be rendered.
 struct ConfirmationSize {
   std::uint64_t close = 0, points = 0;  ///< to be rendered, of all
-  std::uint64_t recordings = 0;
-  double seconds = 0.0;  ///< on the threads asked for, from one recording; finding what limits a miss takes longer
+  std::uint64_t recordings = 0;         ///< kLeastRendered of each
+  double seconds = 0.0;  ///< on the threads asked for, from one recording; what is close to the target takes longer
 };
 
 struct RequirementOptions {
   std::vector<Target> targets;
-  Confirm confirm = Confirm::tracks;
+  Confirm confirm = Confirm::clips;
   std::uint64_t track_runs = 200;  ///< of a point as tracks: one run in a hundred may be far off
-  std::uint64_t runs = 12;         ///< of a point that is rendered
+  std::uint64_t runs = 20;         ///< of a point that is rendered, at most
   int jobs = 1;
   std::function<void(const ConfirmationSize&)> before_rendering = {};
   std::function<void()> before_run = {};  ///< called before each; may throw to stop
@@ -41,6 +44,24 @@ struct TargetResult {
   std::size_t runs = 0;         ///< whose errors these are
   std::size_t beyond = 0;       ///< of these, with an error larger than the target's value
   std::string estimator;
+  double low = 0.0, high = 0.0;  ///< limits of `found` (target.h)
+  /// The same as tracks, where rendered runs judge: of many more runs, and of the clock alone.
+  std::optional<double> by_tracks = {};
+};
+
+/// What would do in place of a camera that errs much less than it may: the errors of its runs as tracks, with less of
+/// one thing, times what rendering adds to them.
+struct Enough {
+  double times = 1.0;  ///< target over error, of the hardest target
+  std::optional<double> frame_rate_hz = {};
+  std::optional<double> noise_m = {};  ///< of a position
+};
+
+/// How a camera is to be set.
+struct CameraMode {
+  int width_px = 0, height_px = 0;
+  double exposure_s = 0.0;
+  std::string codec;
 };
 
 /// A limitation removed in thought: how many times smaller the bound of the hardest target then is.
@@ -50,11 +71,11 @@ struct Limit {
 };
 
 enum class Verdict {
-  reached,      ///< by runs
+  reached,      ///< by runs: `high` of every target is within it
   by_bound,     ///< the bound has room of kClearMargin
   unconfirmed,  ///< the bound allows it, and nothing was run
-  undecided,    ///< by runs: found - found_sd is within the target, found + found_sd is not
-  missed,       ///< by runs
+  undecided,    ///< by runs: `low` is within the target, `high` is not; or tracks miss what few rendered runs reach
+  missed,       ///< by runs: `low` of a target is beyond it
   impossible,   ///< the bound is above the target
   refused,      ///< the scenario or the analysis refuses it: `why`
 };
@@ -73,6 +94,8 @@ struct Candidate {
   double need = 0.0;                  ///< bound over target, of the hardest target
   std::vector<TargetResult> results;  ///< one for each target
   std::vector<Limit> limits;          ///< the largest gain first
+  CameraMode mode = {};
+  std::optional<Enough> enough = {};  ///< of the first that reaches the targets, where it errs kMuchLess times less
 };
 
 /// "reached, by clips", "impossible", …

@@ -1,14 +1,16 @@
 /// Which of a sweep's points (cameras, settings) reach a target: first by the Cramér-Rao bound, then by runs.
 ///
-/// A target is on the worst configuration of the scenario: its root mean square error, a bias included ("sd": of an
-/// unbiased estimator the standard deviation), what 95 % of the errors stay within ("error95"), or the mean error
+/// A target is on the worst configuration of the scenario: what 95 % of the errors stay within ("error95"), the root
+/// mean square error, a bias included ("sd": of an unbiased estimator the standard deviation), or the mean error
 /// ("bias"); target.h. The bound takes the noise of the sweep's tracks, or predicts it from the camera
 /// (validate/tracks/made_tracks.h), and is that of the standard deviation, times 1.96 for "error95". A point whose
-/// bound is above the target cannot reach it. Any other is run as tracks with that noise and judged by its errors (of
-/// the better estimator), for a bound knows nothing of dropped frames. Where rendered clips are to confirm, those that
-/// miss the target by less than kClearMargin or reach it by less than kClearMarginOfClips are rendered as well, with
-/// lens, shutter, codec and calibration, and these judge. Where the errors' uncertainty spans the target, nothing is
-/// decided. Where nothing is run, a bound below the target by kClearMargin is said to have room.
+/// bound is above the target cannot reach it. Any other is run as tracks with that noise, for a bound knows nothing of
+/// dropped frames, and rendered, with lens, shutter, codec and calibration: kLeastRendered times, then twice as often,
+/// up to `runs` times, until the limits of the error (of the better estimator) are on one side of the target. The
+/// cheapest that reaches it is rendered `runs` times in any case: it is the one to buy. Where fewer than
+/// kRunsForQuantile rendered runs reach what many tracks miss, and where the limits span the target, nothing is
+/// decided. Without rendering the tracks judge alone. Where nothing is run, a bound below the target by kClearMargin is
+/// said to have room.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +25,8 @@
 namespace glidelab::validate {
 
 inline constexpr double kClearMargin = 4.0;
-/// Clips of a cheap camera with a compressing codec were seen to err 13 times as much as tracks
-/// (docs/evidence/requirements.md).
-inline constexpr double kClearMarginOfClips = 20.0;
+/// A camera that errs so many times less than it may is better than needed, and what would do is found.
+inline constexpr double kMuchLess = 3.0;
 
 struct Requirement {
   std::string name;
@@ -35,6 +36,8 @@ struct Requirement {
   bool by_price = false;              ///< all have a price; else by pixels a second
   std::vector<Candidate> candidates;  ///< the cheapest first
   bool any_reached() const;
+  /// The cheapest that reaches the targets; null where none does.
+  const Candidate* first_reached() const;
 };
 
 /// Judges every point. InputError if the sweep has more than 100,000; what refuses a single point is its verdict.

@@ -13,7 +13,6 @@
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/sweep_run.h"
 #include "validate/tracks/made_tracks.h"
-#include "validate/truth/comparison.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
@@ -119,6 +118,8 @@ void judge_errors(const std::vector<Errors>& all, const Target& target, TargetRe
     if (!worst || (result.found && *result.found <= worst->value)) continue;
     result.found = worst->value;
     result.found_sd = worst->sd;
+    result.low = worst->low;
+    result.high = worst->high;
     result.runs = worst->runs;
     result.beyond = worst->beyond;
     result.estimator = estimator.name;
@@ -131,8 +132,8 @@ Verdict verdict_of(const std::vector<TargetResult>& results, const std::vector<T
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const TargetResult& result = results[t];
     if (!result.found || !std::isfinite(*result.found)) return Verdict::missed;
-    if (*result.found - result.found_sd > targets[t].value) return Verdict::missed;
-    sure = sure && *result.found + result.found_sd <= targets[t].value;
+    if (result.low > targets[t].value) return Verdict::missed;
+    sure = sure && result.high <= targets[t].value;
   }
   return sure ? Verdict::reached : Verdict::undecided;
 }
@@ -143,13 +144,16 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
                                    Confirm confirm) {
   const std::uint64_t seed = seed_of(sweep_, point_ * options_.runs + run);
   if (confirm == Confirm::clips) {
-    std::unique_ptr<FilmStudio>& studio = studios_[run];
-    if (!studio) {
-      studio = std::make_unique<FilmStudio>(setting.scenario, seed, 1, stage_,
-                                            [this](std::string_view, double) { options_.watch(); });
+    Studio& own = studios_[run % studios_.size()];
+    const std::lock_guard lock(own.busy);
+    if (!own.studio) {
+      // The stills' noise is that of the first run that the studio serves, whichever comes to it first.
+      const std::uint64_t first = seed_of(sweep_, point_ * options_.runs + run % studios_.size());
+      own.studio = std::make_unique<FilmStudio>(setting.scenario, first, 1, stage_,
+                                                [this](std::string_view, double) { options_.watch(); });
     }
-    return studio->film(setting.scenario, seed, 1,
-                        setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
+    return own.studio->film(setting.scenario, seed, 1,
+                            setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
   }
   // Clips of one scenario have about one noise: their root mean square.
   const std::vector<double> noise_m = noise_of(setting, clean.truth);
@@ -158,40 +162,77 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
   return with_noise(clean, std::sqrt(square), seed);
 }
 
-Verdict RecordedRuns::judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results) {
-  for (TargetResult& result : results) result.found.reset();
+RecordedRuns::Outcome RecordedRuns::outcome_of(const Setting& setting, std::uint64_t run, Confirm confirm) {
+  if (options_.before_run) options_.before_run();
+  const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
+  const MadeTracks made = tracks_of(setting, clean, run, confirm);
+  const auto analyze = [&](core::LineMethod lines) {
+    return analyze_tracks(made, core::MotionOptions{.lines = lines});
+  };
+  Outcome outcome;
+  for (const core::AnalysisResults& by : fit::estimate_each(fit::judged_estimators(), analyze)) {
+    const auto quantities = compare_quantities(by, clean.truth);
+    outcome.insert(outcome.end(), quantities.begin(), quantities.end());
+  }
+  return outcome;
+}
+
+void RecordedRuns::run_on(const Setting& setting, Confirm confirm, std::uint64_t runs, std::vector<Outcome>& done) {
   // A studio whose clips go through a file draws what stands still with each of them.
   if (confirm == Confirm::clips && !stage_ && !render::lossy(setting.scenario.codec)) {
     stage_ = render::set_stage(setting.scenario, options_.jobs, options_.watch);
   }
-  std::vector<std::vector<QuantityComparison>> of_runs(options_.runs);
-  base::for_each_parallel(options_.runs, options_.jobs, [&](std::size_t run) {
-    if (options_.before_run) options_.before_run();
-    const MadeTracks clean = make_tracks(setting.scenario, seed_of(sweep_, point_ * options_.runs + run));
-    const MadeTracks made = tracks_of(setting, clean, run, confirm);
-    const auto analyze = [&](core::LineMethod lines) {
-      return analyze_tracks(made, core::MotionOptions{.lines = lines});
-    };
-    for (const core::AnalysisResults& by : fit::estimate_each(fit::judged_estimators(), analyze)) {
-      const auto quantities = compare_quantities(by, clean.truth);
-      of_runs[run].insert(of_runs[run].end(), quantities.begin(), quantities.end());
-    }
-  });
+  const std::size_t from = done.size();
+  if (runs <= from) return;
+  done.resize(runs);
+  base::for_each_parallel(runs - from, options_.jobs,
+                          [&](std::size_t i) { done[from + i] = outcome_of(setting, from + i, confirm); });
+}
+
+namespace {
+
+void judge_outcomes(const std::vector<std::vector<QuantityComparison>>& outcomes, const std::vector<Target>& targets,
+                    std::vector<TargetResult>& results) {
   std::vector<Errors> all;
-  for (const std::vector<QuantityComparison>& of_run : of_runs) add_errors(of_run, all);
-  for (std::size_t t = 0; t < options_.targets.size(); ++t) judge_errors(all, options_.targets[t], results[t]);
+  for (const std::vector<QuantityComparison>& outcome : outcomes) add_errors(outcome, all);
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    results[t].found.reset();
+    judge_errors(all, targets[t], results[t]);
+  }
+}
+
+}  // namespace
+
+Verdict RecordedRuns::judge(const Setting& setting, std::uint64_t runs, std::vector<TargetResult>& results) {
+  run_on(setting, options_.confirm, runs, done_);
+  judge_outcomes(done_, options_.targets, results);
   return verdict_of(results, options_.targets);
 }
 
-std::vector<Limit> RecordedRuns::limits(const std::vector<TargetResult>& results) {
+Verdict RecordedRuns::judge(std::vector<TargetResult>& results) {
+  if (options_.confirm != Confirm::clips) return judge_all(results);
+  for (std::uint64_t runs = std::min(kLeastRendered, options_.runs);; runs = std::min(2 * runs, options_.runs)) {
+    const Verdict verdict = judge(setting_, runs, results);
+    if (verdict != Verdict::undecided || runs == options_.runs) return verdict;
+  }
+}
+
+std::vector<Limit> RecordedRuns::limits() {
   std::vector<Limit> limits;
   const Setting& setting = setting_;
+  const std::uint64_t runs =
+      options_.confirm == Confirm::clips ? std::min(kLeastRendered, options_.runs) : options_.runs;
+  run_on(setting, options_.confirm, runs, done_);
+  std::vector<TargetResult> now(options_.targets.size());
+  judge_outcomes({done_.begin(), done_.begin() + static_cast<std::ptrdiff_t>(runs)}, options_.targets, now);
   const auto try_without = [&](const char* name, const Setting& changed, Confirm confirm) {
+    std::vector<Outcome> outcomes;
+    run_on(changed, confirm, runs, outcomes);
     std::vector<TargetResult> then(options_.targets.size());
-    judge(changed, confirm, then);
+    judge_outcomes(outcomes, options_.targets, then);
     double gain = 0.0;
     for (std::size_t t = 0; t < then.size(); ++t) {
-      if (results[t].found && then[t].found) gain = std::max(gain, *results[t].found / *then[t].found);
+      if (now[t].found && then[t].found) gain = std::max(gain, *now[t].found / *then[t].found);
     }
     if (std::isfinite(gain) && gain > 0.0) limits.push_back({name, gain});
   };

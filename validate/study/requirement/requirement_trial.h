@@ -2,8 +2,10 @@
 /// what limits it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "validate/study/requirement/candidate.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/tracks/made_tracks.h"
+#include "validate/truth/comparison.h"
 
 namespace glidelab::validate {
 
@@ -35,34 +38,46 @@ double hardest(const std::vector<TargetResult>& results, const std::vector<Targe
 /// How many times smaller `need` were without one limitation, the largest gain first.
 std::vector<Limit> limits_of(const Setting& setting, double need, const std::vector<Target>& targets);
 
-/// The runs of one point, on options.jobs threads. Rendered ones share what stands still, and each run's calibration
-/// when limitations are removed.
+/// The runs of one point, on options.jobs threads. Rendered ones share what stands still and kLeastRendered
+/// calibrations, each with the noise of its own stills, as the recordings of some afternoons do.
 class RecordedRuns {
  public:
-  /// As RequirementOptions::confirm says, tracks or clips: options.runs of them. All outlive this.
+  /// As RequirementOptions::confirm says, tracks or clips: options.runs of them at most. All outlive this.
   RecordedRuns(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options)
-      : sweep_(sweep), setting_(setting), point_(point), options_(options), studios_(options.runs) {}
+      : sweep_(sweep), setting_(setting), point_(point), options_(options) {}
 
   /// Fills `results` (one for each target) with the better estimator's errors over the runs; reached, missed (any of
-  /// them), or undecided.
-  Verdict judge(std::vector<TargetResult>& results) { return judge(setting_, options_.confirm, results); }
+  /// them), or undecided. Of tracks all runs; rendered ones until they decide.
+  Verdict judge(std::vector<TargetResult>& results);
+  /// The same with all runs.
+  Verdict judge_all(std::vector<TargetResult>& results) { return judge(setting_, options_.runs, results); }
 
-  /// Limitations that no bound contains, removed one by one, by the same runs: how many times smaller the errors in
-  /// `results` are with an even clock; and, where clips are rendered, with a global shutter, with a lossless codec,
-  /// with the true camera in place of the calibrated one (not of a rational lens, which the analysis cannot write), and
-  /// with the true positions and the noise that the camera lets one expect (no lens, no calibration, no tracker).
-  std::vector<Limit> limits(const std::vector<TargetResult>& results);
+  /// Limitations that no bound contains, removed one by one, by the same runs (of rendered ones the first
+  /// kLeastRendered): how many times smaller the errors are with an even clock; and, where clips are rendered, with a
+  /// global shutter, with a lossless codec, with the true camera in place of the calibrated one (not of a rational
+  /// lens, which the analysis cannot write), and with the true positions and the noise that the camera lets one expect
+  /// (no lens, no calibration, no tracker).
+  std::vector<Limit> limits();
 
  private:
-  Verdict judge(const Setting& setting, Confirm confirm, std::vector<TargetResult>& results);
+  using Outcome = std::vector<QuantityComparison>;  ///< of one run, by each estimator
+  Verdict judge(const Setting& setting, std::uint64_t runs, std::vector<TargetResult>& results);
+  Outcome outcome_of(const Setting& setting, std::uint64_t run, Confirm confirm);
+  void run_on(const Setting& setting, Confirm confirm, std::uint64_t runs, std::vector<Outcome>& done);
   MadeTracks tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run, Confirm confirm);
 
   const Sweep& sweep_;
   const Setting& setting_;
   std::uint64_t point_;
   const RequirementOptions& options_;
-  std::vector<std::unique_ptr<FilmStudio>> studios_;  ///< of each run, once it was filmed
-  std::shared_ptr<const render::Stage> stage_;        ///< once any was
+  std::vector<Outcome> done_;  ///< of the setting itself, the first runs
+  /// A camera with its calibration: run r is filmed by number r % kLeastRendered, one at a time, once it is there.
+  struct Studio {
+    std::mutex busy;
+    std::unique_ptr<FilmStudio> studio;
+  };
+  std::array<Studio, kLeastRendered> studios_;
+  std::shared_ptr<const render::Stage> stage_;  ///< once any was
 };
 
 }  // namespace glidelab::validate

@@ -13,8 +13,11 @@
 
 #include "base/errors.h"
 #include "base/text/nearest_word.h"
+#include "core/math/quantile.h"
+#include "core/result/estimate.h"
 #include "core/result/quantity.h"
 #include "validate/random_use.h"
+#include "validate/truth/binomial.h"
 
 namespace glidelab::validate {
 namespace {
@@ -34,10 +37,19 @@ double variance_of(std::span<const double> values) {
   return square / static_cast<double>(values.size() - 1);
 }
 
+constexpr double kNormal90 = 1.6448536269514722;  // two-sided; 95 % on one side
+constexpr std::size_t kLeastForQuantile = 20;     // of fewer the 95 % quantile would be the largest
+
+/// The quantile of chi² at z standard deviations of a normal distribution: Wilson and Hilferty 1931, to 2 % for n >= 4.
+double chi2_quantile(double n, double z) {
+  const double part = 2.0 / (9.0 * n);
+  return n * std::pow(1.0 - part + z * std::sqrt(part), 3);
+}
+
 /// `sizes` are the errors without their signs; their order is lost.
 double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
   const std::size_t n = sizes.size();
-  if (measure == Measure::error95) {
+  if (measure == Measure::error95 && n >= kLeastForQuantile) {
     const std::size_t within = (95 * n + 99) / 100;  // ceil(0.95 n), in whole numbers
     const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(within - 1);
     std::nth_element(sizes.begin(), at, sizes.end());
@@ -45,7 +57,32 @@ double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
   }
   double square = 0.0;
   for (const double size : sizes) square += size * size;
-  return std::sqrt(square / static_cast<double>(n));
+  return (measure == Measure::error95 ? core::kNormal95 : 1.0) * std::sqrt(square / static_cast<double>(n));
+}
+
+/// Sorted errors between which their 95 % quantile lies: one has at most k - 1 of n below the quantile with the
+/// probability binomial_cdf(k - 1, n, 0.95).
+void set_quantile_limits(std::vector<double> sizes, ErrorMeasure& measure) {
+  std::sort(sizes.begin(), sizes.end());
+  const std::size_t n = sizes.size();
+  std::size_t high = n, low = 1;
+  while (high > 1 && binomial_cdf(static_cast<long>(high) - 2, n, 0.95) >= 0.95) --high;
+  while (low < n && binomial_cdf(static_cast<long>(low), n, 0.95) <= 0.05) ++low;
+  measure.low = sizes[low - 1];
+  measure.high = sizes[high - 1];
+}
+
+void set_limits(const std::vector<double>& sizes, Measure of, ErrorMeasure& measure) {
+  const double n = static_cast<double>(sizes.size());
+  if (of == Measure::error95 && sizes.size() >= kRunsForQuantile) return set_quantile_limits(sizes, measure);
+  if (of != Measure::bias && sizes.size() < kRunsForQuantile) {
+    measure.low = measure.value * std::sqrt(n / chi2_quantile(n, kNormal90));
+    measure.high = measure.value * std::sqrt(n / chi2_quantile(n, -kNormal90));
+    return;
+  }
+  const double reach = (of == Measure::bias ? core::student_t975(n - 1.0) : kNormal90) * measure.sd;
+  measure.low = std::isfinite(reach) ? std::max(0.0, measure.value - reach) : measure.value;
+  measure.high = measure.value + reach;
 }
 
 double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
@@ -72,7 +109,7 @@ Target parse_target(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.find(':');
   target.quantity = text.substr(0, std::min(colon, equals));
   const std::string measure =
-      colon < equals && equals != std::string::npos ? text.substr(colon + 1, equals - colon - 1) : "sd";
+      colon < equals && equals != std::string::npos ? text.substr(colon + 1, equals - colon - 1) : "error95";
   const std::vector<std::string> quantities = core::quantity_keys();
   std::istringstream number(equals == std::string::npos ? "" : text.substr(equals + 1));
   const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
@@ -106,11 +143,13 @@ ErrorMeasure measure_errors(std::span<const double> errors, const Target& target
     const bool answered = std::all_of(sizes.begin(), sizes.end(), [](double size) { return std::isfinite(size); });
     result.value = answered ? std::abs(mean_of(errors)) : kNever;
     result.sd = answered ? std::sqrt(variance_of(errors) / static_cast<double>(errors.size())) : kNever;
+    set_limits(sizes, target.measure, result);
     return result;
   }
   std::vector<double> sorted = sizes;
   result.value = rms_or_quantile(sorted, target.measure);
   result.sd = std::isfinite(result.value) ? bootstrap_sd(sizes, target.measure) : kNever;
+  set_limits(sizes, target.measure, result);
   return result;
 }
 

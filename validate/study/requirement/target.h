@@ -3,12 +3,19 @@
 /// Over n errors e_i, an infinite one for a run without an answer:
 ///
 ///     sd       sqrt(sum e_i² / n): the root mean square error, a bias included
-///     error95  the least of the |e_i| that 95 % of them do not exceed: number ceil(0.95 n) of the sorted ones, which
-///              is the largest where there are fewer than 20
+///     error95  the least of the |e_i| that 95 % of them do not exceed: number ceil(0.95 n) of the sorted ones; of
+///     fewer
+///              than 20 errors, which do not know that quantile, 1.96 times their root mean square
 ///     bias     |sum e_i / n|
 ///
 /// Errors of tracks have heavy tails (a frame that is lost without a trace), so that what a normal distribution says of
-/// these measures does not hold.
+/// these measures does not hold. A limit of 95 % confidence on either side of a measure (`low`, `high`):
+///
+///     error95, 59 errors or more   the sorted errors between which the quantile lies by the binomial distribution;
+///                                  59 is the least number whose largest error is such an upper limit
+///     error95 and sd, fewer        value sqrt(n / chi²), chi² the 95 % and the 5 % quantile of n degrees of freedom
+///     sd, 59 errors or more        value ∓ 1.645 of its standard deviation
+///     bias                         value ∓ Student's t of its standard deviation
 #pragma once
 
 #include <cstddef>
@@ -20,12 +27,15 @@ namespace glidelab::validate {
 struct Target {
   enum class Measure { sd, error95, bias };  ///< sd: root mean square error
   std::string quantity;                      ///< "mu"
-  Measure measure = Measure::sd;
+  Measure measure = Measure::error95;
   double value = 0.0;
-  std::string name() const;  ///< "mu sd 0.0005"
+  std::string name() const;  ///< "mu 95 % error 0.0005"
 };
 
-/// "mu=0.0005", "k_over_m_1_s:error95=0.01"; InputError for anything else.
+/// Errors from which on the 95 % error has limits that rest on no distribution: 0.95^59 < 0.05.
+inline constexpr std::size_t kRunsForQuantile = 59;
+
+/// "mu=0.0005" (of the 95 % error), "k_over_m_1_s:sd=0.01"; InputError for anything else.
 Target parse_target(const std::string& text);
 
 /// Resamples of the runs' errors that a ± comes from.
@@ -37,6 +47,7 @@ struct ErrorMeasure {
   /// kResamples resamples of the errors (bootstrap; a fixed seed), times sqrt(n / (n - 1)). Infinite where a resample's
   /// is.
   double sd = 0.0;
+  double low = 0.0, high = 0.0;  ///< limits of the value, each of 95 % confidence (a bias: of 97.5 %)
   std::size_t runs = 0;
   std::size_t beyond = 0;  ///< of these, with an error larger than the target's value
 };

@@ -148,6 +148,22 @@ std::vector<AccelerationError> accelerations_of(Database& database, const std::v
   return all;
 }
 
+std::vector<ChosenBandwidth> bandwidths_of(Database& database) {
+  const std::string rows = "FROM clip c WHERE c.estimator = ?1 AND c.bandwidth_s > 0";
+  std::vector<ChosenBandwidth> all;
+  SqlStatement estimators = database.prepare("SELECT DISTINCT estimator FROM clip ORDER BY estimator");
+  while (estimators.step()) {
+    const std::string estimator = estimators.text(0);
+    SqlStatement count = database.prepare("SELECT count(*) " + rows);
+    count.bind(1, std::string_view(estimator)).step();
+    const auto clips = static_cast<std::uint64_t>(count.integer(0));
+    const auto at = [&](double part) { return quantile_of(database, rows, "c.bandwidth_s", estimator, clips, part); };
+    const std::optional<double> low = at(0.1), median = at(0.5), high = at(0.9);
+    if (low && median && high) all.push_back({estimator, *median, *low, *high});
+  }
+  return all;
+}
+
 /// "6 runs with camera.frame_rate_hz = 120: …": what is wrong with a scenario names it at first. Of runs whose reasons
 /// differ in their numbers the first is shown.
 std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
@@ -266,6 +282,7 @@ SweepSummary summarize(const Sweep& sweep, Database& database) {
   for (ConfigurationSummary& of : summary.configurations) {
     of.accelerations = accelerations_of(database, clips, of.name);
   }
+  summary.bandwidths = bandwidths_of(database);
   summary.masses = study_masses(sweep, database);
   return summary;
 }

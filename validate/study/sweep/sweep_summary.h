@@ -71,6 +71,12 @@ struct AccelerationError {
   std::optional<double> regret, regret90;  ///< error over the best possible one: median, and what 90 % stay below
 };
 
+/// The bandwidths with which one method smoothed its clips: the median, and what 10 % and 90 % of them stay below.
+struct ChosenBandwidth {
+  std::string estimator;
+  double median_s = 0.0, low_s = 0.0, high_s = 0.0;
+};
+
 /// One configuration of the scenario: the same over its runs alone.
 struct ConfigurationSummary {
   std::string name;
@@ -88,6 +94,7 @@ struct SweepSummary {
   std::vector<ConfigurationSummary> configurations;  ///< by their names; empty if the scenario has one
   std::vector<AxisSummary> axes;
   std::vector<AccelerationError> accelerations;
+  std::vector<ChosenBandwidth> bandwidths = {};
   MassStudy masses;
   std::optional<fit::OutsideTally> outside = {};  ///< without times: each run's stands in `timing`, with all else
 };

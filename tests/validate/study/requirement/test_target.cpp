@@ -73,7 +73,42 @@ TEST_CASE("the 95 % error is what 95 % of the runs stay within, however far the 
   for (double& error : errors) error *= std::abs(error) > 190.0 ? 1e9 : 1.0;
   CHECK(measured(errors, Target::Measure::error95, 150.5).value == 190.0);
   CHECK(measured(errors, Target::Measure::error95, 150.5).beyond == 50);
-  CHECK(measured({1.0, -7.0, 2.0, 3.0}, Target::Measure::error95).value == 7.0);  // four do not know a quantile
+  // Four do not know a quantile: 1.96 times their rms, sqrt(63 / 4).
+  CHECK(measured({1.0, -7.0, 2.0, 3.0}, Target::Measure::error95).value == Approx(1.959964 * std::sqrt(15.75)));
+}
+
+TEST_CASE("the limits of a 95 % error are sorted errors where these are many") {
+  std::vector<double> errors;
+  for (int i = 1; i <= 200; ++i) errors.push_back(i);
+  // Binomial (200, 0.95), by its table: P(X <= 184) = 0.044 and P(X <= 185) = 0.078, P(X <= 193) = 0.904 and
+  // P(X <= 194) = 0.938, P(X <= 195) = 0.966 in steps of one error.
+  const validate::ErrorMeasure many = measured(errors, Target::Measure::error95);
+  CHECK(many.value == 190.0);
+  CHECK(many.low < 190.0);
+  CHECK(many.high > 190.0);
+  double below_low = 0.0, below_high = 0.0, part = std::pow(0.05, 200);
+  for (int k = 0; k < 200; ++k) {  // number of errors below the quantile
+    if (k < many.low) below_low += part;
+    if (k < many.high) below_high += part;
+    part *= 0.95 / 0.05 * (200 - k) / (k + 1.0);
+  }
+  CHECK(below_low <= 0.05);   // the quantile lies below that error with 5 % at most
+  CHECK(below_high >= 0.95);  // and below this one with 95 % at least
+  // Of 59 the largest is a limit, and of 58 none would be.
+  errors.resize(validate::kRunsForQuantile);
+  CHECK(measured(errors, Target::Measure::error95).high == 59.0);
+  CHECK(std::pow(0.95, 59) < 0.05);
+  CHECK(std::pow(0.95, 58) > 0.05);
+}
+
+TEST_CASE("the limits of few errors are those of a normal distribution") {
+  // chi² of 4 degrees of freedom: 5 % below 0.711, 5 % above 9.488 (tables); the approximation has 2 %.
+  const validate::ErrorMeasure few = measured({1.0, -1.0, 1.0, -1.0}, Target::Measure::sd);
+  CHECK(few.value == 1.0);
+  CHECK(few.high == Approx(std::sqrt(4.0 / 0.711)).epsilon(0.03));
+  CHECK(few.low == Approx(std::sqrt(4.0 / 9.488)).epsilon(0.01));
+  const validate::ErrorMeasure within = measured({1.0, -1.0, 1.0, -1.0}, Target::Measure::error95);
+  CHECK(within.high == Approx(1.959964 * few.high));
 }
 
 TEST_CASE("a run without an answer is beyond any target") {

@@ -1,0 +1,97 @@
+#include "core/track/bare_track.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <string_view>
+
+#include "base/errors.h"
+#include "core/track/column_table.h"
+#include "core/track/tracker_project.h"
+
+namespace glidelab::core {
+
+std::vector<TrackRun> runs_in(const std::filesystem::path& file) {
+  std::vector<TrackRun> runs;
+  if (is_tracker_project(file)) {
+    for (const std::string& mass : point_masses_of(file)) runs.push_back({mass, mass});
+    return runs;
+  }
+  const ColumnTable table = read_column_table(file);
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const TableColumn& column = table.columns[c];
+    if (!is_place_column(column)) continue;
+    runs.push_back({std::to_string(c + 1), column.run.empty() ? column.text : column.run});
+  }
+  return runs;
+}
+
+namespace {
+
+/// "1: Run #1, 2: Run #2".
+std::string runs_text(const std::vector<TrackRun>& runs) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < runs.size(); ++i) names.push_back(fmt::format("{}: {}", i + 1, runs[i].label));
+  return names.empty() ? "no column that is called x or position" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+base::InputError wrong_runs(const std::filesystem::path& file, const std::string& found,
+                            const std::vector<TrackRun>& runs) {
+  return base::InputError(base::Issue{file.string(), 0, "--runs", found, "all, or numbers of: " + runs_text(runs)});
+}
+
+std::vector<TrackRun> chosen_runs(const std::filesystem::path& file, const std::string& text) {
+  const std::vector<TrackRun> all = runs_in(file);
+  if (all.empty()) throw wrong_runs(file, fmt::format("\"{}\"", text), all);
+  if (text == "all") return all;
+  std::vector<TrackRun> chosen;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view part = rest.substr(0, comma);
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    if (error != std::errc{} || end != part.data() + part.size() || number < 1 || number > all.size()) {
+      throw wrong_runs(file, fmt::format("\"{}\"", part), all);
+    }
+    chosen.push_back(all[number - 1]);
+    if (comma == std::string_view::npos) return chosen;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+/// `one` is what every clip has of the file's own.
+std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const ClipSetup& one,
+                                     const TrackFileOptions& options) {
+  const std::vector<TrackRun> runs = chosen_runs(file, options.runs);
+  if (!options.masses_kg.empty() && options.masses_kg.size() != runs.size()) {
+    throw base::InputError(base::Issue{file.string(), 0, "--masses",
+                                       fmt::format("{} of them", options.masses_kg.size()),
+                                       fmt::format("one for each of the {} runs: {}", runs.size(), runs_text(runs))});
+  }
+  std::vector<ClipSetup> clips;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    ClipSetup clip = one;
+    clip.name = names.insert(runs[i].label).second ? runs[i].label : fmt::format("{} ({})", runs[i].label, i + 1);
+    clip.column = runs[i].column;
+    if (!options.masses_kg.empty()) clip.mass_kg = options.masses_kg[i];
+    clips.push_back(std::move(clip));
+  }
+  return clips;
+}
+
+}  // namespace
+
+Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options) {
+  Experiment experiment = read_input(path, options);
+  if (is_bare_track(path) && !options.runs.empty()) {
+    experiment.clips = clips_of_runs(path, experiment.clips.front(), options);
+  }
+  return experiment;
+}
+
+}  // namespace glidelab::core

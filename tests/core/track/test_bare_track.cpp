@@ -1,0 +1,86 @@
+#include "core/track/bare_track.h"
+
+#include <fmt/format.h>
+
+#include "base/errors.h"
+#include "base/files/file_io.h"
+#include "core/analysis/analyze.h"
+#include "core/check/check_recording.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Capstone's layout: two runs side by side, x = 0.3 t² and 0.2 t².
+struct TwoRuns {
+  tests::TempDir dir;
+  std::filesystem::path file = dir / "cups.csv";
+  TwoRuns() {
+    std::string text = "Time (s) Run #1,Position (m) Run #1,Time (s) Run #2,Position (m) Run #2\n";
+    for (int i = 0; i < 60; ++i) {
+      const double t = 0.02 * i, noise = i % 2 == 0 ? 1e-4 : -1e-4;
+      text += fmt::format("{},{},{},{}\n", t, 0.3 * t * t + noise, t, 0.2 * t * t + noise);
+    }
+    base::write_file(file, text);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the runs of one file become clips with a mass each") {
+  const TwoRuns made;
+  core::TrackFileOptions options;
+  options.runs = "all";
+  options.masses_kg = {0.0088, 0.0079};
+  const core::Experiment all = core::read_tracks(made.file, options);
+  REQUIRE(all.clips.size() == 2);
+  CHECK(all.clips[0].name == "Run #1");
+  CHECK(all.clips[1].name == "Run #2");
+  CHECK(all.clips[1].mass_kg == 0.0079);
+  options.runs = "2";
+  options.masses_kg = {};
+  const core::Experiment second = core::read_tracks(made.file, options);
+  REQUIRE(second.clips.size() == 1);
+  CHECK(second.clips[0].name == "Run #2");
+  CHECK(core::read_track_csv(made.file, 1, second.clips[0].column).x_m[10] == Approx(0.2 * 0.04 + 1e-4));
+}
+
+TEST_CASE("runs that the file does not have, and masses that do not fit, are refused with what there is") {
+  const TwoRuns made;
+  core::TrackFileOptions options;
+  for (const char* wrong : {"3", "0", "x", "1,", ""}) {
+    options.runs = wrong;
+    if (*wrong == '\0') continue;
+    CHECK_THROWS_WITH(core::read_tracks(made.file, options), Contains("1: Run #1, 2: Run #2"));
+  }
+  options.runs = "all";
+  options.masses_kg = {0.1};
+  CHECK_THROWS_WITH(core::read_tracks(made.file, options),
+                    Contains("--masses") && Contains("one for each of the 2 runs"));
+}
+
+TEST_CASE("a bare track says which mass and inclination it assumed, and accuses nobody of stating them") {
+  const TwoRuns made;  // accelerations of 0.6 m/s²: 3.5 degrees, not level
+  core::TrackFileOptions options;
+  options.column = "2";
+  const auto notes_with = [&] {
+    core::AnalysisOptions how;
+    how.bare = options;
+    std::string all;
+    const core::AnalysisResults results = core::analyze({made.file}, how);
+    for (const std::string& note : results.configurations.front().notes) all += note + "\n";
+    return all;
+  };
+  CHECK_THAT(notes_with(), Contains("a mass of 1 kg and an inclination of 0° are assumed"));
+  CHECK(notes_with().find("incline_deg says") == std::string::npos);
+  for (const core::Finding& finding : core::check_recording(core::read_tracks(made.file, options), 1).findings) {
+    CHECK(finding.topic != core::Topic::incline);
+  }
+  options.mass_kg = 400.0;
+  options.incline_deg = 3.5;
+  CHECK(notes_with().find("assumed") == std::string::npos);
+  CHECK_THAT(notes_with(), Contains("mass_kg = 400") && Contains("looks like grams (0.4 kg)"));
+}

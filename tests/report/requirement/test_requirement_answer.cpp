@@ -1,0 +1,78 @@
+#include "report/requirement/requirement_answer.h"
+
+#include "report/requirement/requirement_report.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+validate::Candidate camera(const std::string& name, double price, validate::Verdict verdict, double error) {
+  validate::Candidate of;
+  of.name = name;
+  of.price = price;
+  of.price_class = "8-25 EUR";
+  of.frame_rate_hz = 90.0;
+  of.noise_m = 1.5e-5;
+  of.mode = {640, 480, 0.002, "H.264 at 8 Mbit/s"};
+  of.verdict = verdict;
+  of.judged_by = validate::Confirm::clips;
+  of.results = {{1e-5, error, 0.1 * error, 20, 0, "trajectory", 0.8 * error, 1.3 * error}};
+  return of;
+}
+
+validate::Requirement cameras() {
+  validate::Requirement requirement;
+  requirement.name = "cameras";
+  requirement.by_price = true;
+  requirement.confirm = validate::Confirm::clips;
+  requirement.runs = 20;
+  requirement.targets = {{"mu", validate::Target::Measure::error95, 1e-4}};
+  requirement.candidates = {camera("webcam, 640x480 at 30 fps", 12.0, validate::Verdict::missed, 4e-4),
+                            camera("board (OV5647), 640x480 at 90 fps", 16.0, validate::Verdict::reached, 6e-5),
+                            camera("phone", 400.0, validate::Verdict::reached, 1e-5)};
+  return requirement;
+}
+
+}  // namespace
+
+TEST_CASE("the first line of require says what to buy, how to set it and what to expect, on screen and page") {
+  const std::string line =
+      "Buy: board (OV5647), 8-25 EUR; set it to 640 x 480 pixels, 90 frames/s, exposure 2 ms, H.264 at 8 Mbit/s; "
+      "expect µ ± 0.00006 (95 % of 20 rendered experiments, analysed by the fit of the whole motion; µ ± 0.0001 was "
+      "asked for).";
+  CHECK(report::requirement_answer(cameras()) == line);
+  CHECK(report::requirement_text(cameras()).starts_with(line + "\n"));
+  CHECK(report::enough_words(cameras()).empty());
+  CHECK_THAT(report::requirement_json(cameras()), Contains("\"answer\": \"Buy: board (OV5647)"));
+  const std::string html = report::requirement_report(cameras()).html;
+  CHECK(html.find("Which of these reaches") < html.find("Buy: board (OV5647)"));
+  CHECK(html.find("Buy: board (OV5647)") < html.find("<figure"));
+}
+
+TEST_CASE("what is much better than needed is said to be so, with what would do") {
+  validate::Requirement requirement = cameras();
+  requirement.candidates[1].enough = validate::Enough{50.0, 11.25, 2.4e-4};
+  CHECK(report::enough_words(requirement) ==
+        "This is 50 times better than needed: 11 frames/s, or a position noise of 0.24 mm in place of 15 µm would do.");
+  requirement.candidates[1].enough = validate::Enough{4.0, {}, {}};
+  CHECK(report::enough_words(requirement) == "This is 4 times better than needed.");
+}
+
+TEST_CASE("a cheaper camera that is undecided is named beside the one to buy") {
+  validate::Requirement requirement = cameras();
+  requirement.candidates[0].verdict = validate::Verdict::undecided;
+  CHECK_THAT(report::requirement_answer(requirement), Contains("1 cheaper one may do as well: more runs would decide"));
+}
+
+TEST_CASE("where nothing reaches the target the nearest is named, with what limits it") {
+  validate::Requirement requirement = cameras();
+  for (validate::Candidate& candidate : requirement.candidates) candidate.verdict = validate::Verdict::missed;
+  requirement.candidates[2].results[0].found = 2e-4;
+  requirement.candidates[1].results[0].found = 3e-4;
+  requirement.candidates[2].limits = {{"light (no shot noise)", 3.0}};
+  CHECK_THAT(report::requirement_answer(requirement),
+             Contains("Nothing here reaches µ ± 0.0001. phone comes nearest: expect µ ± 0.0002") &&
+                 Contains("What most limits it: light (no shot noise)"));
+}
