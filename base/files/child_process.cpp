@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -74,10 +73,16 @@ pid_t spawned(const std::string& program, std::vector<std::string> arguments, co
   return child;
 }
 
-void set_limit(pid_t child, decltype(RLIMIT_AS) which, std::uint64_t most) {
-  const rlimit limit{most, most};
-  // Fails if the child has ended, or where a lower limit stands already: both are as good.
-  static_cast<void>(::prlimit(child, which, &limit, nullptr));
+/// util-linux's prlimit starts the program under its limits, so that they hold from its first instruction.
+std::vector<std::string> under_limits(const std::string& program, const ProgramLimits& limits) {
+  const double cores = std::max(1U, std::thread::hardware_concurrency());
+  const auto cpu_s = static_cast<std::uint64_t>(std::ceil(limits.wall_s * cores)) + 1;
+  return {fmt::format("--as={}", limits.memory_bytes),
+          fmt::format("--fsize={}", limits.memory_bytes),
+          fmt::format("--cpu={}", cpu_s),
+          "--core=0",
+          "--",
+          program};
 }
 
 /// Whether it has ended; it is not reaped, so that its number stays its group's.
@@ -102,12 +107,9 @@ ProgramEnd run_limited(const std::string& program, std::vector<std::string> argu
   using Seconds = std::chrono::duration<double>;
   constexpr Seconds kPatience(0.5), kShortestLook(0.001), kLongestLook(0.02);
   const auto start = Clock::now();
-  const pid_t child = spawned(program, std::move(arguments), log, {}, {});
-  set_limit(child, RLIMIT_AS, limits.memory_bytes);
-  set_limit(child, RLIMIT_FSIZE, limits.memory_bytes);
-  set_limit(child, RLIMIT_CORE, 0);
-  const double cores = std::max(1U, std::thread::hardware_concurrency());
-  set_limit(child, RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.wall_s * cores)) + 1);
+  const std::vector<std::string> limited = under_limits(program, limits);
+  arguments.insert(arguments.begin(), limited.begin(), limited.end());
+  const pid_t child = spawned("prlimit", std::move(arguments), log, {}, " (package util-linux)");
   ProgramEnd end;
   Clock::time_point asked;
   while (!has_ended(child, program)) {

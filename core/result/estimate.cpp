@@ -139,7 +139,8 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
                       "looks like grams",
                       result.mass_kg, least_kg));
     }
-    if (result.mass_kg >= kLargestMass_kg) {
+    // A mass that stands out against the lightest is said to be one of two; here all may be in grams.
+    if (result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
       result.notes.push_back(
           fmt::format("mass_kg = {:.6g}: masses are in kilograms, and this one looks like grams ({:.6g} kg)",
                       result.mass_kg, result.mass_kg / 1000.0));

@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t kMostCauses = 4;
 constexpr std::size_t kTried = 3;     // further effects that are fitted in full at each step
 constexpr double kWorthTrying = 5.0;  // log evidence, beside the remainder, from which on an effect may help
-constexpr double kClear = 3.0;        // standard errors
 
 struct Step {
   MotionFit fit;
@@ -44,7 +43,7 @@ Step step_of(const TrackSet& set, const MotionFit& nominal, MotionFit fit) {
 }
 
 bool is_above_floor(const Step& step) {
-  return step.gap > 1.0 + kClear * step.standard_error;
+  return step.gap > 1.0 + kClearGap * step.standard_error;
 }
 
 ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& before, const Step& after, bool pieces) {

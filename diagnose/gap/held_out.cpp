@@ -79,8 +79,9 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
   }
   if (freedom <= 0.0) return gap;
   gap.value = std::sqrt(std::max(0.0, chi2) / freedom);
-  // Of a root mean square of n points 1/sqrt(2 n), and of the noise that it is held against sqrt(1.32 / n).
-  gap.standard_error = std::sqrt(1.82 / freedom);
+  // Of n residuals' root mean square 0.5/n, and 1.32/n of the noise that it is held against. Both come from the same
+  // positions, and as the first is the least that there is, it is their covariance too: 0.5 + 1.32 - 2 * 0.5.
+  gap.standard_error = std::sqrt(0.82 / freedom);
   if (a_count > 0.0) gap.acceleration_m_s2 = std::sqrt(a_sum / a_count);
   return gap;
 }

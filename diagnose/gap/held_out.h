@@ -29,7 +29,7 @@ struct ClipGap {
 
 struct HeldOutGap {
   double value = 0.0;           ///< root mean square of the standardised residuals; 1 is the floor
-  double standard_error = 0.0;  ///< of it, where it is 1: from the number of points and the noise's own uncertainty
+  double standard_error = 0.0;  ///< of it, where it is 1: sqrt(0.82/n), from the points and the noise's own uncertainty
   std::vector<ClipGap> clips;
   std::optional<double>
       acceleration_m_s2;  ///< rms of a(real) - a(model), both smoothed as the analysis does, noise included

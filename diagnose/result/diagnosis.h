@@ -117,6 +117,10 @@ struct GapDomain {
   std::optional<double> after = {};  ///< none where it cannot be said
 };
 
+/// Standard errors above the floor from which on there is a gap. Noise that is not quite white, or not quite normal,
+/// makes three of them in experiments in which nothing is missing.
+inline constexpr double kClearGap = 4.5;
+
 struct GapSizes {
   double before = 0.0, after = 0.0;
   double standard_error = 0.0;  ///< of a gap at the floor

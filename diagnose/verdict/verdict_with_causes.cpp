@@ -115,7 +115,7 @@ GapRemainder remainder_of(double gap_before, const std::vector<ExplainedCause>& 
 
 /// Where the rest lies, beside the named causes; nowhere where nothing is left.
 std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence) {
-  if (!(sequence.gap_after > 1.0 + 3.0 * sequence.standard_error)) return {};
+  if (!(sequence.gap_after > 1.0 + kClearGap * sequence.standard_error)) return {};
   Diagnosis rest;
   rest.verdict = Verdict::unknown;
   add_regions(set, sequence.named, unnamed_families(ScoreSpace(set, sequence.named)), rest);

@@ -16,7 +16,6 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kClear = 3.0;  // standard errors of a gap
 
 std::vector<std::string> names_of(const diagnose::GivenCauses& given) {
   std::vector<std::string> ids;
@@ -98,7 +97,7 @@ std::vector<std::string> size_lines(const diagnose::GivenCauses& given) {
 std::vector<std::string> sentences_of(const core::AnalysisResults& results, const diagnose::GivenCauses& given) {
   std::vector<std::string> sentences;
   const std::string before = base::digits_text(given.gap_before, 3), after = base::digits_text(given.gap_after, 3);
-  if (given.gap_before - given.gap_after > kClear * given.standard_error) {
+  if (given.gap_before - given.gap_after > diagnose::kClearGap * given.standard_error) {
     sentences.push_back(fmt::format("The gap of held-out clips falls from {} to {} times the noise.", before, after));
   } else {
     sentences.push_back(fmt::format(
@@ -106,7 +105,7 @@ std::vector<std::string> sentences_of(const core::AnalysisResults& results, cons
         "that this acts.",
         before, after));
   }
-  if (given.gap_after > 1.0 + kClear * given.standard_error) {
+  if (given.gap_after > 1.0 + diagnose::kClearGap * given.standard_error) {
     sentences.emplace_back("What is still left counts as noise in ± and in the intervals.");
   }
   if (law_fails(results)) {

@@ -111,7 +111,7 @@ std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
                       : !diagnosis.lines->either_of.empty() ? "the better of them"
                       : diagnosis.effects.size() > 1        ? "both"
                                                             : "this effect");
-  if (named && gap.after > 1.0 + 3.0 * gap.standard_error) {
+  if (named && gap.after > 1.0 + diagnose::kClearGap * gap.standard_error) {
     text += fmt::format(
         " Even the best named explanation leaves {} times the lines' own scatter: something else is missing as well, "
         "or errors within one set-up are correlated. The probability that something unnamed acts is {}.",

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -185,12 +187,23 @@ TEST_CASE("analyze without --json prints a table, and the same files for any num
     CHECK(result.err.find("report: ") != std::string::npos);
     CHECK(result.err.find('\r') == std::string::npos);  // no bar where there is no terminal
   }
-  const std::string plot = "plots/01-acceleration-over-velocity-with-fitted-lines.";
-  for (const std::string& file :
-       {std::string("results.json"), std::string("phase-up.csv"), std::string("motion-up.csv"),
-        std::string("report.html"), plot + "svg", plot + "pdf", plot + "gp", plot + "csv"}) {
-    CHECK(base::read_file(temp / "1" / file) == base::read_file(temp / "2" / file));
+  std::size_t files = 0;
+  std::set<std::string> sorts;  // of the phase diagram
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(temp / "1")) {
+    if (!entry.is_regular_file()) continue;
+    const std::filesystem::path name = std::filesystem::relative(entry.path(), temp / "1");
+    CAPTURE(name);
+    CHECK(base::read_file(entry.path()) == base::read_file(temp / "2" / name));
+    if (name.stem().string().ends_with("acceleration-over-velocity-with-fitted-lines")) sorts.insert(name.extension());
+    ++files;
   }
+  CHECK(sorts == std::set<std::string>{".csv", ".gp", ".pdf", ".svg"});
+  for (const char* file : {"results.json", "phase-up.csv", "motion-up.csv", "report.html"}) {
+    CHECK(std::filesystem::exists(temp / "1" / file));
+  }
+  std::size_t others = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(temp / "2")) others += entry.is_regular_file();
+  CHECK(files == others);
 }
 
 TEST_CASE("a quiet analysis says nothing on standard error") {

@@ -91,7 +91,9 @@ TEST_CASE("diagnose: a table of lines in no folder is diagnosed as in a folder, 
   INFO(file.err);
   REQUIRE(file.status == 0);
   CHECK(file.out == folder.out);
-  std::ofstream(temp / "track.csv") << "t_s,x_m\n0,0\n0.1,0.1\n";
+  std::ofstream(temp / "short.csv") << "t_s,x_m\n0,0\n0.1,0.1\n";
+  CHECK(run(temp / "short.csv").err.find("short.csv: found 2 points") != std::string::npos);  // a track
+  std::ofstream(temp / "track.csv") << "k_over_m_1_s,k_over_m_sd_1_s\n1,0.1\n";
   const tests::ProcessResult track = run(temp / "track.csv");
   CHECK(track.status == 1);
   CHECK(track.err.find("track.csv:1: header: found no column \"mass_kg\"") != std::string::npos);

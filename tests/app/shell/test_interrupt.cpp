@@ -68,6 +68,7 @@ TEST_CASE(
                                                     {"--version"}};
   for (const std::string& name : tests::kCommands) {
     std::vector<std::string> command = {name};
+    if (name == "challenge") command.emplace_back("make");
     if (name != "pattern" && name != "explore" && name != "blind") command.emplace_back("nothing.toml");
     if (name == "require") command.insert(command.end(), {"--target", "mu=0.001"});
     if (name == "blind") command.insert(command.end(), {"--cases", "1", "--seed", "1"});

@@ -6,7 +6,9 @@
 #include "base/files/file_io.h"
 #include "core/analysis/analyze.h"
 #include "core/check/check_recording.h"
+#include "core/track/read_track.h"
 #include "tests/catch.h"
+#include "tests/core/made_project.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -46,6 +48,32 @@ TEST_CASE("the runs of one file become clips with a mass each") {
   REQUIRE(second.clips.size() == 1);
   CHECK(second.clips[0].name == "Run #2");
   CHECK(core::read_track_csv(made.file, 1, second.clips[0].column).x_m[10] == Approx(0.2 * 0.04 + 1e-4));
+}
+
+TEST_CASE("the point masses of a Tracker project become clips with a mass each") {
+  const tests::TempDir temp;
+  const auto falling = [](double a) {
+    return [a](double i) { return std::pair(50.0, 100.0 + 2.0 * i + a * i * i); };
+  };
+  const tests::MadeProject project{
+      {tests::made_mass("cup", 12, falling(1.0)), tests::made_mass("two cups", 12, falling(2.0))}};
+  const std::filesystem::path file = tests::write_text(temp / "made.trk", project.text());
+  core::TrackFileOptions options;
+  options.runs = "all";
+  options.masses_kg = {0.001, 0.002};
+  const core::Experiment all = core::read_tracks(file, options);
+  REQUIRE(all.clips.size() == 2);
+  CHECK(all.clips[0].name == "cup");
+  CHECK(all.clips[1].name == "two cups");
+  CHECK(all.clips[1].mass_kg == 0.002);
+  const auto distance_m = [&](std::size_t clip) {
+    const std::vector<double> x = core::read_track(file, std::nullopt, all.clips[clip].column).x_m;
+    return x.back() - x.front();
+  };
+  CHECK(distance_m(1) / distance_m(0) == Approx((2.0 * 11.0 + 2.0 * 121.0) / (2.0 * 11.0 + 121.0)));
+  options.runs = "3";
+  options.masses_kg = {};
+  CHECK_THROWS_WITH(core::read_tracks(file, options), Contains("1: cup, 2: two cups"));
 }
 
 TEST_CASE("runs that the file does not have, and masses that do not fit, are refused with what there is") {

@@ -6,6 +6,7 @@
 #include "report/analysis/analysis_report.h"
 #include "report/blind/blind_report.h"
 #include "report/blind/everyday_report.h"
+#include "report/challenge/challenge_report.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"
 #include "report/coverage/coverage_report.h"
@@ -280,6 +281,20 @@ TEST_CASE("the page of blind cases has every name from a file as text") {
   run.score.left_out = {{kEvil, {1, 1}}};
   run.score.confusion = {{kEvil, {{kEvil, 1}}}};
   check_is_text(report::blind_page(run));
+}
+
+TEST_CASE("the page of a challenge's score has every name from a file as text") {
+  validate::ChallengeScore score;
+  score.challenge.truth_sha256 = kEvil;
+  fit::OutsideTally entrant;
+  entrant.name = entrant.command = kEvil;
+  entrant.runs = 1;
+  for (fit::OutsideTally::Kind& kind : entrant.failures) kind = {1, kEvil};
+  score.entrants = {entrant, entrant};
+  score.timed = {true, true};
+  const validate::ChallengeRow row{0, 1, 1, 1, 0.0, 1.0, 0.0, 1.0, validate::ScoredMean{}, validate::ScoredMean{}, 1};
+  score.quantities = {{"mu", {row, row}, {{0, 1, 1, 0, 0, 0.01}}}};
+  check_is_text(report::challenge_page(score));
 }
 
 TEST_CASE("the page of everyday cases has every name from a file as text") {

@@ -1,5 +1,6 @@
 #include "report/html/html.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "report/analysis/analysis_report.h"
@@ -85,7 +86,9 @@ TEST_CASE("a page needs nothing but itself, says its values, and stays small for
   CHECK(page.find("src=\"http") == std::string::npos);
   CHECK(page.find("href=\"http") == std::string::npos);
   CHECK(page.find("src=\"data:image/svg+xml;base64,") != std::string::npos);
-  CHECK(made.files.contains("plots/01-acceleration-over-velocity-with-fitted-lines.svg"));
+  CHECK(std::any_of(made.files.begin(), made.files.end(), [](const auto& file) {
+    return file.first.ends_with("-acceleration-over-velocity-with-fitted-lines.svg");
+  }));
   CHECK(page.size() < 3'000'000);  // 10 MB allow twelve clips of a quarter of this each
 }
 
