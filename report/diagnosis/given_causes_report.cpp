@@ -16,7 +16,6 @@
 namespace glidelab::report {
 namespace {
 
-
 std::vector<std::string> names_of(const diagnose::GivenCauses& given) {
   std::vector<std::string> ids;
   for (const diagnose::GivenCause& cause : given.causes) ids.push_back(cause.id);
