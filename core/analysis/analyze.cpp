@@ -58,10 +58,10 @@ std::string assumption(const TrackFileOptions& stated, double mass_kg) {
   if (!mass && !incline) return {};
   const std::string of_mass = fmt::format("a mass of {:g} kg", mass_kg), of_incline = "an inclination of 0°";
   return fmt::format(
-      "{} assumed, for nobody states {} (--mass, --incline): K/m, µ and α come from the motion and do not "
+      "{} assumed, for nobody states {} ({}): K/m, µ and α come from the motion and do not "
       "depend on that",
       mass && incline ? of_mass + " and " + of_incline + " are" : (mass ? of_mass : of_incline) + " is",
-      mass && incline ? "them" : "it");
+      mass && incline ? "them" : "it", mass && incline ? "--mass, --incline" : (mass ? "--mass" : "--incline"));
 }
 
 void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetup>& setups,

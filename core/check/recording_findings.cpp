@@ -222,9 +222,12 @@ void judge_marker(const ClipCheck& clip, FindingBook& book) {
 
 void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook book) {
   if (!clip.failure.empty()) {
-    book.add(Severity::unusable, clip.failure,
-             "check that the file plays, that the marker is in the image and moves, and that [marker] describes it",
-             Topic::failure);
+    book.add(
+        Severity::unusable, clip.failure,
+        clip.pictures
+            ? "check that the file plays, that the marker is in the image and moves, and that [marker] describes it"
+            : "mend the file, or say which of its columns is x",
+        Topic::failure);
     return;
   }
   if (clip.pictures) {
