@@ -21,14 +21,21 @@ constexpr double kInstant_s = 1e-4;     // over which a speed changes by an acce
 constexpr double kFastest_m_s = 100.0;  // terminal velocities are sought below
 const char* const kWhyTogether = "these motions do not tell it apart from the other quantities";
 
+/// Without what acts at some places, times or clips only: a terminal velocity is the configuration's.
+void leave_out_passing(EffectValues& effects) {
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    const EffectLaw& law = effect_list()[e].law;
+    for (std::size_t k = law.size; law.passing && k < law.size + law.sizes; ++k) effects[EffectSlot{e, k}] = 0.0;
+  }
+}
+
 /// Acceleration at speed v > 0 in the middle of the set-up's track.
 double acceleration(TrackModel model, double v_m_s) {
   model.x0_m = model.x_mid_m;
   model.v0_m_s = v_m_s;
   model.known = nullptr;
   model.row_px = {};
-  model.effects[slot_of(ids::base_vibration, 0)] = 0.0;
-  model.effects[slot_of(ids::late_release, 1)] = 0.0;
+  leave_out_passing(model.effects);
   const double times[] = {0.0, kInstant_s};
   return (move(model, times).v_m_s.back() - v_m_s) / kInstant_s;
 }

@@ -84,6 +84,7 @@ struct EffectLaw {
   double (*stretch)(const double* p) = nullptr;  ///< true time over stated time
   double (*row_s)(const double* p) =
       nullptr;  ///< how much later a row is exposed than the one above, over what is stated
+  bool passing = false;  ///< acts at some places, times or clips only: no part of what balances at terminal velocity
 
   bool acts(const double* p) const {
     return std::any_of(p + size, p + size + sizes, [](double value) { return value != 0.0; });

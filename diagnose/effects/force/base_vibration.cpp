@@ -31,7 +31,7 @@ EffectInfo base_vibration() {
       .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5},
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
                      {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .each = Each::motion}},
-      .law = {.force_n = vibration_force, .rate_1_s = vibration_rate},
+      .law = {.force_n = vibration_force, .rate_1_s = vibration_rate, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force of a scenario depends on the time"),

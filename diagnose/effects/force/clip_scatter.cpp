@@ -39,7 +39,7 @@ EffectInfo clip_scatter() {
                       .shown_as = ShownAs::together,
                       .each = Each::clip,
                       .held_sd = 0.5}},
-      .law = {.sizes = 2, .resistance = scattered_drag, .friction = scattered_friction},
+      .law = {.sizes = 2, .resistance = scattered_drag, .friction = scattered_friction, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("the clips of a configuration have the same forces in a scenario"),

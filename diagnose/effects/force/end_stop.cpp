@@ -49,7 +49,7 @@ EffectInfo end_stop() {
             .high = 1e3,
             .step = 1e-4,
             .reach = Reach::places}},
-      .law = {.force_n = stop_force, .rate_1_s = stop_rate},
+      .law = {.force_n = stop_force, .rate_1_s = stop_rate, .passing = true},
       .shapes = stop_places,
       .lines = {},
       .twin = EffectTwin::none("no force of a scenario depends on the place"),

@@ -21,7 +21,7 @@ EffectInfo friction_drift() {
       .search = Search::amplitude,
       .both_signs = true,
       .parameters = {{.key = "r_1_clip", .absent = 0.0, .low = -1.0, .high = 1.0, .step = 1e-6}},
-      .law = {.friction = drifting_friction},
+      .law = {.friction = drifting_friction, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("the clips of a configuration have the same forces in a scenario"),

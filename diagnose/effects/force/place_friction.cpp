@@ -68,7 +68,7 @@ EffectInfo place_friction() {
       .search = Search::spread,
       .both_signs = true,
       .parameters = {bump("sd"), bump({}), bump({}), bump({}), bump({}), bump({})},
-      .law = {.sizes = kBumps, .friction = friction_along},
+      .law = {.sizes = kBumps, .friction = friction_along, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force of a scenario depends on the place"),

@@ -39,7 +39,7 @@ EffectInfo tether() {
             .high = 1e3,
             .step = 1e-4,
             .reach = Reach::places}},
-      .law = {.force_n = tether_force, .rate_1_s = tether_rate},
+      .law = {.force_n = tether_force, .rate_1_s = tether_rate, .passing = true},
       .shapes = tether_places,
       .lines = {},
       .twin = EffectTwin::none("no force of a scenario depends on the place"),

@@ -99,3 +99,35 @@ TEST_CASE("an explanation that is nearly as likely widens what is recovered by h
   CHECK(mixed.sd > 2.0 * a.sd);  // or it would show nothing
   CHECK(both[0].with == std::vector<std::string>{"quadratic_drag"});
 }
+
+TEST_CASE("a cable that pulls in the middle of the track, or friction that drifts, moves no terminal velocity") {
+  // m g (sin(alpha) - mu cos(alpha)) = K v, of the law without them.
+  const tests::MadeGlider glider;
+  const double alpha = 4.0 * std::acos(-1.0) / 180.0;
+  const double v_lim = 0.4 * glider.gravity_m_s2 * (std::sin(alpha) - glider.mu * std::cos(alpha)) / glider.k_n_s_m;
+  const auto check = [&](const diagnose::TrackSet& set, const diagnose::MotionFit& fit) {
+    const auto found = diagnose::recovered_of(set, {{&fit, {}, 1.0}});
+    REQUIRE(found.size() == 1);
+    const auto& estimate = found[0].v_lim_m_s.estimate;
+    REQUIRE(estimate);
+    INFO(estimate->value << " +- " << estimate->sd << ", true " << v_lim);
+    CHECK(std::abs(estimate->value - v_lim) < 4.0 * estimate->sd);
+    CHECK(estimate->sd < 0.02 * v_lim);
+  };
+  tests::MadeEffect cable;
+  cable.force = [](double x, double, double, double) { return x > -0.4 ? -0.8 * (x + 0.4) : 0.0; };
+  const diagnose::TrackSet pulled = set_of(8, cable);
+  REQUIRE(pulled.groups[0].x_mid_m > -0.3);  // it pulls there
+  const diagnose::MotionFit nominal = diagnose::linearise_again(pulled, diagnose::fit_nominal(pulled));
+  const std::size_t tether = diagnose::effect_index(diagnose::ids::tether);
+  check(pulled,
+        diagnose::linearise_again(
+            pulled, diagnose::fit_with_effect(pulled, nominal, tether,
+                                              diagnose::with_effect(pulled, nominal, tether, {0.6, -0.38}, {}))));
+  std::vector<tests::MadeLaunch> later = launches();
+  for (std::size_t c = 0; c < later.size(); ++c) later[c].mu_more = 0.3 * glider.mu * static_cast<double>(c);
+  const tests::MadeExperiment made = tests::made_experiment(later, {}, 9, 1e-4, 60, 50.0);
+  const diagnose::TrackSet drifted = diagnose::track_set(made.results, made.setups, true);
+  check(drifted, with_effect_of(drifted, diagnose::linearise_again(drifted, diagnose::fit_nominal(drifted)),
+                                diagnose::ids::friction_drift, 0.1));
+}
