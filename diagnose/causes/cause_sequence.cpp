@@ -46,12 +46,13 @@ bool is_above_floor(const Step& step) {
   return step.gap > 1.0 + kClearGap * step.standard_error;
 }
 
-ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& before, const Step& after, bool pieces) {
+ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& before, const Step& after, bool pieces,
+                        double floor = 1.0) {
   ExplainedCause cause;
   cause.id = effect_list()[effect].id;
   cause.gap_after = after.gap;
-  cause.share = (before.gap * before.gap - after.gap * after.gap) / (first.gap * first.gap - 1.0);
-  if (!pieces) cause.share_interval95 = share_interval(first.clips, before.clips, after.clips);
+  cause.share = (before.gap * before.gap - after.gap * after.gap) / (first.gap * first.gap - floor * floor);
+  if (!pieces) cause.share_interval95 = share_interval(first.clips, before.clips, after.clips, floor);
   return cause;
 }
 
@@ -146,6 +147,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
 
   // What the verdict names, by falling share: of several, each alone first.
   Step here = first;
+  std::vector<std::pair<std::size_t, Step>> steps;                // each cause, and where it stands in its own step
   const std::size_t dropped = effect_index(ids::dropped_frames);  // they are in a fit's times
   std::vector<std::size_t> left = named.effects;
   if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
@@ -163,24 +165,30 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       which = k;
     }
     if (!best) break;
-    ExplainedCause cause = cause_of(left[which], first, here, *best, set.pieces);
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
-    if (!(cause.share > (sequence.causes.empty() ? kLeastShare : least_named))) break;
-    sequence.causes.push_back(std::move(cause));
+    const double share = cause_of(left[which], first, here, *best, set.pieces).share;
+    if (!(share > (steps.empty() ? kLeastShare : least_named))) break;
     here = std::move(*best);
+    steps.emplace_back(left[which], here);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
   }
   sequence.named = here.fit;
-  for (const ExplainedCause& cause : sequence.causes) sequence.named_share += cause.share;
+  const std::size_t named_steps = steps.size();
 
-  while (sequence.causes.size() < kMostCauses && is_above_floor(here)) {
+  while (steps.size() < kMostCauses && is_above_floor(here)) {
     auto next = next_cause(set, nominal, with, here, without);
     if (!next) break;
-    ExplainedCause cause = cause_of(next->first, first, here, next->second, set.pieces);
-    if (!is_worth(cause)) break;
-    sequence.causes.push_back(std::move(cause));
-    here = std::move(next->second);
+    if (!is_worth(cause_of(next->first, first, here, next->second, set.pieces))) break;
+    here = next->second;
+    steps.push_back(std::move(*next));
   }
   sequence.gap_after = here.gap;
+  const double floor = floor_of(here.gap, here.standard_error);
+  const Step* before = &first;
+  for (const auto& [effect, after] : steps) {
+    sequence.causes.push_back(cause_of(effect, first, *before, after, set.pieces, floor));
+    if (sequence.causes.size() <= named_steps) sequence.named_share += sequence.causes.back().share;
+    before = &after;
+  }
   return sequence;
 }
 

@@ -1,8 +1,8 @@
 /// Causes in order: each takes what it can of the held-out gap, beside those before it, until none takes more than its
 /// uncertainty.
 ///
-///     share_i = (g²_{i-1} - g²_i) / (g²_0 - 1),        g the gap of held-out clips (held_out.h), g_0 of the nominal
-///     model
+///     share_i = (g²_{i-1} - g²_i) / (g²_0 - f²),       g the gap of held-out clips (held_out.h), g_0 of the nominal
+///                                                      model, f the floor (floor_of(): 1, or less)
 ///
 /// The causes that a verdict names come first, the one with the largest share first of them; then others of the list,
 /// each fitted in full beside all before it, and what differs from clip to clip after the laws that all clips have in

@@ -54,26 +54,32 @@ std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips) {
   return GapInterval{std::exp(log->low), std::exp(log->high)};
 }
 
-std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after) {
+double floor_of(double gap_after, double standard_error) {
+  return gap_after < 1.0 - kClearGap * standard_error ? gap_after : 1.0;
+}
+
+std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after,
+                                           double floor) {
   if (before.size() < kFewestClips || before.size() != after.size()) return {};
   for (std::size_t c = 0; c <= before.size(); ++c) {
-    if (!(rms(before, c) > 1.0)) return {};
+    if (!(rms(before, c) > floor)) return {};
   }
   return jackknife(before.size(), [&](std::size_t c) {
     const double was = rms(before, c), is = rms(after, c);
-    return (was - is) / (was - 1.0);
+    return (was - is) / (was - floor);
   });
 }
 
 std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, std::span<const ClipSquares> before,
-                                          std::span<const ClipSquares> after) {
+                                          std::span<const ClipSquares> after, double floor) {
   if (first.size() < kFewestClips || first.size() != before.size() || first.size() != after.size()) return {};
   for (std::size_t c = 0; c <= first.size(); ++c) {
-    if (!(rms(first, c) > 1.0)) return {};
+    if (!(rms(first, c) > floor)) return {};
   }
   const auto square = [](std::span<const ClipSquares> of, std::size_t c) { return rms(of, c) * rms(of, c); };
-  return jackknife(first.size(),
-                   [&](std::size_t c) { return (square(before, c) - square(after, c)) / (square(first, c) - 1.0); });
+  return jackknife(first.size(), [&](std::size_t c) {
+    return (square(before, c) - square(after, c)) / (square(first, c) - floor * floor);
+  });
 }
 
 namespace {
@@ -120,13 +126,13 @@ std::vector<ClipSquares> acceleration_squares_of(const HeldOutGap& gap) {
   return squares;
 }
 
-GapIntervals intervals_of(const TrackSet& set, const HeldOutGap& before, const HeldOutGap& after, bool shrinks) {
+GapIntervals intervals_of(const TrackSet& set, const HeldOutGap& before, const HeldOutGap& after, const GapSizes& gap) {
   GapIntervals of;
   of.too_few = too_few_clips(set.pieces ? 1 : set.clips.size());
   if (of.too_few) return of;
   of.before = rms_interval(squares_of(before));
   of.after = rms_interval(squares_of(after));
-  if (shrinks) of.shrink = shrink_interval(squares_of(before), squares_of(after));
+  if (gap.shrink) of.shrink = shrink_interval(squares_of(before), squares_of(after), gap.floor);
   of.acceleration_before = rms_interval(acceleration_squares_of(before));
   of.acceleration_after = rms_interval(acceleration_squares_of(after));
   return of;
@@ -177,7 +183,8 @@ GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& 
   gap.before = before.value;
   gap.after = after.value;
   gap.standard_error = before.standard_error;
-  if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - 1.0);
+  gap.floor = floor_of(gap.after, gap.standard_error);
+  if (gap.before > 1.0 + gap.standard_error) gap.shrink = (gap.before - gap.after) / (gap.before - gap.floor);
   gap.acceleration_before = before.acceleration_m_s2;
   gap.acceleration_after = after.acceleration_m_s2;
   for (std::size_t c = 0; c < before.clips.size(); ++c) {
@@ -186,7 +193,7 @@ GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& 
     gap.after_by_clip.push_back(c < after.clips.size() ? std::sqrt(after.clips[c].chi2 / after.clips[c].freedom)
                                                        : gap.before_by_clip.back());
   }
-  gap.interval95 = intervals_of(set, before, after, gap.shrink.has_value());
+  gap.interval95 = intervals_of(set, before, after, gap);
   const std::vector<StatementPull> was = statement_pulls(set, nominal), is = statement_pulls(set, best);
   for (std::size_t p = 0; p < was.size() && p < is.size(); ++p) {
     gap.parameters.push_back({was[p].quantity, was[p].against, was[p].group, was[p].z, is[p].z});

@@ -39,14 +39,19 @@ struct ClipSquares {
 /// is.
 std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips);
 
-/// Of (before - after)/(before - 1), the clips being the same in both. None for fewer than three clips, nor where
-/// `before` without one of them is not above 1.
-std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after);
+/// 1, or the gap that the best fit leaves where that is clearly below: noise is estimated from neighbouring positions,
+/// and a wave of few frames looks like it until a cause takes it out. No residual is smaller than the noise.
+double floor_of(double gap_after, double standard_error);
 
-/// Of (before - after)/(first - 1), in squares of the gaps, the clips being the same in all three. None for fewer than
-/// three clips, nor where `first` without one of them is not above 1.
+/// Of (before - after)/(before - floor), the clips being the same in both. None for fewer than three clips, nor where
+/// `before` without one of them is not above the floor.
+std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after,
+                                           double floor = 1.0);
+
+/// Of (before - after)/(first - floor), in squares of the gaps, the clips being the same in all three. None for fewer
+/// than three clips, nor where `first` without one of them is not above the floor.
 std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, std::span<const ClipSquares> before,
-                                          std::span<const ClipSquares> after);
+                                          std::span<const ClipSquares> after, double floor = 1.0);
 
 /// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips. `best` has a named
 /// effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut into stretches that

@@ -124,6 +124,7 @@ inline constexpr double kClearGap = 4.5;
 struct GapSizes {
   double before = 0.0, after = 0.0;
   double standard_error = 0.0;  ///< of a gap at the floor
+  double floor = 1.0;           ///< below 1 where the best fit shows that the noise was taken as too large
   std::optional<double> shrink;
   std::vector<std::string> held_out;
   std::vector<double> before_by_clip, after_by_clip;

@@ -115,7 +115,7 @@ Json gap_json(const diagnose::GapSizes& gap) {
   Json object;
   put(object, "before", gap.before);
   put(object, "after", gap.after);
-  object["floor"] = 1.0;
+  object["floor"] = gap.floor;
   put(object, "shrink", gap.shrink, "the gap is not above the floor by more than its standard error");
   put(object, "standard_error", gap.standard_error);
   object["interval95"] = intervals_json(gap.interval95);

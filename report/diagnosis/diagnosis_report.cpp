@@ -148,9 +148,12 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
   }
   std::string text = clips.str();
   text += fmt::format(
-      "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it is 1 ± "
-      "{}. {} {}{}</p>\n",
-      base::number_text(gap.standard_error, 2),
+      "<p class=\"soft\">Root mean square of residuals over their predicted scatter; at the noise floor it is {} ± "
+      "{}{}. {} {}{}</p>\n",
+      base::number_text(gap.floor, 3), base::number_text(gap.standard_error, 2),
+      gap.floor < 1.0
+          ? " (below 1, as the noise that neighbouring positions show was raised by what the causes take out)"
+          : "",
       gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of the excess over the floor."
                  : std::string("It is at the floor."),
       !over_clips.too_few
@@ -341,8 +344,9 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     if (finding.seen) text += "images: " + wrapped(finding.words);
   }
   if (diagnosis.gap) {
-    text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor 1)\n",
-                        diagnosis.lines ? "lines" : "clips", diagnosis.gap->before, diagnosis.gap->after);
+    text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor {:.3g})\n",
+                        diagnosis.lines ? "lines" : "clips", diagnosis.gap->before, diagnosis.gap->after,
+                        diagnosis.gap->floor);
     text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips");
   }
   if (sequence.empty()) text += "\nnext: " + wrapped(next_step_words(diagnosis.next));

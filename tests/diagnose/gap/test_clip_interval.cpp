@@ -99,3 +99,24 @@ TEST_CASE("the interval of a share is the jackknife of its own definition") {
         Approx(half).epsilon(0.02));  // student_t975() is exact to 1 % at 3 degrees of freedom; twice that
   CHECK(!diagnose::share_interval(std::span(first).first(2), std::span(before).first(2), std::span(after).first(2)));
 }
+
+TEST_CASE("shares and shrinkage of an excess over a floor below 1 are those over 1 of gaps scaled by the floor") {
+  constexpr double kFloor = 0.6;
+  std::vector<diagnose::ClipSquares> first = {{900.0, 100.0}, {700.0, 100.0}, {1000.0, 100.0}, {800.0, 100.0}},
+                                     before = {{500.0, 100.0}, {300.0, 100.0}, {450.0, 100.0}, {410.0, 100.0}},
+                                     after = {{120.0, 100.0}, {150.0, 100.0}, {110.0, 100.0}, {130.0, 100.0}};
+  const auto share = diagnose::share_interval(first, before, after), shrink = diagnose::shrink_interval(first, after);
+  for (auto* of : {&first, &before, &after}) {
+    for (diagnose::ClipSquares& clip : *of) clip.sum *= kFloor * kFloor;
+  }
+  const auto scaled = diagnose::share_interval(first, before, after, kFloor),
+             scaled_shrink = diagnose::shrink_interval(first, after, kFloor);
+  REQUIRE(share);
+  REQUIRE(shrink);
+  REQUIRE(scaled);
+  REQUIRE(scaled_shrink);
+  CHECK(scaled->low == Approx(share->low));
+  CHECK(scaled->high == Approx(share->high));
+  CHECK(scaled_shrink->low == Approx(shrink->low));
+  CHECK(scaled_shrink->high == Approx(shrink->high));
+}

@@ -1,0 +1,41 @@
+#include "diagnose/causes/cause_sequence.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "diagnose/gap/gap_sizes.h"
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+TEST_CASE("what a cause leaves below the estimated noise is the floor, and all shares together make the excess") {
+  // A camera that shakes with a period of four frames: neighbouring positions take it for noise, which is thus known
+  // too large by sqrt(1 + A²/2 sd²) or so until the shake is taken out.
+  constexpr double kSd_m = 1e-4, kAmplitude_m = 3e-4, kRate_hz = 50.0;
+  tests::MadeEffect shake;
+  shake.seen = [](double x, double t) {
+    return x + kAmplitude_m * std::sin(2.0 * std::numbers::pi * 0.2531 * kRate_hz * t);
+  };
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), shake, 21, kSd_m, 80, kRate_hz);
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
+  REQUIRE(diagnosis.gap);
+  REQUIRE(diagnosis.gap->floor < 0.7);
+  CHECK(diagnosis.gap->floor == diagnosis.gap->after);
+  REQUIRE_FALSE(diagnosis.explained.empty());
+  double sum = 0.0;
+  for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
+    CHECK(cause.share > 0.0);
+    sum += cause.share;
+  }
+  CHECK(sum == Approx(1.0).epsilon(1e-9));
+  REQUIRE(diagnosis.gap->shrink);
+  CHECK(*diagnosis.gap->shrink == Approx(1.0).epsilon(1e-9));
+}
+
+TEST_CASE("the floor is 1 unless a gap lies clearly below it") {
+  CHECK(diagnose::floor_of(0.96, 0.01) == 1.0);
+  CHECK(diagnose::floor_of(1.2, 0.01) == 1.0);
+  CHECK(diagnose::floor_of(0.95, 0.01) == 0.95);
+}
