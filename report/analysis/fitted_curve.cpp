@@ -101,7 +101,7 @@ Plot fitted_plot(const core::ClipResult& clip, const std::vector<FittedCurve>& c
     count += n;
   }
   std::string script(kFrame);
-  script += "set xlabel 't  (s)'\nset ylabel 'x  (m)'\n";
+  script += "set autoscale xfix\nset xlabel 't  (s)'\nset ylabel 'x  (m)'\n";
   script += fmt::format(
       "plot $others using 1:2 with points pt 7 ps 0.3 lc rgb '{}' title 'left out', $used using 1:2 with points pt 7 "
       "ps 0.4 lc rgb '{}' title 'measured', $law using 1:2 with lines lw 2 lc rgb '{}' title 'fitted law'",
