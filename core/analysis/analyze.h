@@ -27,6 +27,7 @@ struct AnalysisOptions {
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
   bool pictures = false;       ///< keep what the clips' images show besides the motion (ClipResult::pictures)
   TrackFileOptions bare = {};  ///< for inputs that are a track's file
+  std::string smoother = "local-polynomial";  ///< a name of core/motion/smoothing/smoother.h
 };
 
 /// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, but not the camera.
