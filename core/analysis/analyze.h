@@ -23,11 +23,11 @@ struct AnalysisOptions {
   int jobs = 1;                       ///< clips analysed at the same time
   FrameOpener open = open_frames;     ///< where the clips' frames come from
   std::string bandwidth_rule = {};    ///< a name of bandwidth_rule.h instead; empty: choose_bandwidth()
+  std::string smoother = "local-polynomial";  ///< a name of core/motion/smoothing/smoother.h
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
   bool pictures = false;       ///< keep what the clips' images show besides the motion (ClipResult::pictures)
   TrackFileOptions bare = {};  ///< for inputs that are a track's file
-  std::string smoother = "local-polynomial";  ///< a name of core/motion/smoothing/smoother.h
 };
 
 /// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, but not the camera.

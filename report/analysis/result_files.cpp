@@ -118,7 +118,6 @@ Json strength_json(const core::SmoothingStrength& strength) {
   object["method"] = strength.method;
   put(object, "time_s", strength.time_s);
   put(object, "noise_sd_m", strength.noise_sd_m);
-  put(object, "jerk_density_m2_s5", strength.jerk_density_m2_s5);
   if (strength.jump_sd_m_s2) {
     if (std::isinf(*strength.jump_sd_m_s2)) {
       put(object, "jump_sd_m_s2", std::nullopt, "any jump of a is allowed at a break");

@@ -1,8 +1,8 @@
 /// The smoothers: positions in, x, v and a with their standard deviations out, and how strongly was smoothed.
 ///
 ///     local-polynomial  the local cubic of the paper, whose bandwidth is given (local_polynomial.h)
-///     kalman            the integrated Wiener process of order 3, its strength by marginal likelihood
-///     spline            the smoothing spline of degree 5, its strength by generalised cross-validation
+///     kalman            the integrated Wiener process of order 4, its strength by marginal likelihood
+///     spline            the smoothing spline of degree 7, its strength by generalised cross-validation
 ///
 /// The last two are one posterior (wiener_chain.h) with two ways to choose its strength; wiener_smoother.cpp has both.
 /// All three are linear in the positions once the strength is chosen, so that the effect of any noise and of any
@@ -36,8 +36,8 @@ struct SmoothingInput {
   bool simultaneous = false;               ///< whether the simultaneous band is wanted
 };
 
-/// Positions of one part of the motion that a smoother of order 3 needs, and before and after a break.
-inline constexpr std::size_t kFewestSmoothed = 5;
+/// Positions of one part of the motion that kalman and spline need, and before and after a break.
+inline constexpr std::size_t kFewestSmoothed = 6;
 
 struct SmoothedState {
   double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;

@@ -1,10 +1,12 @@
 /// The Kalman smoother and the smoothing spline: how strong each smooths, and where a breaks.
 ///
-/// Both smooth all parts of a motion with one strength. With s the noise of a position and dt the mean step, the
-/// strength is tau = (s^2 dt / q)^(1/6): x is followed up to the angular frequency 1/tau.
+/// Both smooth all parts of a motion with one strength, by a process of order N = 4 (x, v, a and the jerk; a spline of
+/// degree 7). With s the noise of a position and dt the mean step, the strength is tau = (s^2 dt / q)^(1/2N): x is
+/// followed up to the angular frequency 1/tau.
 ///
 ///  kalman: tau, and the standard deviation j of the jumps of a, make the marginal likelihood greatest, with what is
-///     not known at a part's start integrated out; s where it is not stated as well, in closed form.
+///     not known at a part's start integrated out; s where it is not stated as well, in closed form. Standard
+///     deviations are averaged over tau by its likelihood, for a few effective parameters do not determine it.
 ///  spline: tau makes  n sum ((y - x)/f)^2 / (n - trace)^2  least (generalised cross-validation, Craven and Wahba 1979,
 ///     Numer. Math. 31, 377), a may jump by anything at a break, s^2 = sum ((y - x)/f)^2 / (n - trace).
 ///
@@ -31,13 +33,18 @@ namespace {
 
 enum class StrengthBy { likelihood, cross_validation };
 
+/// Of the process. Lower orders are too rough for motions under a smooth law, and smooth too little; of higher ones a
+/// short clip has too few effective parameters to find their strength from.
+constexpr int kOrder = 4;
 constexpr double kGridRatio = 1.5;
 constexpr double kLeastTau = 0.3;     // mean steps: interpolation
 constexpr double kGreatestTau = 3.0;  // of the longest part: next to a parabola
-constexpr int kBrentBits = 16;
+constexpr int kBrentBits = 10;
 constexpr double kBreakSettled = 1e-3;  // of a step
-constexpr int kBreakPasses = 8;
-constexpr int kDraws = 2000;  // of a whole a(t): the band's 95 % is good to 0.5 %
+constexpr int kBreakPasses = 4;
+constexpr double kSpreadRatio = 1.3;  // from one strength that is averaged over to the next
+constexpr int kSpread = 4;            // of them to each side
+constexpr int kDraws = 2000;          // of a whole a(t): the band's 95 % is good to 0.5 %
 constexpr std::uint64_t kDrawsFrom = 0x5eed;
 
 /// One part with its own breaks.
@@ -48,6 +55,7 @@ struct Part {
   std::size_t first_at = 0;  // of at_s in the input's
 };
 
+template <int N>
 class PartedMotion {
  public:
   explicit PartedMotion(const SmoothingInput& input) : input_(input) {
@@ -84,7 +92,9 @@ class PartedMotion {
     return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return !part.breaks_s.empty(); });
   }
 
-  WienerRatio ratio(double tau_s, double jump_1_s2) const { return {step_s_ / std::pow(tau_s, 6), jump_1_s2}; }
+  WienerRatio ratio(double tau_s, double jump_1_s2) const {
+    return {step_s_ / std::pow(tau_s, 2 * N), jump_1_s2, tau_s};
+  }
 
   double noise_variance(const ChainFit& fit) const {
     if (input_.noise_sd_m) return std::max(std::pow(*input_.noise_sd_m, 2), least_variance_);
@@ -92,7 +102,7 @@ class PartedMotion {
   }
   ChainFit fit(const WienerRatio& ratio) const {
     ChainFit all;
-    for (const WienerChain& chain : chains_) all += chain.fit(ratio);
+    for (const WienerChain<N>& chain : chains_) all += chain.fit(ratio);
     return all;
   }
   double minus_two_log_likelihood(const WienerRatio& ratio) const {
@@ -100,14 +110,14 @@ class PartedMotion {
     return all.minus_two_log_likelihood(noise_variance(all));
   }
 
-  std::vector<ChainPosterior> posteriors(const WienerRatio& ratio) const {
-    std::vector<ChainPosterior> all;
-    for (const WienerChain& chain : chains_) all.push_back(chain.posterior(ratio));
+  std::vector<ChainPosterior<N>> posteriors(const WienerRatio& ratio) const {
+    std::vector<ChainPosterior<N>> all;
+    for (const WienerChain<N>& chain : chains_) all.push_back(chain.posterior(ratio));
     return all;
   }
 
   /// Moves each break to the next time at which the smoothed v is 0; the farthest that one moved.
-  double refine_breaks(const std::vector<ChainPosterior>& posteriors) {
+  double refine_breaks(const std::vector<ChainPosterior<N>>& posteriors) {
     double farthest = 0.0;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       for (std::size_t b = 0; b < parts_[p].breaks_s.size(); ++b) {
@@ -138,7 +148,7 @@ class PartedMotion {
     return part.breaks_s.empty() || end - from >= static_cast<std::ptrdiff_t>(kFewestSmoothed);
   }
 
-  static std::optional<double> turn_near(const ChainPosterior& posterior, double near_s) {
+  static std::optional<double> turn_near(const ChainPosterior<N>& posterior, double near_s) {
     std::optional<double> nearest;
     for (std::size_t k = 1; k < posterior.size(); ++k) {
       const double before = posterior.mean(k - 1)[1], after = posterior.mean(k)[1];
@@ -164,7 +174,7 @@ class PartedMotion {
 
   const SmoothingInput& input_;
   std::vector<Part> parts_;
-  std::vector<WienerChain> chains_;
+  std::vector<WienerChain<N>> chains_;
   double step_s_ = 0.0, longest_s_ = 0.0, least_variance_ = 0.0;
 };
 
@@ -181,7 +191,8 @@ struct CrossValidation {
   double noise_variance() const { return squares / (points - trace); }
 };
 
-CrossValidation cross_validation(const PartedMotion& motion, const std::vector<ChainPosterior>& posteriors) {
+template <int N>
+CrossValidation cross_validation(const PartedMotion<N>& motion, const std::vector<ChainPosterior<N>>& posteriors) {
   CrossValidation sums;
   for (std::size_t p = 0; p < posteriors.size(); ++p) {
     sums.squares += posteriors[p].residual_squares_m2();
@@ -191,13 +202,21 @@ CrossValidation cross_validation(const PartedMotion& motion, const std::vector<C
   return sums;
 }
 
-/// Sets tau to that of the least criterion(tau).
-template <typename Criterion>
-void choose_tau(const PartedMotion& motion, const Criterion& criterion, Choice& choice) {
+/// Sets tau to that of the least criterion(tau), of all or near the one that is chosen.
+enum class Tau { any, near };
+template <int N, typename Criterion>
+void choose_tau(const PartedMotion<N>& motion, const Criterion& criterion, Tau where, Choice& choice) {
   const double from = std::log(kLeastTau * motion.step_s()), to = std::log(kGreatestTau * motion.longest_s());
   const auto count = static_cast<int>(std::ceil((to - from) / std::log(kGridRatio)));
   const double step = (to - from) / count;
   const auto at = [&](double log_tau) { return criterion(std::exp(log_tau)); };
+  if (where == Tau::near) {
+    const double middle = std::log(choice.tau_s);
+    choice.tau_s = std::exp(boost::math::tools::brent_find_minima(at, std::max(middle - step, from),
+                                                                  std::min(middle + step, to), kBrentBits)
+                                .first);
+    return;
+  }
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= count; ++i) {
@@ -214,9 +233,10 @@ void choose_tau(const PartedMotion& motion, const Criterion& criterion, Choice& 
 }
 
 /// The root mean square of the jumps that the positions show where any is allowed.
-double free_jumps_m_s2(const std::vector<ChainPosterior>& posteriors) {
+template <int N>
+double free_jumps_m_s2(const std::vector<ChainPosterior<N>>& posteriors) {
   double squares = 0.0, count = 0.0;
-  for (const ChainPosterior& posterior : posteriors) {
+  for (const ChainPosterior<N>& posterior : posteriors) {
     for (std::size_t k = 1; k < posterior.size(); ++k) {
       if (!posterior.node(k).after_break) continue;
       squares += std::pow(posterior.mean(k)[2] - posterior.mean(k - 1)[2], 2);
@@ -226,20 +246,21 @@ double free_jumps_m_s2(const std::vector<ChainPosterior>& posteriors) {
   return std::sqrt(squares / count);
 }
 
-Choice choose(PartedMotion& motion, StrengthBy by) {
+template <int N>
+Choice choose(PartedMotion<N>& motion, StrengthBy by) {
   Choice choice;
   const auto criterion = [&](double tau_s) {
     const WienerRatio ratio = motion.ratio(tau_s, choice.jump_1_s2);
     return by == StrengthBy::likelihood ? motion.minus_two_log_likelihood(ratio)
                                         : cross_validation(motion, motion.posteriors(ratio)).criterion();
   };
-  choose_tau(motion, criterion, choice);
+  choose_tau(motion, criterion, Tau::any, choice);
   if (motion.breaks()) {
     for (int pass = 0; pass < kBreakPasses; ++pass) {
       const auto posteriors = motion.posteriors(motion.ratio(choice.tau_s, choice.jump_1_s2));
       if (motion.refine_breaks(posteriors) < kBreakSettled * motion.step_s()) break;
     }
-    choose_tau(motion, criterion, choice);
+    choose_tau(motion, criterion, Tau::near, choice);
     if (by == StrengthBy::likelihood) {
       const WienerRatio free = motion.ratio(choice.tau_s, choice.jump_1_s2);
       const double noise = std::sqrt(motion.noise_variance(motion.fit(free)));
@@ -250,45 +271,107 @@ Choice choose(PartedMotion& motion, StrengthBy by) {
       };
       choice.jump_1_s2 =
           std::exp(boost::math::tools::brent_find_minima(of_jump, about - kBelow, about + kAbove, kBrentBits).first);
-      choose_tau(motion, criterion, choice);
+      choose_tau(motion, criterion, Tau::near, choice);
     }
   }
   return choice;
 }
 
+/// What the positions say of the strength itself: posteriors about the chosen one with the weights of their
+/// likelihoods. The covariance about the chosen mean is that within them and between them.
+template <int N>
+struct Spread {
+  struct Member {
+    std::vector<ChainPosterior<N>> posteriors;
+    double weight = 0.0;
+    double noise_sd = 0.0;
+  };
+  std::vector<Member> members;  // the chosen one first
+
+  const std::vector<ChainPosterior<N>>& chosen() const { return members.front().posteriors; }
+
+  /// Variances of x, v and a at a node.
+  Eigen::Array3d variance(std::size_t p, std::size_t k) const {
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    const Eigen::Array3d middle = chosen()[p].mean(k).template head<3>().array();
+    for (const Member& member : members) {
+      const ChainPosterior<N>& of = member.posteriors[p];
+      const Eigen::Array3d within = of.covariance(k).diagonal().template head<3>().array();
+      const Eigen::Array3d off = of.mean(k).template head<3>().array() - middle;
+      sum += member.weight * (member.noise_sd * member.noise_sd * within + off * off);
+    }
+    return sum;
+  }
+};
+
+template <int N>
+Spread<N> spread_of(const PartedMotion<N>& motion, const Choice& choice, StrengthBy by, double noise_variance) {
+  Spread<N> spread;
+  spread.members.push_back(
+      {motion.posteriors(motion.ratio(choice.tau_s, choice.jump_1_s2)), 1.0, std::sqrt(noise_variance)});
+  if (by == StrengthBy::cross_validation) return spread;
+  const double best = motion.minus_two_log_likelihood(motion.ratio(choice.tau_s, choice.jump_1_s2));
+  double sum = 1.0;
+  for (int i = -kSpread; i <= kSpread; ++i) {
+    const WienerRatio ratio = motion.ratio(choice.tau_s * std::pow(kSpreadRatio, i), choice.jump_1_s2);
+    const ChainFit fit = motion.fit(ratio);
+    const double variance = motion.noise_variance(fit);
+    const double weight = std::exp(-0.5 * (fit.minus_two_log_likelihood(variance) - best));
+    constexpr double kNoMatter = 1e-3;
+    if (i == 0 || !(weight > kNoMatter)) continue;
+    spread.members.push_back({motion.posteriors(ratio), weight, std::sqrt(variance)});
+    sum += weight;
+  }
+  for (auto& member : spread.members) member.weight /= sum;
+  return spread;
+}
+
 /// The quantile of max |a - E a| / sd a over all nodes, by draws of the posterior.
-double simultaneous_factor(const std::vector<ChainPosterior>& posteriors) {
+template <int N>
+double simultaneous_factor(const Spread<N>& spread) {
   boost::random::mt19937_64 random(kDrawsFrom);
   boost::random::normal_distribution<double> normal;
   const auto draw = [&] { return normal(random); };
   std::vector<std::vector<double>> per_sd;
-  for (const ChainPosterior& posterior : posteriors) {
+  for (std::size_t p = 0; p < spread.chosen().size(); ++p) {
     per_sd.emplace_back();
-    for (std::size_t k = 0; k < posterior.size(); ++k) {
-      per_sd.back().push_back(1.0 / std::sqrt(posterior.covariance(k)(2, 2)));
+    for (std::size_t k = 0; k < spread.chosen()[p].size(); ++k) {
+      per_sd.back().push_back(1.0 / std::sqrt(spread.variance(p, k)[2]));
     }
   }
-  std::vector<double> greatest(kDraws, 0.0);
-  for (double& most : greatest) {
-    for (std::size_t p = 0; p < posteriors.size(); ++p) {
-      const std::vector<Eigen::Vector3d> off = posteriors[p].draw(draw);
-      for (std::size_t k = 0; k < off.size(); ++k) most = std::max(most, std::abs(off[k][2]) * per_sd[p][k]);
+  std::vector<double> greatest;
+  double share = 0.0;
+  for (const auto& member : spread.members) {
+    share += member.weight;
+    while (static_cast<double>(greatest.size()) < share * kDraws - 0.5) {
+      double most = 0.0;
+      for (std::size_t p = 0; p < member.posteriors.size(); ++p) {
+        const ChainPosterior<N>& of = member.posteriors[p];
+        const auto off = of.draw(draw);
+        for (std::size_t k = 0; k < off.size(); ++k) {
+          const double a = member.noise_sd * off[k][2] + of.mean(k)[2] - spread.chosen()[p].mean(k)[2];
+          most = std::max(most, std::abs(a) * per_sd[p][k]);
+        }
+      }
+      greatest.push_back(most);
     }
   }
   return quantile(std::move(greatest), 0.95);
 }
 
-SmoothedState state_of(const ChainPosterior& posterior, std::size_t k, double noise_sd) {
-  const Eigen::Vector3d& mean = posterior.mean(k);
-  const Eigen::Vector3d sd = noise_sd * posterior.covariance(k).diagonal().cwiseSqrt();
+template <int N>
+SmoothedState state_of(const Spread<N>& spread, std::size_t p, std::size_t k) {
+  const Eigen::Vector3d mean = spread.chosen()[p].mean(k).template head<3>();
+  const Eigen::Array3d sd = spread.variance(p, k).sqrt();
   return {mean[0], mean[1], mean[2], sd[0], sd[1], sd[2]};
 }
 
 /// The bandwidth of the local cubic whose a has as much noise as the posterior's where that has least.
-double like_bandwidth(const std::vector<ChainPosterior>& posteriors, double step_s) {
-  const ChainPosterior* best = nullptr;
+template <int N>
+double like_bandwidth(const std::vector<ChainPosterior<N>>& posteriors, double step_s) {
+  const ChainPosterior<N>* best = nullptr;
   std::size_t at = 0;
-  for (const ChainPosterior& posterior : posteriors) {
+  for (const ChainPosterior<N>& posterior : posteriors) {
     for (std::size_t k = 0; k < posterior.size(); ++k) {
       if (best != nullptr && posterior.covariance(k)(2, 2) >= best->covariance(at)(2, 2)) continue;
       best = &posterior;
@@ -308,6 +391,7 @@ std::string words_of(StrengthBy by, const Choice& choice) {
   return words;
 }
 
+template <int N>
 class WienerSmoother final : public Smoother {
  public:
   WienerSmoother(std::string_view name, std::string_view words, StrengthBy by) : name_(name), words_(words), by_(by) {}
@@ -325,37 +409,36 @@ class WienerSmoother final : public Smoother {
       made.rows.resize(input.t_s.size());
       made.rows_at.resize(input.at_s.size());
     }
-    PartedMotion motion(input);
+    PartedMotion<N> motion(input);
     if (motion.empty()) {
       made.strength.method = "no part of the motion is long enough to be smoothed";
       return made;
     }
     const Choice choice = choose(motion, by_);
     const WienerRatio ratio = motion.ratio(choice.tau_s, choice.jump_1_s2);
-    const std::vector<ChainPosterior> posteriors = motion.posteriors(ratio);
-    const CrossValidation sums = cross_validation(motion, posteriors);
+    const CrossValidation sums = cross_validation(motion, motion.posteriors(ratio));
     const double variance = by_ == StrengthBy::likelihood || input.noise_sd_m ? motion.noise_variance(motion.fit(ratio))
                                                                               : sums.noise_variance();
+    const Spread<N> spread = spread_of(motion, choice, by_, variance);
     made.strength.method = words_of(by_, choice);
     made.strength.noise_sd_m = std::sqrt(variance);
     made.strength.time_s = choice.tau_s;
-    made.strength.jerk_density_m2_s5 = variance * ratio.jerk_1_s5;
     made.strength.parameters = sums.trace;
-    made.strength.bandwidth_s = like_bandwidth(posteriors, motion.step_s());
+    made.strength.bandwidth_s = like_bandwidth(spread.chosen(), motion.step_s());
     if (motion.breaks()) made.strength.jump_sd_m_s2 = made.strength.noise_sd_m * choice.jump_1_s2;
-    for (std::size_t p = 0; p < posteriors.size(); ++p) {
+    for (std::size_t p = 0; p < motion.parts().size(); ++p) {
       const Part& part = motion.parts()[p];
       made.strength.breaks_s.insert(made.strength.breaks_s.end(), part.breaks_s.begin(), part.breaks_s.end());
-      fill(posteriors[p], part, input, made);
+      fill(spread, p, part, input, made);
     }
-    if (input.simultaneous) made.strength.simultaneous_a = simultaneous_factor(posteriors);
+    if (input.simultaneous) made.strength.simultaneous_a = simultaneous_factor(spread);
     return made;
   }
 
  private:
-  static void fill(const ChainPosterior& posterior, const Part& part, const SmoothingInput& input,
+  static void fill(const Spread<N>& spread, std::size_t p, const Part& part, const SmoothingInput& input,
                    SmoothedSeries& made) {
-    const double noise_sd = made.strength.noise_sd_m;
+    const ChainPosterior<N>& posterior = spread.chosen()[p];
     std::vector<std::size_t> nodes;               // of points and of wanted times
     std::vector<std::optional<KernelRow>*> rows;  // where theirs go
     std::size_t a = part.first_at;
@@ -364,7 +447,7 @@ class WienerSmoother final : public Smoother {
       const bool before_break = k + 1 < posterior.size() && posterior.node(k + 1).after_break;
       if (!node.point && (node.after_break || before_break)) continue;
       const std::size_t of = node.point ? part.points.first + *node.point : a++;
-      (node.point ? made.points : made.at)[of] = state_of(posterior, k, noise_sd);
+      (node.point ? made.points : made.at)[of] = state_of(spread, p, k);
       if (!input.rows) continue;
       nodes.push_back(k);
       rows.push_back(&(node.point ? made.rows : made.rows_at)[of]);
@@ -383,17 +466,18 @@ class WienerSmoother final : public Smoother {
 }  // namespace
 
 const Smoother& kalman_smoother() {
-  static const WienerSmoother smoother("kalman",
-                                       "Kalman smoother of the integrated Wiener process of order 3, its strength by "
-                                       "marginal likelihood",
-                                       StrengthBy::likelihood);
+  static const WienerSmoother<kOrder> smoother(
+      "kalman",
+      "Kalman smoother of the integrated Wiener process of order 4, its strength by "
+      "marginal likelihood",
+      StrengthBy::likelihood);
   return smoother;
 }
 
 const Smoother& spline_smoother() {
-  static const WienerSmoother smoother("spline",
-                                       "smoothing spline of degree 5, its strength by generalised cross-validation",
-                                       StrengthBy::cross_validation);
+  static const WienerSmoother<kOrder> smoother(
+      "spline", "smoothing spline of degree 7, its strength by generalised cross-validation",
+      StrengthBy::cross_validation);
   return smoother;
 }
 

@@ -1,26 +1,33 @@
 /// The posterior of an integrated Wiener process by dense linear algebra, O(n^3): the oracle of the state-space engine,
 /// from the covariances of the process and with no state.
 ///
-/// With u = t - t_0, w = (x, v, a) at s, m = min(s, t):   cov(x(s), x(t)) = q integral_0^m (s-u)^2 (t-u)^2 / 4 du  and
-/// its derivatives; a jump of variance j^2 at t* adds j^2 r(s) r(t), r = (t - t*)_+^2 / 2; x, v and a at t_0, and the
-/// jumps that may be any, have a flat prior (universal kriging).
+/// With p(u, m) = u^m / m!:   cov(x^(d)(s), x^(e)(t)) = q integral_0^min(s,t) p(s-u, N-1-d) p(t-u, N-1-e) du; a jump of
+/// variance j^2 of x^(m) at t* adds j^2 p(s - t*, m-d) p(t - t*, m-e); the state at t_0, and the jumps that may be any,
+/// have a flat prior (universal kriging).
 #pragma once
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
 namespace glidelab::tests {
 
-/// With jerk = q / s^2 and jump = j / s, at s = 1.
+/// With density = q / s^2 and jump = j / s, at s = 1; the derivative m above a jumps by jump / time^m.
 class DenseWiener {
  public:
-  DenseWiener(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> factors, double jerk_1_s5,
-              double jump_1_s2, std::vector<double> breaks_s)
-      : t(std::move(t_s)), y(std::move(x_m)), factor(std::move(factors)), jerk(jerk_1_s5), jump(jump_1_s2),
+  DenseWiener(int order, std::vector<double> t_s, std::vector<double> x_m, std::vector<double> factors, double density,
+              double jump, double jump_time_s, std::vector<double> breaks_s)
+      : n_(order),
+        t(std::move(t_s)),
+        y(std::move(x_m)),
+        factor(std::move(factors)),
+        density_(density),
+        jump_(jump),
+        jump_time_(jump_time_s),
         breaks(std::move(breaks_s)) {
     prepare();
   }
@@ -46,7 +53,8 @@ class DenseWiener {
     const Eigen::VectorXd off = data_ - known_ * beta_;
     const auto ldlt = covariance_.ldlt();
     made.mean = basis(s) * beta_ + cs * ldlt.solve(off);
-    made.covariance = -cs * ldlt.solve(Eigen::MatrixXd(cr.transpose())) + rest_s * beta_covariance_ * rest_r.transpose();
+    made.covariance =
+        -cs * ldlt.solve(Eigen::MatrixXd(cr.transpose())) + rest_s * beta_covariance_ * rest_r.transpose();
     for (int d = 0; d < 3; ++d) {
       for (int e = 0; e < 3; ++e) made.covariance(d, e) += process(d, s, e, r);
     }
@@ -63,7 +71,7 @@ class DenseWiener {
     const Eigen::Index n = size();
     if (factor.empty()) factor.assign(t.size(), 1.0);
     covariance_.resize(n, n);
-    known_.resize(n, 3 + (std::isinf(jump) ? static_cast<Eigen::Index>(breaks.size()) : 0));
+    known_.resize(n, columns());
     data_.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -80,44 +88,46 @@ class DenseWiener {
   int size() const { return static_cast<int>(t.size()); }
   static double log_determinant(const Eigen::MatrixXd& a) { return a.ldlt().vectorD().array().log().sum(); }
 
-  /// (t - from)^(2 - d) / (2 - d)!
-  static double power(double since, int derivative) {
-    return derivative == 0 ? 0.5 * since * since : derivative == 1 ? since : 1.0;
-  }
+  static double power(double since, int m) { return m < 0 ? 0.0 : m == 0 ? 1.0 : since / m * power(since, m - 1); }
+  int columns() const { return n_ + (std::isinf(jump_) ? (n_ - 2) * static_cast<int>(breaks.size()) : 0); }
+
   double process(int d, double s, int e, double r) const {
     const double from = t.front(), to = std::min(s, r);
     double sum = 0.0;
-    if (to > from) {  // four points of Gauss and Legendre: exact to degree 7
-      constexpr double kNode[] = {0.3399810435848563, 0.8611363115940526};
-      constexpr double kWeight[] = {0.6521451548625461, 0.3478548451374538};
+    if (to > from) {  // five points of Gauss and Legendre: exact to degree 9
+      constexpr double kNode[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+      constexpr double kWeight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
       const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
-      for (int i = 0; i < 2; ++i) {
-        for (const double side : {-1.0, 1.0}) {
-          const double u = middle + side * half * kNode[i];
-          sum += jerk * half * kWeight[i] * power(s - u, d) * power(r - u, e);
-        }
+      for (int i = -2; i <= 2; ++i) {
+        const double u = middle + half * (i < 0 ? -kNode[-i] : kNode[i]);
+        sum += density_ * half * kWeight[std::abs(i)] * power(s - u, n_ - 1 - d) * power(r - u, n_ - 1 - e);
       }
     }
-    if (!std::isinf(jump)) {
+    if (!std::isinf(jump_)) {
       for (const double at : breaks) {
-        if (s >= at && r >= at) sum += jump * jump * power(s - at, d) * power(r - at, e);
+        for (int m = 2; m < n_ && s >= at && r >= at; ++m) {
+          const double sd = jump_ / std::pow(jump_time_, m - 2);
+          sum += sd * sd * power(s - at, m - d) * power(r - at, m - e);
+        }
       }
     }
     return sum;
   }
   Eigen::MatrixXd basis(double s) const {
-    Eigen::MatrixXd made = Eigen::MatrixXd::Zero(3, 3 + (std::isinf(jump) ? static_cast<int>(breaks.size()) : 0));
-    const double u = s - t.front();
-    made.leftCols(3) << 1.0, u, 0.5 * u * u, 0.0, 1.0, u, 0.0, 0.0, 1.0;
-    for (int b = 3; b < made.cols(); ++b) {
-      const double since = s - breaks[static_cast<std::size_t>(b - 3)];
-      for (int d = 0; d < 3 && since >= 0.0; ++d) made(d, b) = power(since, d);
+    Eigen::MatrixXd made = Eigen::MatrixXd::Zero(3, columns());
+    for (int d = 0; d < 3; ++d) {
+      for (int m = 0; m < n_; ++m) made(d, m) = power(s - t.front(), m - d);
+      for (int column = n_; column < columns(); ++column) {
+        const double since = s - breaks[static_cast<std::size_t>((column - n_) / (n_ - 2))];
+        if (since >= 0.0) made(d, column) = power(since, 2 + (column - n_) % (n_ - 2) - d);
+      }
     }
     return made;
   }
 
+  int n_;
   std::vector<double> t, y, factor;
-  double jerk, jump;
+  double density_, jump_, jump_time_;
   std::vector<double> breaks;
   Eigen::MatrixXd covariance_, known_, beta_covariance_;
   Eigen::VectorXd data_, beta_;
