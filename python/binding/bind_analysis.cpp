@@ -152,12 +152,10 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, double gravity_m_s2, con
 
 void bind_analysis(py::module_& module) {
   py::class_<AnalysisChoices>(module, "AnalysisChoices")
-      .def(py::init(
-          [](std::optional<double> bandwidth_s, std::string rule, std::string estimator, bool robust, int jobs,
-             std::string smoother) {
-            return AnalysisChoices{bandwidth_s, std::move(rule), std::move(estimator), robust, jobs,
-                                   std::move(smoother)};
-          }));
+      .def(py::init([](std::optional<double> bandwidth_s, std::string rule, std::string estimator, bool robust,
+                       int jobs, std::string smoother) {
+        return AnalysisChoices{bandwidth_s, std::move(rule), std::move(estimator), robust, jobs, std::move(smoother)};
+      }));
   module.def("analyze_files", [](const std::vector<std::string>& inputs, const AnalysisChoices& choices,
                                  std::string column, std::optional<double> mass_kg, std::optional<double> incline_deg,
                                  bool allow_outside, const py::object& progress) {

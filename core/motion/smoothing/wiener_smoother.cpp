@@ -5,7 +5,8 @@
 /// followed up to the angular frequency 1/tau.
 ///
 ///  kalman: tau, and the standard deviation j of the jumps of a, make the marginal likelihood greatest, with what is
-///     not known at a part's start integrated out; s where it is not stated as well, in closed form. Standard
+///     not known at a part's start integrated out and a flat prior of sqrt(q) (Gelman 2006, Bayesian Anal. 1, 515); s
+///     where it is not stated as well, in closed form. Standard
 ///     deviations are averaged over tau by its likelihood, for a few effective parameters do not determine it.
 ///  spline: tau makes  n sum ((y - x)/f)^2 / (n - trace)^2  least (generalised cross-validation, Craven and Wahba 1979,
 ///     Numer. Math. 31, 377), a may jump by anything at a break, s^2 = sum ((y - x)/f)^2 / (n - trace).
@@ -105,9 +106,11 @@ class PartedMotion {
     for (const WienerChain<N>& chain : chains_) all += chain.fit(ratio);
     return all;
   }
-  double minus_two_log_likelihood(const WienerRatio& ratio) const {
+  /// -2 log of the marginal likelihood and of the prior of the strength, which is flat in sqrt(q) and so goes as
+  /// tau^-N: where motions are so smooth that tau has no upper end, its likelihood alone has none either.
+  double minus_two_log_posterior(const WienerRatio& ratio) const {
     const ChainFit all = fit(ratio);
-    return all.minus_two_log_likelihood(noise_variance(all));
+    return all.minus_two_log_likelihood(noise_variance(all)) - std::log(ratio.density);
   }
 
   std::vector<ChainPosterior<N>> posteriors(const WienerRatio& ratio) const {
@@ -251,7 +254,7 @@ Choice choose(PartedMotion<N>& motion, StrengthBy by) {
   Choice choice;
   const auto criterion = [&](double tau_s) {
     const WienerRatio ratio = motion.ratio(tau_s, choice.jump_1_s2);
-    return by == StrengthBy::likelihood ? motion.minus_two_log_likelihood(ratio)
+    return by == StrengthBy::likelihood ? motion.minus_two_log_posterior(ratio)
                                         : cross_validation(motion, motion.posteriors(ratio)).criterion();
   };
   choose_tau(motion, criterion, Tau::any, choice);
@@ -267,7 +270,7 @@ Choice choose(PartedMotion<N>& motion, StrengthBy by) {
       const double about = std::log(free_jumps_m_s2(motion.posteriors(free)) / noise);
       constexpr double kBelow = 7.0, kAbove = 5.0;  // e-folds
       const auto of_jump = [&](double log_jump) {
-        return motion.minus_two_log_likelihood(motion.ratio(choice.tau_s, std::exp(log_jump)));
+        return motion.minus_two_log_posterior(motion.ratio(choice.tau_s, std::exp(log_jump)));
       };
       choice.jump_1_s2 =
           std::exp(boost::math::tools::brent_find_minima(of_jump, about - kBelow, about + kAbove, kBrentBits).first);
@@ -310,13 +313,13 @@ Spread<N> spread_of(const PartedMotion<N>& motion, const Choice& choice, Strengt
   spread.members.push_back(
       {motion.posteriors(motion.ratio(choice.tau_s, choice.jump_1_s2)), 1.0, std::sqrt(noise_variance)});
   if (by == StrengthBy::cross_validation) return spread;
-  const double best = motion.minus_two_log_likelihood(motion.ratio(choice.tau_s, choice.jump_1_s2));
+  const double best = motion.minus_two_log_posterior(motion.ratio(choice.tau_s, choice.jump_1_s2));
   double sum = 1.0;
   for (int i = -kSpread; i <= kSpread; ++i) {
     const WienerRatio ratio = motion.ratio(choice.tau_s * std::pow(kSpreadRatio, i), choice.jump_1_s2);
     const ChainFit fit = motion.fit(ratio);
     const double variance = motion.noise_variance(fit);
-    const double weight = std::exp(-0.5 * (fit.minus_two_log_likelihood(variance) - best));
+    const double weight = std::exp(-0.5 * (motion.minus_two_log_posterior(ratio) - best));
     constexpr double kNoMatter = 1e-3;
     if (i == 0 || !(weight > kNoMatter)) continue;
     spread.members.push_back({motion.posteriors(ratio), weight, std::sqrt(variance)});
