@@ -11,6 +11,7 @@ import tomllib
 import numpy as np
 
 ESTIMATORS = ("phase-diagram", "phase-diagram-gls", "trajectory")
+SMOOTHERS = ("kalman", "spline")  # that find their own strength
 GRAVITY_M_S2 = 9.80665
 CLIP_KEYS = ("mass_kg", "incline_deg", "incline_sd_deg", "mass_sd_kg", "launched", "start_s", "end_s", "group")
 
@@ -57,17 +58,26 @@ def write_tracks(experiment, analysed, folder):
     return clips
 
 
+def analysis(glidelab, folder, name, *options):
+    """What Glidelab makes of the tracks: results.json and the seconds of processor time without the page."""
+    out = f"{folder}-{name}"
+    said = run([glidelab, "analyze", folder, "-o", out, "-v", *options])
+    with open(os.path.join(out, "results.json"), encoding="utf-8") as text:
+        results = json.load(text)
+    stages = re.findall(r"^(.*): took .*, ([\d.]+) s of processor time", said, re.M)
+    return results, sum(float(s) for name, s in stages if name != "writing the report")
+
+
 def estimates(glidelab, folder):
-    """What each of Glidelab's estimators makes of the tracks: results.json and the seconds of processor time without the page."""
-    found = {}
-    for estimator in ESTIMATORS:
-        out = f"{folder}-{estimator}"
-        said = run([glidelab, "analyze", folder, "-o", out, "--estimator", estimator, "-v"])
-        with open(os.path.join(out, "results.json"), encoding="utf-8") as text:
-            results = json.load(text)
-        stages = re.findall(r"^(.*): took .*, ([\d.]+) s of processor time", said, re.M)
-        found[estimator] = (results, sum(float(s) for name, s in stages if name != "writing the report"))
-    return found
+    """By each of Glidelab's estimators, and by each smoother."""
+    found = {name: analysis(glidelab, folder, name, "--estimator", name) for name in ESTIMATORS}
+    return found | {name: analysis(glidelab, folder, name, "--smoother", name) for name in SMOOTHERS}
+
+
+def smoothed(table, folder, name):
+    """x, v, a of a clip frame by frame, as an analysis smoothed it."""
+    motion = columns(os.path.join(f"{folder}-{name}", f"motion-{table['name']}.csv"))
+    return np.column_stack([numbers(motion[c]) for c in ("x_m", "v_m_s", "a_m_s2")])
 
 
 def load_clips(tables, results, folder, truth):
@@ -79,7 +89,7 @@ def load_clips(tables, results, folder, truth):
         track = columns(os.path.join(folder, "tracks", f"{table['name']}.csv"))
         clip = {"name": table["name"], "mass": table["mass_kg"], "configuration": of_clip[table["name"]]}
         clip["t"], clip["x"] = numbers(motion["t_s"]), numbers(motion["measured_x_m"])
-        clip["glidelab"] = np.column_stack([numbers(motion[c]) for c in ("x_m", "v_m_s", "a_m_s2")])
+        clip["glidelab"] = {name: smoothed(table, folder, name) for name in ("phase-diagram", *SMOOTHERS)}
         clip["used"] = np.array([reason == "used" for reason in motion["reason"]])
         clip["force"] = numbers(track["force_n"]) if "force_n" in track else None
         if truth:
@@ -146,7 +156,7 @@ def parameters(clips, motions):
             v, a = motion[:, 1], motion[:, 2] - force
             for sign, (vs, accelerations) in points.items():
                 # The frames and their direction are Glidelab's for all: the same frames for the same line.
-                frames = clip["used"] & (np.sign(clip["glidelab"][:, 1]) == sign)
+                frames = clip["used"] & (np.sign(clip["glidelab"]["phase-diagram"][:, 1]) == sign)
                 vs.append(v[frames])
                 accelerations.append(a[frames])
                 single.append(line(v[frames], a[frames]))

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
@@ -17,6 +18,7 @@
 #include "core/analysis/analyze.h"
 #include "core/analysis/preview.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/motion/smoothing/smoother.h"
 #include "core/track/bare_track.h"
 #include "diagnose/verdict/fit_given_causes.h"
 #include "fit/estimators.h"
@@ -34,6 +36,8 @@ struct AnalyzeOptions {
   CommonOptions common;
   std::vector<std::string> experiments;
   std::string bandwidth{core::kLinesRule};
+  std::string smoother{core::kLocalPolynomial};
+  bool bandwidth_given = false;
   std::string estimator{fit::default_estimator().name};
   bool robust = false;
   std::vector<std::string> with;
@@ -73,6 +77,21 @@ std::optional<diagnose::GivenCauses> with_causes(const AnalyzeOptions& options, 
   return diagnose::fit_given_causes(results, setups, cameras, options.with, kWith, progress);
 }
 
+/// A smoother that finds its own strength has no bandwidth, and lines that are fitted to local cubics have no other.
+void check_smoother(const AnalyzeOptions& options, const fit::Estimator& estimator) {
+  if (core::find_smoother(options.smoother)->takes_bandwidth()) return;
+  const std::string expected = fmt::format("--smoother {}", core::kLocalPolynomial);
+  if (options.bandwidth_given) {
+    throw CommandLineError(base::describe({"", 0, "--bandwidth", fmt::format("--smoother {}", options.smoother),
+                                           expected + " (the others find their own strength)"}));
+  }
+  if (estimator.lines == core::LineMethod::generalised) {
+    throw CommandLineError(
+        base::describe({"", 0, "--smoother", fmt::format("{} with --estimator {}", options.smoother, options.estimator),
+                        expected + " (generalised lines are fitted to local cubics of their own)"}));
+  }
+}
+
 void analyze(const AnalyzeOptions& options) {
   const fit::Estimator& estimator = *fit::find_estimator(options.estimator);  // a checked name
   if (options.robust && !estimator.takes_robust) {
@@ -80,6 +99,7 @@ void analyze(const AnalyzeOptions& options) {
         base::describe({"", 0, "--robust", options.estimator,
                         "the estimator trajectory (lines leave positions off the motion out anyway)"}));
   }
+  check_smoother(options, estimator);
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   const fs::path out = output_folder(options.common, "analyze", folders.front());
   refuse_scenarios(options.experiments);
@@ -97,6 +117,7 @@ void analyze(const AnalyzeOptions& options) {
   how.bare = options.bare;
   read_bandwidth(options.bandwidth, how);
   how.lines = estimator.lines;
+  how.smoother = options.smoother;
   how.pictures = !options.with.empty();
   const core::AnalysisResults results =
       estimator.estimate(core::analyze(folders, how, progress), {.robust = options.robust});
@@ -125,6 +146,15 @@ std::string check_bandwidth(const std::string& text) {
                      base::did_you_mean(text, rules));
 }
 
+std::string smoother_help() {
+  std::string text = "What makes v(t) and a(t) of the positions";
+  const char* before = ": ";
+  for (const core::Smoother* smoother : core::smoothers()) {
+    text += fmt::format("{}\"{}\" {}", std::exchange(before, "; "), smoother->name(), smoother->words());
+  }
+  return text + " (docs/guide/bandwidth.md)";
+}
+
 std::string estimator_help() {
   std::string text = "Method";
   for (const fit::Estimator& estimator : fit::estimators()) {
@@ -146,15 +176,21 @@ void add_analyze(CLI::App& app, Command& chosen) {
           "t_s,x_m, what Tracker, Logger Pro, Capstone or phyphox export, or a project of Tracker (.trk, .trz)")
       ->type_name("DIR|FILE")
       ->required();
-  command
-      ->add_option("--bandwidth", options->bandwidth,
-                   fmt::format("Width of the smoothing kernel in seconds, or the rule that chooses it for each clip: "
-                               "{} (docs/guide/bandwidth.md)",
-                               fmt::join(core::bandwidth_choices(), ", ")))
-      ->type_name("SECONDS|RULE")
-      ->check(CLI::Validator([](std::string& text) { return check_bandwidth(text); },
-                             fmt::format("{{{}}}", fmt::join(core::bandwidth_choices(), ","))))
+  command->add_option("--smoother", options->smoother, smoother_help())
+      ->type_name("NAME")
+      ->check(CLI::IsMember(core::smoother_names()))
       ->capture_default_str();
+  CLI::Option* bandwidth =
+      command
+          ->add_option(
+              "--bandwidth", options->bandwidth,
+              fmt::format("Width of the smoothing kernel in seconds, or the rule that chooses it for each clip: "
+                          "{} (docs/guide/bandwidth.md)",
+                          fmt::join(core::bandwidth_choices(), ", ")))
+          ->type_name("SECONDS|RULE")
+          ->check(CLI::Validator([](std::string& text) { return check_bandwidth(text); },
+                                 fmt::format("{{{}}}", fmt::join(core::bandwidth_choices(), ","))))
+          ->capture_default_str();
   command->add_option("--estimator", options->estimator, estimator_help())
       ->type_name("NAME")
       ->check(CLI::IsMember(fit::estimator_names()))
@@ -171,7 +207,10 @@ void add_analyze(CLI::App& app, Command& chosen) {
   add_bare_options(*command, options->bare);
   add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
                      "Accepted for consistency; has no effect here");
-  command->callback([options, &chosen] { chosen = [options] { analyze(*options); }; });
+  command->callback([options, bandwidth, &chosen] {
+    options->bandwidth_given = bandwidth->count() > 0;
+    chosen = [options] { analyze(*options); };
+  });
 }
 
 }  // namespace glidelab::app

@@ -82,6 +82,9 @@ void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetu
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
                         const base::Progress& progress) {
   check_bandwidth(options.bandwidth_s, options.bandwidth_rule);
+  const MotionOptions how{options.bandwidth_s, options.bandwidth_rule, options.lines, options.lost_frames,
+                          options.smoother};
+  check_smoothing(how);
   const std::vector<Experiment> experiments = read_all(folders, options.bare);
   std::vector<CalibrationResult> calibrations;
   std::vector<PlumbResult> plumbs;
@@ -105,9 +108,8 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     }
   }
   name_uniquely(experiments, setups);
-  AnalysisResults results = analyze_tracks(
-      setups, tracks, experiments.front().gravity_m_s2,
-      {options.bandwidth_s, options.bandwidth_rule, options.lines, options.lost_frames}, options.jobs, progress);
+  AnalysisResults results =
+      analyze_tracks(setups, tracks, experiments.front().gravity_m_s2, how, options.jobs, progress);
   for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = experiment_of[i]->name;
   results.calibrations = std::move(calibrations);
   results.plumbs = std::move(plumbs);

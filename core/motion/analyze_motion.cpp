@@ -20,45 +20,24 @@
 #include "core/motion/lines/gls_line.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/motion/lines/line_law.h"
+#include "core/motion/smooth_clip.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
 
 namespace glidelab::core {
 namespace {
 
-/// Points that follow each other and are smoothed together: a stretch, or what lies between two of them.
-struct Piece {
-  std::size_t first = 0, count = 0;
-};
-
-std::vector<Piece> pieces_of(const std::vector<FreeStretch>& stretches, std::size_t points) {
-  std::vector<Piece> pieces;
-  std::size_t next = 0;
-  for (const FreeStretch& stretch : stretches) {
-    if (stretch.first > next) pieces.push_back({next, stretch.first - next});
-    pieces.push_back({stretch.first, stretch.count});
-    next = stretch.first + stretch.count;
-  }
-  if (points > next) pieces.push_back({next, points - next});
-  return pieces;
-}
-
 /// `left_out` is not yet set.
 std::vector<MotionPoint> smooth_frames(const SmoothedClip& clip) {
   const TrackData& track = clip.track;
   const Motion& motion = clip.motion;
-  std::vector<MotionPoint> frames(track.frame_t_s.size());
-  for (std::size_t f = 0; f < frames.size(); ++f) frames[f].t_s = track.frame_t_s[f];
-  for (std::size_t i = 0; i < track.t_s.size(); ++i) {
-    frames[track.frame[i]].t_s = track.t_s[i];  // of the marker's row, with a rolling shutter
-    frames[track.frame[i]].measured_m = track.x_m[i];
-  }
+  std::vector<MotionPoint> frames = measured_frames(track);
   RowVariance variance(clip.noise.autocovariance);
   std::size_t f = 0;
-  for (const Piece& piece : pieces_of(clip.free.stretches, motion.t_s.size())) {
-    const std::span t = std::span(motion.t_s).subspan(piece.first, piece.count);
-    const std::span x = std::span(motion.x_m).subspan(piece.first, piece.count);
-    const std::span y = std::span(motion.y_m).subspan(piece.first, piece.count);
+  for (const PointRange& piece : pieces_of(clip.free.stretches, motion.t_s.size())) {
+    const std::span t = std::span(motion.t_s).subspan(piece.from, piece.size());
+    const std::span x = std::span(motion.x_m).subspan(piece.from, piece.size());
+    const std::span y = std::span(motion.y_m).subspan(piece.from, piece.size());
     const LocalCubic cubic(t, clip.bandwidth_s);
     while (f < frames.size() && frames[f].t_s < t.front()) ++f;
     for (; f < frames.size() && frames[f].t_s <= t.back(); ++f) {
@@ -82,9 +61,12 @@ std::vector<MotionPoint> smooth_frames(const SmoothedClip& clip) {
 }  // namespace
 
 std::vector<MotionPoint> frames_of(const SmoothedClip& clip) {
+  return frames_of(clip, smooth_frames(clip));
+}
+
+std::vector<MotionPoint> frames_of(const SmoothedClip& clip, std::vector<MotionPoint> frames) {
   const TrackData& track = clip.track;
   const std::vector<std::size_t>& point = clip.motion.point;
-  std::vector<MotionPoint> frames = smooth_frames(clip);
   for (MotionPoint& frame : frames) frame.left_out = LeftOut::no_marker;
   for (const std::size_t f : track.frame) frames[f].left_out = LeftOut::outlier;  // unless it is among the kept
   for (std::size_t i = 0; i < track.force_n.size(); ++i) frames[track.frame[i]].applied_n = track.force_n[i];
@@ -207,9 +189,13 @@ struct LineWeights {
   std::vector<double> factors;   ///< of each point's noise; empty: all 1
 };
 
-/// The line of each direction that has one, by least squares.
-std::vector<LineFit> ordinary_lines(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights) {
-  const std::vector<double> bias = smoothing_bias(clip.motion, clip.free.stretches, weights.law_m_s2, clip.points);
+/// The line of each direction that has one, by least squares. The smoothing's bias under the line's own law is known
+/// where a stretch is smoothed with its own points alone.
+std::vector<LineFit> ordinary_lines(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights,
+                                    const SmoothedWhole* whole) {
+  const std::vector<double> bias =
+      whole != nullptr ? smoothing_bias(clip.motion, clip.free.stretches, weights.law_m_s2, *whole)
+                       : smoothing_bias(clip.motion, clip.free.stretches, weights.law_m_s2, clip.points);
   std::vector<LineFit> lines;
   for (const int direction : {-1, 1}) {
     LineInput input = line_input(clip.motion, clip.points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
@@ -217,7 +203,7 @@ std::vector<LineFit> ordinary_lines(const SmoothedClip& clip, const ClipSetup& s
     input.calibration = calibration_shifts(clip.motion, input, clip.track.shared_m);
     auto line = fit_line(direction, input, clip.noise.autocovariance, clip.track.scale_sd_relative);
     if (!line) continue;
-    line->parts.law = law_bias(input, *line, clip.noise.autocovariance);
+    if (whole == nullptr) line->parts.law = law_bias(input, *line, clip.noise.autocovariance);
     if (line->parts.law) {
       line->parts.smoothing_k = line->parts.smoothing_a0 = 0.0;
       complete_line(*line);
@@ -304,6 +290,15 @@ void note_findings(const Motion& motion, std::size_t outliers, const std::vector
 
 }  // namespace
 
+void check_smoothing(const MotionOptions& options) {
+  check_smoother(options.smoother, options.bandwidth_s || !options.bandwidth_rule.empty());
+  if (options.lines == LineMethod::generalised && !find_smoother(options.smoother)->takes_bandwidth()) {
+    throw base::InputError(base::Issue{
+        "", 0, "smoother", fmt::format("\"{}\" with the estimator {}", options.smoother, name_of(options.lines)),
+        fmt::format("\"{}\": generalised lines are fitted to local cubics of their own", kLocalPolynomial)});
+  }
+}
+
 ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const MotionOptions& options) {
   ClipResult clip;
   clip.lost_frames = lost_frames(filed, stated.mass_kg);
@@ -331,20 +326,30 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   const BandwidthChoice choice = bandwidth_of(motion, free, options);
   clip.bandwidth_s = choice.bandwidth_s;
   clip.bandwidth_method = choice.method;
-  const PositionNoise noise = noise_at(motion, free.stretches, clip.bandwidth_s);
+  const PositionNoise noise = noise_at(motion, free.stretches, choice.bandwidth_s);
   clip.position_noise_m = noise.sd_m;
   clip.noise_autocovariance_m2 = noise.autocovariance;
   clip.rounding_m = coarse_rounding(motion, noise);
-  clip.blocks = free_blocks(motion, free.stretches, track.shared_m, clip.bandwidth_s);
+  clip.blocks = free_blocks(motion, free.stretches, track.shared_m, choice.bandwidth_s);
   for (FreeBlock& block : clip.blocks) {
     if (clip.forced) block.force = force_over(block, track, setup.mass_kg, setup.mass_sd_kg);
   }
 
-  const std::vector<StretchPoint> points = smooth_stretches(motion, free.stretches, clip.bandwidth_s);
-  const SmoothedClip smoothed{track, motion, free, noise, points, clip.bandwidth_s, setup.mass_kg};
+  const Smoother* smoother = find_smoother(options.smoother);
+  assert(smoother);
+  std::optional<SmoothedWhole> whole;
+  if (!smoother->takes_bandwidth()) {
+    whole = smooth_whole(*smoother, track, motion, free, setup.mass_kg);
+    clip.strength = whole->strength;
+    clip.bandwidth_s = whole->strength.bandwidth_s;
+    clip.bandwidth_method = whole->strength.method;
+  }
+  const std::vector<StretchPoint> points =
+      whole ? whole->points : smooth_stretches(motion, free.stretches, choice.bandwidth_s);
+  const SmoothedClip smoothed{track, motion, free, noise, points, choice.bandwidth_s, setup.mass_kg};
   const LineWeights weights{pilot_law(motion, free.stretches, law_bandwidth(motion, free.pilot_bandwidth_s)),
-                            noise_factors(motion, free.stretches, clip.bandwidth_s)};
-  clip.segments = ordinary_lines(smoothed, setup, weights);
+                            noise_factors(motion, free.stretches, choice.bandwidth_s)};
+  clip.segments = ordinary_lines(smoothed, setup, weights, whole ? &*whole : nullptr);
   if (options.lines == LineMethod::generalised && clip.rounding_m) {
     clip.notes.push_back(fmt::format(
         "positions are rounded to {:.3g} m and often repeat: the rounding error persists over frames, and generalised "
@@ -355,7 +360,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   }
   clip.v_lim_m_s = recovered_limit(clip.segments);
 
-  clip.motion = frames_of(smoothed);
+  clip.motion = whole ? frames_of(smoothed, std::move(whole->frames)) : frames_of(smoothed);
   clip.shared_m = shared_of_frames(track);
   clip.left_out = intervals_of(clip.motion);
   clip.stretches = used_stretches(smoothed);

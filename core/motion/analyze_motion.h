@@ -31,6 +31,8 @@ struct SmoothedClip {
 /// Every frame of the clip, smoothed with the points of its own stretch, or of what lies between two of them; and why
 /// it does not count, where it does not.
 std::vector<MotionPoint> frames_of(const SmoothedClip& clip);
+/// The same for frames that are smoothed already.
+std::vector<MotionPoint> frames_of(const SmoothedClip& clip, std::vector<MotionPoint> smoothed);
 
 /// The track's shared errors, of every frame; 0 without a marker.
 std::vector<std::vector<double>> shared_of_frames(const TrackData& track);
@@ -49,9 +51,14 @@ struct MotionOptions {
   std::string bandwidth_rule = {};         ///< a name of bandwidth_rule.h (asserted); empty: choose_bandwidth()
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
+  std::string smoother = "local-polynomial";  ///< a name of smoother.h (asserted)
 };
 
-/// Smooths one clip's x(t) with the local cubic, decides which points count, and fits a line for v < 0 and v
+/// InputError for an unknown smoother, and for one without a bandwidth beside what needs one: a bandwidth, a rule that
+/// chooses one, generalised lines.
+void check_smoothing(const MotionOptions& options);
+
+/// Smooths one clip's x(t), decides which points count, and fits a line for v < 0 and v
 /// > 0. A given bandwidth is used (InputError: longer than the clip); otherwise the rule named, or choose_bandwidth().
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 

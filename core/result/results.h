@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/result/strength.h"
+
 namespace glidelab::core {
 
 /// The two ways in which core fits the lines of a phase diagram. ordinary: least squares as the paper does it
@@ -60,7 +62,7 @@ enum class LeftOut {
 /// In words, for tables ("used", "hand", "kernel over a reversal", …).
 std::string describe(LeftOut reason);
 
-/// One frame of a clip: as measured, and as smoothed by the local cubic (equations 10 to 12).
+/// One frame of a clip: as measured, and as smoothed, by the local cubic (equations 10 to 12) or another smoother.
 struct MotionPoint {
   double t_s = 0.0;                  ///< middle of the exposure (of the marker's row), from the first frame
   std::optional<double> measured_m;  ///< nothing where no marker was found
@@ -193,6 +195,7 @@ struct ClipResult {
   double frame_rate_hz = 0.0;  ///< nominal; of a track, the median
   double bandwidth_s = 0.0;
   std::string bandwidth_method;
+  std::optional<SmoothingStrength> strength = {};  ///< of a smoother that has no bandwidth of its own
   double position_noise_m = 0.0;
   std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points
   double scale_sd_relative = 0.0;               ///< as in TrackData

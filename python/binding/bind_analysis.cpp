@@ -14,6 +14,7 @@
 #include "core/analysis/preview.h"
 #include "core/motion/analyze_tracks.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/motion/smoothing/smoother.h"
 #include "fit/estimators.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
@@ -37,6 +38,7 @@ struct AnalysisChoices {
   std::string estimator;
   bool robust = false;
   int jobs = 1;
+  std::string smoother;
 };
 
 const fit::Estimator& estimator_of(const AnalysisChoices& choices) {
@@ -114,6 +116,7 @@ py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisCh
     how.jobs = choices.jobs;
     how.lines = estimator.lines;
     how.bare = bare;
+    how.smoother = choices.smoother;
     core::AnalysisResults of_lines = core::analyze(folders, how, progress);
     title = core::read_tracks(folders.front(), bare).name;
     if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
@@ -128,13 +131,17 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, double gravity_m_s2, con
                          const AnalysisChoices& choices, const py::object& progress_told) {
   const fit::Estimator& estimator = estimator_of(choices);
   core::check_bandwidth(choices.bandwidth_s, rule_of(choices));
+  core::MotionOptions how;
+  how.bandwidth_s = choices.bandwidth_s;
+  how.bandwidth_rule = rule_of(choices);
+  how.lines = estimator.lines;
+  how.smoother = choices.smoother;
+  core::check_smoothing(how);
   check_gravity(gravity_m_s2);
   core::AnalysisResults results = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     const GivenTracks tracks = read_given(std::move(given));
-    core::AnalysisResults of_lines = core::analyze_tracks(
-        tracks.setups, tracks.tracks, gravity_m_s2,
-        {.bandwidth_s = choices.bandwidth_s, .bandwidth_rule = rule_of(choices), .lines = estimator.lines},
-        choices.jobs, progress);
+    core::AnalysisResults of_lines =
+        core::analyze_tracks(tracks.setups, tracks.tracks, gravity_m_s2, how, choices.jobs, progress);
     for (core::ClipResult& clip : of_lines.clips) clip.experiment = name;
     return estimator.estimate(std::move(of_lines), {.robust = choices.robust});
   });
@@ -145,10 +152,10 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, double gravity_m_s2, con
 
 void bind_analysis(py::module_& module) {
   py::class_<AnalysisChoices>(module, "AnalysisChoices")
-      .def(py::init(
-          [](std::optional<double> bandwidth_s, std::string rule, std::string estimator, bool robust, int jobs) {
-            return AnalysisChoices{bandwidth_s, std::move(rule), std::move(estimator), robust, jobs};
-          }));
+      .def(py::init([](std::optional<double> bandwidth_s, std::string rule, std::string estimator, bool robust,
+                       int jobs, std::string smoother) {
+        return AnalysisChoices{bandwidth_s, std::move(rule), std::move(estimator), robust, jobs, std::move(smoother)};
+      }));
   module.def("analyze_files", [](const std::vector<std::string>& inputs, const AnalysisChoices& choices,
                                  std::string column, std::optional<double> mass_kg, std::optional<double> incline_deg,
                                  bool allow_outside, const py::object& progress) {
@@ -161,6 +168,7 @@ void bind_analysis(py::module_& module) {
   });
   module.def("analyze_arrays", &analyze_arrays);
   module.def("bandwidth_choices", &core::bandwidth_choices);
+  module.def("smoother_names", &core::smoother_names);
   module.def("estimator_names", &fit::estimator_names);
 }
 

@@ -15,6 +15,7 @@
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
+#include "core/motion/smoothing/smoother.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
 
@@ -136,6 +137,61 @@ py::array_t<double> smooth_at(const Vector& times, const Vector& positions, cons
   return result;
 }
 
+void check_rising(const char* key, std::span<const double> times_s, std::span<const double> t_s) {
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const std::string at = fmt::format("{}[{}]", key, i), found = fmt::format("{}", times_s[i]);
+    if (!std::isfinite(times_s[i])) refuse(at, found, "a finite number");
+    if (i > 0 && times_s[i] <= times_s[i - 1]) refuse(at, found, fmt::format("a time above {}", times_s[i - 1]));
+    if (t_s.empty() || times_s[i] < t_s.front() || times_s[i] > t_s.back()) {
+      refuse(at, found, "a time between the first and the last of t_s");
+    }
+  }
+}
+
+/// x, v, a and their standard deviations at the times wanted, by a smoother that finds its own strength; and what it
+/// chose: method, smoothing time, noise, breaks, standard deviation of the jumps, factor of the simultaneous band.
+py::tuple smooth_by(const std::string& name, const Vector& times, const Vector& positions,
+                    const std::optional<Vector>& at, const Vector& breaks, std::optional<double> noise_m) {
+  const std::span<const double> t_s = span_of(times), x_m = span_of(positions);
+  check_series(t_s, x_m);
+  core::check_smoother(name, false);
+  const core::Smoother& smoother = *core::find_smoother(name);
+  if (t_s.size() < core::kFewestSmoothed) {
+    refuse("t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", core::kFewestSmoothed));
+  }
+  if (noise_m && !(std::isfinite(*noise_m) && *noise_m > 0.0)) {
+    refuse("noise_m", fmt::format("{}", *noise_m), "a number of metres above 0");
+  }
+  core::SmoothingInput input;
+  input.t_s.assign(t_s.begin(), t_s.end());
+  input.x_m.assign(x_m.begin(), x_m.end());
+  input.noise_sd_m = noise_m;
+  check_rising("breaks_s", span_of(breaks), t_s);
+  input.breaks_s.assign(span_of(breaks).begin(), span_of(breaks).end());
+  if (at) {
+    check_rising("at_s", span_of(*at), t_s);
+    input.at_s.assign(span_of(*at).begin(), span_of(*at).end());
+  }
+  input.simultaneous = true;
+  core::SmoothedSeries series;
+  {
+    const py::gil_scoped_release without_lock;
+    series = smoother.smooth(input);
+  }
+  const std::vector<std::optional<core::SmoothedState>>& states = at ? series.at : series.points;
+  const std::size_t n = states.size();
+  py::array_t<double> values = rows(6, n);
+  double* const out = values.mutable_data();
+  for (std::size_t i = 0; i < n; ++i) {
+    const core::SmoothedState& of = states[i].value();
+    const std::array<double, 6> column{of.x_m, of.v_m_s, of.a_m_s2, of.sd_x_m, of.sd_v_m_s, of.sd_a_m_s2};
+    for (std::size_t row = 0; row < column.size(); ++row) out[row * n + i] = column[row];
+  }
+  const core::SmoothingStrength& strength = series.strength;
+  return py::make_tuple(std::move(values), strength.bandwidth_s, strength.method, strength.time_s, strength.noise_sd_m,
+                        vector_of(strength.breaks_s), strength.jump_sd_m_s2, strength.simultaneous_a.value());
+}
+
 /// The rule's choice for one stretch of motion: (bandwidth, method, times and bandwidths of a local rule), or None
 /// where the motion is too short.
 py::object choose_bandwidth(const Vector& times, const Vector& positions, const std::string& name,
@@ -193,6 +249,7 @@ double position_noise(const Vector& times, const Vector& positions) {
 void bind_smoothing(py::module_& module) {
   module.def("smooth", &smooth);
   module.def("smooth_at", &smooth_at);
+  module.def("smooth_by", &smooth_by);
   module.def("choose_bandwidth", &choose_bandwidth);
   module.def("bandwidth_rules", &rules);
   module.def("position_noise", &position_noise);

@@ -22,7 +22,8 @@ from ._inputs import Track, load_scenario
 from ._recording import Finding, RecordingCheck, check
 from ._results import Quantity, Result
 from ._simulation import ModeChange, SimulatedClip, Simulation, simulate
-from ._smoothing import Bandwidth, BandwidthRule, Smoothed, bandwidth_rules, choose_bandwidth, position_noise, smooth
+from ._smoothing import (Bandwidth, BandwidthRule, Smoothed, Strength, bandwidth_rules, choose_bandwidth,
+                         position_noise, smooth)
 from ._studies import (Candidate, Coverage, CoverageRow, Recovery, Requirement, Sweep, Validation, coverage, require,
                        sweep, validate)
 
@@ -39,7 +40,7 @@ __all__ = [
     "CoverageRow", "Diagnosis", "Effect", "Error", "FilmedClip", "Finding", "Frame", "InputError", "Issue", "Judged", "Judgement", "Line",
     "Marker", "ModeChange", "Motion", "NotMet", "NumericalError", "Plan", "PlannedEffect", "Quantity",
     "RecordingCheck", "Recovered", "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip",
-    "Simulation", "Smoothed", "Sweep", "SystemFailure", "Track", "Validation", "analyze", "bandwidth_rules",
+    "Simulation", "Smoothed", "Strength", "Sweep", "SystemFailure", "Track", "Validation", "analyze", "bandwidth_rules",
     "calibrate", "check", "choose_bandwidth", "coverage", "diagnose", "estimator", "explain", "fit_marker", "judge", "load_scenario",
     "plan", "position_noise", "render", "render_folder", "require", "simulate", "smooth", "sweep", "validate",
 ]

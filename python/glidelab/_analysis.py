@@ -58,7 +58,7 @@ class Motion:
     measured_x_m : ndarray
         The position as measured, in metres.
     x_m, v_m_s, a_m_s2 : ndarray
-        Position, velocity and acceleration by the local cubic.
+        Position, velocity and acceleration by the smoother.
     sd_x_m, sd_v_m_s, sd_a_m_s2 : ndarray
         Their standard deviations.
     reason : ndarray of str
@@ -268,13 +268,13 @@ def analysis_of(outcome: _glidelab.Outcome, motions: Sequence[Mapping[str, Any]]
                     tuple(_configuration(one) for one in document["configurations"]))
 
 
-def _choices(bandwidth: Union[float, str, None], estimator: str, robust: bool,
-             jobs: Optional[int]) -> _glidelab.AnalysisChoices:
+def _choices(bandwidth: Union[float, str, None], estimator: str, robust: bool, jobs: Optional[int],
+             smoother: str) -> _glidelab.AnalysisChoices:
     if bandwidth is None or isinstance(bandwidth, str):
-        return _glidelab.AnalysisChoices(None, bandwidth or "", estimator, robust, job_count(jobs))
+        return _glidelab.AnalysisChoices(None, bandwidth or "", estimator, robust, job_count(jobs), smoother)
     if isinstance(bandwidth, bool) or not isinstance(bandwidth, (int, float, np.integer, np.floating)):
         raise input_error("bandwidth", f"a {type(bandwidth).__name__}", "a number of seconds, or the name of a rule")
-    return _glidelab.AnalysisChoices(float(bandwidth), "", estimator, robust, job_count(jobs))
+    return _glidelab.AnalysisChoices(float(bandwidth), "", estimator, robust, job_count(jobs), smoother)
 
 
 def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
@@ -282,7 +282,7 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
             force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
             bandwidth: Union[float, str, None] = None, estimator: str = "phase-diagram", robust: bool = False,
             gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
-            progress: Progress = None) -> Analysis:
+            progress: Progress = None, smoother: str = "local-polynomial") -> Analysis:
     """K/m, mu, alpha and the limit velocity from positions, or from an experiment folder.
 
     Parameters
@@ -314,6 +314,9 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
         Threads; as many as there are cores.
     progress : callable, True or None
         Called as ``progress(stage, fraction)``; True: a bar of tqdm.
+    smoother : {"local-polynomial", "kalman", "spline"}
+        What makes v(t) and a(t) of the positions (`smooth`); the last two find their own strength and take no
+        `bandwidth`.
 
     Returns
     -------
@@ -341,7 +344,7 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
                               "force_n": force_n}
     given = source_of(source, x_m, **stated)
-    choices = _choices(bandwidth, estimator, robust, jobs)
+    choices = _choices(bandwidth, estimator, robust, jobs, smoother)
     if given.paths:
         return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, column, mass_kg, incline_deg,
                                                     allow_outside, teller(progress)))

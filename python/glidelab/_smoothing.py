@@ -14,6 +14,34 @@ from ._results import frame_of
 
 
 @dataclass(frozen=True, eq=False)
+class Strength:
+    """How strongly a smoother that finds its own strength smooths.
+
+    Attributes
+    ----------
+    method : str
+        One line on how it was chosen.
+    time_s : float
+        The smoothing time; faster oscillations than 1/time_s in angular frequency are taken for noise.
+    noise_m : float
+        Standard deviation of one position, as estimated or as stated.
+    breaks_s : ndarray
+        Where a may jump, as estimated.
+    jump_sd_m_s2 : float or None
+        Standard deviation of the jumps, infinite where any is allowed; None without a break.
+    simultaneous_a : float
+        a ± this times its standard deviation holds a at all times together with 95 % probability.
+    """
+
+    method: str
+    time_s: float
+    noise_m: float
+    breaks_s: Vector
+    jump_sd_m_s2: Optional[float]
+    simultaneous_a: float
+
+
+@dataclass(frozen=True, eq=False)
 class Smoothed:
     """Position, velocity and acceleration; all arrays have one length, NaN where too few points lie within reach.
 
@@ -22,11 +50,14 @@ class Smoothed:
     t_s : ndarray
         Times.
     x_m, v_m_s, a_m_s2 : ndarray
-        The local polynomial and its derivatives; a is NaN for order 1.
+        The smoothed positions and their derivatives; a is NaN for a local polynomial of order 1.
     sd_x_m, sd_v_m_s, sd_a_m_s2 : ndarray or None
-        Their standard deviations, where the noise of a position is stated.
+        Their standard deviations: of a local polynomial by the noise alone, where the noise of a position is stated;
+        of ``kalman`` and ``spline`` with what the smoothing may take off.
     bandwidth_s : float
-        Of the kernel.
+        Of the kernel; of ``kalman`` and ``spline`` that of the local cubic with as much noise in a.
+    strength : Strength or None
+        What ``kalman`` or ``spline`` chose.
     """
 
     t_s: Vector
@@ -37,6 +68,7 @@ class Smoothed:
     sd_v_m_s: Optional[Vector]
     sd_a_m_s2: Optional[Vector]
     bandwidth_s: float
+    strength: Optional[Strength] = None
 
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a time, with units in ``attrs["units"]``."""
@@ -45,9 +77,10 @@ class Smoothed:
         return frame_of({name: values for name, values in columns.items() if values is not None})
 
 
-def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: float, *, order: int = 3, kernel: str = "gaussian",
-           noise_m: Optional[float] = None, at_s: Optional[ArrayLike] = None) -> Smoothed:
-    """Position, velocity and acceleration by a local polynomial.
+def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, *, order: int = 3,
+           kernel: str = "gaussian", noise_m: Optional[float] = None, at_s: Optional[ArrayLike] = None,
+           smoother: str = "local-polynomial", breaks_s: Optional[ArrayLike] = None) -> Smoothed:
+    """Position, velocity and acceleration by a local polynomial, or by a smoother that finds its own strength.
 
     Parameters
     ----------
@@ -56,7 +89,7 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: float, *, order: int = 3
     x_m : array_like, shape (n,)
         Positions, or any other series over these times.
     bandwidth_s : float
-        Of the kernel, in seconds; for the Gaussian its standard deviation.
+        Of the local polynomial's kernel, in seconds; for the Gaussian its standard deviation. Not of the others.
     order : int
         1 to 5; 3 is the paper's local cubic.
     kernel : {"gaussian", "epanechnikov", "tricube", "uniform", "bimodal"}
@@ -64,7 +97,14 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: float, *, order: int = 3
     noise_m : float, optional
         Standard deviation of one position (`position_noise`): with it, the results' standard deviations are given.
     at_s : array_like, shape (m,), optional
-        Other times at which to evaluate; then no standard deviations are given.
+        Other times at which to evaluate; a local polynomial then gives no standard deviations.
+    smoother : {"local-polynomial", "kalman", "spline"}
+        ``kalman``: the integrated Wiener process of order 4, its strength by marginal likelihood. ``spline``: the
+        smoothing spline of degree 7, its strength by generalised cross-validation. Both estimate the noise where
+        `noise_m` does not state it, and take neither `bandwidth_s` nor `order` and `kernel`.
+    breaks_s : array_like, shape (b,), optional
+        Of ``kalman`` and ``spline``: about when v = 0 and a may jump (dry friction), rising. They are moved to where
+        the smoothed v is 0.
 
     Returns
     -------
@@ -81,6 +121,12 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: float, *, order: int = 3
     Equations 10 to 12 of the paper; Fan and Gijbels 1996, section 3.2. The weights are exact for any times.
     """
     t, x = vector("t_s", t_s), vector("x_m", x_m)
+    if smoother != "local-polynomial":
+        return _smooth_by(smoother, t, x, bandwidth_s, order, kernel, noise_m, at_s, breaks_s)
+    if breaks_s is not None:
+        raise input_error("breaks_s", "times", 'nothing beside "local-polynomial", which knows of no breaks')
+    if bandwidth_s is None:
+        raise input_error("bandwidth_s", "None", "a time in seconds above 0")
     if at_s is None:
         rows = _glidelab.smooth(t, x, bandwidth_s, order, kernel, noise_m)
         if noise_m is None:
@@ -91,6 +137,20 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: float, *, order: int = 3
     at = vector("at_s", at_s)
     rows = _glidelab.smooth_at(t, x, at, bandwidth_s, order, kernel)
     return Smoothed(at, rows[0], rows[1], rows[2], None, None, None, bandwidth_s)
+
+
+def _smooth_by(smoother: str, t: Vector, x: Vector, bandwidth_s: Optional[float], order: int, kernel: str,
+               noise_m: Optional[float], at_s: Optional[ArrayLike], breaks_s: Optional[ArrayLike]) -> Smoothed:
+    if bandwidth_s is not None:
+        raise input_error("bandwidth_s", repr(bandwidth_s), f'nothing beside "{smoother}", which finds its own strength')
+    if (order, kernel) != (3, "gaussian"):
+        raise input_error("order" if order != 3 else "kernel", repr(order if order != 3 else kernel),
+                          f'nothing beside "{smoother}": they are of the local polynomial')
+    at = None if at_s is None else vector("at_s", at_s)
+    rows, like_s, method, time_s, noise, breaks, jump, factor = _glidelab.smooth_by(
+        smoother, t, x, at, vector("breaks_s", [] if breaks_s is None else breaks_s), noise_m)
+    strength = Strength(method, time_s, noise, breaks, jump, factor)
+    return Smoothed(t if at is None else at, rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], like_s, strength)
 
 
 @dataclass(frozen=True)

@@ -112,6 +112,26 @@ Json lines_json(const std::vector<core::LineFit>& lines) {
   return list;
 }
 
+Json strength_json(const core::SmoothingStrength& strength) {
+  Json object;
+  object["smoother"] = strength.smoother;
+  object["method"] = strength.method;
+  put(object, "time_s", strength.time_s);
+  put(object, "noise_sd_m", strength.noise_sd_m);
+  if (strength.jump_sd_m_s2) {
+    if (std::isinf(*strength.jump_sd_m_s2)) {
+      put(object, "jump_sd_m_s2", std::nullopt, "any jump of a is allowed at a break");
+    } else {
+      put(object, "jump_sd_m_s2", *strength.jump_sd_m_s2);
+    }
+  }
+  object["breaks_s"] = Json::array();
+  for (const double at : strength.breaks_s) object["breaks_s"].push_back(at);
+  put(object, "parameters", strength.parameters);
+  if (strength.simultaneous_a) put(object, "simultaneous_a", *strength.simultaneous_a);
+  return object;
+}
+
 Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
   Json object;
   object["name"] = clip.name;
@@ -121,6 +141,7 @@ Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
   put(object, "frame_rate_hz", clip.frame_rate_hz);
   put(object, "bandwidth_s", clip.bandwidth_s);
   object["bandwidth_method"] = clip.bandwidth_method;
+  if (clip.strength) object["smoothing"] = strength_json(*clip.strength);
   put(object, "position_noise_m", clip.position_noise_m);
   if (clip.rounding_m) put(object, "rounding_m", *clip.rounding_m);
   if (!clip.lost_frames.empty()) {

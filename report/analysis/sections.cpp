@@ -90,6 +90,29 @@ std::string noise_text(double noise_mm, std::size_t points) {
                     : base::number_text(noise_mm, 3);
 }
 
+/// How the clip was smoothed, and how strongly.
+Html smoothing_text(const core::ClipResult& clip) {
+  if (!clip.strength) {
+    return fmt::format("Bandwidth {} ms{}{}", base::number_text(clip.bandwidth_s * 1e3, 3),
+                       clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method));
+  }
+  const core::SmoothingStrength& strength = *clip.strength;
+  Html text = fmt::format("Smoother {}: smoothing time {} ms, by {}", escape(strength.smoother),
+                          base::number_text(strength.time_s * 1e3, 3), escape(strength.method));
+  if (!strength.breaks_s.empty()) {
+    text +=
+        fmt::format("; a may jump at {} turn{}", strength.breaks_s.size(), strength.breaks_s.size() == 1 ? "" : "s");
+    if (strength.jump_sd_m_s2 && std::isfinite(*strength.jump_sd_m_s2)) {
+      text += fmt::format(" (standard deviation {} m/s²)", base::number_text(*strength.jump_sd_m_s2, 2));
+    }
+  }
+  if (strength.simultaneous_a) {
+    text += fmt::format(". a(t) as a whole lies within {} of its standard deviations with 95 % probability",
+                        base::number_text(*strength.simultaneous_a, 3));
+  }
+  return text;
+}
+
 Html clip_html(const core::ClipResult& clip, std::size_t index, const std::string& phase_file,
                const std::string& motion_file, const core::Preview* preview) {
   Html text = fmt::format("<h3 id=\"{}\">{}</h3>\n", clip_anchor(index), escape(clip.name));
@@ -98,13 +121,12 @@ Html clip_html(const core::ClipResult& clip, std::size_t index, const std::strin
     if (point.smoothed && point.left_out == core::LeftOut::used) ++used;
   }
   text += fmt::format(
-      "<p>{} at {} Hz, {} points used. Position noise {} mm. Bandwidth {} ms{}{}. "
+      "<p>{} at {} Hz, {} points used. Position noise {} mm. {}. "
       "Numbers: <code>{}</code>; every frame, with residuals: <code>{}</code>.</p>\n",
       clip.sightings.empty() ? fmt::format("{} positions", clip.frames)
                              : fmt::format("{} frames, the marker found in {},", clip.frames, clip.detected),
       base::number_text(clip.frame_rate_hz, 5), used, noise_text(clip.position_noise_m * 1e3, used),
-      base::number_text(clip.bandwidth_s * 1e3, 3), clip.bandwidth_method.empty() ? "" : ", ",
-      escape(clip.bandwidth_method), escape(phase_file), escape(motion_file));
+      smoothing_text(clip), escape(phase_file), escape(motion_file));
   text += notes_html(clip.notes);
   if (preview != nullptr) text += pictures(clip, *preview);
   text += figures(motion_plots(clip));

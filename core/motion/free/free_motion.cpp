@@ -339,11 +339,6 @@ namespace {
 
 constexpr std::size_t kStretchesOfDriven = 3;  // of a block: two turns
 
-bool turns_into(const FreeStretch& before, const FreeStretch& after) {
-  return before.end == LeftOut::kernel_reversal && after.start == LeftOut::kernel_reversal &&
-         before.first + before.count == after.first;
-}
-
 FreeBlock block_of(const Motion& motion, std::size_t from, std::size_t to,
                    const std::vector<std::vector<double>>& shared_m) {
   FreeBlock block;
@@ -359,6 +354,11 @@ FreeBlock block_of(const Motion& motion, std::size_t from, std::size_t to,
 }
 
 }  // namespace
+
+bool turns_into(const FreeStretch& before, const FreeStretch& after) {
+  return before.end == LeftOut::kernel_reversal && after.start == LeftOut::kernel_reversal &&
+         before.first + before.count == after.first;
+}
 
 std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s) {

@@ -62,6 +62,9 @@ struct FreeStretch {
   LeftOut whole = LeftOut::used;        ///< short_stretch where none of it counts
 };
 
+/// Whether the motion turns between two stretches that follow each other, with no point between.
+bool turns_into(const FreeStretch& before, const FreeStretch& after);
+
 struct FreeMotion {
   std::vector<FreeStretch> stretches;  ///< in the order of time; they share no point
   std::vector<LeftOut> reason;         ///< of every point; `used` within the stretches

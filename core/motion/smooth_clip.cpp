@@ -1,0 +1,222 @@
+#include "core/motion/smooth_clip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+/// Points of the motion that a smoother is given, and the frames that it is asked for beside them.
+struct Gathered {
+  SmoothingInput input;
+  std::vector<std::size_t> point;  // of the motion
+  std::vector<std::size_t> frame;  // of input.at_s
+};
+
+/// Adds the points of a range as a part of its own, or behind a break.
+void add(const Motion& motion, const PointRange& range, bool goes_on, Gathered& to) {
+  if (!to.point.empty()) {
+    if (goes_on) {
+      to.input.breaks_s.push_back(0.5 * (motion.t_s[range.from - 1] + motion.t_s[range.from]));
+    } else {
+      to.input.starts.push_back(to.point.size());
+    }
+  }
+  for (std::size_t i = range.from; i < range.to; ++i) {
+    to.point.push_back(i);
+    to.input.t_s.push_back(motion.t_s[i]);
+    to.input.x_m.push_back(motion.y_m[i]);
+  }
+}
+
+/// The frames without a position that counts, which lie within a part.
+void want_other_frames(const TrackData& track, const Motion& motion, const std::vector<MotionPoint>& frames,
+                       Gathered& to) {
+  std::vector<bool> has_point(frames.size(), false);
+  for (const std::size_t of : motion.point) has_point[track.frame[of]] = true;
+  for (const SeriesPart& part : parts_of(to.input)) {
+    const double from = to.input.t_s[part.first], until = to.input.t_s[part.first + part.count - 1];
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      if (has_point[f] || frames[f].t_s <= from || frames[f].t_s >= until) continue;
+      to.frame.push_back(f);
+      to.input.at_s.push_back(frames[f].t_s);
+    }
+  }
+}
+
+void fill_frame(const SmoothedState& state, double force_a_m_s2, double mass_kg, MotionPoint& frame) {
+  frame.smoothed = true;
+  frame.x_m = state.x_m;
+  frame.v_m_s = state.v_m_s;
+  frame.a_m_s2 = state.a_m_s2;
+  frame.sd_x_m = state.sd_x_m;
+  frame.sd_v_m_s = state.sd_v_m_s;
+  frame.sd_a_m_s2 = state.sd_a_m_s2;
+  frame.force_n = mass_kg * force_a_m_s2;
+}
+
+/// What of a stretch's ends, or around a gap, is known too badly: the points at its start, at its end, and between.
+void leave_out(const FreeStretch& stretch, double most_sd_m_s2, const std::vector<double>& sd_m_s2, std::size_t from,
+               std::vector<StretchPoint>& points) {
+  const std::size_t to = points.size();
+  const auto bad = [&](std::size_t j) { return !(sd_m_s2[points[j].point] <= most_sd_m_s2); };
+  std::size_t start = from, end = to;
+  while (start < to && bad(start)) ++start;
+  while (end > start && bad(end - 1)) --end;
+  for (std::size_t j = from; j < to; ++j) {
+    StretchPoint& point = points[j];
+    if (stretch.whole != LeftOut::used) {
+      point.left_out = stretch.whole;
+    } else if (j < start) {
+      point.left_out = stretch.start;
+    } else if (j >= end) {
+      point.left_out = stretch.end;
+    } else if (bad(j)) {
+      point.left_out = LeftOut::kernel_gap;
+    } else if (point.x.v_m_s * stretch.direction <= 0.0) {
+      point.left_out = LeftOut::kernel_reversal;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<PointRange> pieces_of(const std::vector<FreeStretch>& stretches, std::size_t points) {
+  std::vector<PointRange> pieces;
+  std::size_t next = 0;
+  for (const FreeStretch& stretch : stretches) {
+    if (stretch.first > next) pieces.push_back({next, stretch.first});
+    next = stretch.first + stretch.count;
+    pieces.push_back({stretch.first, next});
+  }
+  if (points > next) pieces.push_back({next, points});
+  return pieces;
+}
+
+std::vector<MotionPoint> measured_frames(const TrackData& track) {
+  std::vector<MotionPoint> frames(track.frame_t_s.size());
+  for (std::size_t f = 0; f < frames.size(); ++f) frames[f].t_s = track.frame_t_s[f];
+  for (std::size_t i = 0; i < track.t_s.size(); ++i) {
+    frames[track.frame[i]].t_s = track.t_s[i];  // of the marker's row, with a rolling shutter
+    frames[track.frame[i]].measured_m = track.x_m[i];
+  }
+  return frames;
+}
+
+SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, const Motion& motion,
+                           const FreeMotion& free, double mass_kg) {
+  SmoothedWhole whole;
+  whole.frames = measured_frames(track);
+  Gathered of_free, of_rest;
+  std::vector<bool> is_free(motion.t_s.size(), false);
+  for (std::size_t s = 0; s < free.stretches.size(); ++s) {
+    const FreeStretch& stretch = free.stretches[s];
+    const PointRange range{stretch.first, stretch.first + stretch.count};
+    add(motion, range, s > 0 && turns_into(free.stretches[s - 1], stretch), of_free);
+    fill_range(is_free, range, true);
+  }
+  for (const PointRange& piece : pieces_of(free.stretches, motion.t_s.size())) {
+    if (!is_free[piece.from]) add(motion, piece, false, of_rest);
+  }
+
+  std::vector<double> sd_m_s2(motion.t_s.size(), std::numeric_limits<double>::infinity());
+  std::vector<StretchPoint> smoothed(motion.t_s.size());
+  for (Gathered* gathered : {&of_free, &of_rest}) {
+    if (gathered->point.empty()) continue;
+    want_other_frames(track, motion, whole.frames, *gathered);
+    gathered->input.rows = gathered == &of_free || motion.forced;
+    gathered->input.simultaneous = gathered == &of_free;
+    const SmoothedSeries series = smoother.smooth(gathered->input);
+    if (gathered == &of_free) whole.strength = series.strength;
+    // Rows are over the points that the smoother was given, which in each part follow each other in the motion too.
+    const auto x_by = [&](const SmoothedState& y, const std::optional<KernelRow>& row) {
+      if (!motion.forced) return y;
+      SmoothedState x = y;
+      const SmoothedPoint sums = weighted_sums(*row, motion.x_m);
+      x.x_m = sums.x_m;
+      x.v_m_s = sums.v_m_s;
+      x.a_m_s2 = sums.a_m_s2;
+      return x;
+    };
+    const auto in_motion = [&](std::optional<KernelRow> row) {
+      if (row) row->first = gathered->point[row->first];
+      return row;
+    };
+    for (std::size_t j = 0; j < gathered->point.size(); ++j) {
+      if (!series.points[j]) continue;
+      const SmoothedState& y = *series.points[j];
+      const std::size_t i = gathered->point[j];
+      StretchPoint& point = smoothed[i];
+      if (gathered->input.rows) point.row = in_motion(series.rows[j]);
+      const SmoothedState x = x_by(y, point.row);
+      point.smoothed = true;
+      point.x = {x.x_m, x.v_m_s, x.a_m_s2};
+      point.y = {y.x_m, y.v_m_s, y.a_m_s2};
+      sd_m_s2[i] = y.sd_a_m_s2;
+      fill_frame(x, x.a_m_s2 - y.a_m_s2, mass_kg, whole.frames[track.frame[motion.point[i]]]);
+    }
+    for (std::size_t j = 0; j < gathered->frame.size(); ++j) {
+      if (!series.at[j]) continue;
+      const SmoothedState& y = *series.at[j];
+      const SmoothedState x = x_by(y, motion.forced ? in_motion(series.rows_at[j]) : std::nullopt);
+      fill_frame(x, x.a_m_s2 - y.a_m_s2, mass_kg, whole.frames[gathered->frame[j]]);
+    }
+  }
+
+  std::vector<double> typical;
+  for (const std::size_t i : of_free.point) typical.push_back(sd_m_s2[i]);
+  const double most = typical.empty() ? 0.0 : std::sqrt(kEndVariance) * median_of(std::move(typical));
+  for (std::size_t s = 0; s < free.stretches.size(); ++s) {
+    const FreeStretch& stretch = free.stretches[s];
+    const std::size_t from = whole.points.size();
+    for (std::size_t i = stretch.first; i < stretch.first + stretch.count; ++i) {
+      StretchPoint& point = smoothed[i];
+      point.point = i;
+      point.stretch = s;
+      point.direction = stretch.direction;
+      whole.points.push_back(std::move(point));
+    }
+    leave_out(stretch, most, sd_m_s2, from, whole.points);
+  }
+  return whole;
+}
+
+std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
+                                   const std::vector<double>& law_m_s2, const SmoothedWhole& whole) {
+  std::vector<double> place(motion.t_s.size(),
+                            0.0);  // double integral of the law, anew where the motion does not go on
+  std::size_t next_break = 0;
+  const std::vector<double>& breaks_s = whole.strength.breaks_s;
+  double v = 0.0, x = 0.0;
+  for (std::size_t s = 0; s < stretches.size(); ++s) {
+    const FreeStretch& stretch = stretches[s];
+    const bool goes_on = s > 0 && turns_into(stretches[s - 1], stretch);
+    if (!goes_on) v = x = 0.0;
+    for (std::size_t i = stretch.first + (goes_on ? 0 : 1); i < stretch.first + stretch.count; ++i) {
+      const double from = motion.t_s[i - 1], to = motion.t_s[i];
+      while (next_break < breaks_s.size() && breaks_s[next_break] <= from) ++next_break;
+      if (next_break < breaks_s.size() && breaks_s[next_break] <= to) {
+        const double before = breaks_s[next_break] - from, after = to - breaks_s[next_break];
+        x += v * before + 0.5 * before * before * law_m_s2[i - 1];
+        v += before * law_m_s2[i - 1];
+        x += v * after + 0.5 * after * after * law_m_s2[i];
+        v += after * law_m_s2[i];
+      } else {
+        const double dt = to - from;
+        x += v * dt + dt * dt * (2.0 * law_m_s2[i - 1] + law_m_s2[i]) / 6.0;
+        v += 0.5 * dt * (law_m_s2[i - 1] + law_m_s2[i]);
+      }
+      place[i] = x;
+    }
+  }
+  std::vector<double> bias;
+  for (const StretchPoint& point : whole.points) {
+    bias.push_back(point.row ? weighted_sums(*point.row, place).a_m_s2 - law_m_s2[point.point] : 0.0);
+  }
+  return bias;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,43 @@
+/// A clip smoothed as a whole, by a smoother that finds its own strength (smoothing/smoother.h).
+///
+/// The free motion has one strength, and what is not free (a hand, a stop, a rest) another one. Where the motion turns
+/// it is smoothed as one with a break of a, for dry friction jumps there while x and v go on; elsewhere every part
+/// starts anew. Points count for lines where the variance of a is below kEndVariance of its median.
+#pragma once
+
+#include <vector>
+
+#include "core/motion/free/free_motion.h"
+#include "core/motion/free/motion.h"
+#include "core/motion/free/motion_events.h"
+#include "core/motion/lines/line_fit.h"
+#include "core/motion/smoothing/smoother.h"
+#include "core/result/results.h"
+#include "core/track/track_data.h"
+
+namespace glidelab::core {
+
+/// What the local cubic has at its margin of kKernelMargin bandwidths.
+inline constexpr double kEndVariance = 1.64;
+
+struct SmoothedWhole {
+  SmoothingStrength strength;        ///< of the free motion
+  std::vector<StretchPoint> points;  ///< of the free stretches, with their rows
+  std::vector<MotionPoint> frames;   ///< all; `left_out` is not set
+};
+
+/// With a known force the strength is that of y, and x is smoothed by the same weights.
+SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, const Motion& motion,
+                           const FreeMotion& free, double mass_kg);
+
+/// As smoothing_bias() of line_fit.h, with motions that go on over their turns.
+std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
+                                   const std::vector<double>& law_m_s2, const SmoothedWhole& whole);
+
+/// Points that follow each other and are smoothed together: the stretches, and what lies between two of them.
+std::vector<PointRange> pieces_of(const std::vector<FreeStretch>& stretches, std::size_t points);
+
+/// The frames of a track with their times and what was measured.
+std::vector<MotionPoint> measured_frames(const TrackData& track);
+
+}  // namespace glidelab::core

@@ -1,0 +1,88 @@
+/// The smoothers: positions in, x, v and a with their standard deviations out, and how strongly was smoothed.
+///
+///     local-polynomial  the local cubic of the paper, whose bandwidth is given (local_polynomial.h)
+///     kalman            the integrated Wiener process of order 4, its strength by marginal likelihood
+///     spline            the smoothing spline of degree 7, its strength by generalised cross-validation
+///
+/// The last two are one posterior (wiener_chain.h) with two ways to choose its strength; wiener_smoother.cpp has both.
+/// All three are linear in the positions once the strength is chosen, so that the effect of any noise and of any
+/// displacement on v and a follows from the rows.
+///
+/// Standard deviations: of the local polynomial those of the noise alone; of the other two those of the posterior,
+/// which hold what smoothing may take off a(t) as well.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/motion/smoothing/local_polynomial.h"
+#include "core/result/strength.h"
+
+namespace glidelab::core {
+
+struct SmoothingInput {
+  std::vector<double> t_s;  ///< rising strictly, of any spacing
+  std::vector<double> x_m;
+  std::optional<double> noise_sd_m = {};   ///< of a position of factor 1; without a value it is estimated
+  std::vector<double> noise_factor = {};   ///< of each position, above 0; empty: 1
+  std::vector<std::size_t> starts = {};    ///< rising: points at which the motion starts anew (0 is understood)
+  std::vector<double> breaks_s = {};       ///< rising: where v = 0 and a may jump, to a step or two
+  std::vector<double> at_s = {};           ///< rising: other times within the parts of the motion that are wanted
+  std::optional<double> bandwidth_s = {};  ///< of the local polynomial (asserted there), and of no other
+  bool rows = false;                       ///< whether they are wanted
+  bool simultaneous = false;               ///< whether the simultaneous band is wanted
+};
+
+/// Positions of one part of the motion that kalman and spline need, and before and after a break.
+inline constexpr std::size_t kFewestSmoothed = 6;
+
+struct SmoothedState {
+  double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;
+  double sd_x_m = 0.0, sd_v_m_s = 0.0, sd_a_m_s2 = 0.0;
+};
+
+struct SmoothedSeries {
+  SmoothingStrength strength;
+  std::vector<std::optional<SmoothedState>> points;  ///< nothing where a part has fewer than kFewestSmoothed positions
+  std::vector<std::optional<SmoothedState>> at;      ///< of at_s; nothing outside of the parts as well
+  std::vector<std::optional<KernelRow>> rows;        ///< of the points, over all positions, where wanted
+  std::vector<std::optional<KernelRow>> rows_at;     ///< likewise of at_s
+};
+
+class Smoother {
+ public:
+  virtual ~Smoother() = default;
+  virtual std::string_view name() const = 0;
+  virtual std::string_view words() const = 0;  ///< "Kalman smoother, its strength by marginal likelihood"
+  virtual bool takes_bandwidth() const = 0;
+
+  /// Times rise strictly, vectors are of one length, parts are not empty (asserted). A break without kFewestSmoothed
+  /// positions on both sides within its part is none.
+  virtual SmoothedSeries smooth(const SmoothingInput& input) const = 0;
+};
+
+/// In the order in which people are told of them; the first is the default.
+const std::vector<const Smoother*>& smoothers();
+std::vector<std::string> smoother_names();
+/// Null where there is none of the name.
+const Smoother* find_smoother(std::string_view name);
+
+inline constexpr std::string_view kLocalPolynomial = "local-polynomial";
+
+/// InputError for a name that is unknown, and for a bandwidth or a rule for one beside a smoother that has none.
+void check_smoother(const std::string& name, bool bandwidth_asked_for);
+
+/// Of wiener_smoother.cpp.
+const Smoother& kalman_smoother();
+const Smoother& spline_smoother();
+
+/// A part of the positions that is one motion.
+struct SeriesPart {
+  std::size_t first = 0, count = 0;
+};
+std::vector<SeriesPart> parts_of(const SmoothingInput& input);
+
+}  // namespace glidelab::core
