@@ -135,8 +135,16 @@ std::string twin_words(const Certificate& certificate) {
   text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
   text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
                       micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
-  for (const std::string& lack : certificate.without) text += fmt::format(" Not in the twins: {}.", lack);
   return text;
+}
+
+/// "The twins are without …: read the answer with that in mind."; empty where they have all of it.
+std::string lack_words(const Certificate& certificate) {
+  if (certificate.without.empty()) return {};
+  std::string lacks;
+  for (const std::string& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack;
+  return fmt::format("The recording has what its twins have not: {}. The answer holds as far as that does not matter.",
+                     lacks);
 }
 
 }  // namespace
@@ -265,7 +273,9 @@ std::string certificate_json(const Certificate& certificate) {
 }
 
 std::string certificate_text(const Certificate& certificate) {
-  std::string text = certificate_answer(certificate) + "\n\n";
+  std::string text = certificate_answer(certificate) + "\n";
+  if (const std::string lacks = lack_words(certificate); !lacks.empty()) text += printable(lacks) + "\n";
+  text += "\n";
   std::vector<std::vector<std::string>> rows = {kHeader};
   for (const CertifiedQuantity& quantity : certificate.quantities) rows.push_back(cells_of(quantity));
   text += text_table(rows, 1);
@@ -340,6 +350,8 @@ std::string how_judged(const Certificate& certificate) {
 Page certificate_page(const std::string& name, const Certificate& certificate) {
   Html body = fmt::format("<h1>Can I trust the intervals of {}?</h1>\n<p><b>{}</b></p>\n", escape(name),
                           escape(certificate_answer(certificate)));
+  if (const std::string lacks = lack_words(certificate); !lacks.empty())
+    body += fmt::format("<p class=\"note\">{}</p>\n", escape(lacks));
   if (!certificate.empty()) body += figures({certificate_plot(certificate)});
   HtmlTable table(kHeader);
   for (const CertifiedQuantity& quantity : certificate.quantities) {

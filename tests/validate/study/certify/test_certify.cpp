@@ -110,8 +110,7 @@ TEST_CASE("half the noise halves the errors of a track, and the certificate says
 }
 
 TEST_CASE("intervals of lines that leave out a drag are said not to hold") {
-  render::Scenario scenario =
-      render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/tutorial.toml", {});
+  const render::Scenario scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/tutorial.toml");
   const tests::TempDir temp;
   record(scenario, temp / "made", 2e-5);
   const Certificate certificate = certify({temp / "made"}, {.runs = 20, .seed = 1, .jobs = 2});
