@@ -1,6 +1,7 @@
 #include "validate/study/certify/certify.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -46,8 +47,8 @@ const core::ConfigurationResult* result_of(const core::AnalysisResults& results,
 }
 
 TwinOutcome outcome_of(const RecordingTwin& twin, const TwinChange& change, const CertifyOptions& options,
-                       std::uint64_t seed, const base::Progress& progress) {
-  const MadeTracks made = record_twin(twin, change, seed, progress);
+                       std::uint64_t seed, TwinStudios& studios, const base::Progress& progress) {
+  const MadeTracks made = record_twin(twin, change, seed, studios, progress);
   const core::AnalysisResults results = options.estimator.estimate(
       analyze_tracks(made, core::MotionOptions{.bandwidth_s = options.bandwidth_s, .lines = options.estimator.lines}),
       {});
@@ -71,10 +72,11 @@ TwinOutcome outcome_of(const RecordingTwin& twin, const TwinChange& change, cons
 using Outcomes = std::vector<TwinOutcome>;
 
 Outcomes record_all(const RecordingTwin& twin, const TwinChange& change, const CertifyOptions& options,
-                    std::size_t runs, const std::function<void()>& done, const base::Progress& progress) {
+                    std::size_t runs, TwinStudios& studios, const std::function<void()>& done,
+                    const base::Progress& progress) {
   Outcomes outcomes(runs);
   base::for_each_parallel(runs, options.jobs, [&](std::size_t r) {
-    outcomes[r] = outcome_of(twin, change, options, derived_seed(options.seed, r), progress);
+    outcomes[r] = outcome_of(twin, change, options, derived_seed(options.seed, r), studios, progress);
     done();
   });
   return outcomes;
@@ -219,6 +221,15 @@ std::vector<WantedChange> wanted_changes(const RecordingTwin& twin) {
   if (std::any_of(twin.clips.begin(), twin.clips.end(), [](const ClipNoise& clip) { return clip.rounding_m > 0.0; })) {
     wanted.push_back({{.unrounded = true}, "rounding", "positions with all their digits", "more digits in the export"});
   }
+  if (std::any_of(twin.scenario.motion.configurations.begin(), twin.scenario.motion.configurations.end(),
+                  [](const sim::ConfigurationSetup& setup) { return !sim::linear_law(setup.body); })) {
+    wanted.push_back({{.nominal = true},
+                      "cause beside the law",
+                      "the nominal law alone",
+                      fmt::format("take the cause out of the experiment, or put it into the model (glidelab analyze "
+                                  "--with {})",
+                                  fmt::join(twin.causes, " --with "))});
+  }
   wanted.push_back({{.twice = true}, "amount", "every clip recorded twice", "a second clip of each kind"});
   return wanted;
 }
@@ -299,7 +310,8 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   };
   const base::Progress within = [&](std::string_view, double) { tell(); };
 
-  const Outcomes outcomes = record_all(twin, {}, options, options.runs, done, within);
+  TwinStudios studios(runs_of_change);
+  const Outcomes outcomes = record_all(twin, {}, options, options.runs, studios, done, within);
   certificate.together = share_of(counts_of(outcomes, 0, kHeadline, std::nullopt), kConfidence);
   const std::vector<std::string> names = configuration_names(twin.scenario);
   for (std::size_t q = 0; q < kQuantityCount; ++q) {
@@ -315,7 +327,7 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);
   certificate.twin_noise_m = core::median_of(std::move(noise_m));
   for (const WantedChange& change : wanted) {
-    const Outcomes after = record_all(twin, change.change, options, runs_of_change, done, within);
+    const Outcomes after = record_all(twin, change.change, options, runs_of_change, studios, done, within);
     certificate.changes.push_back(changed_twin(change, outcomes, after, wanted.size()));
   }
   std::stable_sort(certificate.changes.begin(), certificate.changes.end(),
@@ -330,7 +342,8 @@ namespace {
 /// Scales the pixels' noise until positions scatter as they do in the recording: by one twin that is filmed for that.
 void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
   constexpr double kAlike = 1.1, kFarthest = 4.0;
-  const TwinOutcome pilot = outcome_of(twin, {}, options, derived_seed(options.seed, kMostTwins), progress);
+  TwinStudios studios(0);
+  const TwinOutcome pilot = outcome_of(twin, {}, options, derived_seed(options.seed, kMostTwins), studios, progress);
   const double factor = twin.noise_m / pilot.noise_m;
   if (factor > 1.0 / kAlike && factor < kAlike) return;
   if (factor < 1.0 / kFarthest || factor > kFarthest) {

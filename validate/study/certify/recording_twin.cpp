@@ -14,7 +14,6 @@
 #include "diagnose/effects/effect_list.h"
 #include "diagnose/twin/twin.h"
 #include "sim/motion/simulate.h"
-#include "validate/film/film_studio.h"
 #include "validate/random_use.h"
 
 namespace glidelab::validate {
@@ -162,6 +161,9 @@ render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, do
   scenario.marker.diameter_m *= change.marker;
   if (change.lossless) scenario.codec = render::Codec::ffv1;
   if (change.noise != 1.0) scale_noise(scenario.sensor, change.noise);
+  for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    if (change.nominal) std::erase_if(configuration.body.forces, [](const auto& term) { return !term->linear(); });
+  }
   if (change.twice) {
     for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
       const std::vector<sim::MotionSetup> once = configuration.motions;
@@ -255,11 +257,51 @@ MadeTracks simulated(const RecordingTwin& twin, const TwinChange& change, const 
   return made;
 }
 
+}  // namespace
+
+/// A seed's calibration, and the stage of a change.
+class TwinFilm {
+ public:
+  TwinFilm(TwinStudios& studios, const TwinChange& change, std::uint64_t seed)
+      : studios_(studios), change_(change), seed_(seed) {}
+
+  MadeTracks film(const render::Scenario& scenario, const std::optional<core::CameraModel>& lens,
+                  const base::Progress& progress) {
+    const std::shared_ptr<FilmStudio> studio = studio_of(scenario, progress);
+    MadeTracks made = studio->film(scenario, seed_, 1, lens);
+    const std::lock_guard lock(studios_.mutex_);
+    if (studio->stage()) studios_.stages_.try_emplace(scene(), studio->stage());
+    if (as_recorded() && studios_.of_seed_.size() < studios_.most_) studios_.of_seed_.try_emplace(seed_, studio);
+    return made;
+  }
+
+ private:
+  std::pair<double, double> scene() const { return {change_.noise, change_.marker}; }
+  bool as_recorded() const { return scene() == std::pair(1.0, 1.0); }
+
+  std::shared_ptr<FilmStudio> studio_of(const render::Scenario& scenario, const base::Progress& progress) {
+    std::shared_ptr<const render::Stage> stage;
+    {
+      const std::lock_guard lock(studios_.mutex_);
+      const auto kept = studios_.of_seed_.find(seed_);
+      if (as_recorded() && kept != studios_.of_seed_.end()) return kept->second;
+      if (const auto drawn = studios_.stages_.find(scene()); drawn != studios_.stages_.end()) stage = drawn->second;
+    }
+    return std::make_shared<FilmStudio>(scenario, seed_, 1, stage, progress);
+  }
+
+  TwinStudios& studios_;
+  const TwinChange& change_;
+  std::uint64_t seed_;
+};
+
+namespace {
+
 MadeTracks filmed(const RecordingTwin& twin, const TwinChange& change, const render::Scenario& scenario, double scale,
-                  std::uint64_t seed, const base::Progress& progress) {
+                  std::uint64_t seed, TwinStudios& studios, const base::Progress& progress) {
   const bool by_scale = twin.scale_sd_relative > 0.0;
   const auto lens = by_scale || change.camera_known ? true_camera(scenario.camera) : std::nullopt;
-  MadeTracks made = FilmStudio(scenario, seed, 1, nullptr, progress).film(scenario, seed, 1, lens);
+  MadeTracks made = TwinFilm(studios, change, seed).film(scenario, lens, progress);
   if (!by_scale) return made;
   for (core::TrackData& track : made.tracks) {
     track.shared_m.clear();
@@ -271,14 +313,14 @@ MadeTracks filmed(const RecordingTwin& twin, const TwinChange& change, const ren
 
 }  // namespace
 
-MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed,
+MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed, TwinStudios& studios,
                        const base::Progress& progress) {
   std::mt19937_64 engine = random_engine(RandomUse::clock_rate, seed);
   std::normal_distribution<double> deviate(0.0, 1.0);
   const double clock_ppm = 1e6 * core::kClockSdRelative * deviate(engine);
   const double scale = 1.0 + (change.camera_known ? 0.0 : twin.scale_sd_relative * deviate(engine));
   const render::Scenario scenario = changed(twin, change, clock_ppm);
-  MadeTracks made = twin.filmed ? filmed(twin, change, scenario, scale, seed, progress)
+  MadeTracks made = twin.filmed ? filmed(twin, change, scenario, scale, seed, studios, progress)
                                 : simulated(twin, change, scenario, scale, seed);
   add_own_law(scenario, made.truth);
   return made;

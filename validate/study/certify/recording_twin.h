@@ -16,8 +16,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/long_work.h"
@@ -25,6 +29,7 @@
 #include "core/result/results.h"
 #include "diagnose/result/diagnosis.h"
 #include "render/scenario/scenario.h"
+#include "validate/film/film_studio.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
@@ -65,11 +70,28 @@ struct TwinChange {
   bool unrounded = false;     ///< of tracks: all digits
   bool twice = false;         ///< every clip is recorded once more
   bool double_rate = false;   ///< of tracks: twice as many frames a second
+  bool nominal = false;       ///< no force but the viscous and the Coulomb friction of the law
+};
+
+/// What stands still in filmed twins is drawn once, and the calibrations of the first seeds are kept for changes that
+/// leave camera, light and pattern as they are. Shared by threads that record different seeds.
+class TwinStudios {
+ public:
+  /// Calibrations are kept of `most` seeds, those that come first.
+  explicit TwinStudios(std::size_t most) : most_(most) {}
+
+ private:
+  friend class TwinFilm;
+  std::mutex mutex_;
+  std::size_t most_;
+  std::map<std::uint64_t, std::shared_ptr<FilmStudio>> of_seed_;
+  std::map<std::pair<double, double>, std::shared_ptr<const render::Stage>> stages_;  ///< by noise and marker
 };
 
 /// One recording of the twin, with its truth. Of one seed and another change the motions, and as far as may be the
-/// noise, are the same. `progress` is called often while it is filmed, and may throw to stop.
-MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed,
+/// noise, are the same; the studios change nothing in it. `progress` is called often while it is filmed, and may throw
+/// to stop; it outlives the studios.
+MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed, TwinStudios& studios,
                        const base::Progress& progress = base::no_progress);
 
 /// Of a clip's positions, as the analysis found it: the median over the clips (one at least).
