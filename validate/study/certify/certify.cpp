@@ -14,6 +14,7 @@
 #include "base/math/angles.h"
 #include "core/analysis/analyze.h"
 #include "core/math/quantile.h"
+#include "core/result/estimate.h"
 #include "core/result/quantity.h"
 #include "diagnose/lines/line_model.h"
 #include "diagnose/verdict/diagnose.h"
@@ -46,24 +47,38 @@ const core::ConfigurationResult* result_of(const core::AnalysisResults& results,
   return nullptr;
 }
 
-TwinOutcome outcome_of(const RecordingTwin& twin, const TwinChange& change, const CertifyOptions& options,
-                       std::uint64_t seed, TwinStudios& studios, const base::Progress& progress) {
-  const MadeTracks made = record_twin(twin, change, seed, studios, progress);
-  const core::AnalysisResults results = options.estimator.estimate(
-      analyze_tracks(made, core::MotionOptions{.bandwidth_s = options.bandwidth_s, .lines = options.estimator.lines}),
-      {});
+/// The twins, and what all of them share.
+struct Twins {
+  const RecordingTwin& twin;
+  Truth truth;
+  const CertifyOptions& options;
+  TwinStudios& studios;
+  base::Progress progress;
+};
+
+core::AnalysisResults analysis_of(const MadeTracks& made, const CertifyOptions& options) {
+  const core::MotionOptions how{.bandwidth_s = options.bandwidth_s, .lines = options.estimator.lines};
+  return options.estimator.estimate(analyze_tracks(made, how), {});
+}
+
+TwinOutcome outcome_of(const Twins& twins, const TwinChange& change, std::uint64_t seed) {
+  core::AnalysisResults results;
+  std::string why = "none of its clips could be used";
   TwinOutcome outcome;
-  outcome.noise_m = median_noise(results);
-  for (const TrueConfiguration& truth : made.truth.configurations) {
+  try {
+    results = analysis_of(record_twin(twins.twin, change, seed, twins.studios, twins.progress), twins.options);
+    outcome.noise_m = median_noise(results);
+  } catch (const base::InputError& error) {  // a twin that an analysis refuses is one without values
+    why = error.what();
+  } catch (const base::NumericalError& error) {
+    why = error.what();
+  }
+  for (const TrueConfiguration& truth : twins.truth.configurations) {
     auto& of = outcome.configurations.emplace_back();
     const core::ConfigurationResult* result = result_of(results, truth);
     for (std::size_t q = 0; q < kQuantityCount; ++q) {
       of[q].truth = core::value_of(truth, core::kQuantities[q].which);
-      if (result == nullptr) {
-        of[q].found.why = "none of its clips could be used";
-      } else {
-        of[q].found = core::value_of(*result, core::kQuantities[q].which);
-      }
+      of[q].found = result ? core::value_of(*result, core::kQuantities[q].which) : core::undetermined(why);
     }
   }
   return outcome;
@@ -71,12 +86,10 @@ TwinOutcome outcome_of(const RecordingTwin& twin, const TwinChange& change, cons
 
 using Outcomes = std::vector<TwinOutcome>;
 
-Outcomes record_all(const RecordingTwin& twin, const TwinChange& change, const CertifyOptions& options,
-                    std::size_t runs, TwinStudios& studios, const std::function<void()>& done,
-                    const base::Progress& progress) {
+Outcomes record_all(const Twins& twins, const TwinChange& change, std::size_t runs, const std::function<void()>& done) {
   Outcomes outcomes(runs);
-  base::for_each_parallel(runs, options.jobs, [&](std::size_t r) {
-    outcomes[r] = outcome_of(twin, change, options, derived_seed(options.seed, r), studios, progress);
+  base::for_each_parallel(runs, twins.options.jobs, [&](std::size_t r) {
+    outcomes[r] = outcome_of(twins, change, derived_seed(twins.options.seed, r));
     done();
   });
   return outcomes;
@@ -276,6 +289,13 @@ std::vector<std::string> configuration_names(const render::Scenario& scenario) {
   return own;
 }
 
+void check_runs(std::size_t runs) {
+  if (runs < kFewestTwins || runs > kMostTwins) {
+    throw base::InputError(base::Issue{"", 0, "twins", fmt::format("{}", runs),
+                                       fmt::format("a whole number from {} to {}", kFewestTwins, kMostTwins)});
+  }
+}
+
 }  // namespace
 
 bool Certificate::holds() const {
@@ -285,10 +305,7 @@ bool Certificate::holds() const {
 }
 
 Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
-  if (options.runs < kFewestTwins || options.runs > kMostTwins) {
-    throw base::InputError(base::Issue{"", 0, "twins", fmt::format("{}", options.runs),
-                                       fmt::format("a whole number from {} to {}", kFewestTwins, kMostTwins)});
-  }
+  check_runs(options.runs);
   Certificate certificate;
   certificate.runs = options.runs;
   certificate.estimator = options.estimator.name;
@@ -308,10 +325,9 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
     ++finished;
     tell();
   };
-  const base::Progress within = [&](std::string_view, double) { tell(); };
-
   TwinStudios studios(runs_of_change);
-  const Outcomes outcomes = record_all(twin, {}, options, options.runs, studios, done, within);
+  const Twins twins{twin, truth_of(twin), options, studios, [&](std::string_view, double) { tell(); }};
+  const Outcomes outcomes = record_all(twins, {}, options.runs, done);
   certificate.together = share_of(counts_of(outcomes, 0, kHeadline, std::nullopt), kConfidence);
   const std::vector<std::string> names = configuration_names(twin.scenario);
   for (std::size_t q = 0; q < kQuantityCount; ++q) {
@@ -324,10 +340,10 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
     }
   }
   std::vector<double> noise_m;
-  for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);
+  for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);  // 0 of one that failed
   certificate.twin_noise_m = core::median_of(std::move(noise_m));
   for (const WantedChange& change : wanted) {
-    const Outcomes after = record_all(twin, change.change, options, runs_of_change, studios, done, within);
+    const Outcomes after = record_all(twins, change.change, runs_of_change, done);
     certificate.changes.push_back(changed_twin(change, outcomes, after, wanted.size()));
   }
   std::stable_sort(certificate.changes.begin(), certificate.changes.end(),
@@ -343,7 +359,9 @@ namespace {
 void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
   constexpr double kAlike = 1.1, kFarthest = 4.0;
   TwinStudios studios(0);
-  const TwinOutcome pilot = outcome_of(twin, {}, options, derived_seed(options.seed, kMostTwins), studios, progress);
+  const Twins twins{twin, truth_of(twin), options, studios, progress};
+  const TwinOutcome pilot = outcome_of(twins, {}, derived_seed(options.seed, kMostTwins));
+  if (!(pilot.noise_m > 0.0)) return;  // none of its clips could be used: the certificate says so
   const double factor = twin.noise_m / pilot.noise_m;
   if (factor > 1.0 / kAlike && factor < kAlike) return;
   if (factor < 1.0 / kFarthest || factor > kFarthest) {
@@ -360,6 +378,7 @@ void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base:
 
 Certificate certify(const std::vector<std::filesystem::path>& folders, const CertifyOptions& options,
                     const base::Progress& progress) {
+  check_runs(options.runs);
   std::vector<core::ClipSetup> setups;
   std::vector<std::optional<core::CameraSettings>> cameras;
   std::vector<core::Experiment> experiments;

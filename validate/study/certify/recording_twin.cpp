@@ -103,9 +103,18 @@ void scale_noise(render::Sensor& sensor, double factor) {
 RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,
                                 const std::vector<core::Experiment>& folders) {
   RecordingTwin twin;
-  twin.filmed = is_filmed(results, folders);
-  twin.scenario = render::read_scenario(diagnosis.twin, "twin of the recording",
-                                        twin.filmed ? render::ScenarioChecks::all : render::ScenarioChecks::values);
+  constexpr const char* kName = "twin of the recording";
+  twin.scenario = render::read_scenario(diagnosis.twin, kName, render::ScenarioChecks::values);
+  if (is_filmed(results, folders)) {
+    try {
+      twin.scenario = render::read_scenario(diagnosis.twin, kName);
+      twin.filmed = true;
+    } catch (const base::InputError& error) {  // what a camera of a scenario cannot see
+      std::string why = error.what();
+      std::replace(why.begin(), why.end(), '\n', ' ');
+      twin.without.push_back(fmt::format("images and calibration ({})", why));
+    }
+  }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) twin.causes.push_back(effect.id);
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     std::erase(twin.causes, lack.what);
@@ -322,8 +331,13 @@ MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std:
   const render::Scenario scenario = changed(twin, change, clock_ppm);
   MadeTracks made = twin.filmed ? filmed(twin, change, scenario, scale, seed, studios, progress)
                                 : simulated(twin, change, scenario, scale, seed);
-  add_own_law(scenario, made.truth);
   return made;
+}
+
+Truth truth_of(const RecordingTwin& twin) {
+  Truth truth = make_tracks(twin.scenario, 1).truth;
+  add_own_law(twin.scenario, truth);
+  return truth;
 }
 
 }  // namespace glidelab::validate

@@ -57,7 +57,8 @@ struct RecordingTwin {
 };
 
 /// `results` as diagnose::diagnose_results() had them, with their pictures, and the folders (or files) they are of, in
-/// order. InputError where the motions cannot be told as a scenario.
+/// order. A recording of which a scenario's camera would not see enough is simulated as tracks, and `without` says so.
+/// InputError where the motions cannot be told as a scenario.
 RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,
                                 const std::vector<core::Experiment>& folders);
 
@@ -72,6 +73,9 @@ struct TwinChange {
   bool double_rate = false;   ///< of tracks: twice as many frames a second
   bool nominal = false;       ///< no force but the viscous and the Coulomb friction of the law
 };
+
+/// The configurations' true values: of one whose law has further forces, K/m and mu of its viscous and Coulomb terms.
+Truth truth_of(const RecordingTwin& twin);
 
 /// What stands still in filmed twins is drawn once, and the calibrations of the first seeds are kept for changes that
 /// leave camera, light and pattern as they are. Shared by threads that record different seeds.
