@@ -316,7 +316,7 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   for (const sim::ConfigurationSetup& setup : twin.scenario.motion.configurations)
     certificate.clips += setup.motions.size();
 
-  const std::vector<WantedChange> wanted = wanted_changes(twin);
+  const std::vector<WantedChange> wanted = options.changes ? wanted_changes(twin) : std::vector<WantedChange>{};
   const std::size_t runs_of_change = twin.filmed ? std::min(kFilmedChanges, options.runs) : options.runs;
   const std::size_t all = options.runs + wanted.size() * runs_of_change;
   std::atomic<std::size_t> finished = 0;

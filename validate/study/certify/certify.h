@@ -28,6 +28,7 @@ struct CertifyOptions {
   std::optional<double> bandwidth_s = {};
   std::uint64_t seed = 1;
   int jobs = 1;
+  bool changes = true;  ///< find what limits the recording, too
   core::TrackFileOptions bare = {};
 };
 
