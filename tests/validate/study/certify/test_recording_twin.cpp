@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "test_paths.h"
 #include "tests/app/tiny_scenario.h"
 #include "tests/catch.h"
 
@@ -112,7 +113,10 @@ TEST_CASE("half the noise of a sensor leaves its codes as they are") {
 
 TEST_CASE("a filmed twin is the same with a calibration and a stage that were kept as with its own") {
   RecordingTwin twin;
-  twin.scenario = render::read_scenario(tests::tiny_scenario(), "tiny.toml");
+  twin.scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/diagnosis/filmed.toml");
+  twin.scenario.motion.configurations.resize(1);
+  twin.scenario.motion.configurations.front().motions.resize(1);
+  twin.scenario.motion.configurations.front().motions.front().duration_s = 0.2;
   twin.filmed = true;
   const MadeTracks own = record(twin, {.camera_known = true}, 7);
   TwinStudios studios(2);
