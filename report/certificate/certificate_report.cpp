@@ -167,7 +167,7 @@ std::vector<std::string> best_changes(const Certificate& certificate) {
   std::vector<std::string> words;
   for (const ChangedTwin& change : certificate.changes) {
     if (!change.stands_out || words.size() == kMostChanges) continue;
-    words.push_back(fmt::format("{}: with {}, {} err {} less", change.advice, change.change,
+    words.push_back(fmt::format("{}. With {}, {} err {} less.", change.advice, change.change,
                                 headline_names(certificate), fall_text(*change.together)));
   }
   return words;

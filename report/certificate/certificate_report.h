@@ -15,7 +15,8 @@ namespace glidelab::report {
 /// deviation on average." Text, one line without its end.
 std::string certificate_answer(const validate::Certificate& certificate);
 
-/// Three at most, the largest gain first: "four times the light (…): K/m, µ, α err 45 % (38 to 51 %) less". Text.
+/// Three at most, the largest gain first: "Use more light. With half the noise, K/m, µ, α err
+/// 45 % (38 to 51 %) less.". Text.
 std::vector<std::string> best_changes(const validate::Certificate& certificate);
 
 /// Which share of the intervals of each quantity holds, with its own interval.

@@ -60,7 +60,7 @@ TEST_CASE("only changes that stand out are given as advice, three at most, and n
   validate::Certificate made = certificate();
   made.changes = {change("noise", true), change("marker", false)};
   REQUIRE(report::best_changes(made).size() == 1);
-  CHECK(report::best_changes(made).front() == "more light: with half of it, K/m, µ err 42 % (30 to 50 %) less");
+  CHECK(report::best_changes(made).front() == "more light. With half of it, K/m, µ err 42 % (30 to 50 %) less.");
   CHECK(report::certificate_text(made).find("What limits it, most first: noise.") != std::string::npos);
   made.changes.assign(5, change("noise", true));
   CHECK(report::best_changes(made).size() == 3);

@@ -38,9 +38,9 @@ struct QuantityFall {
 
 /// One thing taken away or made better, and the same twins recorded with it.
 struct ChangedTwin {
-  std::string limit;   ///< "noise", "calibration", "marker", "codec", …
+  std::string limit;   ///< "noise", "calibration", "marker", "few clips", …
   std::string change;  ///< "the pixels' noise halved"
-  std::string advice;  ///< what a person can do: "four times the light (…)"
+  std::string advice;  ///< what a person can do: "Use a larger marker"
   std::size_t runs = 0;
   std::vector<QuantityFall> quantities;
   std::optional<RunFall> together;  ///< K/m, mu and alpha (those that have values), interval of 95 %

@@ -198,52 +198,50 @@ struct WantedChange {
 std::vector<WantedChange> wanted_changes(const RecordingTwin& twin) {
   std::vector<WantedChange> wanted;
   if (twin.filmed) {
-    wanted.push_back(
-        {{.noise = 0.5},
-         "noise",
-         "half the noise of each pixel",
-         "four times the light (a brighter lamp, a wider aperture, a longer exposure where nothing smears)"});
-    wanted.push_back(
-        {{.marker = 2.0}, "marker", "a marker of twice the diameter", "a larger marker: twice the diameter"});
+    wanted.push_back({{.noise = 0.5},
+                      "noise",
+                      "half the noise of each pixel",
+                      "Use more light, or a wider aperture: four times the light halves the noise"});
+    wanted.push_back({{.marker = 2.0}, "marker", "a marker of twice the diameter", "Use a larger marker"});
   } else {
     wanted.push_back({{.noise = 0.5},
                       "noise",
                       "half the noise of each position",
-                      "positions of half the noise: more light, a larger marker, a finer scale or a better tracker"});
-    wanted.push_back(
-        {{.double_rate = true}, "frame rate", "twice as many frames a second", "a camera of twice the frame rate"});
+                      "Lower the noise of the positions: more light, a larger marker, a finer scale or a better "
+                      "tracker"});
+    wanted.push_back({{.double_rate = true}, "frame rate", "twice as many frames a second", "Use a higher frame rate"});
   }
   const bool by_scale = twin.scale_sd_relative > 0.0;
   if (by_scale) {
     wanted.push_back({{.camera_known = true},
                       "scale",
                       "the scale without error",
-                      "a scale that is measured better (a longer ruler, in the plane of motion), or a pattern"});
+                      "Measure the scale better (a longer ruler, in the plane of motion), or use a pattern"});
   } else if (twin.filmed) {
     wanted.push_back({{.camera_known = true},
                       "calibration",
                       "the camera known without error",
-                      "more calibration images, tilted more and filling the image"});
+                      "Take more calibration images, tilted more and filling the image"});
   }
   if (twin.filmed && render::lossy(twin.scenario.codec)) {
     wanted.push_back({{.lossless = true},
                       "codec",
                       "no loss by compression",
-                      "less compression: a higher bit rate or quality, or a lossless codec"});
+                      "Compress less: a higher bit rate or quality, or a lossless codec"});
   }
   if (std::any_of(twin.clips.begin(), twin.clips.end(), [](const ClipNoise& clip) { return clip.rounding_m > 0.0; })) {
-    wanted.push_back({{.unrounded = true}, "rounding", "positions with all their digits", "more digits in the export"});
+    wanted.push_back({{.unrounded = true}, "rounding", "positions with all their digits", "Export more digits"});
   }
   if (std::any_of(twin.scenario.motion.configurations.begin(), twin.scenario.motion.configurations.end(),
                   [](const sim::ConfigurationSetup& setup) { return !sim::linear_law(setup.body); })) {
     wanted.push_back({{.nominal = true},
-                      "cause beside the law",
+                      "a cause beside the law",
                       "the nominal law alone",
-                      fmt::format("take the cause out of the experiment, or put it into the model (glidelab analyze "
+                      fmt::format("Take the cause out of the experiment, or put it into the model (glidelab analyze "
                                   "--with {})",
                                   fmt::join(twin.causes, " --with "))});
   }
-  wanted.push_back({{.twice = true}, "amount", "every clip recorded twice", "a second clip of each kind"});
+  wanted.push_back({{.twice = true}, "few clips", "every clip recorded twice", "Record a second clip of each kind"});
   return wanted;
 }
 
