@@ -1,5 +1,5 @@
-/// Options of the commands that take a track's file beside experiment folders (analyze, check, diagnose): what the
-/// file does not say.
+/// Options of the commands that take a track's file beside experiment folders (analyze, check, diagnose, certify): what
+/// the file does not say.
 #pragma once
 
 #include <string>

@@ -220,6 +220,7 @@ int run(int argc, char** argv) {
   add_analyze(app, command);
   add_validate(app, command);
   add_coverage(app, command);
+  add_certify(app, command);
   add_sweep(app, command);
   add_require(app, command);
   add_laws(app, command);

@@ -21,6 +21,7 @@ void add_render(CLI::App& app, Command& chosen);
 void add_analyze(CLI::App& app, Command& chosen);
 void add_validate(CLI::App& app, Command& chosen);
 void add_coverage(CLI::App& app, Command& chosen);
+void add_certify(CLI::App& app, Command& chosen);
 void add_sweep(CLI::App& app, Command& chosen);
 void add_require(CLI::App& app, Command& chosen);
 void add_laws(CLI::App& app, Command& chosen);

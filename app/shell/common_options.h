@@ -1,4 +1,5 @@
-/// Options that every command takes, those that the commands that take recordings (analyze, check, diagnose) have in
+/// Options that every command takes, those that the commands that take recordings (analyze, check, diagnose,
+/// certify) have in
 /// common, and how a command writes: files, tables and JSON.
 #pragma once
 

@@ -7,7 +7,7 @@
 namespace glidelab::tests {
 
 inline const std::vector<std::string> kCommands = {
-    "simulate",     "render",   "analyze", "validate", "coverage", "sweep", "require", "laws",
-    "characterize", "diagnose", "blind",   "new",      "pattern",  "check", "explore", "challenge"};
+    "simulate",     "render",   "analyze", "validate", "coverage", "certify", "sweep",   "require",  "laws",
+    "characterize", "diagnose", "blind",   "new",      "pattern",  "check",   "explore", "challenge"};
 
 }  // namespace glidelab::tests

@@ -6,6 +6,7 @@
 #include "report/analysis/analysis_report.h"
 #include "report/blind/blind_report.h"
 #include "report/blind/everyday_report.h"
+#include "report/certificate/certificate_report.h"
 #include "report/challenge/challenge_report.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"
@@ -217,6 +218,27 @@ TEST_CASE("the pages of require and of coverage have every name from a file as t
   row.levels = {{0.95, 100, 0.5, 0.4, 0.6, 0.0}};
   coverage.rows = {row};
   check_is_text(report::coverage_page(kEvil, coverage));
+}
+
+TEST_CASE("the page of a certificate has every name from a file as text") {
+  validate::Certificate certificate;
+  certificate.runs = 40;
+  certificate.clips = 2;
+  certificate.estimator = kEvil;
+  certificate.together = {110, 120, 0.92, 0.85, 0.96};
+  validate::CertifiedQuantity quantity;
+  quantity.quantity = "mu";
+  quantity.asked = 40;
+  quantity.coverage = quantity.wide_coverage = {30, 40, 0.75, 0.6, 0.9};
+  quantity.bias_sds = {1.5, 0.1};
+  quantity.rms = quantity.stated_sd = 1e-4;
+  certificate.quantities = {quantity};
+  quantity.configuration = kEvil;
+  certificate.configurations = {quantity};
+  certificate.causes = certificate.without = {kEvil};
+  certificate.changes = {
+      {kEvil, kEvil, kEvil, 40, {{"mu", {0.5, 0.4, 0.6}, true}}, validate::RunFall{0.5, 0.4, 0.6}, true}};
+  check_is_text(report::certificate_page(kEvil, certificate));
 }
 
 TEST_CASE("the page of a sweep has every name from a file as text, with its masses") {

@@ -1,0 +1,370 @@
+#include "report/certificate/certificate_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text/number_text.h"
+#include "core/result/quantity.h"
+#include "report/html/folded.h"
+#include "report/html/gnuplot.h"
+#include "report/text/display_text.h"
+#include "report/text/json_numbers.h"
+
+namespace glidelab::report {
+namespace {
+
+using validate::Certificate;
+using validate::CertifiedQuantity;
+using validate::ChangedTwin;
+
+constexpr double kSure = 2.5;  // standard deviations of a mean, the largest of three: 4 % by chance
+constexpr std::size_t kMostChanges = 3;
+
+std::string percent(double share) {
+  return fmt::format("{:.0f}", 100.0 * share);
+}
+
+/// "94 % (90 to 97 %)".
+std::string percent_text(double share, double low, double high) {
+  return fmt::format("{} % ({} to {} %)", percent(share), percent(low), percent(high));
+}
+
+std::string share_text(const validate::RunShare& share) {
+  return share.of == 0 ? "–" : percent_text(share.share, share.low, share.high);
+}
+
+std::string fall_text(const validate::RunFall& fall) {
+  return percent_text(fall.value, fall.low, fall.high);
+}
+
+bool is_headline(const CertifiedQuantity& quantity) {
+  return quantity.quantity != core::key_of(core::Measurand::v_lim) && quantity.answered() > 0;
+}
+
+/// "K/m, µ, α": those that were counted.
+std::string headline_names(const Certificate& certificate) {
+  std::string names;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (is_headline(quantity)) names += (names.empty() ? "" : ", ") + symbol_of(quantity.quantity);
+  }
+  return names;
+}
+
+double sureness(const CertifiedQuantity& quantity) {
+  return std::abs(quantity.bias_sds.value) / quantity.bias_sds.sd;
+}
+
+/// "µ is off by 0.3 of its standard deviation on average".
+std::string bias_words(const Certificate& certificate) {
+  const CertifiedQuantity* worst = nullptr;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (is_headline(quantity) && (worst == nullptr || sureness(quantity) > sureness(*worst))) worst = &quantity;
+  }
+  if (worst == nullptr) return {};
+  if (sureness(*worst) < kSure) return "none of them is off on average by more than chance";
+  return fmt::format("{} is off by {:.1f} of its standard deviation on average", symbol_of(worst->quantity),
+                     std::abs(worst->bias_sds.value));
+}
+
+/// Quantities whose intervals hold too rarely: "µ, limit velocity".
+std::string narrow_names(const Certificate& certificate) {
+  std::string names;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.too_narrow()) names += (names.empty() ? "" : ", ") + symbol_of(quantity.quantity);
+  }
+  return names;
+}
+
+std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
+  const std::string failed = fmt::format("{} of {}", quantity.failed, quantity.asked);
+  if (quantity.answered() == 0) return {heading_of(quantity.quantity), "–", "–", "–", "–", failed};
+  return {heading_of(quantity.quantity),
+          share_text(quantity.coverage),
+          fmt::format("{:.2f} ± {:.2f}", quantity.bias_sds.value, quantity.bias_sds.sd),
+          base::sd_text(quantity.rms),
+          base::sd_text(quantity.stated_sd),
+          failed};
+}
+
+const std::vector<std::string> kHeader = {"quantity",  "intervals that hold", "bias (stated sd)",
+                                          "rms error", "stated sd",           "without a value"};
+
+/// What of a change stands in the column of each quantity that is counted.
+std::vector<std::string> change_cells(const Certificate& certificate, const ChangedTwin& change) {
+  std::vector<std::string> cells;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    const auto at =
+        std::find_if(change.quantities.begin(), change.quantities.end(),
+                     [&](const validate::QuantityFall& fall) { return fall.quantity == quantity.quantity; });
+    cells.push_back(at == change.quantities.end() ? "–" : fall_text(at->fall));
+  }
+  return cells;
+}
+
+std::string change_name(const ChangedTwin& change) {
+  return fmt::format("{}: {}", change.limit, change.change);
+}
+
+constexpr const char* kNothingStandsOut =
+    "Nothing stands out: no change that was tried makes the errors smaller by more than chance.";
+
+std::string limits_words(const Certificate& certificate) {
+  std::string names;
+  for (const ChangedTwin& change : certificate.changes) {
+    if (change.stands_out) names += (names.empty() ? "" : ", ") + change.limit;
+  }
+  return names.empty() ? kNothingStandsOut : fmt::format("What limits it, most first: {}.", names);
+}
+
+std::string micrometres(double length_m) {
+  return base::number_text(length_m * 1e6, 3) + " µm";
+}
+
+/// How the twins were made.
+std::string twin_words(const Certificate& certificate) {
+  std::string text = fmt::format(
+      "{} twins of this recording ({} clip{}), {}, were analysed by the {}. Their motions are those that were fitted",
+      certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
+      certificate.filmed ? "filmed by its camera and tracked, each with a calibration of its own"
+                         : "simulated at its frame times with its noise and rounding",
+      estimator_name(certificate.estimator));
+  std::string causes;
+  for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
+  text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
+  text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
+                      micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
+  return text;
+}
+
+/// "The twins are without …: read the answer with that in mind."; empty where they have all of it.
+std::string lack_words(const Certificate& certificate) {
+  if (certificate.without.empty()) return {};
+  std::string lacks;
+  for (const std::string& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack;
+  return fmt::format("The recording has what its twins have not: {}. The answer holds as far as that does not matter.",
+                     lacks);
+}
+
+}  // namespace
+
+std::string certificate_answer(const Certificate& certificate) {
+  if (certificate.empty()) {
+    return "Nothing to count: in no twin of this recording K/m, µ or α has an estimate whose truth is known.";
+  }
+  const std::string share = share_text(certificate.together), bias = bias_words(certificate);
+  if (certificate.holds()) {
+    return fmt::format("Intervals of {} hold in {} of recordings like yours; {}.", headline_names(certificate), share,
+                       bias);
+  }
+  const std::string narrow = narrow_names(certificate);
+  return fmt::format("Do not trust the intervals{}: those of {} hold in {} of recordings like yours, not in 95 %; {}.",
+                     narrow.empty() ? "" : " of " + narrow, headline_names(certificate), share, bias);
+}
+
+std::vector<std::string> best_changes(const Certificate& certificate) {
+  std::vector<std::string> words;
+  for (const ChangedTwin& change : certificate.changes) {
+    if (!change.stands_out || words.size() == kMostChanges) continue;
+    words.push_back(fmt::format("{}. With {}, {} err {} less.", change.advice, change.change,
+                                headline_names(certificate), fall_text(*change.together)));
+  }
+  return words;
+}
+
+Plot certificate_plot(const Certificate& certificate) {
+  PlotData data{"q", {}, {"intervals that hold (%)", "row", "from (%)", "to (%)"}};
+  std::string tics;
+  double row = 0.0, lowest = 80.0;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (quantity.answered() == 0) continue;
+    row += 1.0;
+    const validate::RunShare& share = quantity.coverage;
+    lowest = std::min(lowest, 100.0 * share.low - 2.0);
+    data.rows.push_back({100.0 * share.share, row, 100.0 * share.low, 100.0 * share.high});
+    tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ", gnuplot_quoted(symbol_of(quantity.quantity)), row);
+  }
+  const std::string script =
+      std::string(kFrame) +
+      fmt::format(
+          "unset offsets\nunset key\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
+          "set xlabel 'intervals of 95 % that hold the truth  (%)'\n"
+          "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\n"
+          "plot $q using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}'",
+          lowest, row + 0.7, tics, color(0));
+  return {Drawing{script, {never_empty(data)}, {560, 250}},
+          "Intervals that hold in the twins, each share with its own 95 % interval; the line: 95 %, as stated",
+          "Share of the stated intervals that hold, by quantity"};
+}
+
+namespace {
+
+Json share_json(const validate::RunShare& share) {
+  return Json{
+      {"holds", share.holds}, {"of", share.of}, {"share", share.share}, {"interval95", {share.low, share.high}}};
+}
+
+Json quantity_json(const CertifiedQuantity& quantity) {
+  Json object;
+  if (!quantity.configuration.empty()) object["configuration"] = quantity.configuration;
+  object["quantity"] = quantity.quantity;
+  object["asked"] = quantity.asked;
+  object["failed"] = quantity.failed;
+  if (quantity.answered() == 0) {
+    object["coverage"] = nullptr;
+    object["why"]["coverage"] = quantity.why;
+    return object;
+  }
+  object["coverage"] = share_json(quantity.coverage);
+  put(object, "bias_sds", quantity.bias_sds.value);
+  put(object, "bias_sds_sd", quantity.bias_sds.sd);
+  put(object, "rms", quantity.rms);
+  put(object, "stated_sd", quantity.stated_sd);
+  object["too_narrow"] = quantity.too_narrow();
+  return object;
+}
+
+Json fall_json(const validate::RunFall& fall) {
+  return Json{{"value", fall.value}, {"interval95", {fall.low, fall.high}}};
+}
+
+Json change_json(const ChangedTwin& change) {
+  Json object{{"limit", change.limit}, {"change", change.change}, {"advice", change.advice}, {"twins", change.runs}};
+  if (change.together) {
+    object["fall"] = fall_json(*change.together);
+  } else {
+    object["fall"] = nullptr;
+    object["why"]["fall"] = "too few twins have a value with and without the change";
+  }
+  object["stands_out"] = change.stands_out;
+  object["quantities"] = Json::array();
+  for (const validate::QuantityFall& one : change.quantities) {
+    object["quantities"].push_back(
+        {{"quantity", one.quantity}, {"fall", fall_json(one.fall)}, {"significant", one.significant}});
+  }
+  return object;
+}
+
+}  // namespace
+
+std::string certificate_json(const Certificate& certificate) {
+  Json document;
+  document["format"] = 1;
+  document["answer"] = certificate_answer(certificate);
+  document["holds"] = certificate.empty() ? Json(nullptr) : Json(certificate.holds());
+  document["twins"] = certificate.runs;
+  document["clips"] = certificate.clips;
+  document["estimator"] = certificate.estimator;
+  document["by"] = certificate.filmed ? "film" : "tracks";
+  document["together"] = share_json(certificate.together);
+  document["quantities"] = Json::array();
+  for (const CertifiedQuantity& one : certificate.quantities) document["quantities"].push_back(quantity_json(one));
+  document["configurations"] = Json::array();
+  for (const CertifiedQuantity& one : certificate.configurations)
+    document["configurations"].push_back(quantity_json(one));
+  document["changes"] = Json::array();
+  for (const ChangedTwin& change : certificate.changes) document["changes"].push_back(change_json(change));
+  document["causes"] = certificate.causes;
+  document["not_in_the_twins"] = certificate.without;
+  put(document, "recorded_noise_m", certificate.recorded_noise_m);
+  put(document, "twin_noise_m", certificate.twin_noise_m);
+  return json_text(document);
+}
+
+std::string certificate_text(const Certificate& certificate) {
+  std::string text = certificate_answer(certificate) + "\n";
+  if (const std::string lacks = lack_words(certificate); !lacks.empty()) text += printable(lacks) + "\n";
+  text += "\n";
+  std::vector<std::vector<std::string>> rows = {kHeader};
+  for (const CertifiedQuantity& quantity : certificate.quantities) rows.push_back(cells_of(quantity));
+  text += text_table(rows, 1);
+  std::vector<std::vector<std::string>> changes = {{"how much less it errs with"}};
+  for (const CertifiedQuantity& quantity : certificate.quantities)
+    changes.front().push_back(symbol_of(quantity.quantity));
+  for (const ChangedTwin& change : certificate.changes) {
+    changes.push_back({change_name(change)});
+    for (std::string& cell : change_cells(certificate, change)) changes.back().push_back(std::move(cell));
+  }
+  text += "\n" + text_table(changes, 1) + "\n" + limits_words(certificate) + "\n";
+  const std::vector<std::string> best = best_changes(certificate);
+  for (std::size_t i = 0; i < best.size(); ++i) text += fmt::format("{}. {}\n", i + 1, best[i]);
+  return text + "\n" + printable(twin_words(certificate)) + "\n";
+}
+
+namespace {
+
+std::string changes_html(const Certificate& certificate) {
+  const std::vector<std::string> best = best_changes(certificate);
+  if (best.empty()) return fmt::format("<p>{}</p>\n", kNothingStandsOut);
+  std::string list;
+  for (const std::string& one : best) list += fmt::format("<li>{}</li>\n", escape(one));
+  return fmt::format("<h2 id=\"changes\">What would help most</h2>\n<ol>\n{}</ol>\n", list);
+}
+
+std::string limits_table(const Certificate& certificate) {
+  std::vector<std::string> header = {"change", "together"};
+  for (const CertifiedQuantity& quantity : certificate.quantities)
+    header.push_back(escape(symbol_of(quantity.quantity)));
+  HtmlTable table(header);
+  for (const ChangedTwin& change : certificate.changes) {
+    const std::string together = change.together ? fall_text(*change.together) : "–";
+    std::vector<std::string> cells = {escape(change_name(change)),
+                                      change.stands_out ? "<b>" + together + "</b>" : together};
+    for (std::string& cell : change_cells(certificate, change)) cells.push_back(std::move(cell));
+    table.row(cells);
+  }
+  return table.str() +
+         fmt::format(
+             "<p class=\"soft\">How much smaller the rms error becomes, with its 95 % interval, over the same "
+             "twins with one change each ({} of them); together: K/m, µ and α alike. Bold: above 0 by more than "
+             "chance, over all changes.</p>\n",
+             certificate.changes.front().runs);
+}
+
+std::string configurations_table(const Certificate& certificate) {
+  if (certificate.configurations.empty()) return {};
+  std::vector<std::string> header = kHeader;
+  header.insert(header.begin(), "configuration");
+  HtmlTable table(header, 2);
+  for (const CertifiedQuantity& quantity : certificate.configurations) {
+    std::vector<std::string> cells = cells_of(quantity);
+    cells.front() = escape(cells.front());
+    cells.insert(cells.begin(), escape(quantity.configuration));
+    table.row(cells);
+  }
+  return table.str();
+}
+
+std::string how_judged(const Certificate& certificate) {
+  return fmt::format(
+      "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the limit velocity of the fitted motions (beside a named "
+      "cause K/m and µ of the viscous and Coulomb friction in the law). Intervals that hold are those of 95 % that "
+      "contain it; their share has the interval of Clopper and Pearson, for as many independent intervals as the "
+      "shares of single twins scatter like. Bias is the mean error over the stated standard deviation.</p>\n",
+      escape(twin_words(certificate)));
+}
+
+}  // namespace
+
+Page certificate_page(const std::string& name, const Certificate& certificate) {
+  Html body = fmt::format("<h1>Can I trust the intervals of {}?</h1>\n<p><b>{}</b></p>\n", escape(name),
+                          escape(certificate_answer(certificate)));
+  if (const std::string lacks = lack_words(certificate); !lacks.empty())
+    body += fmt::format("<p class=\"note\">{}</p>\n", escape(lacks));
+  if (!certificate.empty()) body += figures({certificate_plot(certificate)});
+  HtmlTable table(kHeader);
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    std::vector<std::string> cells = cells_of(quantity);
+    cells.front() = escape(cells.front());
+    table.row(cells);
+  }
+  if (!table.empty()) body += table.str();
+  body += changes_html(certificate);
+  if (!certificate.changes.empty()) body += folded("What limits it", limits_table(certificate));
+  body += folded("Each configuration", configurations_table(certificate));
+  body += folded("How this was judged", how_judged(certificate));
+  return page("Certificate: " + name, body);
+}
+
+}  // namespace glidelab::report

@@ -1,0 +1,30 @@
+/// Whether a recording's intervals can be trusted (validate/study/certify/certificate.h), as certify.json, for a
+/// terminal, and as a page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/html/html.h"
+#include "report/html/plot.h"
+#include "validate/study/certify/certificate.h"
+
+namespace glidelab::report {
+
+/// "Intervals of K/m, µ, α hold in 94 % (90 to 97 %) of recordings like yours; µ is off by 0.3 of its standard
+/// deviation on average." Text, one line without its end.
+std::string certificate_answer(const validate::Certificate& certificate);
+
+/// Three at most, the largest gain first: "Use more light. With half the noise, K/m, µ, α err
+/// 45 % (38 to 51 %) less.". Text.
+std::vector<std::string> best_changes(const validate::Certificate& certificate);
+
+/// Which share of the intervals of each quantity holds, with its own interval.
+Plot certificate_plot(const validate::Certificate& certificate);
+
+std::string certificate_json(const validate::Certificate& certificate);
+std::string certificate_text(const validate::Certificate& certificate);
+/// `name` is the recording's.
+Page certificate_page(const std::string& name, const validate::Certificate& certificate);
+
+}  // namespace glidelab::report

@@ -1,0 +1,204 @@
+#include "validate/study/certify/certify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/files/file_io.h"
+#include "core/motion/lines/line_fit.h"
+#include "core/result/quantity.h"
+#include "test_paths.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+#include "validate/tracks/made_tracks.h"
+#include "validate/tracks/outside_runs.h"
+
+using namespace glidelab;
+using namespace glidelab::validate;
+
+namespace {
+
+constexpr double kNoise_m = 5e-5;
+
+/// The first mass of the paper's inclined track: one clip up, which turns, and one down.
+render::Scenario one_mass() {
+  render::Scenario scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/paper/inclined.toml");
+  scenario.motion.configurations.resize(1);
+  return scenario;
+}
+
+/// One recording of the scenario's motions, as a folder of tracks.
+void record(const render::Scenario& scenario, const std::filesystem::path& folder, double noise_m = kNoise_m) {
+  write_track_folder(with_noise(make_tracks(scenario, 3), noise_m, 3), folder);
+}
+
+struct Direct {
+  std::size_t covered = 0, answered = 0;
+  double square = 0.0;
+  double share() const { return static_cast<double>(covered) / static_cast<double>(answered); }
+  double rms() const { return std::sqrt(square / static_cast<double>(answered)); }
+};
+
+/// What an estimator does in recordings of the true scenario, quantity by quantity.
+std::vector<Direct> direct(const render::Scenario& scenario, std::size_t runs, double noise_m = kNoise_m) {
+  std::vector<Direct> all(core::kQuantities.size());
+  std::mt19937_64 engine(77);
+  std::normal_distribution<double> deviate;
+  for (std::size_t r = 0; r < runs; ++r) {
+    render::Scenario one = scenario;
+    one.recording.clock.rate_error_ppm = 1e6 * core::kClockSdRelative * deviate(engine);
+    const MadeTracks made = with_noise(make_tracks(one, 5000 + r), noise_m, 5000 + r);
+    const core::AnalysisResults results = fit::default_estimator().estimate(
+        analyze_tracks(made, core::MotionOptions{.lines = fit::default_estimator().lines}), {});
+    for (std::size_t q = 0; q < all.size(); ++q) {
+      const core::QuantityName& name = core::kQuantities[q];
+      const double truth = *core::value_of(made.truth.configurations.front(), name.which);
+      const std::optional<core::Estimate>& found = core::value_of(results.configurations.front(), name.which).estimate;
+      if (!found) continue;
+      ++all[q].answered;
+      all[q].covered += found->low95 <= truth && truth <= found->high95 ? 1 : 0;
+      all[q].square += std::pow(found->value - truth, 2);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("twins of a track predict the errors and the coverage of the scenario that it comes from") {
+  constexpr std::size_t kRuns = 80;
+  const tests::TempDir temp;
+  record(one_mass(), temp / "made");
+  const Certificate certificate = certify({temp / "made"}, {.runs = kRuns, .seed = 4, .jobs = 2});
+  CHECK_FALSE(certificate.filmed);
+  CHECK(certificate.clips == 2);
+  CHECK(certificate.holds());
+  CHECK(certificate.causes.empty());
+  const std::vector<Direct> truly = direct(one_mass(), kRuns);
+  REQUIRE(certificate.quantities.size() == truly.size());
+  for (std::size_t q = 0; q < truly.size(); ++q) {
+    const CertifiedQuantity& predicted = certificate.quantities[q];
+    INFO(predicted.quantity);
+    CHECK(predicted.quantity == core::kQuantities[q].key);
+    CHECK(predicted.asked == kRuns);
+    REQUIRE(predicted.failed == 0);
+    // The logarithm of a root mean square of 80 normal numbers has the sd 1 / sqrt(160) = 0.08, that of two 0.11; the
+    // twins' noise is that of one recording, whose 600 positions know it to 0.03. Four of those together.
+    CHECK(std::abs(std::log(predicted.rms / truly[q].rms())) < 0.46);
+    // The sd of the difference of two shares of 0.95 in 80 is 0.034; four of those.
+    CHECK(std::abs(predicted.coverage.share - truly[q].share()) < 0.14);
+    CHECK(predicted.coverage.low <= predicted.coverage.share);
+    CHECK(predicted.coverage.share <= predicted.coverage.high);
+  }
+}
+
+TEST_CASE("half the noise halves the errors of a track, and the certificate says that this would help most") {
+  const tests::TempDir temp;
+  record(one_mass(), temp / "made");
+  const Certificate certificate = certify({temp / "made"}, {.runs = 40, .seed = 4, .jobs = 2});
+  REQUIRE_FALSE(certificate.changes.empty());
+  const ChangedTwin& first = certificate.changes.front();
+  CHECK(first.limit == "noise");
+  CHECK(first.stands_out);
+  REQUIRE(first.together);
+  // The same deviates at half their size: errors are half as large where they are linear in the noise and nothing else
+  // matters. The clock adds 20 ppm, and the bandwidth follows the noise.
+  CHECK(first.together->value > 0.35);
+  CHECK(first.together->value < 0.6);
+  CHECK(std::is_sorted(certificate.changes.begin(), certificate.changes.end(),
+                       [](const auto& a, const auto& b) { return a.together->value > b.together->value; }));
+}
+
+TEST_CASE("intervals of lines that leave out a drag are said not to hold") {
+  const render::Scenario scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/tutorial.toml");
+  const tests::TempDir temp;
+  record(scenario, temp / "made", 2e-5);
+  const Certificate certificate = certify({temp / "made"}, {.runs = 20, .seed = 1, .jobs = 2});
+  CHECK(certificate.causes == std::vector<std::string>{"quadratic_drag"});
+  CHECK_FALSE(certificate.holds());
+  CHECK(certificate.together.high < 0.95);
+  const auto drag = std::find_if(certificate.quantities.begin(), certificate.quantities.end(),
+                                 [](const CertifiedQuantity& one) { return one.quantity == "k_over_m_1_s"; });
+  REQUIRE(drag != certificate.quantities.end());
+  CHECK(drag->too_narrow());
+  CHECK(std::abs(drag->bias_sds.value) > 3.0);
+}
+
+TEST_CASE("a certificate does not depend on the number of threads") {
+  const tests::TempDir temp;
+  record(one_mass(), temp / "made");
+  const Certificate one = certify({temp / "made"}, {.runs = 20, .seed = 9, .jobs = 1});
+  const Certificate two = certify({temp / "made"}, {.runs = 20, .seed = 9, .jobs = 3});
+  REQUIRE(one.quantities.size() == two.quantities.size());
+  for (std::size_t q = 0; q < one.quantities.size(); ++q) {
+    CHECK(one.quantities[q].rms == two.quantities[q].rms);
+    CHECK(one.quantities[q].bias_sds.value == two.quantities[q].bias_sds.value);
+    CHECK(one.quantities[q].coverage.holds == two.quantities[q].coverage.holds);
+  }
+  REQUIRE(one.changes.size() == two.changes.size());
+  for (std::size_t i = 0; i < one.changes.size(); ++i) {
+    CHECK(one.changes[i].limit == two.changes[i].limit);
+    CHECK(one.changes[i].together->value == two.changes[i].together->value);
+  }
+}
+
+TEST_CASE("a table of lines and too few twins are refused, each with one error") {
+  const tests::TempDir temp;
+  base::write_file(temp / "lines.csv",
+                   "mass_kg,incline_deg,direction,k_over_m_1_s,k_sd_1_s,a0_m_s2,a0_sd_m_s2\n"
+                   "0.3,0,up,2.7,0.01,0.07,0.001\n");
+  CHECK_THROWS_WITH(certify({temp / "lines.csv"}, {}), Catch::Contains("a table of lines"));
+  record(one_mass(), temp / "made");
+  CHECK_THROWS_WITH(certify({temp / "made"}, {.runs = 5}), Catch::Contains("20 to 200"));
+}
+
+TEST_CASE("over thirty recordings of tracks the predicted coverage is what it then is", "[.evidence]") {
+  // docs/evidence/certify.md. One mass of the paper's inclined track each, launched at 0.8 to 1.2 of its speeds, with
+  // noise of 10 to 200 µm and, in every third recording, a second clip each way.
+  constexpr std::size_t kRecordings = 30, kRuns = 40;
+  const render::Scenario paper =
+      render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/paper/inclined.toml");
+  std::mt19937_64 engine(31);
+  std::uniform_real_distribution<double> uniform;
+  double predicted = 0.0, actual = 0.0, values = 0.0, logarithms = 0.0, logarithm_squares = 0.0;
+  for (std::size_t i = 0; i < kRecordings; ++i) {
+    render::Scenario scenario = paper;
+    scenario.motion.configurations = {paper.motion.configurations[i % 3]};
+    sim::ConfigurationSetup& setup = scenario.motion.configurations.front();
+    for (sim::MotionSetup& motion : setup.motions) motion.v0_m_s *= 0.8 + 0.4 * uniform(engine);
+    if (i % 3 == 0) {
+      const std::vector<sim::MotionSetup> once = setup.motions;
+      for (sim::MotionSetup motion : once) {
+        motion.name += "b";
+        motion.v0_m_s *= 0.95;
+        setup.motions.push_back(motion);
+      }
+    }
+    const double noise_m = 1e-5 * std::pow(20.0, uniform(engine));
+    const tests::TempDir temp;
+    record(scenario, temp / "made", noise_m);
+    const Certificate certificate =
+        certify({temp / "made"}, {.runs = kRuns, .seed = 100 + i, .jobs = 2, .changes = false});
+    const std::vector<Direct> truly = direct(scenario, kRuns, noise_m);
+    for (std::size_t q = 0; q < truly.size(); ++q) {
+      const CertifiedQuantity& one = certificate.quantities[q];
+      if (one.answered() == 0 || truly[q].answered == 0) continue;
+      predicted += one.coverage.share;
+      actual += truly[q].share();
+      const double logarithm = std::log(one.rms / truly[q].rms());
+      logarithms += logarithm;
+      logarithm_squares += logarithm * logarithm;
+      values += 1.0;
+    }
+  }
+  const double mean = logarithms / values;
+  WARN(values << " quantities: predicted coverage " << predicted / values << ", actual " << actual / values
+              << "; ln(predicted rms / actual rms): mean " << mean << ", sd "
+              << std::sqrt(logarithm_squares / values - mean * mean));
+  // Each share of 40 has an sd of 0.034, the mean over 30 recordings (quantities of one go together) of the difference
+  // 0.034 sqrt(2 / 30) = 0.009: three of those.
+  CHECK(std::abs(predicted - actual) / values < 0.027);
+}

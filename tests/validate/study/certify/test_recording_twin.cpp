@@ -1,0 +1,130 @@
+#include "validate/study/certify/recording_twin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "test_paths.h"
+#include "tests/app/tiny_scenario.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+using namespace glidelab::validate;
+
+namespace {
+
+/// Tracks of the tiny scenario's clip, of ten seconds at 1000 frames a second.
+RecordingTwin tracks() {
+  RecordingTwin twin;
+  twin.scenario = render::read_scenario(tests::tiny_scenario(), "tiny.toml", render::ScenarioChecks::values);
+  twin.clips.resize(1);
+  for (int i = 0; i < 10000; ++i) twin.clips[0].frame_s.push_back(i / 1000.0);
+  return twin;
+}
+
+MadeTracks record(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed) {
+  TwinStudios studios(0);
+  return record_twin(twin, change, seed, studios);
+}
+
+std::vector<double> errors_of(const MadeTracks& made) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < made.tracks[0].x_m.size(); ++i)
+    errors.push_back(made.tracks[0].x_m[i] - made.truth.clips[0].x_m[i]);
+  return errors;
+}
+
+/// Mean product of errors that far apart.
+double covariance(const std::vector<double>& errors, std::size_t lag) {
+  double sum = 0.0;
+  for (std::size_t i = lag; i < errors.size(); ++i) sum += errors[i] * errors[i - lag];
+  return sum / static_cast<double>(errors.size() - lag);
+}
+
+}  // namespace
+
+TEST_CASE("the positions of a twin scatter with the variance and the autocovariance that are asked for") {
+  RecordingTwin twin = tracks();
+  twin.clips[0].white_m = 3e-5;
+  twin.clips[0].lasting_m = 2e-5;
+  twin.clips[0].rho = 0.6;
+  const std::vector<double> errors = errors_of(record(twin, {}, 5));
+  REQUIRE(errors.size() == 10000);
+  // 10,000 values, of which about a quarter count where they last: a variance to 1.4 to 2.8 %; four of those.
+  CHECK(std::abs(covariance(errors, 0) / 13e-10 - 1.0) < 0.1);
+  CHECK(std::abs(covariance(errors, 1) / (4e-10 * 0.6) - 1.0) < 0.25);
+  CHECK(std::abs(covariance(errors, 2) / (4e-10 * 0.36) - 1.0) < 0.4);
+  const std::vector<double> half = errors_of(record(twin, {.noise = 0.5}, 5));
+  for (const std::size_t i : {0u, 17u, 9999u}) CHECK(std::abs(half[i] - 0.5 * errors[i]) < 1e-15);
+}
+
+TEST_CASE("a twin has the recording's frame times, gaps among them, and positions of whole steps where those have") {
+  RecordingTwin twin = tracks();
+  twin.clips[0].frame_s.erase(twin.clips[0].frame_s.begin() + 100, twin.clips[0].frame_s.begin() + 140);
+  twin.clips[0].rounding_m = 1e-3;
+  const MadeTracks made = record(twin, {}, 5);
+  CHECK(made.tracks[0].t_s == twin.clips[0].frame_s);
+  for (const double x_m : made.tracks[0].x_m) CHECK(std::abs(x_m / 1e-3 - std::round(x_m / 1e-3)) < 1e-9);
+  const std::vector<double> all = errors_of(record(twin, {.unrounded = true}, 5));
+  CHECK(*std::max_element(all.begin(), all.end()) < 1e-12);
+  CHECK(record(twin, {.double_rate = true}, 5).tracks[0].t_s.size() == 2 * twin.clips[0].frame_s.size() - 1);
+}
+
+TEST_CASE("a scale that is known to a part in a hundred differs from twin to twin, and is right where it is known") {
+  RecordingTwin twin = tracks();
+  twin.clips[0].frame_s.resize(300);
+  twin.scale_sd_relative = 0.01;
+  double square = 0.0;
+  constexpr int kTwins = 200;
+  for (int seed = 0; seed < kTwins; ++seed) {
+    const MadeTracks made = record(twin, {}, static_cast<std::uint64_t>(seed));
+    CHECK(made.tracks[0].scale_sd_relative == 0.01);
+    square += std::pow(made.tracks[0].x_m[0] / made.truth.clips[0].x_m[0] - 1.0, 2) / kTwins;
+  }
+  // A root mean square of 200 normal numbers is known to 5 %: four of those.
+  CHECK(std::abs(std::sqrt(square) / 0.01 - 1.0) < 0.2);
+  const MadeTracks known = record(twin, {.camera_known = true}, 1);
+  CHECK(known.tracks[0].scale_sd_relative == 0.0);
+  CHECK(std::abs(errors_of(known)[0]) < 1e-12);
+}
+
+TEST_CASE("every clip twice are clips of the same configuration with noise of their own") {
+  RecordingTwin twin = tracks();
+  twin.clips[0].white_m = 1e-5;
+  const MadeTracks made = record(twin, {.twice = true}, 5);
+  REQUIRE(made.tracks.size() == 2);
+  CHECK(made.truth.clips[0].x_m == made.truth.clips[1].x_m);
+  CHECK(made.tracks[0].x_m != made.tracks[1].x_m);
+  CHECK(made.truth.configurations.size() == 1);
+  CHECK(made.truth.configurations[0].clips.size() == 2);
+}
+
+TEST_CASE("half the noise of a sensor leaves its codes as they are") {
+  render::Sensor sensor;
+  const render::Sensor before = sensor;
+  scale_noise(sensor, 0.5);
+  CHECK(std::abs(sensor.gain_dn_per_e * sensor.full_well_e - before.gain_dn_per_e * before.full_well_e) < 1e-9);
+  // Shot noise of a code c in codes is sqrt(gain c), read noise gain times its electrons.
+  CHECK(std::abs(std::sqrt(sensor.gain_dn_per_e / before.gain_dn_per_e) - 0.5) < 1e-12);
+  CHECK(std::abs(sensor.gain_dn_per_e * sensor.read_noise_e / (before.gain_dn_per_e * before.read_noise_e) - 0.5) <
+        1e-12);
+}
+
+TEST_CASE("a filmed twin is the same with a calibration and a stage that were kept as with its own") {
+  RecordingTwin twin;
+  twin.scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/diagnosis/filmed.toml");
+  twin.scenario.motion.configurations.resize(1);
+  twin.scenario.motion.configurations.front().motions.resize(1);
+  twin.scenario.motion.configurations.front().motions.front().duration_s = 0.2;
+  twin.filmed = true;
+  const MadeTracks own = record(twin, {.camera_known = true}, 7);
+  TwinStudios studios(2);
+  const MadeTracks first = record_twin(twin, {}, 7, studios);
+  const MadeTracks kept = record_twin(twin, {.camera_known = true}, 7, studios);
+  REQUIRE(own.tracks.size() == 1);
+  CHECK(kept.tracks[0].x_m == own.tracks[0].x_m);
+  CHECK(kept.tracks[0].t_s == own.tracks[0].t_s);
+  CHECK(first.tracks[0].x_m != own.tracks[0].x_m);  // by the calibration
+  CHECK(record_twin(twin, {}, 8, studios).tracks[0].x_m != first.tracks[0].x_m);
+}

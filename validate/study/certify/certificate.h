@@ -1,0 +1,69 @@
+/// What a certificate says: whether the stated intervals hold in recordings like this one, what each quantity's error
+/// is, and what limits it. report/ writes it as certify.json and a page.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validate/study/certify/run_shares.h"
+
+namespace glidelab::validate {
+
+/// One of core::kQuantities over the twins, in its unit.
+struct CertifiedQuantity {
+  std::string configuration;  ///< "0.335 kg, 4°"; empty: all together
+  std::string quantity;
+  std::size_t asked = 0;   ///< values whose truth is known: twins times configurations
+  std::size_t failed = 0;  ///< of these without an estimate
+  RunShare coverage;       ///< of the stated intervals of 95 %
+  RunShare wide_coverage;  ///< the same with an interval of 99 % over all quantities (Bonferroni)
+  RunMean bias_sds;        ///< error over stated sd
+  double rms = 0.0;        ///< of the errors
+  double stated_sd = 0.0;  ///< root mean square
+  std::string why = {};    ///< why none has an estimate
+
+  std::size_t answered() const { return asked - failed; }
+  /// Fewer hold than 95 %, by more than chance makes.
+  bool too_narrow() const { return answered() > 0 && wide_coverage.high < 0.95; }
+};
+
+/// How much less one quantity errs by a change.
+struct QuantityFall {
+  std::string quantity;
+  RunFall fall;              ///< with an interval of 95 %
+  bool significant = false;  ///< above 0 at 95 % over all changes and quantities (Bonferroni)
+};
+
+/// One thing taken away or made better, and the same twins recorded with it.
+struct ChangedTwin {
+  std::string limit;   ///< "noise", "calibration", "marker", "few clips", …
+  std::string change;  ///< "the pixels' noise halved"
+  std::string advice;  ///< what a person can do: "Use a larger marker"
+  std::size_t runs = 0;
+  std::vector<QuantityFall> quantities;
+  std::optional<RunFall> together;  ///< K/m, mu and alpha (those that have values), interval of 95 %
+  bool stands_out = false;          ///< together, above 0 at 95 % over all changes (Bonferroni)
+};
+
+struct Certificate {
+  std::size_t runs = 0;
+  std::string estimator;
+  bool filmed = false;  ///< clips were filmed and tracked; else positions simulated
+  std::size_t clips = 0;
+  RunShare together;                                  ///< coverage of K/m, mu and alpha, in all configurations
+  std::vector<CertifiedQuantity> quantities;          ///< all configurations together: those with a truth
+  std::vector<CertifiedQuantity> configurations;      ///< each by itself, where there are several
+  std::vector<ChangedTwin> changes;                   ///< the largest fall together first
+  std::vector<std::string> causes;                    ///< ids: named by the diagnosis, and in the twin
+  std::vector<std::string> without;                   ///< sentences: of the recording, and not in the twin
+  double recorded_noise_m = 0.0, twin_noise_m = 0.0;  ///< of positions: medians over clips
+
+  /// Of all K/m, mu, alpha together, and of each by itself.
+  bool holds() const;
+  /// Nothing to count.
+  bool empty() const { return together.of == 0; }
+};
+
+}  // namespace glidelab::validate

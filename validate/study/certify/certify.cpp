@@ -1,0 +1,410 @@
+#include "validate/study/certify/certify.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "base/errors.h"
+#include "base/math/angles.h"
+#include "core/analysis/analyze.h"
+#include "core/math/quantile.h"
+#include "core/result/estimate.h"
+#include "core/result/quantity.h"
+#include "diagnose/lines/line_model.h"
+#include "diagnose/verdict/diagnose.h"
+#include "validate/random_use.h"
+
+namespace glidelab::validate {
+namespace {
+
+constexpr std::size_t kQuantityCount = core::kQuantities.size();
+constexpr std::size_t kHeadline = 3;        // K/m, mu and alpha: the first of kQuantities
+constexpr std::size_t kFilmedChanges = 10;  // twins filmed of each change
+constexpr double kConfidence = 0.95;
+
+/// One quantity of one configuration in one twin.
+struct Outcome {
+  std::optional<double> truth;
+  core::Quantity found;
+};
+
+/// Configuration by configuration of the truth, each with its quantities.
+struct TwinOutcome {
+  std::vector<std::array<Outcome, kQuantityCount>> configurations;
+  double noise_m = 0.0;
+};
+
+const core::ConfigurationResult* result_of(const core::AnalysisResults& results, const TrueConfiguration& truth) {
+  for (const core::ConfigurationResult& result : results.configurations) {
+    if (std::find(result.clips.begin(), result.clips.end(), truth.clips.front()) != result.clips.end()) return &result;
+  }
+  return nullptr;
+}
+
+/// The twins, and what all of them share.
+struct Twins {
+  const RecordingTwin& twin;
+  Truth truth;
+  const CertifyOptions& options;
+  TwinStudios& studios;
+  base::Progress progress;
+};
+
+core::AnalysisResults analysis_of(const MadeTracks& made, const CertifyOptions& options) {
+  const core::MotionOptions how{.bandwidth_s = options.bandwidth_s, .lines = options.estimator.lines};
+  return options.estimator.estimate(analyze_tracks(made, how), {});
+}
+
+TwinOutcome outcome_of(const Twins& twins, const TwinChange& change, std::uint64_t seed) {
+  core::AnalysisResults results;
+  std::string why = "none of its clips could be used";
+  TwinOutcome outcome;
+  try {
+    results = analysis_of(record_twin(twins.twin, change, seed, twins.studios, twins.progress), twins.options);
+    outcome.noise_m = median_noise(results);
+  } catch (const base::InputError& error) {  // a twin that an analysis refuses is one without values
+    why = error.what();
+  } catch (const base::NumericalError& error) {
+    why = error.what();
+  }
+  for (const TrueConfiguration& truth : twins.truth.configurations) {
+    auto& of = outcome.configurations.emplace_back();
+    const core::ConfigurationResult* result = result_of(results, truth);
+    for (std::size_t q = 0; q < kQuantityCount; ++q) {
+      of[q].truth = core::value_of(truth, core::kQuantities[q].which);
+      of[q].found = result ? core::value_of(*result, core::kQuantities[q].which) : core::undetermined(why);
+    }
+  }
+  return outcome;
+}
+
+using Outcomes = std::vector<TwinOutcome>;
+
+Outcomes record_all(const Twins& twins, const TwinChange& change, std::size_t runs, const std::function<void()>& done) {
+  Outcomes outcomes(runs);
+  base::for_each_parallel(runs, twins.options.jobs, [&](std::size_t r) {
+    outcomes[r] = outcome_of(twins, change, derived_seed(twins.options.seed, r));
+    done();
+  });
+  return outcomes;
+}
+
+/// Calls `use` with the run and the outcome of each of these quantities whose truth is known.
+template <class Use>
+void for_each_outcome(const Outcomes& outcomes, std::size_t first_quantity, std::size_t quantities,
+                      const std::optional<std::size_t>& configuration, const Use& use) {
+  for (std::size_t r = 0; r < outcomes.size(); ++r) {
+    for (std::size_t c = 0; c < outcomes[r].configurations.size(); ++c) {
+      if (configuration && *configuration != c) continue;
+      for (std::size_t q = first_quantity; q < first_quantity + quantities; ++q) {
+        if (outcomes[r].configurations[c][q].truth) use(r, outcomes[r].configurations[c][q]);
+      }
+    }
+  }
+}
+
+std::vector<RunCount> counts_of(const Outcomes& outcomes, std::size_t first_quantity, std::size_t quantities,
+                                const std::optional<std::size_t>& configuration) {
+  std::vector<RunCount> counts(outcomes.size());
+  for_each_outcome(outcomes, first_quantity, quantities, configuration, [&](std::size_t r, const Outcome& one) {
+    if (!one.found.estimate) return;
+    ++counts[r].of;
+    if (one.found.estimate->low95 <= *one.truth && *one.truth <= one.found.estimate->high95) ++counts[r].holds;
+  });
+  return counts;
+}
+
+CertifiedQuantity certified(const Outcomes& outcomes, std::size_t quantity,
+                            const std::optional<std::size_t>& configuration, const std::string& name) {
+  CertifiedQuantity result;
+  result.configuration = name;
+  result.quantity = core::kQuantities[quantity].key;
+  std::vector<double> sds(outcomes.size()), counts(outcomes.size());
+  double square = 0.0, stated = 0.0;
+  for_each_outcome(outcomes, quantity, 1, configuration, [&](std::size_t r, const Outcome& one) {
+    ++result.asked;
+    if (!one.found.estimate) {
+      ++result.failed;
+      result.why = one.found.why;
+      return;
+    }
+    const double error = one.found.estimate->value - *one.truth, sd = one.found.estimate->sd;
+    sds[r] += error / sd;
+    counts[r] += 1.0;
+    square += error * error;
+    stated += sd * sd;
+  });
+  if (result.answered() == 0) return result;
+  const std::vector<RunCount> held = counts_of(outcomes, quantity, 1, configuration);
+  result.coverage = share_of(held, kConfidence);
+  constexpr double kLevel = 0.01 / static_cast<double>(kQuantityCount);  // Bonferroni
+  result.wide_coverage = share_of(held, 1.0 - kLevel);
+  result.bias_sds = mean_of(sds, counts);
+  result.rms = std::sqrt(square / static_cast<double>(result.answered()));
+  result.stated_sd = std::sqrt(stated / static_cast<double>(result.answered()));
+  return result;
+}
+
+/// Squared errors of the runs that answer with and without the change, over the configurations that do.
+struct Squares {
+  std::vector<double> before, after;
+  std::vector<bool> known;
+};
+
+Squares squares_of(const Outcomes& before, const Outcomes& after, std::size_t quantity) {
+  Squares squares;
+  for (std::size_t r = 0; r < after.size(); ++r) {
+    double sum_before = 0.0, sum_after = 0.0;
+    for (std::size_t c = 0; c < after[r].configurations.size(); ++c) {
+      const Outcome &one = before[r].configurations[c][quantity], &other = after[r].configurations[c][quantity];
+      if (!one.truth || !one.found.estimate || !other.found.estimate) continue;
+      sum_before += std::pow(one.found.estimate->value - *one.truth, 2);
+      sum_after += std::pow(other.found.estimate->value - *other.truth, 2);
+    }
+    squares.before.push_back(sum_before);
+    squares.after.push_back(sum_after);
+    squares.known.push_back(sum_before > 0.0 && sum_after > 0.0);
+  }
+  return squares;
+}
+
+/// Of the runs in which all of these quantities are known; nothing of fewer than kFewestRuns.
+std::optional<RunFall> fall_of_all(const std::vector<Squares>& all, double confidence) {
+  constexpr std::size_t kFewestRuns = 5;
+  std::vector<std::vector<double>> before(all.size()), after(all.size());
+  if (all.empty()) return std::nullopt;
+  for (std::size_t r = 0; r < all.front().known.size(); ++r) {
+    if (!std::all_of(all.begin(), all.end(), [r](const Squares& one) { return one.known[r]; })) continue;
+    for (std::size_t q = 0; q < all.size(); ++q) {
+      before[q].push_back(all[q].before[r]);
+      after[q].push_back(all[q].after[r]);
+    }
+  }
+  if (before.front().size() < kFewestRuns) return std::nullopt;
+  return fall_of(before, after, confidence);
+}
+
+struct WantedChange {
+  TwinChange change;
+  std::string limit, words, advice;
+};
+
+std::vector<WantedChange> wanted_changes(const RecordingTwin& twin) {
+  std::vector<WantedChange> wanted;
+  if (twin.filmed) {
+    wanted.push_back({{.noise = 0.5},
+                      "noise",
+                      "half the noise of each pixel",
+                      "Use more light, or a wider aperture: four times the light halves the noise"});
+    wanted.push_back({{.marker = 2.0}, "marker", "a marker of twice the diameter", "Use a larger marker"});
+  } else {
+    wanted.push_back({{.noise = 0.5},
+                      "noise",
+                      "half the noise of each position",
+                      "Lower the noise of the positions: more light, a larger marker, a finer scale or a better "
+                      "tracker"});
+    wanted.push_back({{.double_rate = true}, "frame rate", "twice as many frames a second", "Use a higher frame rate"});
+  }
+  const bool by_scale = twin.scale_sd_relative > 0.0;
+  if (by_scale) {
+    wanted.push_back({{.camera_known = true},
+                      "scale",
+                      "the scale without error",
+                      "Measure the scale better (a longer ruler, in the plane of motion), or use a pattern"});
+  } else if (twin.filmed) {
+    wanted.push_back({{.camera_known = true},
+                      "calibration",
+                      "the camera known without error",
+                      "Take more calibration images, tilted more and filling the image"});
+  }
+  if (twin.filmed && render::lossy(twin.scenario.codec)) {
+    wanted.push_back({{.lossless = true},
+                      "codec",
+                      "no loss by compression",
+                      "Compress less: a higher bit rate or quality, or a lossless codec"});
+  }
+  if (std::any_of(twin.clips.begin(), twin.clips.end(), [](const ClipNoise& clip) { return clip.rounding_m > 0.0; })) {
+    wanted.push_back({{.unrounded = true}, "rounding", "positions with all their digits", "Export more digits"});
+  }
+  if (std::any_of(twin.scenario.motion.configurations.begin(), twin.scenario.motion.configurations.end(),
+                  [](const sim::ConfigurationSetup& setup) { return !sim::linear_law(setup.body); })) {
+    wanted.push_back({{.nominal = true},
+                      "a cause beside the law",
+                      "the nominal law alone",
+                      fmt::format("Take the cause out of the experiment, or put it into the model (glidelab analyze "
+                                  "--with {})",
+                                  fmt::join(twin.causes, " --with "))});
+  }
+  wanted.push_back({{.twice = true}, "few clips", "every clip recorded twice", "Record a second clip of each kind"});
+  return wanted;
+}
+
+/// The falls of one change; the tests count what all changes and quantities make together.
+ChangedTwin changed_twin(const WantedChange& wanted, const Outcomes& before, const Outcomes& after,
+                         std::size_t changes) {
+  ChangedTwin result;
+  result.limit = wanted.limit;
+  result.change = wanted.words;
+  result.advice = wanted.advice;
+  result.runs = after.size();
+  std::vector<Squares> headline;
+  std::vector<std::pair<std::size_t, Squares>> all;
+  for (std::size_t q = 0; q < kQuantityCount; ++q) {
+    Squares squares = squares_of(before, after, q);
+    if (!fall_of_all({squares}, kConfidence)) continue;
+    if (q < kHeadline) headline.push_back(squares);
+    all.emplace_back(q, std::move(squares));
+  }
+  const double one = 0.05 / static_cast<double>(changes);
+  for (const auto& [q, squares] : all) {
+    QuantityFall fall{std::string(core::kQuantities[q].key), *fall_of_all({squares}, kConfidence), false};
+    fall.significant = fall_of_all({squares}, 1.0 - one / static_cast<double>(all.size()))->low > 0.0;
+    result.quantities.push_back(std::move(fall));
+  }
+  result.together = fall_of_all(headline, kConfidence);
+  result.stands_out = result.together && fall_of_all(headline, 1.0 - one)->low > 0.0;
+  return result;
+}
+
+/// "0.335 kg, 4°", with the twin's own name where that is another configuration's too.
+std::vector<std::string> configuration_names(const render::Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const sim::ConfigurationSetup& setup : scenario.motion.configurations) {
+    names.push_back(
+        fmt::format("{:.4g} kg, {:.4g}°", setup.body.mass_kg, setup.stated_incline_rad * base::kDegreesPerRad));
+  }
+  std::vector<std::string> own = names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::count(names.begin(), names.end(), names[i]) > 1)
+      own[i] = fmt::format("{} ({})", names[i], scenario.motion.configurations[i].name);
+  }
+  return own;
+}
+
+void check_runs(std::size_t runs) {
+  if (runs < kFewestTwins || runs > kMostTwins) {
+    throw base::InputError(base::Issue{"", 0, "twins", fmt::format("{}", runs),
+                                       fmt::format("a whole number from {} to {}", kFewestTwins, kMostTwins)});
+  }
+}
+
+}  // namespace
+
+bool Certificate::holds() const {
+  return !(together.of > 0 && together.high < kConfidence) &&
+         std::none_of(quantities.begin(), quantities.end(),
+                      [](const CertifiedQuantity& quantity) { return quantity.too_narrow(); });
+}
+
+Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
+  check_runs(options.runs);
+  Certificate certificate;
+  certificate.runs = options.runs;
+  certificate.estimator = options.estimator.name;
+  certificate.filmed = twin.filmed;
+  certificate.causes = twin.causes;
+  certificate.without = twin.without;
+  certificate.recorded_noise_m = twin.noise_m;
+  for (const sim::ConfigurationSetup& setup : twin.scenario.motion.configurations)
+    certificate.clips += setup.motions.size();
+
+  const std::vector<WantedChange> wanted = options.changes ? wanted_changes(twin) : std::vector<WantedChange>{};
+  const std::size_t runs_of_change = twin.filmed ? std::min(kFilmedChanges, options.runs) : options.runs;
+  const std::size_t all = options.runs + wanted.size() * runs_of_change;
+  std::atomic<std::size_t> finished = 0;
+  const auto tell = [&] { progress("twins", static_cast<double>(finished) / static_cast<double>(all)); };
+  const auto done = [&] {
+    ++finished;
+    tell();
+  };
+  TwinStudios studios(runs_of_change);
+  const Twins twins{twin, truth_of(twin), options, studios, [&](std::string_view, double) { tell(); }};
+  const Outcomes outcomes = record_all(twins, {}, options.runs, done);
+  certificate.together = share_of(counts_of(outcomes, 0, kHeadline, std::nullopt), kConfidence);
+  const std::vector<std::string> names = configuration_names(twin.scenario);
+  for (std::size_t q = 0; q < kQuantityCount; ++q) {
+    CertifiedQuantity quantity = certified(outcomes, q, std::nullopt, "");
+    if (quantity.asked == 0) continue;
+    certificate.quantities.push_back(std::move(quantity));
+    for (std::size_t c = 0; names.size() > 1 && c < names.size(); ++c) {
+      CertifiedQuantity own = certified(outcomes, q, c, names[c]);
+      if (own.asked > 0) certificate.configurations.push_back(std::move(own));
+    }
+  }
+  std::vector<double> noise_m;
+  for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);  // 0 of one that failed
+  certificate.twin_noise_m = core::median_of(std::move(noise_m));
+  for (const WantedChange& change : wanted) {
+    const Outcomes after = record_all(twins, change.change, runs_of_change, done);
+    certificate.changes.push_back(changed_twin(change, outcomes, after, wanted.size()));
+  }
+  std::stable_sort(certificate.changes.begin(), certificate.changes.end(),
+                   [](const ChangedTwin& a, const ChangedTwin& b) {
+                     return (a.together ? a.together->value : -1e9) > (b.together ? b.together->value : -1e9);
+                   });
+  return certificate;
+}
+
+namespace {
+
+/// Scales the pixels' noise until positions scatter as they do in the recording: by one twin that is filmed for that.
+void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
+  constexpr double kAlike = 1.1, kFarthest = 4.0;
+  TwinStudios studios(0);
+  const Twins twins{twin, truth_of(twin), options, studios, progress};
+  const TwinOutcome pilot = outcome_of(twins, {}, derived_seed(options.seed, kMostTwins));
+  if (!(pilot.noise_m > 0.0)) return;  // none of its clips could be used: the certificate says so
+  const double factor = twin.noise_m / pilot.noise_m;
+  if (factor > 1.0 / kAlike && factor < kAlike) return;
+  if (factor < 1.0 / kFarthest || factor > kFarthest) {
+    twin.without.push_back(
+        fmt::format("noise as in the recording (its positions scatter by {:.3g} m, the twin's by "
+                    "{:.3g} m: another cause than the pixels' noise)",
+                    twin.noise_m, pilot.noise_m));
+    return;
+  }
+  scale_noise(twin.scenario.sensor, factor);
+}
+
+}  // namespace
+
+Certificate certify(const std::vector<std::filesystem::path>& folders, const CertifyOptions& options,
+                    const base::Progress& progress) {
+  check_runs(options.runs);
+  std::vector<core::ClipSetup> setups;
+  std::vector<std::optional<core::CameraSettings>> cameras;
+  std::vector<core::Experiment> experiments;
+  for (const std::filesystem::path& folder : folders) {
+    core::Experiment experiment = diagnose::read_recording(folder, options.bare);
+    if (experiment.lines) {
+      throw base::InputError(
+          base::Issue{experiment.file.string(), 0, "lines", "a table of lines",
+                      "clips or tracks: a table of lines holds no motions that a twin could repeat"});
+    }
+    setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
+    cameras.resize(setups.size(), experiment.camera);
+    experiments.push_back(std::move(experiment));
+  }
+  const core::AnalysisResults results = core::analyze(folders,
+                                                      {.bandwidth_s = {},
+                                                       .jobs = options.jobs,
+                                                       .lost_frames = core::LostFrameTimes::kept,
+                                                       .pictures = true,
+                                                       .bare = options.bare},
+                                                      progress);
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(
+      results, setups, {.without = {}, .jobs = options.jobs, .twin = true, .bare = options.bare}, progress, cameras,
+      experiments);
+  RecordingTwin twin = twin_of_recording(results, diagnosis, experiments);
+  progress("twins", 0.0);
+  if (twin.filmed) match_noise(twin, options, [&](std::string_view, double) { progress("twins", 0.0); });
+  return certify_twin(twin, options, progress);
+}
+
+}  // namespace glidelab::validate

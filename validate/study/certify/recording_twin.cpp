@@ -1,0 +1,343 @@
+#include "validate/study/certify/recording_twin.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string_view>
+#include <utility>
+
+#include "base/errors.h"
+#include "core/math/quantile.h"
+#include "core/motion/lines/line_fit.h"
+#include "diagnose/effects/effect_list.h"
+#include "diagnose/twin/twin.h"
+#include "sim/motion/simulate.h"
+#include "validate/random_use.h"
+
+namespace glidelab::validate {
+namespace {
+
+constexpr std::size_t kFewestPlaces = 8;  // of a marker: fewer lie on no line (twin_camera.h)
+
+bool is_filmed(const core::AnalysisResults& results, const std::vector<core::Experiment>& folders) {
+  std::size_t i = 0;
+  for (const core::Experiment& folder : folders) {
+    for (std::size_t c = 0; c < folder.clips.size(); ++c) {
+      const core::ClipResult& clip = results.clips.at(i++);
+      if (!folder.camera || !folder.marker || !clip.pictures || clip.sightings.size() < kFewestPlaces) return false;
+    }
+  }
+  return i > 0;
+}
+
+/// Variance and autocovariance as estimate_noise() models them, without what rounding makes.
+ClipNoise noise_of(const core::ClipResult& clip) {
+  ClipNoise noise;
+  noise.rounding_m = clip.rounding_m.value_or(0.0);
+  const std::vector<double>& covariance = clip.noise_autocovariance_m2;
+  double variance = clip.position_noise_m * clip.position_noise_m;
+  if (covariance.size() > 2 && covariance[1] > 0.0 && covariance[2] > 0.0) {
+    noise.rho = std::min(covariance[2] / covariance[1], 0.999);
+    noise.lasting_m = std::sqrt(covariance[1] / noise.rho);
+    variance = covariance[0] - noise.lasting_m * noise.lasting_m;
+  }
+  variance -= noise.rounding_m * noise.rounding_m / 12.0;
+  noise.white_m = std::sqrt(std::max(0.0, variance));
+  return noise;
+}
+
+double size_of(const diagnose::Diagnosis& diagnosis, std::string_view id, std::string_view key) {
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
+      if (effect.id == id && parameter.key == key) return parameter.value;
+    }
+  }
+  return 0.0;
+}
+
+const core::ClipResult& clip_of(const core::AnalysisResults& results, const std::vector<std::string>& names,
+                                const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+  return results.clips.at(static_cast<std::size_t>(at));
+}
+
+/// Of every clip of the scenario what its positions were like, in the scenario's order.
+std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,
+                                const render::Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const core::ClipResult& clip : results.clips) names.push_back(clip.name);
+  names = diagnose::twin_clip_names(names);
+  std::vector<ClipNoise> clips;
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      const auto data = std::find_if(diagnosis.measured.begin(), diagnosis.measured.end(),
+                                     [&](const auto& one) { return one.clip == motion.name; });
+      const core::ClipResult& clip = clip_of(results, names, motion.name);
+      ClipNoise noise = noise_of(clip);
+      for (const core::MotionPoint& point : clip.motion) {
+        if (!point.measured_m || point.t_s < data->t_s.front() || point.t_s > data->t_s.back()) continue;
+        noise.frame_s.push_back(point.t_s - data->start_s);
+      }
+      clips.push_back(std::move(noise));
+    }
+  }
+  return clips;
+}
+
+}  // namespace
+
+double median_noise(const core::AnalysisResults& results) {
+  std::vector<double> noise_m;
+  for (const core::ClipResult& clip : results.clips) noise_m.push_back(clip.position_noise_m);
+  return core::median_of(std::move(noise_m));
+}
+
+void scale_noise(render::Sensor& sensor, double factor) {
+  sensor.full_well_e /= factor * factor;
+  sensor.gain_dn_per_e *= factor * factor;
+  sensor.read_noise_e /= factor;
+}
+
+RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,
+                                const std::vector<core::Experiment>& folders) {
+  RecordingTwin twin;
+  constexpr const char* kName = "twin of the recording";
+  twin.scenario = render::read_scenario(diagnosis.twin, kName, render::ScenarioChecks::values);
+  if (is_filmed(results, folders)) {
+    try {
+      twin.scenario = render::read_scenario(diagnosis.twin, kName);
+      twin.filmed = true;
+    } catch (const base::InputError& error) {  // what a camera of a scenario cannot see
+      std::string why = error.what();
+      std::replace(why.begin(), why.end(), '\n', ' ');
+      twin.without.push_back(fmt::format("images and calibration ({})", why));
+    }
+  }
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) twin.causes.push_back(effect.id);
+  for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
+    std::erase(twin.causes, lack.what);
+    twin.without.push_back(fmt::format("{} ({})", lack.what, lack.why));
+  }
+  twin.noise_m = median_noise(results);
+  for (const core::ClipResult& clip : results.clips) {
+    twin.scale_sd_relative = std::max(twin.scale_sd_relative, clip.scale_sd_relative);
+  }
+  twin.from_m = diagnosis.twin_from_m;
+  if (!twin.filmed) {
+    twin.scale_error = size_of(diagnosis, diagnose::ids::scale_error, "e");
+    twin.perspective_1_m = size_of(diagnosis, diagnose::ids::perspective_error, "p_1_m");
+    twin.clips = clips_of(results, diagnosis, twin.scenario);
+    return twin;
+  }
+  if (!results.calibrations.empty()) {
+    constexpr std::size_t kFewest = 3, kMost = 99;  // that a scenario takes
+    twin.scenario.pattern.views = static_cast<int>(std::clamp(results.calibrations.front().views_used, kFewest, kMost));
+  }
+  return twin;
+}
+
+namespace {
+
+/// Whether frames are lost or uneven as the diagnosis named it: they then fall elsewhere in every twin.
+bool has_uneven_clock(const render::Scenario& scenario) {
+  const render::ClockSetup& clock = scenario.recording.clock;
+  return clock.jitter_s > 0.0 || clock.dropped_fraction > 0.0 || clock.duplicated_fraction > 0.0;
+}
+
+/// K/m and mu of the viscous and Coulomb terms where further forces act: what the law has beside the named causes.
+void add_own_law(const render::Scenario& scenario, Truth& truth) {
+  for (std::size_t c = 0; c < truth.configurations.size(); ++c) {
+    TrueConfiguration& configuration = truth.configurations[c];
+    if (configuration.k_over_m_1_s || configuration.mu) continue;
+    const sim::Body& body = scenario.motion.configurations[c].body;
+    sim::LinearLaw law;
+    for (const auto& term : body.forces) {
+      const std::optional<sim::LinearShare> share = term->linear();
+      if (!share) continue;
+      law.k_over_m_1_s += share->k_n_s_m / body.mass_kg;
+      law.mu += share->mu;
+    }
+    if (law.k_over_m_1_s > 0.0) configuration.k_over_m_1_s = law.k_over_m_1_s;
+    if (law.mu > 0.0) configuration.mu = law.mu;
+  }
+}
+
+render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, double clock_ppm) {
+  render::Scenario scenario = twin.scenario;
+  scenario.recording.clock.rate_error_ppm += clock_ppm;
+  scenario.marker.diameter_m *= change.marker;
+  if (change.lossless) scenario.codec = render::Codec::ffv1;
+  if (change.noise != 1.0) scale_noise(scenario.sensor, change.noise);
+  for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    if (change.nominal) std::erase_if(configuration.body.forces, [](const auto& term) { return !term->linear(); });
+  }
+  if (change.twice) {
+    for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+      const std::vector<sim::MotionSetup> once = configuration.motions;
+      for (sim::MotionSetup motion : once) {
+        motion.name += "-again";
+        configuration.motions.push_back(std::move(motion));
+      }
+    }
+  }
+  return scenario;
+}
+
+/// Of every clip of the scenario, as changed().
+std::vector<ClipNoise> changed_clips(const RecordingTwin& twin, const TwinChange& change) {
+  std::vector<ClipNoise> clips;
+  std::size_t at = 0;
+  for (const sim::ConfigurationSetup& configuration : twin.scenario.motion.configurations) {
+    const auto first = twin.clips.begin() + static_cast<std::ptrdiff_t>(at);
+    at += configuration.motions.size();
+    for (int k = 0; k < (change.twice ? 2 : 1); ++k) {
+      clips.insert(clips.end(), first, first + static_cast<std::ptrdiff_t>(configuration.motions.size()));
+    }
+  }
+  for (ClipNoise& clip : clips) {
+    clip.white_m *= change.noise;
+    clip.lasting_m *= change.noise;
+    if (change.unrounded) clip.rounding_m = 0.0;
+    if (!change.double_rate) continue;
+    std::vector<double> twice;
+    for (const double t_s : clip.frame_s) {
+      if (!twice.empty()) twice.push_back(0.5 * (twice.back() + t_s));
+      twice.push_back(t_s);
+    }
+    clip.frame_s = std::move(twice);
+    clip.rho = std::sqrt(clip.rho);  // it lasts as long
+  }
+  return clips;
+}
+
+/// The clip at its recorded times, as the clock of this twin has them.
+void move_at(const sim::Body& body, const sim::MotionSetup& motion, const std::vector<double>& frame_s, double rate,
+             TrueClip& truth, core::TrackData& track) {
+  truth.t_s.clear();
+  for (const double t_s : frame_s) truth.t_s.push_back(t_s / rate);
+  const sim::Trajectory trajectory = sim::simulate(body, motion.x0_m, motion.v0_m_s, truth.t_s);
+  truth.x_m.clear();
+  truth.v_m_s.clear();
+  truth.a_m_s2.clear();
+  track.frame.clear();
+  for (const sim::State& state : trajectory.states) {
+    truth.x_m.push_back(state.x_m);
+    truth.v_m_s.push_back(state.v_m_s);
+    truth.a_m_s2.push_back(state.a_m_s2);
+    track.frame.push_back(track.frame.size());
+  }
+  track.x_m = truth.x_m;
+  track.t_s = track.frame_t_s = frame_s;
+}
+
+void add_errors(const RecordingTwin& twin, const ClipNoise& noise, double scale, std::uint64_t seed, std::size_t clip,
+                std::vector<double>& x_m) {
+  std::mt19937_64 engine = random_engine(RandomUse::by_number, seed, clip);
+  std::normal_distribution<double> deviate(0.0, 1.0);
+  double lasting = deviate(engine);
+  const double fresh = std::sqrt(1.0 - noise.rho * noise.rho);
+  for (double& x : x_m) {
+    const double there = twin.from_m + x;
+    x = scale * (1.0 + twin.scale_error) * there / (1.0 + twin.perspective_1_m * there) - twin.from_m;
+    x += noise.white_m * deviate(engine) + noise.lasting_m * lasting;
+    lasting = noise.rho * lasting + fresh * deviate(engine);
+    if (noise.rounding_m > 0.0) x = noise.rounding_m * std::round(x / noise.rounding_m);
+  }
+}
+
+MadeTracks simulated(const RecordingTwin& twin, const TwinChange& change, const render::Scenario& scenario,
+                     double scale, std::uint64_t seed) {
+  MadeTracks made = make_tracks(scenario, seed);
+  const std::vector<ClipNoise> clips = changed_clips(twin, change);
+  const double rate = 1.0 + 1e-6 * scenario.recording.clock.rate_error_ppm;
+  std::size_t c = 0;
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      if (!has_uneven_clock(scenario))
+        move_at(configuration.body, motion, clips[c].frame_s, rate, made.truth.clips[c], made.tracks[c]);
+      add_errors(twin, clips[c], scale, seed, c, made.tracks[c].x_m);
+      made.tracks[c].scale_sd_relative = change.camera_known ? 0.0 : twin.scale_sd_relative;
+      if (change.double_rate) made.tracks[c].frame_rate_hz *= 2.0;
+      ++c;
+    }
+  }
+  return made;
+}
+
+}  // namespace
+
+/// A seed's calibration, and the stage of a change.
+class TwinFilm {
+ public:
+  TwinFilm(TwinStudios& studios, const TwinChange& change, std::uint64_t seed)
+      : studios_(studios), change_(change), seed_(seed) {}
+
+  MadeTracks film(const render::Scenario& scenario, const std::optional<core::CameraModel>& lens,
+                  const base::Progress& progress) {
+    const std::shared_ptr<FilmStudio> studio = studio_of(scenario, progress);
+    MadeTracks made = studio->film(scenario, seed_, 1, lens);
+    const std::lock_guard lock(studios_.mutex_);
+    if (studio->stage()) studios_.stages_.try_emplace(scene(), studio->stage());
+    if (as_recorded() && studios_.of_seed_.size() < studios_.most_) studios_.of_seed_.try_emplace(seed_, studio);
+    return made;
+  }
+
+ private:
+  std::pair<double, double> scene() const { return {change_.noise, change_.marker}; }
+  bool as_recorded() const { return scene() == std::pair(1.0, 1.0); }
+
+  std::shared_ptr<FilmStudio> studio_of(const render::Scenario& scenario, const base::Progress& progress) {
+    std::shared_ptr<const render::Stage> stage;
+    {
+      const std::lock_guard lock(studios_.mutex_);
+      const auto kept = studios_.of_seed_.find(seed_);
+      if (as_recorded() && kept != studios_.of_seed_.end()) return kept->second;
+      if (const auto drawn = studios_.stages_.find(scene()); drawn != studios_.stages_.end()) stage = drawn->second;
+    }
+    return std::make_shared<FilmStudio>(scenario, seed_, 1, stage, progress);
+  }
+
+  TwinStudios& studios_;
+  const TwinChange& change_;
+  std::uint64_t seed_;
+};
+
+namespace {
+
+MadeTracks filmed(const RecordingTwin& twin, const TwinChange& change, const render::Scenario& scenario, double scale,
+                  std::uint64_t seed, TwinStudios& studios, const base::Progress& progress) {
+  const bool by_scale = twin.scale_sd_relative > 0.0;
+  const auto lens = by_scale || change.camera_known ? true_camera(scenario.camera) : std::nullopt;
+  MadeTracks made = TwinFilm(studios, change, seed).film(scenario, lens, progress);
+  if (!by_scale) return made;
+  for (core::TrackData& track : made.tracks) {
+    track.shared_m.clear();
+    track.scale_sd_relative = change.camera_known ? 0.0 : twin.scale_sd_relative;
+    for (double& x_m : track.x_m) x_m *= scale;
+  }
+  return made;
+}
+
+}  // namespace
+
+MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed, TwinStudios& studios,
+                       const base::Progress& progress) {
+  std::mt19937_64 engine = random_engine(RandomUse::clock_rate, seed);
+  std::normal_distribution<double> deviate(0.0, 1.0);
+  const double clock_ppm = 1e6 * core::kClockSdRelative * deviate(engine);
+  const double scale = 1.0 + (change.camera_known ? 0.0 : twin.scale_sd_relative * deviate(engine));
+  const render::Scenario scenario = changed(twin, change, clock_ppm);
+  MadeTracks made = twin.filmed ? filmed(twin, change, scenario, scale, seed, studios, progress)
+                                : simulated(twin, change, scenario, scale, seed);
+  return made;
+}
+
+Truth truth_of(const RecordingTwin& twin) {
+  Truth truth = make_tracks(twin.scenario, 1).truth;
+  add_own_law(twin.scenario, truth);
+  return truth;
+}
+
+}  // namespace glidelab::validate
