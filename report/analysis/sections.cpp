@@ -91,13 +91,13 @@ std::string noise_text(double noise_mm, std::size_t points) {
 }
 
 /// How the clip was smoothed, and how strongly.
-Html smoothing_text(const core::ClipResult& clip) {
+std::string smoothing_text(const core::ClipResult& clip) {
   if (!clip.strength) {
     return fmt::format("Bandwidth {} ms{}{}", base::number_text(clip.bandwidth_s * 1e3, 3),
                        clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method));
   }
   const core::SmoothingStrength& strength = *clip.strength;
-  Html text = fmt::format("Smoother {}: smoothing time {} ms, by {}", escape(strength.smoother),
+  std::string text = fmt::format("Smoother {}: smoothing time {} ms, by {}", escape(strength.smoother),
                           base::number_text(strength.time_s * 1e3, 3), escape(strength.method));
   if (!strength.breaks_s.empty()) {
     text +=
