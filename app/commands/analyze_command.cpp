@@ -18,7 +18,7 @@
 #include "core/analysis/analyze.h"
 #include "core/analysis/preview.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/smoothing/smoother.h"
+#include "core/motion/smoothing/smoother_list.h"
 #include "core/track/bare_track.h"
 #include "diagnose/verdict/fit_given_causes.h"
 #include "fit/estimators.h"

@@ -23,6 +23,7 @@
 #include "core/motion/smooth_clip.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
+#include "core/motion/smoothing/smoother_list.h"
 
 namespace glidelab::core {
 namespace {

@@ -13,10 +13,9 @@ struct SmoothingStrength {
   std::string method;        ///< one line for a reader: how it was chosen
   double bandwidth_s = 0.0;  ///< of the local cubic; else of the one with as much noise in a, far from ends
   double noise_sd_m = 0.0;   ///< of a position of factor 1, where the smoother has to know it; 0 otherwise
-  /// Of the integrated Wiener process: (s^2 dt / q)^(1/6), dt the mean time step. Oscillations of x faster than
-  /// 1/time_s in angular frequency are taken for noise.
+  /// Of the integrated Wiener process of order N (wiener_chain.h): (s^2 dt / q)^(1 / 2N), dt the mean time step.
+  /// Oscillations of x faster than 1/time_s in angular frequency are taken for noise.
   double time_s = 0.0;
-  double jerk_density_m2_s5 = 0.0;     ///< q, of the jerk as white noise
   std::optional<double> jump_sd_m_s2;  ///< of a at a break; infinite where any jump is allowed
   std::vector<double> breaks_s;        ///< where a may jump, as estimated
   double parameters = 0.0;             ///< effective number of parameters: the trace of the smoothing matrix

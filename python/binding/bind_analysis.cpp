@@ -14,7 +14,7 @@
 #include "core/analysis/preview.h"
 #include "core/motion/analyze_tracks.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/smoothing/smoother.h"
+#include "core/motion/smoothing/smoother_list.h"
 #include "fit/estimators.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"

@@ -15,7 +15,7 @@
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
-#include "core/motion/smoothing/smoother.h"
+#include "core/motion/smoothing/smoother_list.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
 

@@ -50,6 +50,20 @@ class Smoothing(InFolder):
             picked = glidelab.choose_bandwidth(t, x, rule.name)
             self.assertLess(abs(math.log(float(picked) / best)), math.log(2.0), rule.name)
 
+    def test_a_smoother_without_a_bandwidth_finds_its_strength_and_the_turn(self):
+        t = np.arange(300) / 200.0
+        noise = np.random.default_rng(3).normal(0.0, 1e-4, t.size)
+        x = np.where(t < 0.7, 1.2, 0.8) * (t - 0.7) ** 2 / 2.0 + noise  # a jumps by -0.4 where v = 0
+        for smoother in ("kalman", "spline"):
+            smooth = glidelab.smooth(t, x, smoother=smoother, breaks_s=[0.72])
+            self.assertAlmostEqual(smooth.strength.breaks_s[0], 0.7, delta=0.002)
+            self.assertAlmostEqual(smooth.strength.noise_m, 1e-4, delta=2e-5)  # five standard deviations
+            off = np.abs(smooth.a_m_s2 - np.where(t < smooth.strength.breaks_s[0], 1.2, 0.8)) / smooth.sd_a_m_s2
+            self.assertLess(off.max(), 6.0)
+            self.assertGreater(smooth.strength.simultaneous_a, 1.96)
+            at = glidelab.smooth(t, x, smoother=smoother, breaks_s=[0.72], at_s=[0.3025])
+            self.assertAlmostEqual(at.a_m_s2[0], 1.2, delta=6.0 * at.sd_a_m_s2[0])
+
     def test_wrong_input_is_refused(self):
         t, x = damped()
         for call in (lambda: glidelab.smooth(t, x, 0.0), lambda: glidelab.smooth(t, x, math.inf),
@@ -58,6 +72,12 @@ class Smoothing(InFolder):
                      lambda: glidelab.smooth(t, x, 0.05, kernel="square"),
                      lambda: glidelab.smooth(t, x, 0.05, noise_m=-1.0),
                      lambda: glidelab.smooth(t, x, 0.05, noise_m=1.0, at_s=[0.1]),
+                     lambda: glidelab.smooth(t, x), lambda: glidelab.smooth(t, x, 0.05, breaks_s=[0.1]),
+                     lambda: glidelab.smooth(t, x, 0.05, smoother="kalman"),
+                     lambda: glidelab.smooth(t, x, smoother="kalman", order=4),
+                     lambda: glidelab.smooth(t, x, smoother="kalman", breaks_s=[t[-1] + 1.0]),
+                     lambda: glidelab.smooth(t[:4], x[:4], smoother="spline"),
+                     lambda: glidelab.smooth(t, x, smoother="lowess"),
                      lambda: glidelab.choose_bandwidth(t, x, "lines"), lambda: glidelab.position_noise(t[:3], x[:3])):
             with self.assertRaises(glidelab.InputError):
                 call()

@@ -64,21 +64,6 @@ class Smoother {
   virtual SmoothedSeries smooth(const SmoothingInput& input) const = 0;
 };
 
-/// In the order in which people are told of them; the first is the default.
-const std::vector<const Smoother*>& smoothers();
-std::vector<std::string> smoother_names();
-/// Null where there is none of the name.
-const Smoother* find_smoother(std::string_view name);
-
-inline constexpr std::string_view kLocalPolynomial = "local-polynomial";
-
-/// InputError for a name that is unknown, and for a bandwidth or a rule for one beside a smoother that has none.
-void check_smoother(const std::string& name, bool bandwidth_asked_for);
-
-/// Of wiener_smoother.cpp.
-const Smoother& kalman_smoother();
-const Smoother& spline_smoother();
-
 /// A part of the positions that is one motion.
 struct SeriesPart {
   std::size_t first = 0, count = 0;

@@ -65,6 +65,37 @@ TEST_CASE("analyze takes the bandwidth from the rule that is named, and says so"
   CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("least mean squared error"));
 }
 
+TEST_CASE("analyze smooths as it is asked to, says how strongly, and refuses what does not go together") {
+  const tests::TempDir temp;
+  tests::write_track_experiment(temp / "made");
+  const auto run = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words{"analyze", (temp / "made").string(), "--out", (temp / "out").string(), "--json"};
+    words.insert(words.end(), options.begin(), options.end());
+    return tests::glidelab(words);
+  };
+  for (const std::string smoother : {"kalman", "spline"}) {
+    const tests::ProcessResult result = run({"--smoother", smoother});
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    const json clip = json::parse(result.out).at("clips").at(0);
+    CHECK(clip.at("smoothing").at("smoother") == smoother);
+    CHECK(clip.at("smoothing").at("time_s") > 0.0);
+    CHECK(base::read_file(temp / "out/report.html").find("Smoother " + smoother + ": smoothing time ") !=
+          std::string::npos);
+    fs::remove_all(temp / "out");
+  }
+  for (const std::vector<std::string>& refused :
+       std::vector<std::vector<std::string>>{{"--smoother", "kalman", "--bandwidth", "0.05"},
+                                             {"--smoother", "spline", "--bandwidth", "lines"},
+                                             {"--smoother", "kalman", "--estimator", "phase-diagram-gls"},
+                                             {"--smoother", "kalmann"}}) {
+    const tests::ProcessResult result = run(refused);
+    CHECK(result.status == 1);
+    CHECK(result.err.find("smoother") != std::string::npos);
+    CHECK_FALSE(fs::exists(temp / "out"));
+  }
+}
+
 TEST_CASE("analyze fits generalised lines where they are asked for, in the same form") {
   const tests::TempDir temp;
   tests::write_track_experiment(temp / "made");

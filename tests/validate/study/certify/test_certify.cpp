@@ -156,7 +156,7 @@ TEST_CASE("a table of lines and too few twins are refused, each with one error")
 }
 
 TEST_CASE("over thirty recordings of tracks the predicted coverage is what it then is", "[.evidence]") {
-  // docs/evidence/certify.md. One mass of the paper's inclined track each, launched at 0.8 to 1.2 of its speeds, with
+  // One mass of the paper's inclined track each, launched at 0.8 to 1.2 of its speeds, with
   // noise of 10 to 200 µm and, in every third recording, a second clip each way.
   constexpr std::size_t kRecordings = 30, kRuns = 40;
   const render::Scenario paper =

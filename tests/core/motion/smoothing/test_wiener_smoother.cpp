@@ -1,4 +1,4 @@
-#include "core/motion/smoothing/smoother.h"
+#include "core/motion/smoothing/wiener_smoother.h"
 
 #include <Eigen/Dense>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "core/motion/smoothing/wiener_chain.h"
+#include "core/motion/smoothing/smoother_list.h"
 #include "tests/catch.h"
 
 using namespace glidelab::core;

@@ -1,0 +1,23 @@
+/// The list of smoothers, which names each once.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/motion/smoothing/smoother.h"
+
+namespace glidelab::core {
+
+/// In the order in which people are told of them; the first is the default.
+const std::vector<const Smoother*>& smoothers();
+std::vector<std::string> smoother_names();
+/// Null where there is none of the name.
+const Smoother* find_smoother(std::string_view name);
+
+inline constexpr std::string_view kLocalPolynomial = "local-polynomial";
+
+/// InputError for a name that is unknown, and for a bandwidth or a rule for one beside a smoother that has none.
+void check_smoother(const std::string& name, bool bandwidth_asked_for);
+
+}  // namespace glidelab::core
