@@ -51,8 +51,10 @@ std::string data_of(const PhaseExplorer& explorer) {
 
 report::Page explorer_page(const PhaseExplorer& explorer) {
   std::string body = fmt::format("<style>\n{}</style>\n{}", kExplorerStyle, kExplorerBody);
-  body += "<script>\n'use strict';\n" + data_of(explorer);
-  for (const std::string_view script : {kExplorerMotion, kExplorerWords, kExplorerView})
+  body += fmt::format("<script>\n'use strict';\nconst LANGUAGES={{en:{}}};\nlet language='en';\n", kEnglish);
+  body += data_of(explorer);
+  for (const std::string_view script :
+       {kExplorerMotion, kPageLanguage, kExplorerWords, kExplorerTrack, kExplorerKept, kExplorerLink, kExplorerView})
     body.append("\n").append(script);
   return report::page("Friction in the phase plane", body + "</script>\n");
 }
