@@ -13,6 +13,7 @@
 #include "base/files/file_io.h"
 #include "report/html/gnuplot.h"
 #include "report/text/json_numbers.h"
+#include "teach/page/page_words.h"
 #include "teach/page/teaching_pages.h"
 #include "teach/study/law_study.h"
 
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 struct LawsOptions {
   CommonOptions common;
   std::vector<std::string> scenarios;
+  std::string language = "en";
 };
 
 std::vector<fs::path> files_of(const std::vector<std::string>& names) {
@@ -61,7 +63,8 @@ void laws(const LawsOptions& options) {
     throw_if_interrupted();
   }
   base::StagedOutput staged(out);
-  report::write_page(staged.dir(), "laws.html", teach::laws_report(studies, films, display.callback()));
+  report::write_page(staged.dir(), "laws.html",
+                     teach::laws_report(studies, films, display.callback(), options.language));
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
@@ -78,6 +81,9 @@ void add_laws(CLI::App& app, Command& chosen) {
   command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders with some (scenarios/laws)")
       ->type_name("PATH")
       ->required();
+  command->add_option("--language", options->language, "Language in which the page opens; its menu has all")
+      ->check(CLI::IsMember(teach::language_codes()))
+      ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/laws-<name of the first>",
                      "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { laws(*options); }; });

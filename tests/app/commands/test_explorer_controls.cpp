@@ -165,3 +165,39 @@ TEST_CASE("a link that does not fit the explorer changes nothing, and the page s
     CHECK(opened->data.at("mu") == "0.0071");
   }
 }
+
+TEST_CASE("the explorer speaks the language that is chosen, with its decimal sign, and the link keeps it") {
+  const tests::TempDir temp;
+  const auto opened = tests::open_with(temp.path(), quick_page(), std::string(kState) + R"js(
+put({ law: 0, k: 2.5, mu: 0.01, alpha: 4, v0: -1 }); $('keep').click();
+for (const code of Object.keys(LANGUAGES)) {
+  $('language').value = code; $('language').onchange();
+  const words = document.querySelector('main').innerText, english = LANGUAGES.en;
+  // Sentences and labels that stand on the page as they do in English.
+  seen[code + 'Left'] = [...document.querySelectorAll('[data-text]')].filter(e => e.textContent === english[e.dataset.text]).map(e => e.dataset.text).join(' ');
+  seen[code + 'Empty'] = [...document.querySelectorAll('[data-text]')].filter(e => !e.textContent).length;
+  seen[code + 'Numbers'] = $('o-mu').textContent + ' ' + $('readout').textContent.match(/v = (\S+)/)[1] + ' ' + $('kept').textContent.match(/μ = (\S+) ?/)[1];
+  seen[code + 'Points'] = (words.match(/\d\.\d/g) || []).length;
+  seen[code + 'Lang'] = document.documentElement.lang + ' ' + document.title;
+  seen[code + 'Wide'] = document.documentElement.scrollWidth - innerWidth;
+  seen[code + 'Link'] = new URLSearchParams(fragment().slice(1)).get('language');
+}
+)js");
+  if (!opened) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  CHECK(opened->messages.find("Uncaught") == std::string::npos);
+  for (const std::string code : {"de", "es", "fr", "pt"}) {
+    INFO(code);
+    CHECK(opened->data.at(code + "-left").empty());
+    CHECK(opened->data.at(code + "-empty") == "0");
+    CHECK(opened->data.at(code + "-numbers").starts_with("0,0100 0,154 0,0100"));
+    CHECK(opened->data.at(code + "-points") == "0");
+    CHECK(opened->data.at(code + "-lang").starts_with(code + " "));
+    CHECK(opened->data.at(code + "-link") == code);
+    CHECK(std::stod(opened->data.at(code + "-wide")) <= 0.0);
+  }
+  CHECK(opened->data.at("en-numbers").starts_with("0.0100 0.154 0.0100"));
+  CHECK(opened->data.at("de-lang") == "de Reibung in der Phasenebene");
+}
