@@ -9,6 +9,7 @@
 #include "app/shell/run_control.h"
 #include "base/files/file_io.h"
 #include "report/text/json_numbers.h"
+#include "teach/page/page_words.h"
 #include "teach/page/teaching_pages.h"
 
 namespace glidelab::app {
@@ -16,11 +17,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void explore(const CommonOptions& options) {
+struct ExploreOptions {
+  CommonOptions common;
+  std::string language = "en";
+};
+
+void explore(const ExploreOptions& all) {
+  const CommonOptions& options = all.common;
   const fs::path out = output_folder(options, "explore", "page");
   check_writable(out);
   base::StagedOutput staged(out);
-  report::write_page(staged.dir(), "explore.html", teach::explorer_page(teach::explore_phases()));
+  report::write_page(staged.dir(), "explore.html", teach::explorer_page(teach::explore_phases(), all.language));
   throw_if_interrupted();
   staged.publish_files();
   const std::string page = (out / "explore.html").string();
@@ -30,10 +37,14 @@ void explore(const CommonOptions& options) {
 }  // namespace
 
 void add_explore(CLI::App& app, Command& chosen) {
-  auto options = std::make_shared<CommonOptions>();
+  auto options = std::make_shared<ExploreOptions>();
   CLI::App* command = app.add_subcommand(
       "explore", "Make a page for class: sliders for the law, K/m, mu, alpha and v0; x(t), v(t) and a(v) together");
-  add_common_options(*command, *options, "glidelab-out/explore-page", "Accepted for consistency; has no effect here");
+  command->add_option("--language", options->language, "Language in which the page opens; its menu has all")
+      ->check(CLI::IsMember(teach::language_codes()))
+      ->capture_default_str();
+  add_common_options(*command, options->common, "glidelab-out/explore-page",
+                     "Accepted for consistency; has no effect here");
   command->callback([options, &chosen] { chosen = [options] { explore(*options); }; });
 }
 

@@ -11,6 +11,7 @@
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
+#include "teach/page/page_words.h"
 
 namespace glidelab::teach {
 namespace {
@@ -49,12 +50,13 @@ std::string data_of(const PhaseExplorer& explorer) {
 
 }  // namespace
 
-report::Page explorer_page(const PhaseExplorer& explorer) {
+report::Page explorer_page(const PhaseExplorer& explorer, const std::string& language) {
   std::string body = fmt::format("<style>\n{}</style>\n{}", kExplorerStyle, kExplorerBody);
-  body += "<script>\n'use strict';\n" + data_of(explorer);
-  for (const std::string_view script : {kExplorerMotion, kExplorerWords, kExplorerView})
+  body += "<script>\n'use strict';\n" + language_script(language) + data_of(explorer);
+  for (const std::string_view script :
+       {kExplorerMotion, kExplorerWords, kExplorerTrack, kExplorerKept, kExplorerLink, kExplorerView})
     body.append("\n").append(script);
-  return report::page("Friction in the phase plane", body + "</script>\n");
+  return report::page(text_in("en", "title"), body + "</script>\n");
 }
 
 namespace {
@@ -91,18 +93,20 @@ std::string film_figure(const LawStudy& study, const LawFilm& film) {
   return fmt::format(
       "<div class=\"law\"><figure><div class=\"rows\" style=\"--tall:{:.4f}\"><video controls loop muted playsinline "
       "preload=\"auto\" "
-      "width=\"{}\" height=\"{}\" aria-label=\"Film of {}\" src=\"{}\"></video><ul>{}</ul></div>"
-      "<figcaption>The gliders on their tracks drawn by the renderer, each track with its true slope; {:.1f} s, in "
-      "real time</figcaption></figure><figure><canvas role=\"img\" aria-label=\"Points of {} in a(v)\"></canvas>"
-      "<figcaption>Their points in a(v) at the same time</figcaption></figure>"
+      "width=\"{}\" height=\"{}\" aria-label=\"{}\" src=\"{}\"></video><ul>{}</ul></div>"
+      "<figcaption>{}</figcaption></figure><figure><canvas role=\"img\" aria-label=\"a(v): {}\"></canvas>"
+      "<figcaption>{}</figcaption></figure>"
       "<script type=\"application/json\">{}]}}</script></div>\n",
       film.width_px > 0 ? static_cast<double>(film.height_px) / film.width_px : 0.0, film.width_px, film.height_px,
       escape(study.name), data_uri("video/mp4", film.mp4), names,
-      static_cast<double>(film.frames - 1) / film.frame_rate_hz, escape(study.name), data);
+      words("film_caption",
+            {{"seconds", fmt::format("{:.1f}", static_cast<double>(film.frames - 1) / film.frame_rate_hz)}}),
+      escape(study.name), words("film_points"), data);
 }
 
-std::string film_script() {
-  return fmt::format("<style>\n{}</style>\n<script>\n{}</script>\n", kFilmStyle, kFilmScript);
+std::string film_script(const std::string& language) {
+  return fmt::format("<style>\n{}</style>\n<script>\n{}{}{}</script>\n", kFilmStyle, language_script(language),
+                     kFilmScript, kLawsWords);
 }
 
 namespace {
@@ -110,7 +114,6 @@ namespace {
 using report::color;
 using report::Drawing;
 using report::escape;
-using report::figures;
 using report::gnuplot_quoted;
 using report::Html;
 using report::kFrame;
@@ -138,7 +141,7 @@ Plot position_plot(const LawStudy& study) {
         fmt::format("{}${} using 1:2 with lines lw 2 dt {} lc rgb '{}' title {}", i == 0 ? "" : ", ", data.back().name,
                     i % 2 == 0 ? 1 : 2, color(i), gnuplot_quoted(shortened(study.motions[i].clip)));
   }
-  return {Drawing{script, data}, "Position over time", "x(t) of " + study.name};
+  return {Drawing{script, data}, "position_caption", "x(t) of " + study.name};
 }
 
 Plot phase_plot(const LawStudy& study) {
@@ -146,7 +149,7 @@ Plot phase_plot(const LawStudy& study) {
   std::string script = std::string(kFrame) +
                        "set key top right font ',11' maxrows 4\nset xlabel 'v (m/s)'\nset ylabel 'a (m/s²)'\n"
                        "set xzeroaxis lt 1 lc rgb '#777777'\nset yzeroaxis lt 1 lc rgb '#777777'\nplot ";
-  bool first = true, stable_named = false, unstable_named = false;
+  bool first = true;
   const auto add = [&](PlotData block, const std::string& how) {
     if (block.rows.empty()) return;
     script += fmt::format("{}${} using 1:2 {}", first ? "" : ", ", block.name, how);
@@ -176,15 +179,21 @@ Plot phase_plot(const LawStudy& study) {
       for (const Equilibrium& at : curve.equilibria) {
         if (at.stable == stable) points.rows.push_back({at.v_m_s, 0.0});
       }
-      bool& named = stable ? stable_named : unstable_named;
-      const std::string title = named ? "notitle" : stable ? "title 'equilibrium'" : "title 'unstable equilibrium'";
-      named = named || !points.rows.empty();
-      add(std::move(points), fmt::format("with points pt {} ps 1.1 lw 1.6 lc rgb '#000000' {}", stable ? 7 : 6, title));
+      add(std::move(points), fmt::format("with points pt {} ps 1.1 lw 1.6 lc rgb '#000000' notitle", stable ? 7 : 6));
     }
   }
-  return {Drawing{script, data},
-          "Acceleration over velocity; dots: speeds that motions tend to, circles: speeds that they leave",
-          "a(v) of " + study.name};
+  return {Drawing{script, data}, "phase_caption", "a(v) of " + study.name};
+}
+
+/// As report::figures() has them, with captions in all languages.
+Html plots_of(const LawStudy& study) {
+  Html html("<div class=\"figures large\">\n");
+  for (const Plot& plot : {position_plot(study), phase_plot(study)}) {
+    html += "<figure>";
+    html.plot(plot);
+    html += fmt::format("<figcaption>{}</figcaption></figure>\n", words(plot.caption));
+  }
+  return html + "</div>\n";
 }
 
 std::string equilibrium_text(const LawStudy& study) {
@@ -192,60 +201,57 @@ std::string equilibrium_text(const LawStudy& study) {
   for (const LawCurve& curve : study.curves) {
     std::string ends;
     for (const Equilibrium& at : curve.equilibria) {
-      const std::string v = base::number_text(at.v_m_s, 4) + " m/s";
-      const std::string end = at.v_m_s != 0.0 ? (at.stable ? "tends to v<sub>lim</sub> = " : "unstable at ") + v
-                              : !at.stable    ? "may stay at rest, but does not return to it"
-                              : at.stops      ? "comes to rest"
-                                              : "tends to rest";
+      const std::string v = base::number_text(at.v_m_s, 4);
+      const std::string end = at.v_m_s != 0.0 ? words(at.stable ? "tends_to_limit" : "unstable_at", {{"v", v}})
+                              : !at.stable    ? words("may_stay")
+                              : at.stops      ? words("comes_to_rest")
+                                              : words("tends_to_rest");
       ends += (ends.empty() ? "" : ", ") + end;
     }
     text += fmt::format("{}{} ({:.3g}°): {}", text.empty() ? "" : "; ", escape(curve.configuration), curve.incline_deg,
-                        ends.empty() ? "has no limit velocity" : ends);
+                        ends.empty() ? words("no_limit") : ends);
   }
   return text;
+}
+
+/// What the head of a scenario says, in all languages where it is one of the program's own.
+std::string scenario_words(const std::string& text) {
+  const std::string key = key_of(text, "scenario");
+  return key.empty() ? symbols_html(text) : words(key);
 }
 
 }  // namespace
 
 report::Page laws_report(const std::vector<LawStudy>& studies, const std::vector<LawFilm>& films,
-                         const base::Progress& progress) {
+                         const base::Progress& progress, const std::string& language) {
   if (films.size() != studies.size()) throw std::logic_error("not a film for each law");
-  Html body =
-      "<h1>Laws of friction in a(v)</h1>\n<p>How a glider moves under each law: launched uphill or downhill, released "
-      "from rest, or started above its limit velocity. Every point is the program's own solution of the equation of "
-      "motion, and its renderer drew the films.</p>\n";
-  std::string meaning =
-      "<p>x(t) shows where a glider is, a(v) which law moves it: every motion of one glider on one slope runs along "
-      "the "
-      "same curve of a(v), wherever it starts. A straight line means linear viscous friction, a bent curve another "
-      "drag, "
-      "a jump at v = 0 Coulomb friction. Where the curve falls through a = 0 (dot), the glider tends to that speed "
-      "from "
-      "both sides; where it rises through a = 0 (circle), the glider leaves that speed. Viscous or quadratic drag "
-      "alone "
-      "never quite stops a glider; friction that does not vanish at v = 0 does.";
+  Html body = fmt::format(
+      "<p class=\"language\"><select id=\"language\" data-label=\"language\"></select></p>\n<h1 "
+      "data-text=\"laws_title\">{}</h1>\n<p>{}</p>\n",
+      text_in("en", "laws_title"), words("laws_about"));
+  std::string meaning = "<p>" + words("laws_meaning");
   if (std::ranges::any_of(studies, [](const LawStudy& study) { return study.x_apart_m.has_value(); })) {
-    meaning += " The pair with almost the same x(t) shows why a(v) is worth plotting.";
+    meaning += " " + words("laws_pair");
   }
   body += meaning_section(meaning + "</p>\n") + "<nav><ul>";
   for (std::size_t i = 0; i < studies.size(); ++i) {
-    body += fmt::format("<li><a href=\"#law{}\">{}</a></li>", i, escape(studies[i].name));
+    body += fmt::format("<li><a href=\"#law{}\">{}</a></li>", i, scenario_words(studies[i].name));
   }
   body += "</ul></nav>\n";
   for (std::size_t i = 0; i < studies.size(); ++i) {
     progress("drawing", static_cast<double>(i) / static_cast<double>(studies.size()));
     const LawStudy& study = studies[i];
-    body += fmt::format("<h2 id=\"law{}\">{}</h2>\n<p>{}</p>\n", i, escape(study.name), symbols_html(study.text));
+    body +=
+        fmt::format("<h2 id=\"law{}\">{}</h2>\n<p>{}</p>\n", i, scenario_words(study.name), scenario_words(study.text));
     body += fmt::format("<p class=\"soft\">{}</p>\n", equilibrium_text(study));
     if (study.x_apart_m && study.a_apart_m_s2) {
-      body += fmt::format(
-          "<p class=\"note\">The two x(t) are never more than {} mm apart; the two a(v) differ by up to {} "
-          "m/s².</p>\n",
-          base::number_text(*study.x_apart_m * 1e3, 2), base::number_text(*study.a_apart_m_s2, 2));
+      body += fmt::format("<p class=\"note\">{}</p>\n",
+                          words("laws_apart", {{"x", base::number_text(*study.x_apart_m * 1e3, 2)},
+                                               {"a", base::number_text(*study.a_apart_m_s2, 2)}}));
     }
-    body += figures({position_plot(study), phase_plot(study)}) + film_figure(study, films[i]);
+    body += plots_of(study) + film_figure(study, films[i]);
   }
-  return report::page("Laws of friction", body + film_script());
+  return report::page(text_in("en", "laws_title"), body + film_script(language));
 }
 
 }  // namespace glidelab::teach

@@ -118,6 +118,7 @@ LawCurve curve_of(const sim::ConfigurationSetup& configuration, double lowest, d
     }
   }
   curve.equilibria = equilibria(configuration.body, lowest, highest);
+  curve.body = configuration.body;
   return curve;
 }
 

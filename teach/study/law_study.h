@@ -41,6 +41,7 @@ struct LawCurve {
   std::vector<double> down_v_m_s, down_a_m_s2;  ///< v from 0 to the highest, or to v_lim if that is more
   std::vector<Equilibrium> equilibria;          ///< on that piece of the curve, v rising
   std::vector<std::size_t> motions;             ///< on this curve
+  sim::Body body = {};                          ///< whose a(v) it is
 };
 
 struct LawStudy {

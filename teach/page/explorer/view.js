@@ -1,6 +1,7 @@
 const $ = id => document.getElementById(id), names = ['k', 'mu', 'alpha', 'v0', 't'], END = 5, POINTS = 500;
 const digits = { k: 2, mu: 4, alpha: 1, v0: 2, t: 2 };
-const units = ['K/m (1/s)', 'C/m (1/√(m·s))', 'C/m (1/m)', 'no drag'];
+const dragUnits = ['K/m (1/s)', 'C/m (1/√(m·s))', 'C/m (1/m)', ''];
+const spans = {};  // of each plot's axes, as drawn last; they stay while the axes are locked
 let current, playing = 0, reserved = 0;
 
 function read() {
@@ -26,7 +27,9 @@ function sheet(id) {
 function frame(id, xs, ys, xname, yname) {
   const s = sheet(id), { c, em } = s, left = 4.1 * em, right = em, top = 1.9 * em, bottom = 2.9 * em;
   const span = list => { let a = Math.min(...list), b = Math.max(...list); if (b - a < 1e-6) { a -= 0.5; b += 0.5; } const pad = 0.06 * (b - a); return [a - pad, b + pad]; };
-  const X = span(xs), Y = span(ys);
+  if (!$('lock').checked || !spans[id]) spans[id] = [span(xs), span(ys)];
+  const [X, Y] = spans[id];
+  s.box = [left, top, s.width - left - right, s.height - top - bottom];
   s.px = x => left + (s.width - left - right) * (x - X[0]) / (X[1] - X[0]);
   s.py = y => s.height - bottom - (s.height - top - bottom) * (y - Y[0]) / (Y[1] - Y[0]);
   c.lineWidth = 1; c.fillStyle = s.color('soft');
@@ -44,17 +47,20 @@ function frame(id, xs, ys, xname, yname) {
   return s;
 }
 function curve(s, points, color, width, dash) {
+  s.c.save(); s.c.beginPath(); s.c.rect(...s.box); s.c.clip();
   s.c.strokeStyle = color; s.c.lineWidth = width; s.c.setLineDash(dash || []); s.c.beginPath();
   let pen = false;
   for (const p of points) { if (!p) { pen = false; continue; } if (pen) s.c.lineTo(s.px(p[0]), s.py(p[1])); else s.c.moveTo(s.px(p[0]), s.py(p[1])); pen = true; }
-  s.c.stroke(); s.c.setLineDash([]);
+  s.c.stroke(); s.c.restore();
 }
 function dot(s, x, y, color, radius) {
+  const [left, top, width, height] = s.box, px = s.px(x), py = s.py(y);
+  if (px < left - 1 || px > left + width + 1 || py < top - 1 || py > top + height + 1) return;  // beyond locked axes
   s.c.fillStyle = color; s.c.strokeStyle = s.color('paper'); s.c.lineWidth = 1.5;
-  s.c.beginPath(); s.c.arc(s.px(x), s.py(y), radius, 0, 7); s.c.fill(); s.c.stroke();
+  s.c.beginPath(); s.c.arc(px, py, radius, 0, 7); s.c.fill(); s.c.stroke();
 }
-function prepare() {
-  const p = read(), m = motion(p), path = [];
+function solved(p) {  // a motion with all that the plots show of it
+  const m = motion(p), path = [];
   const instants = Array.from({ length: POINTS + 1 }, (_, i) => END * i / POINTS);
   for (const t of instants) {
     if (m.stop && path.length && path[path.length - 1].t < m.stop && t > m.stop) {  // the very instant, from both sides
@@ -70,27 +76,39 @@ function prepare() {
     for (let i = 0; i <= 60; i++) { const w = Math.abs(end) * i / 60; if (end * s > 0) branch.push([s * w, acceleration(p, m, s, w)]); }
     law.push(branch);
   }
-  current = { p, m, path, points, law };
+  return { p, m, path, points, law };
+}
+function prepare() {
+  const p = read();
+  current = solved(p);
   for (const name of names) $('o-' + name).textContent = show(p[name], digits[name]);
-  $('dragname').textContent = units[p.law]; $('k').disabled = p.law === 3;
+  $('dragname').textContent = dragUnits[p.law] || say('no_drag'); $('k').disabled = p.law === 3;
   if (p.law === 3) $('o-k').textContent = '';
 }
+const traced = (motion, x, y) => motion.path.map(q => q && [x(q), y(q)]);
 function draw() {
-  const { p, m, path, points, law } = current, here = m.at(p.t);
-  const at = (x, y) => path.map(q => q && [x(q), y(q)]);
-  const all = law.flat(), jump = [m.A + m.F, m.A - m.F];
-  let s = frame('av', all.map(q => q[0]), all.map(q => q[1]).concat(0, jump), 'v (m/s)', 'a (m/s²)');
+  const { p, m, law } = current, here = m.at(p.t), all = [...kept, current];
+  const points = all.flatMap(one => one.points), laws = all.flatMap(one => one.law.flat());
+  const jumps = all.flatMap(one => [one.m.A + one.m.F, one.m.A - one.m.F]);
+  const limits = all.map(one => one.m.limit).filter(limit => limit !== null);
+  let s = frame('av', laws.map(q => q[0]), laws.map(q => q[1]).concat(0, jumps), 'v (m/s)', 'a (m/s²)');
+  for (const one of kept) {
+    for (const branch of one.law) curve(s, branch, s.color(one.color), 1);
+    curve(s, traced(one, q => q.v, q => q.a), s.color(one.color), 2);
+  }
   for (const branch of law) curve(s, branch, s.color('soft'), 1);
-  if (m.F > 0) curve(s, [[0, jump[0]], [0, jump[1]]], s.color('soft'), 1, [3, 3]);
-  curve(s, at(q => q.v, q => q.a), s.color('first'), 3);
+  if (m.F > 0) curve(s, [[0, m.A + m.F], [0, m.A - m.F]], s.color('soft'), 1, [3, 3]);
+  curve(s, traced(current, q => q.v, q => q.a), s.color('first'), 3);
   if (m.limit !== null) dot(s, m.limit, 0, s.color('second'), 6);
   dot(s, here.v, here.a, s.color('third'), 7);
-  s = frame('vt', [0, END], points.map(q => q.v).concat(0, m.limit === null ? [] : m.limit), 't (s)', 'v (m/s)');
+  s = frame('vt', [0, END], points.map(q => q.v).concat(0, limits), 't (s)', 'v (m/s)');
+  for (const one of kept) curve(s, traced(one, q => q.t, q => q.v), s.color(one.color), 2);
   if (m.limit !== null) curve(s, [[0, m.limit], [END, m.limit]], s.color('second'), 1.5, [6, 4]);
-  curve(s, at(q => q.t, q => q.v), s.color('first'), 3); dot(s, p.t, here.v, s.color('third'), 7);
+  curve(s, traced(current, q => q.t, q => q.v), s.color('first'), 3); dot(s, p.t, here.v, s.color('third'), 7);
   s = frame('xt', [0, END], points.map(q => q.x), 't (s)', 'x (m)');
-  curve(s, at(q => q.t, q => q.x), s.color('first'), 3); dot(s, p.t, here.x, s.color('third'), 7);
-  track(here, points, p);
+  for (const one of kept) curve(s, traced(one, q => q.t, q => q.x), s.color(one.color), 2);
+  curve(s, traced(current, q => q.t, q => q.x), s.color('first'), 3); dot(s, p.t, here.x, s.color('third'), 7);
+  drawTrack(here, current.points, p);
   $('readout').textContent = `t = ${show(p.t, 2)} s: x = ${show(here.x, 3)} m, v = ${show(here.v, 3)} m/s, a = ${show(here.a, 3)} m/s². ` + fateWords(p, m);
   reserve();
 }
@@ -105,27 +123,16 @@ function fit() {  // plots are as high as the window leaves room for; of two row
   const style = document.documentElement.style, em = parseFloat(getComputedStyle(document.documentElement).fontSize);
   style.removeProperty('--plot');
   const rows = getComputedStyle($('plots')).gridTemplateColumns.split(' ').length === 3 ? 1 : 2;
-  const below = rows === 1 ? 0 : $('readout').getBoundingClientRect().height;
+  const below = rows === 1 ? 0 : $('readout').getBoundingClientRect().height + $('tools').getBoundingClientRect().height;
   const others = $('explorer').getBoundingClientRect().bottom + scrollY - rows * $('xt').clientHeight - below;
   const room = Math.floor((document.documentElement.clientHeight - others) / rows);
   style.setProperty('--plot', Math.max((rows === 1 ? 11 : 8) * em, room) + 'px');
 }
-function resized() { reserved = 0; $('readout').style.minHeight = ''; draw(); }
-function track(here, points, p) {
-  const s = sheet('track'), { c, width, height, em } = s, xs = points.map(q => q.x), low = Math.min(...xs, 0), high = Math.max(...xs, 0.01);
-  const px = x => 4 * em + (width - 8 * em) * (x - low) / (high - low);
-  // The true slope where that fits.
-  const most = Math.atan((height / 2 - 2.4 * em) / (width / 2 - 2 * em)), slope = p.alpha * Math.PI / 180;
-  c.save(); c.translate(width / 2, height / 2 + 0.5 * em); c.rotate(Math.sign(slope) * Math.min(Math.abs(slope), most)); c.translate(-width / 2, 0);
-  c.fillStyle = s.color('line'); c.fillRect(em, 0.5 * em, width - 2 * em, 0.4 * em);
-  c.fillStyle = s.color('soft'); c.textAlign = 'center'; c.fillText('0', px(0), 1.8 * em);
-  c.fillStyle = s.color('first'); c.fillRect(px(here.x) - 1.8 * em, -em, 3.6 * em, 1.4 * em);
-  c.fillStyle = s.color('paper'); c.beginPath(); c.arc(px(here.x), -0.3 * em, 0.4 * em, 0, 7); c.fill();
-  if (Math.abs(here.v) > 1e-4) { const d = Math.sign(here.v), l = (1 + 2.2 * Math.min(1, Math.abs(here.v))) * em, y = -1.6 * em; c.strokeStyle = s.color('third'); c.fillStyle = s.color('third'); c.lineWidth = 0.2 * em; c.beginPath(); c.moveTo(px(here.x), y); c.lineTo(px(here.x) + d * l, y); c.stroke(); c.beginPath(); c.moveTo(px(here.x) + d * (l + 0.6 * em), y); c.lineTo(px(here.x) + d * l, y - 0.4 * em); c.lineTo(px(here.x) + d * l, y + 0.4 * em); c.fill(); }
-  c.restore();
+function resized() {
+  reserved = 0; $('readout').style.minHeight = ''; draw();
 }
 function change() { prepare(); draw(); }
-function pause() { playing = 0; $('play').textContent = 'Play'; }
+function pause() { playing = 0; $('play').textContent = say('play'); }
 function step(now) {
   if (!playing) return;
   const t = (now - playing) / 1000;
@@ -135,7 +142,7 @@ function step(now) {
 $('play').onclick = () => {
   if (playing) return pause();
   const from = current.p.t >= END ? 0 : current.p.t;
-  playing = performance.now() - 1000 * from; $('play').textContent = 'Pause'; requestAnimationFrame(step);
+  playing = performance.now() - 1000 * from; $('play').textContent = say('pause'); requestAnimationFrame(step);
 };
 for (const name of names) $(name).oninput = () => { if (name === 't') pause(); change(); };
 $('law').onchange = change;
@@ -147,6 +154,17 @@ for (const button of document.querySelectorAll('[data-case]')) button.onclick = 
 window.addEventListener('resize', resized);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
 const off = measured();
-$('measured').textContent = `Every curve comes from the program's own solver: four orbits for each law, scaled, and interpolated by polynomials of fifth degree. At ${off.points} instants of ${off.motions} motions that were solved one by one, every corner of the sliders among them, this page is off by at most ${(off.x * 1e3).toPrecision(2)} mm, ${(off.v * 1e3).toPrecision(2)} mm/s and ${(off.a * 1e3).toPrecision(2)} mm/s².`;
 document.documentElement.dataset.offX = off.x; document.documentElement.dataset.offV = off.v; document.documentElement.dataset.offA = off.a;
-change();
+// All words of the page anew, in the language that is chosen.
+function inWords() {
+  speak();
+  const small = x => decimals((x * 1e3).toPrecision(2));
+  $('measured').textContent = say('measured', { points: off.points, motions: off.motions, x: small(off.x), v: small(off.v), a: small(off.a) });
+  $('play').textContent = say(playing ? 'pause' : 'play');
+  legend(); resized();
+}
+$('language').onchange = () => { language = $('language').value; prepare(); inWords(); };
+$('keep').onclick = () => { keep(current.p); resized(); };
+$('copy').onclick = copyLink;
+window.addEventListener('hashchange', opened);
+opened();

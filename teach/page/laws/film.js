@@ -11,7 +11,7 @@ for (const law of document.querySelectorAll('.law')) {
     const step = power * [1, 2, 5, 10].find(d => d * power >= least), values = [];
     for (let i = Math.ceil(range[0] / step); i * step <= range[1]; i++) values.push(i * step);
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    return values.map(value => [value, value.toFixed(digits).replace('-', '\u2212')]);
+    return values.map(value => [value, show(value, digits)]);
   }
   function text(words, x, y, align) { c.textAlign = align; c.fillText(words, x, y); }
   function line(x0, y0, x1, y1, ink) { c.strokeStyle = ink; c.lineWidth = 1; c.beginPath(); c.moveTo(x0, y0); c.lineTo(x1, y1); c.stroke(); }
@@ -30,7 +30,7 @@ for (const law of document.querySelectorAll('.law')) {
     for (const [a, words] of ticks(A, 6)) { line(pv(V[0]), pa(a), pv(V[1]), pa(a), '#ddd'); text(words, pv(V[0]) - 6, pa(a) + 5, 'right'); }
     line(pv(V[0]), pa(0), pv(V[1]), pa(0), '#777'); line(pv(0), pa(A[0]), pv(0), pa(A[1]), '#777');
     text('v (m/s)', W - 20, H - 7, 'right'); text('a (m/s²)', 8, 18, 'left');
-    text('t = ' + video.currentTime.toFixed(2) + ' s', W - 20, 18, 'right');
+    text('t = ' + show(video.currentTime, 2) + ' s', W - 20, 18, 'right');
     for (const [v, stable] of data.equilibria) {
       c.fillStyle = stable ? '#000' : '#fff'; c.strokeStyle = '#000'; c.lineWidth = 1.5;
       c.beginPath(); c.arc(pv(v), pa(0), 5, 0, 7); c.fill(); c.stroke();

@@ -1,0 +1,28 @@
+/// The numbers that a worksheet on a law asks for, from the glider's own a(v):
+///
+///     slopes  (a(v1) - a(0+)) / v1  and  (a(v2) - a(v1)) / (v2 - v1),  v2 = 2 v1;  -K/m both, where friction is
+///     viscous jump    a(0-) - a(0+) = 2 mu g cos(alpha), mu that of dry friction near v = 0
+#pragma once
+
+#include <cstddef>
+
+#include "teach/study/law_study.h"
+
+namespace glidelab::teach {
+
+struct LawAnswers {
+  std::size_t curve = 0;              ///< of study.curves, that the questions are about
+  double v1_m_s = 0.0, v2_m_s = 0.0;  ///< 1, 2 or 5 times a power of ten, and twice that
+  double slope1_1_s = 0.0, slope2_1_s = 0.0;
+  double jump_m_s2 = 0.0;
+  double mu = 0.0;
+  bool flat() const;      ///< no slope
+  bool straight() const;  ///< the two slopes are one, to rounding
+  bool jumps() const;     ///< by more than rounding
+};
+
+/// The curve is the first one with a limit velocity, or the last, of those that have a part at v > 0.
+/// std::logic_error where none has.
+LawAnswers answers_of(const LawStudy& study);
+
+}  // namespace glidelab::teach
