@@ -98,7 +98,7 @@ std::string smoothing_text(const core::ClipResult& clip) {
   }
   const core::SmoothingStrength& strength = *clip.strength;
   std::string text = fmt::format("Smoother {}: smoothing time {} ms, by {}", escape(strength.smoother),
-                          base::number_text(strength.time_s * 1e3, 3), escape(strength.method));
+                                 base::number_text(strength.time_s * 1e3, 3), escape(strength.method));
   if (!strength.breaks_s.empty()) {
     text +=
         fmt::format("; a may jump at {} turn{}", strength.breaks_s.size(), strength.breaks_s.size() == 1 ? "" : "s");
