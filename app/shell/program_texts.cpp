@@ -242,6 +242,7 @@ std::string examples() {
        {"glidelab new my-track", "glidelab check my-track", "glidelab analyze my-track", "glidelab diagnose my-track"}},
       {"I teach:",
        {"glidelab explore -o class", "glidelab laws scenarios/laws -o laws",
+        "glidelab laws scenarios/laws --worksheet -o sheets",
         "glidelab simulate scenarios/laws/6-stribeck.toml -o stribeck"}}};
   std::string text =
       ".SH EXAMPLES\nThe scenarios are in the source folder, and once installed in share/glidelab/scenarios.\n";
