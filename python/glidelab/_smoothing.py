@@ -30,7 +30,8 @@ class Strength:
     jump_sd_m_s2 : float or None
         Standard deviation of the jumps, infinite where any is allowed; None without a break.
     simultaneous_a : float
-        a ± this times its standard deviation holds a at all times together with 95 % probability.
+        a ± this times its standard deviation holds a at all times together with 95 % probability, for signals of
+        the smoother's own kind; for gliders less often.
     """
 
     method: str

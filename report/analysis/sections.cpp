@@ -106,10 +106,6 @@ std::string smoothing_text(const core::ClipResult& clip) {
       text += fmt::format(" (standard deviation {} m/s²)", base::number_text(*strength.jump_sd_m_s2, 2));
     }
   }
-  if (strength.simultaneous_a) {
-    text += fmt::format(". a(t) as a whole lies within {} of its standard deviations with 95 % probability",
-                        base::number_text(*strength.simultaneous_a, 3));
-  }
   return text;
 }
 
