@@ -16,6 +16,18 @@ add_custom_command(
   VERBATIM)
 add_custom_target(texts ALL DEPENDS ${texts}/glidelab.1.gz ${texts}/glidelab.bash ${texts}/_glidelab)
 
+# The pages for class, ready to open. Their films take minutes: built and installed where they are asked for,
+# `ninja class_pages` before `cmake --install` or `cpack`.
+set(class ${CMAKE_BINARY_DIR}/class)
+add_custom_command(
+  OUTPUT ${class}/explore.html ${class}/laws.html
+  COMMAND glidelab explore --quiet --out ${class}
+  COMMAND glidelab laws ${CMAKE_CURRENT_SOURCE_DIR}/scenarios/laws --quiet --out ${class}
+  DEPENDS glidelab
+  VERBATIM)
+add_custom_target(class_pages DEPENDS ${class}/explore.html ${class}/laws.html)
+install(FILES ${class}/explore.html ${class}/laws.html DESTINATION ${CMAKE_INSTALL_DOCDIR}/class OPTIONAL)
+
 install(TARGETS glidelab)
 install(FILES ${texts}/glidelab.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${texts}/glidelab.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME glidelab)

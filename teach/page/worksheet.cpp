@@ -22,9 +22,11 @@ using report::PlotData;
 
 // Of the sheet, A4 in points.
 constexpr int kWidth = 595, kHeight = 842;
-constexpr double kLine = 15.0;           // from one line of text to the next
-constexpr double kAnswerLine = 24.0;     // for writing by hand
-constexpr std::size_t kCharacters = 84;  // in a line of text
+constexpr double kLine = 15.0;                                  // from one line of text to the next
+constexpr double kAnswerLine = 24.0;                            // for writing by hand
+constexpr std::size_t kCharacters = 74, kTitleCharacters = 46;  // in a line
+// Sizes of type as gnuplot's PDF takes them: half as many points on paper.
+constexpr int kType = 19, kSmall = 17, kTitle = 30;
 constexpr double kLeft = 0.085, kRight = 0.935;
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
@@ -40,14 +42,14 @@ std::string number(const std::string& language, double value, int digits) {
 }
 
 /// The text in lines that fit the sheet.
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> lines_of(const std::string& text, std::size_t most = kCharacters) {
   std::vector<std::string> lines(1);
   std::size_t length = 0;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     const auto characters =
         static_cast<std::size_t>(std::ranges::count_if(word, [](char c) { return (c & 0xC0) != 0x80; }));
-    if (length > 0 && length + 1 + characters > kCharacters) {
+    if (length > 0 && length + 1 + characters > most) {
       lines.emplace_back();
       length = 0;
     }
@@ -81,34 +83,34 @@ class Sheet {
 
 report::Plot sheet_of(const LawStudy& study, const WorksheetTexts& texts, const std::string& language, bool teacher) {
   Sheet sheet;
-  for (const std::string& line : lines_of(teacher ? texts.answers_title : texts.title)) {
-    sheet.text(kLeft, line, 17);
+  for (const std::string& line : lines_of(teacher ? texts.answers_title : texts.title, kTitleCharacters)) {
+    sheet.text(kLeft, line, kTitle);
     sheet.down(24.0);
   }
   sheet.down(4.0);
   if (!teacher) {
-    sheet.text(kLeft, text_in(language, "ws_name") + ":", 11);
-    sheet.text(0.65, text_in(language, "ws_date") + ":", 11);
+    sheet.text(kLeft, text_in(language, "ws_name") + ":", kType);
+    sheet.text(0.65, text_in(language, "ws_date") + ":", kType);
     sheet.down(5.0);
     sheet.rule(kLeft + 0.1, 0.62);
     sheet.rule(0.74, kRight);
   }
   sheet.down(24.0);
-  sheet.text(kLeft, text_in(language, "ws_figure"), 10, "#555555");
-  sheet.down(26.0);
+  sheet.text(kLeft, text_in(language, "ws_figure"), kSmall, "#555555");
+  sheet.down(30.0);
   const double top = sheet.y();
   sheet.down(270.0);
   const double bottom = sheet.y();
   sheet.down(62.0);
   for (std::size_t i = 0; i < texts.questions.size(); ++i) {
     for (const std::string& line : lines_of(texts.questions[i])) {
-      sheet.text(kLeft, line, 11);
+      sheet.text(kLeft, line, kType);
       sheet.down(kLine);
     }
     if (teacher) {
       sheet.down(3.0);
       for (const std::string& line : lines_of(texts.answers[i])) {
-        sheet.text(kLeft, line, 11, "#0058a0");
+        sheet.text(kLeft, line, kType, "#0058a0");
         sheet.down(kLine);
       }
       sheet.down(16.0);
@@ -151,13 +153,13 @@ report::Plot sheet_of(const LawStudy& study, const WorksheetTexts& texts, const 
   const std::string script =
       std::string(report::kFrame) + sheet.script() +
       fmt::format(
-          "set decimalsign '{}'\nset lmargin at screen {}\nset rmargin at screen {}\nset tmargin at screen "
-          "{:.4f}\nset bmargin at screen {:.4f}\nset tics font ',11'\nset grid xtics ytics mxtics mytics lw "
+          "set decimalsign '{0}'\nset lmargin at screen {1}\nset rmargin at screen {2}\nset tmargin at screen "
+          "{3:.4f}\nset bmargin at screen {4:.4f}\nset tics font ',{5}'\nset grid xtics ytics mxtics mytics lw "
           "0.6 lc rgb '#cccccc', lw 0.3 lc rgb '#e4e4e4'\nset mxtics 5\nset mytics 5\n"
-          "set key outside top center horizontal samplen 2 font ',11'\n"
-          "set xlabel 'v (m/s)' font ',11'\nset ylabel 'a (m/s²)' font ',11'\n"
+          "set key at screen {2}, screen {6:.4f} right bottom horizontal samplen 2 font ',{5}'\n"
+          "set xlabel 'v (m/s)' font ',{5}'\nset ylabel 'a (m/s²)' font ',{5}'\n"
           "set xzeroaxis lt 1 lc rgb '#555555'\nset yzeroaxis lt 1 lc rgb '#555555'\nplot ",
-          texts_of(language).at("decimal"), kLeft + 0.06, kRight, top, bottom) +
+          texts_of(language).at("decimal"), kLeft + 0.07, kRight, top, bottom, kSmall, top + 0.004) +
       plots;
   return {report::Drawing{script, data, {kWidth, kHeight}}, texts.title, texts.title};
 }

@@ -10,7 +10,7 @@ function fragment() {
   return '#' + link.toString().replace(/%2C/g, ',').replace(/%2F/g, '/');
 }
 // What a link asks for: { settings, kept, language }, or in `wrong` why it is not one of this page.
-function asked(hash) {
+function settingsIn(hash) {
   const result = { settings: {}, kept: [], wrong: [] };
   const take = (name, text) => {
     const range = name === 'law' ? null : $(name), value = name === 'law' ? LAW_NAMES.indexOf(text) : Number(text);
@@ -34,7 +34,7 @@ function asked(hash) {
 }
 // When the page is opened, and when the address changes: as the link says, or all as it was and what is wrong with it.
 function opened() {
-  const link = asked(location.hash);
+  const link = settingsIn(location.hash);
   $('notice').textContent = link.wrong.join(' ');
   if (!link.wrong.length) {
     language = link.language || language;
