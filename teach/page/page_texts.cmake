@@ -1,6 +1,6 @@
 # Turns real files into a C++ source of string constants:
 # cmake -DOUTPUT=file.cpp -DFOLDER=teach/page -DTEXTS=kName=file,kOther=file -P page_texts.cmake
-set(source "// Made by teach/page/page_texts.cmake of the files named below; edit those.\n#include \"teach/page/teaching_pages.h\"\n\nnamespace glidelab::teach {\n")
+set(source "// Made by teach/page/page_texts.cmake of the files named below; edit those.\n#include \"teach/page/page_texts.h\"\n\nnamespace glidelab::teach {\n")
 string(REPLACE "," ";" texts "${TEXTS}")
 foreach(text ${texts})
   string(REPLACE "=" ";" pair "${text}")

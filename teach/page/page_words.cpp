@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "report/html/html.h"
-#include "teach/page/teaching_pages.h"
+#include "teach/page/page_texts.h"
 
 namespace glidelab::teach {
 namespace {

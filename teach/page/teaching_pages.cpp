@@ -11,6 +11,7 @@
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
+#include "teach/page/page_texts.h"
 #include "teach/page/page_words.h"
 
 namespace glidelab::teach {

@@ -124,7 +124,7 @@ class Data(unittest.TestCase):
         v = np.concatenate([np.linspace(-1.2, -0.2, 30), np.linspace(0.1, 0.8, 30)])
         a = g * (math.sin(alpha) - mu * math.cos(alpha) * np.sign(v)) - k * v
         motion = np.column_stack([T, v, a])
-        clip = {"configuration": 0, "force": None, "mass": 0.3, "used": np.ones(60, bool), "glidelab": motion}
+        clip = {"configuration": 0, "force": None, "mass": 0.3, "used": np.ones(60, bool), "glidelab": {"phase-diagram": motion}}
         (found,) = data.parameters([clip], [motion])
         self.assertAlmostEqual(found["k_over_m"], k, delta=1e-9)
         self.assertAlmostEqual(found["mu"], mu, delta=1e-9)

@@ -1,3 +1,4 @@
+#include "teach/page/page_texts.h"
 #include "teach/page/teaching_pages.h"
 
 #include <filesystem>
