@@ -83,7 +83,7 @@ struct EffectLaw {
   SeenBy seen_by = SeenBy::lens;
   double (*stretch)(const double* p) = nullptr;  ///< true time over stated time
   double (*row_s)(const double* p) =
-      nullptr;  ///< how much later a row is exposed than the one above, over what is stated
+      nullptr;           ///< how much later a row is exposed than the one above, over what is stated
   bool passing = false;  ///< acts at some places, times or clips only: no part of what balances at terminal velocity
 
   bool acts(const double* p) const {

@@ -91,6 +91,17 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   return diagnosis;
 }
 
+core::AnalysisResults analyze_for_diagnosis(const std::vector<std::filesystem::path>& folders,
+                                            const DiagnoseOptions& options, const base::Progress& progress) {
+  return core::analyze(folders,
+                       {.bandwidth_s = {},
+                        .jobs = options.jobs,
+                        .lost_frames = core::LostFrameTimes::kept,
+                        .pictures = true,
+                        .bare = options.bare},
+                       progress);
+}
+
 Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
                    const base::Progress& progress) {
   std::vector<core::ClipSetup> setups;
@@ -110,13 +121,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     experiments.push_back(experiment);
   }
   indices(options.without);  // what is misspelt shows before the clips are read
-  const core::AnalysisResults results = core::analyze(folders,
-                                                      {.bandwidth_s = {},
-                                                       .jobs = options.jobs,
-                                                       .lost_frames = core::LostFrameTimes::kept,
-                                                       .pictures = true,
-                                                       .bare = options.bare},
-                                                      progress);
+  const core::AnalysisResults results = analyze_for_diagnosis(folders, options, progress);
   return diagnose_results(results, setups, options, progress, cameras, experiments);
 }
 

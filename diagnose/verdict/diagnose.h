@@ -30,6 +30,11 @@ struct DiagnoseOptions {
 Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
                    const base::Progress& progress = base::no_progress);
 
+/// The analysis that a diagnosis is made from: times as they are stated, and what the clips' images show.
+core::AnalysisResults analyze_for_diagnosis(const std::vector<std::filesystem::path>& folders,
+                                            const DiagnoseOptions& options,
+                                            const base::Progress& progress = base::no_progress);
+
 /// The same from an analysis that was made already; `setups` are all folders' clips in order, `cameras` what is stated
 /// of each clip's camera (needed where the analysis kept the pictures), `folders` what else they state (for a twin's
 /// camera; without them it is a scenario's own).

@@ -52,9 +52,7 @@ TEST_CASE("the runs of one file become clips with a mass each") {
 
 TEST_CASE("the point masses of a Tracker project become clips with a mass each") {
   const tests::TempDir temp;
-  const auto falling = [](double a) {
-    return [a](double i) { return std::pair(50.0, 100.0 + 2.0 * i + a * i * i); };
-  };
+  const auto falling = [](double a) { return [a](double i) { return std::pair(50.0, 100.0 + 2.0 * i + a * i * i); }; };
   const tests::MadeProject project{
       {tests::made_mass("cup", 12, falling(1.0)), tests::made_mass("two cups", 12, falling(2.0))}};
   const std::filesystem::path file = tests::write_text(temp / "made.trk", project.text());

@@ -391,16 +391,10 @@ Certificate certify(const std::vector<std::filesystem::path>& folders, const Cer
     cameras.resize(setups.size(), experiment.camera);
     experiments.push_back(std::move(experiment));
   }
-  const core::AnalysisResults results = core::analyze(folders,
-                                                      {.bandwidth_s = {},
-                                                       .jobs = options.jobs,
-                                                       .lost_frames = core::LostFrameTimes::kept,
-                                                       .pictures = true,
-                                                       .bare = options.bare},
-                                                      progress);
-  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(
-      results, setups, {.without = {}, .jobs = options.jobs, .twin = true, .bare = options.bare}, progress, cameras,
-      experiments);
+  const diagnose::DiagnoseOptions how{.without = {}, .jobs = options.jobs, .twin = true, .bare = options.bare};
+  const core::AnalysisResults results = diagnose::analyze_for_diagnosis(folders, how, progress);
+  const diagnose::Diagnosis diagnosis =
+      diagnose::diagnose_results(results, setups, how, progress, cameras, experiments);
   RecordingTwin twin = twin_of_recording(results, diagnosis, experiments);
   progress("twins", 0.0);
   if (twin.filmed) match_noise(twin, options, [&](std::string_view, double) { progress("twins", 0.0); });
