@@ -30,7 +30,8 @@ std::string sequence_words(const diagnose::Diagnosis& diagnosis);
 /// How sure the named causes are, and which look alike: "Probability: quadratic drag 97 %." Empty without an effect.
 std::string sureness_words(const diagnose::Diagnosis& diagnosis);
 
-/// "The law holds within each configuration (gap 1.02); across them it does not (5.3)." Empty otherwise.
+/// "The law holds within each configuration (gap 1.02); across them it does not (5.3)." Where it leaves more than half
+/// the noise besides, it only fits far better there. Empty otherwise.
 std::string holds_within_words(const diagnose::Diagnosis& diagnosis);
 
 /// The gaps of the three levels; empty where there is one level alone.

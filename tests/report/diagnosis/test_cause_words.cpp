@@ -111,6 +111,10 @@ TEST_CASE("a law that holds within each configuration and not across them is tol
   const diagnose::Diagnosis of = tests::law_within();
   CHECK(report::sequence_words(of).starts_with(
       "The law holds within each configuration (gap 1.02); across them it does not (5.3)."));
+  diagnose::Diagnosis worse = of;
+  worse.levels->configuration = 2.1;
+  CHECK(report::sequence_words(worse).starts_with(
+      "The law fits far better within each configuration (gap 2.1) than across them (5.3)."));
   const auto rows = report::member_rows(of.effects.front());
   REQUIRE(rows.size() == 3);
   CHECK(rows[0] == std::vector<std::string>{"", "µ"});
