@@ -36,7 +36,7 @@ struct CauseSequence {
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
                           const std::set<std::size_t>& without, double least_named);
 
-/// Whether a fit's gap is above its floor by more than three standard errors.
+/// Whether a fit's gap is above its floor by more than kClearGap standard errors.
 bool has_gap(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);
 
 inline constexpr double kLeastShare = 0.02;  ///< of the excess: less is no cause that a person would look for

@@ -117,8 +117,8 @@ struct GapDomain {
   std::optional<double> after = {};  ///< none where it cannot be said
 };
 
-/// Standard errors above the floor from which on there is a gap. Noise that is not quite white, or not quite normal,
-/// makes three of them in experiments in which nothing is missing.
+/// Standard errors above the floor from which on there is a gap. Three would do if the noise were white and normal to
+/// the last; half as many more leave room for noise that is not quite so.
 inline constexpr double kClearGap = 4.5;
 
 struct GapSizes {

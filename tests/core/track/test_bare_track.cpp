@@ -77,9 +77,8 @@ TEST_CASE("the point masses of a Tracker project become clips with a mass each")
 TEST_CASE("runs that the file does not have, and masses that do not fit, are refused with what there is") {
   const TwoRuns made;
   core::TrackFileOptions options;
-  for (const char* wrong : {"3", "0", "x", "1,", ""}) {
+  for (const char* wrong : {"3", "0", "x", "1,"}) {
     options.runs = wrong;
-    if (*wrong == '\0') continue;
     CHECK_THROWS_WITH(core::read_tracks(made.file, options), Contains("1: Run #1, 2: Run #2"));
   }
   options.runs = "all";
