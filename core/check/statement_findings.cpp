@@ -158,10 +158,7 @@ StatedLaunch stated_launch(const Experiment& experiment, const ClipSetup& clip) 
   const GroupSetup* group = group_of(experiment, clip.group);
   StatedLaunch stated{group != nullptr && group->downhill.has_value(), {}};
   const std::optional<Downhill> downhill = downhill_of(experiment, clip.group);
-  const std::string launched = clip.launched == Launched::up     ? "up"
-                               : clip.launched == Launched::down ? "down"
-                                                                 : "released";
-  stated.sentence = fmt::format("launched = \"{}\" and {}", launched,
+  stated.sentence = fmt::format("launched = \"{}\" and {}", name_of(clip.launched),
                                 downhill ? fmt::format("downhill = \"{}\"", name_of(*downhill)) : "no stated downhill");
   return stated;
 }

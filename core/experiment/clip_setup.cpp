@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kContradiction = 5.0;  // standard deviations between two readings of one angle
 
-constexpr std::array<const char*, 4> kDownhillNames{"+X", "-X", "+Y", "-Y"};  // in the order of Downhill
+constexpr std::array<const char*, 4> kLaunchNames{"up", "down", "released", "unknown"};  // in the order of Launched
+constexpr std::array<const char*, 4> kDownhillNames{"+X", "-X", "+Y", "-Y"};             // in the order of Downhill
 
 }  // namespace
 
@@ -25,6 +26,10 @@ int sign_of(Downhill downhill) {
 
 bool is_along_y(Downhill downhill) {
   return downhill == Downhill::plus_y || downhill == Downhill::minus_y;
+}
+
+std::string name_of(Launched launched) {
+  return kLaunchNames.at(static_cast<std::size_t>(launched));
 }
 
 std::string name_of(Downhill downhill) {

@@ -17,6 +17,9 @@ namespace glidelab::core {
 /// up: towards -x, down: towards +x, also on a level track; unknown: a track file on its own, which does not say.
 enum class Launched { up, down, released, unknown };
 
+/// "up", "down", "released", as experiment.toml says it, or "unknown".
+std::string name_of(Launched launched);
+
 /// Which direction is down (on a level track: positive): along X or Y of the pattern, of the image or of a project's
 /// axes, or against it.
 enum class Downhill { plus_x, minus_x, plus_y, minus_y };

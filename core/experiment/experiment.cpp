@@ -137,9 +137,12 @@ Downhill read_downhill(const TomlTable& table) {
 }
 
 Launched read_launched(const TomlTable& table) {
-  const std::string word = table.word("launched", {"up", "down", "released"});
-  if (word == "up") return Launched::up;
-  return word == "down" ? Launched::down : Launched::released;
+  using enum Launched;
+  const std::string word = table.word("launched", {name_of(up), name_of(down), name_of(released)});
+  for (const Launched launched : {up, down}) {
+    if (word == name_of(launched)) return launched;
+  }
+  return released;
 }
 
 ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
@@ -327,29 +330,6 @@ void require_clips(const Experiment& experiment) {
                                        "clips or tracks here; glidelab diagnose takes such a table"});
   }
   throw base::InputError(base::Issue{experiment.file.string(), 0, "clip", "none", "one or more clips or tracks"});
-}
-
-bool is_bare_track(const std::filesystem::path& path) {
-  std::error_code ignored;  // what cannot be looked at is none
-  return std::filesystem::is_regular_file(path, ignored) && path.filename() != "experiment.toml";
-}
-
-Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options) {
-  if (!is_bare_track(path)) return read_experiment(path, options.permitted);
-  Experiment experiment;
-  experiment.folder = path.parent_path();
-  experiment.file = path;
-  experiment.name = path.stem().string();
-  ClipSetup clip;
-  clip.name = experiment.name;
-  clip.track = path;
-  clip.column = options.column;
-  clip.mass_kg = options.mass_kg.value_or(1.0);
-  clip.incline_rad = options.incline_deg.value_or(0.0) * base::kRadPerDegree;
-  clip.launched = Launched::unknown;
-  clip.group = "all";
-  experiment.clips.push_back(clip);
-  return experiment;
 }
 
 }  // namespace glidelab::core

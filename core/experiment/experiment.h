@@ -95,24 +95,4 @@ void require_clips(const Experiment& experiment);
 /// Of one of its images, as permitted where it was read.
 std::size_t most_pixels_of(const Experiment& experiment);
 
-/// What the analysis needs beside a track's file that is given on its own.
-struct BareTrackOptions {
-  std::string column;                 ///< of x in a table, or a point mass (read_track.h); empty: found
-  std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
-  std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
-  Permissions permitted = {};         ///< of a folder
-};
-
-/// The note on a track without a stated mass.
-inline constexpr const char* kMassAssumed =
-    "no mass is stated: 1 kg is assumed (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)";
-
-/// A regular file that is not experiment.toml.
-bool is_bare_track(const std::filesystem::path& path);
-
-/// Of a folder read_experiment(); of a file an experiment of one clip, named after the file, x taken as downhill, how
-/// it was launched not known: no motion is the hand's for its direction alone.
-/// InputError as read_experiment(), and for a path that is not there.
-Experiment read_input(const std::filesystem::path& path, const BareTrackOptions& options);
-
 }  // namespace glidelab::core

@@ -9,10 +9,17 @@
 #include <string_view>
 
 #include "base/errors.h"
+#include "base/math/angles.h"
+#include "core/experiment/clip_setup.h"
 #include "core/track/column_table.h"
 #include "core/track/tracker_project.h"
 
 namespace glidelab::core {
+
+bool is_bare_track(const std::filesystem::path& path) {
+  std::error_code ignored;  // what cannot be looked at is none
+  return std::filesystem::is_regular_file(path, ignored) && path.filename() != "experiment.toml";
+}
 
 std::vector<TrackRun> runs_in(const std::filesystem::path& file) {
   std::vector<TrackRun> runs;
@@ -87,9 +94,23 @@ std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const Cl
 }  // namespace
 
 Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options) {
-  Experiment experiment = read_input(path, options);
-  if (is_bare_track(path) && !options.runs.empty()) {
-    experiment.clips = clips_of_runs(path, experiment.clips.front(), options);
+  if (!is_bare_track(path)) return read_experiment(path, options.permitted);
+  Experiment experiment;
+  experiment.folder = path.parent_path();
+  experiment.file = path;
+  experiment.name = path.stem().string();
+  ClipSetup clip;
+  clip.name = experiment.name;
+  clip.track = path;
+  clip.column = options.column;
+  clip.mass_kg = options.mass_kg.value_or(1.0);
+  clip.incline_rad = options.incline_deg.value_or(0.0) * base::kRadPerDegree;
+  clip.launched = Launched::unknown;
+  clip.group = "all";
+  if (options.runs.empty()) {
+    experiment.clips.push_back(std::move(clip));
+  } else {
+    experiment.clips = clips_of_runs(path, clip, options);
   }
   return experiment;
 }

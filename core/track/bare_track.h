@@ -13,12 +13,23 @@
 namespace glidelab::core {
 
 /// What the analysis needs beside a track's file that is given on its own.
-struct TrackFileOptions : BareTrackOptions {
+struct TrackFileOptions {
+  std::string column;                 ///< of x in a table, or a point mass (read_track.h); empty: found
+  std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
+  std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
+  Permissions permitted = {};         ///< of a folder
   /// Which of the runs (or masses) of the file become clips: "all", or their numbers from 1 on, "1,3". Empty: the file
   /// is one clip.
   std::string runs = {};
   std::vector<double> masses_kg = {};  ///< of these runs, one each; empty: mass_kg of all
 };
+
+/// The note on a track without a stated mass.
+inline constexpr const char* kMassAssumed =
+    "no mass is stated: 1 kg is assumed (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)";
+
+/// A regular file that is not experiment.toml.
+bool is_bare_track(const std::filesystem::path& path);
 
 /// One run of an exported table, or one point mass of a Tracker project.
 struct TrackRun {
@@ -29,8 +40,10 @@ struct TrackRun {
 /// The columns that are called x or the like, in their order, as read_track() finds them; or all point masses.
 std::vector<TrackRun> runs_in(const std::filesystem::path& file);
 
-/// A folder, or a file of one clip, as read_input() has it; of a file with `runs` one clip for each, named after it.
-/// InputError as read_input(), for runs that the file does not have, and for another number of masses than of runs.
+/// Of a folder read_experiment(). Of a file an experiment of one clip, named after the file, or with `runs` of one clip
+/// for each, named after it: x is taken as downhill, and how it was launched is not known, so that no motion is the
+/// hand's for its direction alone. InputError as read_experiment(), for a path that is not there, for runs that the
+/// file does not have, and for another number of masses than of runs.
 Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options);
 
 }  // namespace glidelab::core

@@ -48,7 +48,7 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file);
 
 /// An experiment folder; or a table of lines that lies in no folder, a CSV file whose header has k_over_m_1_s: an
 /// experiment named after the file, of its lines alone, with the default gravity; or any other file, a track.
-/// InputError as read_input() (core/track/bare_track.h); what is in a table is not looked at.
+/// InputError as read_tracks() (core/track/bare_track.h); what is in a table is not looked at.
 core::Experiment read_recording(const std::filesystem::path& path, const core::TrackFileOptions& bare);
 
 /// The issue of a table with too few lines.

@@ -22,20 +22,6 @@ namespace py = pybind11;
 
 namespace {
 
-const char* word_of(core::Launched launched) {
-  switch (launched) {
-    case core::Launched::up:
-      return "up";
-    case core::Launched::down:
-      return "down";
-    case core::Launched::released:
-      return "released";
-    case core::Launched::unknown:
-      break;
-  }
-  return "unknown";
-}
-
 py::dict track_dict(const core::ClipSetup& setup, const core::TrackData& track) {
   py::dict fields;  // of glidelab.Track
   fields["t_s"] = vector_of(track.t_s);
@@ -44,7 +30,7 @@ py::dict track_dict(const core::ClipSetup& setup, const core::TrackData& track) 
   fields["incline_deg"] = setup.incline_rad * base::kDegreesPerRad;
   fields["name"] = setup.name;
   if (setup.incline_sd_rad) fields["incline_sd_deg"] = *setup.incline_sd_rad * base::kDegreesPerRad;
-  fields["launched"] = word_of(setup.launched);
+  fields["launched"] = core::name_of(setup.launched);
   fields["group"] = setup.group;
   return fields;
 }

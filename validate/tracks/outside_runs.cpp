@@ -20,19 +20,6 @@ std::string csv_row(double t_s, double x_m) {
 
 constexpr std::string_view kHeader = "t_s,x_m\n";
 
-std::string_view word_of(core::Launched launched) {
-  switch (launched) {
-    case core::Launched::up:
-      return "up";
-    case core::Launched::down:
-      return "down";
-    case core::Launched::released:
-    case core::Launched::unknown:
-      break;
-  }
-  return "released";
-}
-
 }  // namespace
 
 void write_track_folder(const MadeTracks& made, const fs::path& folder) {
@@ -45,7 +32,8 @@ void write_track_folder(const MadeTracks& made, const fs::path& folder) {
     toml += fmt::format(
         "\n[[clip]]\nname = \"{0}\"\ntrack = \"tracks/{0}.csv\"\nmass_kg = {1}\nincline_deg = {2}\nlaunched = "
         "\"{3}\"\ngroup = \"{4}\"\n",
-        setup.name, setup.mass_kg, setup.incline_rad * base::kDegreesPerRad, word_of(setup.launched), setup.group);
+        setup.name, setup.mass_kg, setup.incline_rad * base::kDegreesPerRad, core::name_of(setup.launched),
+        setup.group);
     if (setup.incline_sd_rad)
       toml += fmt::format("incline_sd_deg = {}\n", *setup.incline_sd_rad * base::kDegreesPerRad);
     if (setup.mass_sd_kg > 0.0) toml += fmt::format("mass_sd_kg = {}\n", setup.mass_sd_kg);
