@@ -58,19 +58,6 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
   return fmt::format("<li><b>{}:</b> {}.</li>\n", escape(configuration_name(results, c)), text);
 }
 
-/// The numbers alone, of a law that does not fit.
-std::string numbers_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
-  std::string text;
-  for (const auto& [name, quantity] : quantities_of(c)) {
-    if (!quantity->estimate || quantity == &c.alpha_deg) continue;  // α says nothing of drag or friction
-    text +=
-        fmt::format("{}{} = {}{}", text.empty() ? "" : ", ", name.symbol,
-                    base::value_and_sd_text(quantity->estimate->value, quantity->estimate->sd), unit_suffix(name.unit));
-  }
-  if (text.empty()) return {};
-  return fmt::format("<li>{}: {}</li>\n", escape(configuration_name(results, c)), text);
-}
-
 /// The K of each mass, where it is the same for all within its errors, says that the drag does not depend on the load.
 std::string damping_sentence(const core::AnalysisResults& results) {
   constexpr double kChance = 0.01;  // that the chi² of equal K is beyond the limit
@@ -117,15 +104,9 @@ std::string meaning_of(const core::AnalysisResults& results) {
   } else {
     text += fmt::format("<p class=\"note\"><b>{}</b></p>\n<ul>\n", escape(doubts.back()));
     for (std::size_t i = 0; i + 1 < doubts.size(); ++i) text += fmt::format("<li>{}</li>\n", escape(doubts[i]));
-    std::string numbers;
-    for (const core::ConfigurationResult& c : results.configurations) numbers += numbers_of(results, c);
-    text += "</ul>\n";
-    if (!numbers.empty()) {
-      text +=
-          "<p>A fit of that law still gives these numbers, which need not be properties of the track or the glider; "
-          "their ± hold only if the law did:</p>\n<ul class=\"soft\">\n" +
-          numbers + "</ul>\n";
-    }
+    text +=
+        "</ul>\n<p>A fit of that law still gives the numbers below, which need not be properties of the track or the "
+        "glider; their ± hold only if the law did.</p>\n";
   }
   double worst = 1.0;
   for (const core::ConfigurationResult& configuration : results.configurations) {

@@ -307,20 +307,20 @@ std::string change_words(const Change& change) {
   return {};
 }
 
-/// "whether it is quadratic drag or power-law drag, and whether Stribeck friction acts".
+/// "whether it is quadratic drag or power-law drag, and whether “more friction at low speed” acts".
 std::string doubt_words(const std::vector<diagnose::Alternative>& doubt) {
   std::string between, acts;
   for (const diagnose::Alternative& of : doubt) {
     const std::string one = explanation_name(of.one);
     if (of.other.is_nothing()) {
-      acts += (acts.empty() ? "" : " or ") + one;
+      acts += fmt::format("{}“{}”", acts.empty() ? "" : " or ", one);
       continue;
     }
     if (between.find(one) == std::string::npos) between += (between.empty() ? "" : " or ") + one;
     between += " or " + explanation_name(of.other);
   }
   std::string words = between.empty() ? "" : "whether it is " + between;
-  if (!acts.empty()) words += (words.empty() ? "" : ", and ") + fmt::format("whether {} acts", acts);
+  if (!acts.empty()) words += (words.empty() ? "" : ", and ") + "whether " + acts + " acts";
   return words;
 }
 

@@ -65,7 +65,7 @@ inline constexpr std::string_view kFrame =
     "set border 3 lw 1 lc rgb '#555555'\n"
     "set tics nomirror out scale 0.6\n"
     "set grid xtics ytics back lw 0.6 lc rgb '#dddddd'\n"
-    "set key outside top center horizontal samplen 1.2 font ',14'\n"
+    "set key outside top center horizontal samplen 1.2 width -1.5 font ',14'\n"
     "set xtics autofreq\nset ytics autofreq\n"
     "set pointintervalbox 0.01\n"  // 0 is 1: gnuplot clears a disc of that size below a point with bars, and bars in it
     "set offsets graph 0.02, graph 0.02, graph 0.06, graph 0.06\n";
