@@ -320,7 +320,7 @@ std::string doubt_words(const std::vector<diagnose::Alternative>& doubt) {
     between += " or " + explanation_name(of.other);
   }
   std::string words = between.empty() ? "" : "whether it is " + between;
-  if (!acts.empty()) words += (words.empty() ? "" : ", and ") + "whether " + acts + " acts";
+  if (!acts.empty()) words += fmt::format("{}whether {} acts", words.empty() ? "" : ", and ", acts);
   return words;
 }
 
