@@ -42,16 +42,12 @@ struct AnalysisChoices {
 };
 
 const fit::Estimator& estimator_of(const AnalysisChoices& choices) {
-  const fit::Estimator* estimator = fit::find_estimator(choices.estimator);
-  if (estimator == nullptr) {
-    throw base::InputError(base::Issue{"", 0, "estimator", fmt::format("\"{}\"", choices.estimator),
-                                       fmt::format("one of {}", fmt::join(fit::estimator_names(), ", "))});
-  }
-  if (choices.robust && !estimator->takes_robust) {
+  const fit::Estimator& estimator = estimator_named(choices.estimator);
+  if (choices.robust && !estimator.takes_robust) {
     throw base::InputError(base::Issue{"", 0, "robust", choices.estimator,
                                        "the estimator trajectory (lines leave positions off the motion out anyway)"});
   }
-  return *estimator;
+  return estimator;
 }
 
 std::string rule_of(const AnalysisChoices& choices) {
@@ -150,22 +146,22 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, double gravity_m_s2, con
 
 }  // namespace
 
+const fit::Estimator& estimator_named(const std::string& name) {
+  const fit::Estimator* const estimator = fit::find_estimator(name);
+  if (estimator == nullptr) {
+    throw base::InputError(base::Issue{"", 0, "estimator", fmt::format("\"{}\"", name),
+                                       fmt::format("one of {}", fmt::join(fit::estimator_names(), ", "))});
+  }
+  return *estimator;
+}
+
 void bind_analysis(py::module_& module) {
   py::class_<AnalysisChoices>(module, "AnalysisChoices")
       .def(py::init([](std::optional<double> bandwidth_s, std::string rule, std::string estimator, bool robust,
                        int jobs, std::string smoother) {
         return AnalysisChoices{bandwidth_s, std::move(rule), std::move(estimator), robust, jobs, std::move(smoother)};
       }));
-  module.def("analyze_files", [](const std::vector<std::string>& inputs, const AnalysisChoices& choices,
-                                 std::string column, std::optional<double> mass_kg, std::optional<double> incline_deg,
-                                 bool allow_outside, const py::object& progress) {
-    core::TrackFileOptions bare;
-    bare.column = std::move(column);
-    bare.mass_kg = mass_kg;
-    bare.incline_deg = incline_deg;
-    bare.permitted.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
-    return analyze_files(inputs, choices, bare, progress);
-  });
+  module.def("analyze_files", &analyze_files);
   module.def("analyze_arrays", &analyze_arrays);
   module.def("bandwidth_choices", &core::bandwidth_choices);
   module.def("smoother_names", &core::smoother_names);

@@ -33,10 +33,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-core::OutsideFiles outside_of(bool allow_outside) {
-  return allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
-}
-
 /// Residuals of each motion before and after, for plots.
 py::list residual_arrays(const diagnose::Diagnosis& diagnosis) {
   py::list curves;
@@ -66,13 +62,12 @@ py::tuple told(diagnose::Diagnosis found, std::string title) {
 }
 
 py::tuple diagnose_files(const std::vector<std::string>& inputs, const std::vector<std::string>& without, int jobs,
-                         bool allow_outside, const py::object& progress_told) {
+                         const core::TrackFileOptions& bare, const py::object& progress_told) {
   const std::vector<fs::path> folders(inputs.begin(), inputs.end());
   if (folders.empty()) throw base::InputError(base::Issue{"", 0, "", "no folder", "one or more experiment folders"});
   std::string title;
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
-    diagnose::DiagnoseOptions how{.without = without, .jobs = jobs, .twin = false};
-    how.bare.permitted.outside = outside_of(allow_outside);
+    diagnose::DiagnoseOptions how{.without = without, .jobs = jobs, .twin = false, .bare = bare};
     title = diagnose::read_recording(folders.front(), how.bare).name;
     if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
     return diagnose::diagnose(folders, how, progress);

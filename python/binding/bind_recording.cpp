@@ -1,11 +1,13 @@
-/// check: a look at a recording before any analysis.
+/// check: a look at a recording before any analysis. FileOptions: what a track's file does not say.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <utility>
 
 #include "base/files/file_io.h"
 #include "core/check/check_recording.h"
+#include "core/track/bare_track.h"
 #include "python/binding/bindings.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
@@ -22,11 +24,22 @@ struct Checked {
   core::RecordingCheck found;
 };
 
-Outcome check(const std::string& folder, bool allow_outside, int jobs, const py::object& told) {
+core::TrackFileOptions file_options(std::string column, std::optional<double> mass_kg,
+                                    std::optional<double> incline_deg, std::string runs, std::vector<double> masses_kg,
+                                    bool allow_outside) {
+  core::TrackFileOptions options;
+  options.column = std::move(column);
+  options.mass_kg = mass_kg;
+  options.incline_deg = incline_deg;
+  options.permitted.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
+  options.runs = std::move(runs);
+  options.masses_kg = std::move(masses_kg);
+  return options;
+}
+
+Outcome check(const std::string& input, const core::TrackFileOptions& bare, int jobs, const py::object& told) {
   const auto checked = WatchedWork(told).run([&](const base::Progress& progress) {
-    Checked made{core::read_experiment(
-                     folder, {.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused}),
-                 {}};
+    Checked made{core::read_tracks(input, bare), {}};
     made.found = core::check_recording(made.experiment, jobs, progress);
     return std::make_shared<const Checked>(std::move(made));
   });
@@ -42,6 +55,7 @@ Outcome check(const std::string& folder, bool allow_outside, int jobs, const py:
 }  // namespace
 
 void bind_recording(py::module_& module) {
+  py::class_<core::TrackFileOptions>(module, "FileOptions").def(py::init(&file_options));
   module.def("check", &check);
 }
 

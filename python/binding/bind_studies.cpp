@@ -1,5 +1,5 @@
-/// validate, coverage, require and sweep: what meets a truth. A sweep goes on where it stopped, in the folder it is
-/// given.
+/// validate, coverage, certify, require and sweep: what meets a truth. A sweep goes on where it stopped, in the folder
+/// it is given.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/pybind11.h>
@@ -12,17 +12,21 @@
 #include "base/files/file_io.h"
 #include "core/analysis/preview.h"
 #include "core/experiment/experiment.h"
+#include "diagnose/lines/line_model.h"
+#include "fit/estimators.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_scenario.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/result_files.h"
+#include "report/certificate/certificate_report.h"
 #include "report/coverage/coverage_report.h"
 #include "report/requirement/requirement_report.h"
 #include "report/sweep/sweep_report.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
+#include "validate/study/certify/certify.h"
 #include "validate/study/coverage/interval_coverage.h"
 #include "validate/study/requirement/requirement.h"
 #include "validate/study/sweep/design/read_sweep.h"
@@ -158,6 +162,30 @@ Outcome run_sweep(const std::string& file, const std::string& folder, Seed seed,
           }};
 }
 
+Outcome certify(const std::vector<std::string>& inputs, std::size_t twins, const std::string& estimator,
+                std::optional<double> bandwidth_s, Seed seed, int jobs, const core::TrackFileOptions& bare,
+                const py::object& told) {
+  const std::vector<fs::path> folders(inputs.begin(), inputs.end());
+  std::string title;
+  const auto certificate = WatchedWork(told).run([&](const base::Progress& progress) {
+    validate::CertifyOptions how;
+    how.runs = twins;
+    how.estimator = estimator_named(estimator);
+    how.bandwidth_s = bandwidth_s;
+    how.seed = seed.value_or(how.seed);
+    how.jobs = jobs;
+    how.bare = bare;
+    title = diagnose::read_recording(folders.front(), bare).name;
+    if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+    return std::make_shared<const validate::Certificate>(validate::certify(folders, how, progress));
+  });
+  return {report::certificate_json(*certificate), report::certificate_text(*certificate),
+          [certificate, title](const fs::path& out, const base::Progress&) {
+            base::write_file(out / "certify.json", report::certificate_json(*certificate));
+            report::write_page(out, "report.html", report::certificate_page(title, *certificate));
+          }};
+}
+
 }  // namespace
 
 void bind_studies(py::module_& module) {
@@ -165,6 +193,7 @@ void bind_studies(py::module_& module) {
   module.def("coverage", &measure_coverage);
   module.def("require", &find_requirement);
   module.def("sweep", &run_sweep);
+  module.def("certify", &certify);
 }
 
 }  // namespace glidelab::python

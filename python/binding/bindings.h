@@ -3,7 +3,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
+#include "fit/estimators.h"
+
 namespace glidelab::python {
+
+/// InputError where there is none of the name.
+const fit::Estimator& estimator_named(const std::string& name);
 
 void bind_analysis(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);

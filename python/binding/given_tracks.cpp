@@ -10,7 +10,7 @@
 
 #include "base/errors.h"
 #include "base/math/angles.h"
-#include "core/experiment/experiment.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::python {
 

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from . import _glidelab
 from ._arrays import Vector, frozen
 from ._errors import input_error
-from ._inputs import PathLike, Progress, Track, given_tracks, job_count, source_of, teller
+from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_tracks, job_count, refuse, refuse_of_arrays,
+                      source_of, teller)
 from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, quantity_of
 
 QUANTITIES = {"k_over_m_1_s": "1/s", "mu": "", "alpha_deg": "°", "v_lim_m_s": "m/s"}
@@ -282,7 +283,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
             force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
             bandwidth: Union[float, str, None] = None, estimator: str = "phase-diagram", robust: bool = False,
             gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
-            progress: Progress = None, smoother: str = "local-polynomial") -> Analysis:
+            progress: Progress = None, smoother: str = "local-polynomial", runs: Runs = None,
+            masses_kg: Optional[Sequence[float]] = None) -> Analysis:
     """K/m, mu, alpha and the limit velocity from positions, or from an experiment folder.
 
     Parameters
@@ -317,6 +319,11 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     smoother : {"local-polynomial", "kalman", "spline"}
         What makes v(t) and a(t) of the positions (`smooth`); the last two find their own strength and take no
         `bandwidth`.
+    runs : "all" or sequence of int, optional
+        With a file of several runs (or masses): which of them become clips, by their numbers from 1 on. Without it the
+        file is one clip.
+    masses_kg : sequence of float, optional
+        With `runs`: the mass of each, in place of `mass_kg`.
 
     Returns
     -------
@@ -346,16 +353,11 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     given = source_of(source, x_m, **stated)
     choices = _choices(bandwidth, estimator, robust, jobs, smoother)
     if given.paths:
-        return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, column, mass_kg, incline_deg,
-                                                    allow_outside, teller(progress)))
-    _refuse({"column": column or None} if x_m is not None else
-            {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
+        refuse({"force_n": force_n})
+        files = file_options(given.paths, allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg,
+                             runs=runs, masses_kg=masses_kg)
+        return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, files, teller(progress)))
+    refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg},
+                     {"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
     return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), gravity_m_s2, name, choices,
                                                  teller(progress)))
-
-
-def _refuse(options: Mapping[str, object]) -> None:
-    """What is given and has no meaning here."""
-    for key, value in options.items():
-        if value is not None:
-            raise input_error(key, repr(value), "nothing: a Track states its own, and column is for files")

@@ -10,11 +10,11 @@ from typing import Any, Optional, Union
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._analysis import QUANTITIES, _refuse
+from ._analysis import QUANTITIES
 from ._arrays import Vector, frozen
 from ._errors import input_error
-from ._inputs import (PathLike, Progress, Scenario, Track, checked_seed, given_scenario, given_tracks, job_count,
-                      source_of, teller)
+from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_scenario, given_tracks,
+                      job_count, refuse, refuse_of_arrays, source_of, teller)
 from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, quantity_of
 
 
@@ -200,23 +200,24 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
              x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
              force_n: Optional[ArrayLike] = None, name: str = "", without: Sequence[str] = (),
              gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
-             progress: Progress = None) -> Diagnosis:
+             progress: Progress = None, column: str = "", runs: Runs = None,
+             masses_kg: Optional[Sequence[float]] = None) -> Diagnosis:
     """Which effect, if any, the law of viscous drag and Coulomb friction lacks.
 
     Parameters
     ----------
     source : array_like, Track, str, path, or a sequence of tracks or of names
         ``diagnose(t_s, x_m)``, a `Track` or several, which share the glider and the track; or names of experiment
-        folders, or of one ``.csv`` with a table of lines.
+        folders, of files with a track, or of one ``.csv`` with a table of lines.
     x_m : array_like, shape (n,), optional
         With times as `source`: positions in metres, positive downhill.
     mass_kg, incline_deg, force_n : optional
-        With (t, x): as in `analyze`.
+        With (t, x), the first two also with a file: as in `analyze`.
     name : str
         With arrays: what the experiment is called in results.
     without : sequence of str
         Effects to leave out, by the ids of docs/reference/effects.md.
-    gravity_m_s2, allow_outside, jobs, progress
+    gravity_m_s2, allow_outside, jobs, progress, column, runs, masses_kg
         As in `analyze`.
 
     Returns
@@ -236,11 +237,14 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
     stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
                               "force_n": force_n}
     given = source_of(source, x_m, **stated)
-    if x_m is None:
-        _refuse({"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
     if given.paths:
-        return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), list(without), job_count(jobs),
-                                                      allow_outside, teller(progress)))
+        refuse({"force_n": force_n})
+        files = file_options(given.paths, allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg,
+                             runs=runs, masses_kg=masses_kg)
+        return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), list(without), job_count(jobs), files,
+                                                      teller(progress)))
+    refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg},
+                     {"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
     return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), gravity_m_s2, name, list(without),
                                                    job_count(jobs), teller(progress)))
 

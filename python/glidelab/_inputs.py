@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import math
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -107,6 +108,63 @@ def source_of(source: Any, x_m: Optional[ArrayLike], **stated: Any) -> Source:
     raise input_error("source", f"a {type(source).__name__}" + (" that is empty" if source is None or (
         isinstance(source, Sequence) and not source) else ""),
         "times and positions, a Track or a list of them, or names of folders or files")
+
+
+Runs = Union[str, Sequence[int], None]
+
+
+def _positive(key: str, value: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise input_error(key, f"a {type(value).__name__}", "kilograms, above 0")
+    if not (math.isfinite(value) and value > 0.0):
+        raise input_error(key, f"{value:g}", "kilograms, above 0")
+    return float(value)
+
+
+def _runs_text(runs: Runs) -> str:
+    if runs is None or isinstance(runs, str):
+        return runs or ""
+    numbers = list(runs)
+    if not numbers or not all(isinstance(one, (int, np.integer)) and not isinstance(one, bool) for one in numbers):
+        raise input_error("runs", repr(runs), 'numbers of runs, from 1 on, or "all"')
+    return ",".join(str(one) for one in numbers)
+
+
+def refuse(options: Mapping[str, object]) -> None:
+    """What is given and has no meaning here."""
+    for key, value in options.items():
+        if value is not None:
+            raise input_error(key, repr(value), "nothing: a Track or a file states its own, and column is for files")
+
+
+def refuse_of_arrays(of_numbers: bool, of_files: Mapping[str, object], of_motion: Mapping[str, object]) -> None:
+    """Arrays have no columns and runs; a Track states its own mass, inclination and force, (t, x) does not."""
+    refuse(of_files)
+    if not of_numbers:
+        refuse(of_motion)
+
+
+def file_options(paths: Sequence[str], allow_outside: bool, *, column: str = "", mass_kg: Optional[float] = None,
+                 incline_deg: Optional[float] = None, runs: Runs = None,
+                 masses_kg: Optional[Sequence[float]] = None) -> _glidelab.FileOptions:
+    """What is stated beside files with a track; a folder's experiment.toml says the same of its clips."""
+    steepest_deg = 90.0  # a fall
+    given = {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg, "runs": runs,
+             "masses_kg": masses_kg}
+    for key, value in given.items():
+        if value is not None and any(os.path.isdir(path) for path in paths):
+            raise input_error(key, repr(value), "nothing beside a folder: its experiment.toml states it")
+    if runs is not None and column:
+        raise input_error("column", repr(column), "nothing beside runs, each of which has a column of its own")
+    if masses_kg is not None and runs is None:
+        raise input_error("masses_kg", repr(masses_kg), "runs= beside it: which of the file's runs they belong to")
+    if masses_kg is not None and mass_kg is not None:
+        raise input_error("mass_kg", repr(mass_kg), "nothing beside masses_kg")
+    if incline_deg is not None and not abs(incline_deg) <= steepest_deg:  # NaN is not
+        raise input_error("incline_deg", f"{incline_deg:g}", "degrees, from -90 to 90")
+    return _glidelab.FileOptions(column, None if mass_kg is None else _positive("mass_kg", mass_kg),
+                                 None if incline_deg is None else float(incline_deg), _runs_text(runs),
+                                 [_positive("masses_kg", one) for one in masses_kg or ()], allow_outside)
 
 
 def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
-from ._inputs import PathLike, Progress, job_count, teller
+from ._inputs import PathLike, Progress, Runs, file_options, job_count, teller
 from ._results import Made, Result, frame_of, html_table
 
 
@@ -59,15 +60,16 @@ class RecordingCheck(Result):
         return html_table(["", "about", "found", "advice"], rows, "usable" if self.usable else "not usable as it is")
 
 
-def check(folder: PathLike, *, allow_outside: bool = False, jobs: Optional[int] = None,
-          progress: Progress = None) -> RecordingCheck:
-    """A look at a recording before any analysis: pattern, marker, exposure, blur, frame times.
+def check(source: PathLike, *, allow_outside: bool = False, jobs: Optional[int] = None, progress: Progress = None,
+          column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
+          masses_kg: Optional[Sequence[float]] = None) -> RecordingCheck:
+    """A look at a recording before any analysis: pattern, marker, exposure, blur, frame times, statements.
 
     Parameters
     ----------
-    folder : str or path
-        An experiment folder.
-    allow_outside, jobs, progress
+    source : str or path
+        An experiment folder, or a file with a track.
+    allow_outside, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
         As in `analyze`.
 
     Returns
@@ -78,9 +80,12 @@ def check(folder: PathLike, *, allow_outside: bool = False, jobs: Optional[int] 
     Raises
     ------
     InputError
-        There is no such folder, or its experiment.toml is wrong.
+        There is no such folder or file, or it cannot be read.
     """
-    made = Made(_glidelab.check(os.fspath(folder), allow_outside, job_count(jobs), teller(progress)))
+    path = os.fspath(source)
+    files = file_options([path], allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg, runs=runs,
+                         masses_kg=masses_kg)
+    made = Made(_glidelab.check(path, files, job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     return RecordingCheck(made, found["name"], found["usable"], tuple(
         Finding(one["severity"], one["about"], one["found"], one["advice"]) for one in found["findings"]))

@@ -14,7 +14,7 @@ from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario,
 from ._results import Made, Result, frame_of, html_table
 
 
-def _whole(name: str, value: int, least: int, most: int) -> int:
+def whole(name: str, value: int, least: int, most: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
         raise input_error(name, repr(value), f"a whole number from {least} to {most}")
     return value
@@ -200,7 +200,7 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
     InputError
         Wrong input, or a camera that cannot see the marker.
     """
-    made = Made(_glidelab.coverage(given_scenario(scenario), noise_m, _whole("replicates", replicates, 1, 1000000),
+    made = Made(_glidelab.coverage(given_scenario(scenario), noise_m, whole("replicates", replicates, 1, 1000000),
                                    [float(level) for level in levels], bandwidth_s, checked_seed(seed),
                                    job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
@@ -288,8 +288,8 @@ def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks",
         targets = [targets]
     if not targets:
         raise input_error("targets", "none", "one or more, such as \"mu=0.0005\"")
-    made = Made(_glidelab.require(os.fspath(sweep), list(targets), confirm, _whole("runs", runs, 2, 100000),
-                                  _whole("track_runs", track_runs, 2, 1000000), checked_seed(seed), job_count(jobs),
+    made = Made(_glidelab.require(os.fspath(sweep), list(targets), confirm, whole("runs", runs, 2, 100000),
+                                  whole("track_runs", track_runs, 2, 1000000), checked_seed(seed), job_count(jobs),
                                   teller(progress)))
     found = Result(made).to_dict()
     return Requirement(made, found["name"], tuple(

@@ -54,6 +54,27 @@ class WrongInput(InFolder):
         self.refused(lambda: glidelab.analyze([]), key="source")
         self.refused(lambda: glidelab.plan(SCENARIO), key="noise_m", found="nothing")
 
+    def test_what_a_file_does_not_say(self):
+        t, x = damped()
+        file = self.folder / "track.csv"
+        file.write_text("t_s,x_m\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(t.tolist(), x.tolist())))
+        self.refused(lambda: glidelab.analyze(self.folder, mass_kg=0.3), key="mass_kg", found="0.3")
+        self.refused(lambda: glidelab.check(self.folder, runs="all"), key="runs")
+        self.refused(lambda: glidelab.check(file, mass_kg=-0.3), key="mass_kg", found="-0.3")
+        self.refused(lambda: glidelab.diagnose(file, incline_deg=91.0), key="incline_deg", found="91")
+        self.refused(lambda: glidelab.diagnose(file, incline_deg=math.nan), key="incline_deg", found="nan")
+        self.refused(lambda: glidelab.analyze(file, masses_kg=[0.3]), key="masses_kg")
+        self.refused(lambda: glidelab.analyze(file, runs=[], masses_kg=[0.3]), key="runs")
+        self.refused(lambda: glidelab.analyze(file, runs=[7]), key="--runs", found='"7"')
+        self.refused(lambda: glidelab.analyze(file, runs=[1], mass_kg=0.3, masses_kg=[0.3]), key="mass_kg")
+        self.refused(lambda: glidelab.analyze(file, runs=[1], column="2"), key="column")
+        self.refused(lambda: glidelab.analyze(t, x, runs="all"), key="runs")
+        self.refused(lambda: glidelab.analyze(file, force_n=x), key="force_n")
+        self.refused(lambda: glidelab.certify(file, twins=5), key="twins")
+        self.refused(lambda: glidelab.certify(file, estimator="best"), key="estimator")
+        self.refused(lambda: glidelab.certify(file, bandwidth_s=0.0), key="bandwidth_s")
+        self.refused(lambda: glidelab.certify([]), key="source")
+
     def test_files(self):
         self.refused(lambda: glidelab.analyze(self.folder / "missing"), file=str(self.folder / "missing"),
                      found="nothing")

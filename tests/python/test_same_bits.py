@@ -67,6 +67,34 @@ class SameBits(InFolder):
         self.assertEqual(glidelab.explain(diagnosis), run("diagnose", folder, "-q", "--no-page", "-o",
                                                           self.folder / "out"))
 
+    def test_certify(self):
+        folder = self.write_experiment(made_tracks())
+        said = run("certify", folder, "-q", "--json", "--twins", "20", "--seed", "3", "-o", self.folder / "out")
+        certificate = glidelab.certify(folder, twins=20, seed=3)
+        self.assertEqual(certificate.to_json(), said)
+        self.assertEqual([one.quantity for one in certificate.quantities],
+                         ["k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"])
+        self.assertTrue(certificate.holds)
+
+    def test_files_with_several_runs(self):
+        tracks = made_tracks()[:2]
+        file = self.folder / "runs.csv"
+        rows = zip(tracks[0].t_s, tracks[0].x_m, tracks[1].t_s, tracks[1].x_m)
+        file.write_text("Run 1: Time (s),Run 1: Position (m),Run 2: Time (s),Run 2: Position (m)\n" + "".join(
+            ",".join(repr(float(value)) for value in row) + "\n" for row in rows))
+        for options, choices in ((("--runs", "all", "--mass", "0.335", "--incline", "4.3"),
+                                  {"runs": "all", "mass_kg": 0.335, "incline_deg": 4.3}),
+                                 (("--runs", "2,1", "--masses", "0.3,0.4"), {"runs": [2, 1], "masses_kg": [0.3, 0.4]})):
+            with self.subTest(choices):
+                said = run("analyze", file, "-q", "--json", "-o", self.folder / "a", *options)
+                self.assertEqual(glidelab.analyze(file, **choices).to_json(), said)
+                said = run("check", file, "-q", "--json", "-o", self.folder / "c", *options)
+                self.assertEqual(glidelab.check(file, **choices).to_json(), said)
+                run("diagnose", file, "-q", "--no-page", "-o", self.folder / "d", *options)
+                self.assertEqual(glidelab.diagnose(file, **choices).to_json(),
+                                 (self.folder / "d" / "diagnosis.json").read_text())
+        self.assertEqual(len(glidelab.analyze(file, runs=[2]).clips), 1)
+
     def test_plan(self):
         said = run("diagnose", "--plan", SCENARIO, "--noise-m", "2e-5", "--seed", "7", "-q", "--no-page", "--json",
                    "-o", self.folder / "out")

@@ -1,0 +1,180 @@
+"""certify(): can the stated intervals be trusted on this recording?"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+from . import _glidelab
+from ._errors import input_error
+from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller
+from ._results import Made, Result, frame_of, html_table
+from ._studies import whole
+
+
+@dataclass(frozen=True)
+class CertifiedQuantity:
+    """One quantity over all twins and configurations.
+
+    Attributes
+    ----------
+    quantity : str
+        ``"k_over_m_1_s"``, ``"mu"``, ``"alpha_deg"`` or ``"v_lim_m_s"``.
+    asked, failed : int
+        Values whose truth is known, and how many of these got no estimate.
+    coverage : float or None
+        Share of the stated 95 % intervals that hold the truth; None where none was stated.
+    coverage_interval95 : (float, float) or None
+        What as many twins leave open of it.
+    bias_sds : float or None
+        Mean of error over stated standard deviation.
+    rms, stated_sd : float or None
+        Root mean square error, and stated standard deviation, in the quantity's unit.
+    too_narrow : bool
+        Fewer intervals hold than 95 %, by more than chance makes.
+    """
+
+    quantity: str
+    asked: int
+    failed: int
+    coverage: Optional[float]
+    coverage_interval95: Optional[tuple[float, float]]
+    bias_sds: Optional[float]
+    rms: Optional[float]
+    stated_sd: Optional[float]
+    too_narrow: bool
+
+
+@dataclass(frozen=True)
+class ChangedTwin:
+    """What one thing better would bring.
+
+    Attributes
+    ----------
+    limit, change, advice : str
+        What limits ("noise"), what was changed in the twins, and what a person can do.
+    twins : int
+        How many were recorded with it.
+    fall : float or None
+        How much smaller the root mean square error becomes, 1 - after/before.
+    fall_interval95 : (float, float) or None
+        Of it.
+    stands_out : bool
+        Whether that is more than chance over all changes.
+    """
+
+    limit: str
+    change: str
+    advice: str
+    twins: int
+    fall: Optional[float]
+    fall_interval95: Optional[tuple[float, float]]
+    stands_out: bool
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Certificate(Result):
+    """Whether the intervals of an analysis hold in recordings like this one.
+
+    Attributes
+    ----------
+    answer : str
+        In a sentence.
+    holds : bool or None
+        None where there was nothing to count.
+    twins : int
+        How many were recorded.
+    estimator, by : str
+        The method that was judged; ``"film"`` or ``"tracks"``: how the twins were recorded.
+    quantities : tuple of CertifiedQuantity
+    changes : tuple of ChangedTwin
+        The most helpful first.
+    causes : tuple of str
+        Ids of the effects that were diagnosed, and act in the twins.
+    """
+
+    answer: str
+    holds: Optional[bool]
+    twins: int
+    estimator: str
+    by: str
+    quantities: tuple[CertifiedQuantity, ...]
+    changes: tuple[ChangedTwin, ...]
+    causes: tuple[str, ...]
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, a row a quantity."""
+        return frame_of({name: [getattr(one, name) for one in self.quantities] for name in (
+            "quantity", "asked", "failed", "coverage", "bias_sds", "rms", "stated_sd", "too_narrow")})
+
+    def _repr_html_(self) -> str:
+        rows = [[one.quantity, "" if one.coverage is None else f"{100.0 * one.coverage:.0f} %",
+                 "" if one.bias_sds is None else f"{one.bias_sds:.2f}"] for one in self.quantities]
+        return html_table(["quantity", "intervals that hold", "bias (stated sd)"], rows, self.answer)
+
+
+def _pair(found: Optional[Sequence[float]]) -> Optional[tuple[float, float]]:
+    return None if found is None else (found[0], found[1])
+
+
+def _quantity(found: Mapping[str, Any]) -> CertifiedQuantity:
+    coverage: Mapping[str, Any] = found.get("coverage") or {}
+    return CertifiedQuantity(found["quantity"], found["asked"], found["failed"], coverage.get("share"),
+                             _pair(coverage.get("interval95")), found.get("bias_sds"), found.get("rms"),
+                             found.get("stated_sd"), bool(found.get("too_narrow")))
+
+
+def _change(found: Mapping[str, Any]) -> ChangedTwin:
+    fall: Mapping[str, Any] = found.get("fall") or {}
+    return ChangedTwin(found["limit"], found["change"], found["advice"], found["twins"], fall.get("value"),
+                       _pair(fall.get("interval95")), found["stands_out"])
+
+
+def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, estimator: str = "phase-diagram",
+            bandwidth_s: Optional[float] = None, seed: Optional[int] = None, allow_outside: bool = False,
+            jobs: Optional[int] = None, progress: Progress = None, column: str = "", mass_kg: Optional[float] = None,
+            incline_deg: Optional[float] = None, runs: Runs = None,
+            masses_kg: Optional[Sequence[float]] = None) -> Certificate:
+    """Records and analyses twins of a recording: do its intervals hold, what limits it, what would help?
+
+    Parameters
+    ----------
+    source : str or path, or a sequence of them
+        Experiment folders that share the glider and the track, or files with a track.
+    twins : int
+        20 to 200: how many are recorded.
+    estimator : str
+        The method whose intervals are judged, as in `analyze`.
+    bandwidth_s : float, optional
+        Of the phase diagram; chosen clip by clip.
+    seed : int, optional
+        Of the twins' noise, clock and calibration; 1.
+    allow_outside, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
+        As in `analyze`.
+
+    Returns
+    -------
+    Certificate
+        As ``glidelab certify`` writes it (docs/guide/trust.md). Intervals that do not hold are no exception.
+
+    Raises
+    ------
+    InputError
+        Wrong input, or motions that no scenario can record again.
+    """
+    names: list[PathLike] = [source] if isinstance(source, (str, os.PathLike)) else list(source)
+    if not names or not all(is_path(one) for one in names):
+        raise input_error("source", f"a {type(source).__name__}", "names of folders or files")
+    paths = [os.fspath(one) for one in names]
+    files = file_options(paths, allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg, runs=runs,
+                         masses_kg=masses_kg)
+    if bandwidth_s is not None and not bandwidth_s > 0.0:
+        raise input_error("bandwidth_s", f"{bandwidth_s:g}", "seconds, above 0")
+    made = Made(_glidelab.certify(paths, whole("twins", twins, 20, 200), estimator, bandwidth_s, checked_seed(seed),
+                                  job_count(jobs), files, teller(progress)))
+    found = Result(made).to_dict()
+    return Certificate(made, found["answer"], found["holds"], found["twins"], found["estimator"], found["by"],
+                       tuple(_quantity(one) for one in found["quantities"]),
+                       tuple(_change(one) for one in found["changes"]), tuple(found["causes"]))
