@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/math/angles.h"
+#include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
@@ -65,9 +66,15 @@ Change clip_of(ChangeKind kind, const TrackSet& set, const SoFar& so, const Next
   Change change;
   change.kind = kind;
   change.clip = clip;
+  change.falls = only_falls(set);
   if (clip.group < set.groups.size()) change.on = name_among(set, clip.group);
   change.rate_so_far_hz = so.rate_hz;
   return change;
+}
+
+/// Where a motion was released, half of the slowest launch is no launch.
+double slowest_launch(const SoFar& so) {
+  return std::max(0.5 * so.slow_m_s, kSlowest * so.fast_m_s);
 }
 
 /// What falls is dropped: other masses, from where the slowest of them began.
@@ -76,14 +83,13 @@ void add_drops(const TrackSet& set, const SoFar& so, std::vector<Change>& change
     for (const double mass : distinct({so.light_kg, so.heavy_kg, 1.6 * so.heavy_kg, 0.6 * so.light_kg})) {
       const bool is_new = mass != so.light_kg && mass != so.heavy_kg;
       changes.push_back(clip_of(is_new ? ChangeKind::mass : ChangeKind::launch, set, so,
-                                {group, mass, std::max(0.5 * so.slow_m_s, kSlowest * so.fast_m_s), so.rate_hz}));
+                                {group, mass, slowest_launch(so), so.rate_hz}));
     }
   }
 }
 
 void add_launches(const TrackSet& set, const SoFar& so, std::vector<Change>& changes) {
-  // Where a motion was released, half of the slowest launch is no launch.
-  const double slow = std::max(0.5 * so.slow_m_s, kSlowest * so.fast_m_s);
+  const double slow = slowest_launch(so);
   for (const std::size_t group : so.groups) {
     for (const double direction : {-1.0, 1.0}) {
       for (const double v : distinct({slow, so.fast_m_s, 1.8 * so.fast_m_s})) {
@@ -124,8 +130,10 @@ void add_settings(const TrackSet& set, const SoFar& so, std::vector<Change>& cha
                             ? set.position_noise->shape.jitter_s > 0.0
                             : std::any_of(set.motions.begin(), set.motions.end(),
                                           [](const TrackedMotion& motion) { return !motion.wider.empty(); });
+  const std::vector<double> speeds =
+      only_falls(set) ? std::vector{slowest_launch(so)} : std::vector{-so.fast_m_s, so.fast_m_s};
   for (const std::size_t group : so.groups) {
-    for (const double v : {-so.fast_m_s, so.fast_m_s}) {
+    for (const double v : speeds) {
       for (const double mass : distinct({so.light_kg, so.heavy_kg})) {
         for (const double times : {2.0, 0.5}) {
           changes.push_back(clip_of(ChangeKind::frame_rate, set, so, {group, mass, v, times * so.rate_hz}));
@@ -163,13 +171,15 @@ void add_statements(const TrackSet& set, const SoFar& so, std::vector<Change>& c
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal) {
   const SoFar so = so_far(set, nominal);
   std::vector<Change> changes;
-  if (only_falls(set)) {
-    add_drops(set, so, changes);
-  } else {
-    add_launches(set, so, changes);
-    add_inclinations(set, so, changes);
+  if (!is_driven(set)) {  // what a motor will do next nobody knows
+    if (only_falls(set)) {
+      add_drops(set, so, changes);
+    } else {
+      add_launches(set, so, changes);
+      add_inclinations(set, so, changes);
+    }
+    add_settings(set, so, changes);
   }
-  add_settings(set, so, changes);
   add_statements(set, so, changes);
   return changes;
 }

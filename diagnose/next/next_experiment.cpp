@@ -10,6 +10,7 @@
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/expected_evidence.h"
 #include "diagnose/next/next_changes.h"
+#include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -58,6 +59,7 @@ NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const D
   const GapRegion& region = diagnosis.regions.front();
   const std::string& variable = region.variable;
   if (!region.clip.empty()) return RepeatClip{region.clip};
+  if (is_driven(set) && (variable == "x_m" || variable == "v_m_s")) return Routine::other_forces;
   if (variable == "x_m") {
     const auto cover = best_cover(set, nominal, CoverRegion::Over::places, region,
                                   [&](double x, double) { return x >= region.from && x <= region.to; });

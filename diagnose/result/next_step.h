@@ -42,6 +42,7 @@ struct Change {
   std::optional<NextClip> clip = {};
   std::optional<NextSetUp> set_up = {};
   std::vector<NextStatement> statements = {};
+  bool falls = false;           ///< its clip is one more fall: nothing is launched
   std::string on = {};          ///< the set-up's name, where there are several
   double rate_so_far_hz = 0.0;  ///< highest frame rate of the clips so far
 };
@@ -66,6 +67,7 @@ enum class Routine {
   set_up_again,         ///< the same inclination, set up once more
   move_camera,          ///< along the track
   other_speeds,         ///< launches at two further speeds
+  other_forces,         ///< the same places with other recorded forces
   measure_inclination,  ///< it and the motion contradict each other
   check_statements,     ///< downhill, inclinations, masses: a drag or friction is below zero
   second_mass           ///< of a table of lines of one mass

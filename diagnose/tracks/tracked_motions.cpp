@@ -21,6 +21,11 @@ bool only_falls(const TrackSet& set) {
   return !set.groups.empty() && std::all_of(set.groups.begin(), set.groups.end(), is_fall);
 }
 
+bool is_driven(const TrackSet& set) {
+  return std::any_of(set.motions.begin(), set.motions.end(),
+                     [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); });
+}
+
 TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every) {
   TrackedMotion part = motion;
   part.whitening.clear();

@@ -122,6 +122,9 @@ struct TrackSet {
 /// Whether nothing but falls was recorded.
 bool only_falls(const TrackSet& set);
 
+/// Whether a recorded force moves some of it: its next clip is no launch.
+bool is_driven(const TrackSet& set);
+
 /// Points from, from + every, ... before `to` of a motion; without its whitening.
 TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every = 1);
 

@@ -129,7 +129,7 @@ std::vector<GivenCause> sizes_of(const WithCauses& of, const RemainderSizes& rem
   const MotionFit& told = std::isfinite(fit.cost) ? fit : of.fit;
   std::vector<GivenCause> causes;
   for (const std::string& id : ids) {
-    GivenCause cause{id, fitted_parameters(told, effect_index(id), pictures.stated_line_s)};
+    GivenCause cause{id, fitted_parameters(with, told, effect_index(id), pictures.stated_line_s)};
     const std::vector<DiagnosedParameter> derived =
         derived_parameters(with, told, effect_index(id), pictures, cause.parameters);
     cause.parameters.insert(cause.parameters.end(), derived.begin(), derived.end());

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/gap/held_out.h"
+#include "diagnose/gap/size_uncertainty.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -25,7 +25,7 @@ struct Told {
 
 class Teller {
  public:
-  explicit Teller(const MotionFit& fit) : fit_(fit), covariance_(common_covariance(fit)) {}
+  Teller(const TrackSet& set, const MotionFit& fit) : fit_(fit), uncertainty_(set, fit) {}
 
   Told at(Eigen::Index global) const {
     return {fit_.at.global[global], Eigen::VectorXd::Unit(fit_.at.global.size(), global)};
@@ -33,12 +33,12 @@ class Teller {
   Told at(std::size_t global) const { return at(static_cast<Eigen::Index>(global)); }
 
   DiagnosedParameter as(const std::string& key, const Told& told) const {
-    return {key, told.value, std::sqrt(std::max(0.0, told.by.dot(covariance_ * told.by)))};
+    return {key, told.value, uncertainty_.sd(told.by)};
   }
 
  private:
   const MotionFit& fit_;
-  Eigen::MatrixXd covariance_;
+  SizeUncertainty uncertainty_;
 };
 
 Told sum(const Told& a, const Told& b) {
@@ -78,7 +78,7 @@ std::vector<DiagnosedParameter> own_values(const TrackSet& set, const MotionFit&
                                            Eigen::Index common, const std::string& sd_key, const std::string& key) {
   const std::vector<std::size_t> globals = fit.layout->all_of(slot);
   if (globals.size() < 2) return {};
-  const Teller teller(fit);
+  const Teller teller(set, fit);
   std::vector<Told> values;
   for (const std::size_t g : globals) {
     const Told deviation = teller.at(g), mean = teller.at(common);
@@ -93,7 +93,7 @@ std::vector<DiagnosedParameter> own_values(const TrackSet& set, const MotionFit&
 }
 
 /// s(x) of place_friction, as its law has it: what mu becomes over mu, less 1.
-std::vector<DiagnosedParameter> friction_along(const MotionFit& fit, std::size_t effect) {
+std::vector<DiagnosedParameter> friction_along(const TrackSet& set, const MotionFit& fit, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
   const ParameterRange x = fit.layout->places();
   std::vector<std::size_t> globals;
@@ -101,7 +101,7 @@ std::vector<DiagnosedParameter> friction_along(const MotionFit& fit, std::size_t
     const std::vector<std::size_t> one = fit.layout->all_of(parameter.slot);
     globals.insert(globals.end(), one.begin(), one.end());
   }
-  const Teller teller(fit);
+  const Teller teller(set, fit);
   const GliderConstants glider{.x_low_m = x.low, .x_high_m = x.high};
   // It is linear in its sizes: the derivative by each is what one unit of it alone makes.
   const auto at = [&](double place) {
@@ -146,11 +146,11 @@ std::vector<DiagnosedParameter> own_sizes(const TrackSet& set, const MotionFit& 
   const std::vector<std::size_t> first = fit.layout->all_of({effect, 0});
   if (first.empty()) return {};
   if (id == ids::direction_dependent_drag) {
-    const Teller teller(fit);
+    const Teller teller(set, fit);
     const Told k = teller.at(kDrag), d = teller.at(first.front());
     return {teller.as("k_plus_n_s_m", enlarged(k, d)), teller.as("k_minus_n_s_m", enlarged(k, d, -1.0))};
   }
-  if (id == ids::place_friction) return friction_along(fit, effect);
+  if (id == ids::place_friction) return friction_along(set, fit, effect);
   if (id == ids::configuration_friction) return own_values(set, fit, {effect, 0}, kMu, "sd", "mu");
   if (id == ids::configuration_drag) return own_values(set, fit, {effect, 0}, kDrag, "sd_n_s_m", "k_n_s_m");
   if (id == ids::clip_scatter) {

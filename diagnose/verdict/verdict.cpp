@@ -77,7 +77,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
     const auto count = static_cast<double>(missing_in(set, fit));
     if (count > 0.0) parameters.push_back({"fraction", count / points, std::sqrt(count) / points});
   }
-  for (const DiagnosedParameter& tracked : fitted_parameters(fit, effect, pictures.stated_line_s)) {
+  for (const DiagnosedParameter& tracked : fitted_parameters(set, fit, effect, pictures.stated_line_s)) {
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.key == tracked.key; });
     if (known == parameters.end()) {

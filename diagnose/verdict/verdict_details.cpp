@@ -11,6 +11,7 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/gap/held_out.h"
+#include "diagnose/gap/size_uncertainty.h"
 #include "diagnose/verdict/own_sizes.h"
 
 namespace glidelab::diagnose {
@@ -41,9 +42,10 @@ double px_per_m(const PictureEvidence& pictures) {
 
 }  // namespace
 
-std::vector<DiagnosedParameter> fitted_parameters(const MotionFit& fit, std::size_t effect, double stated_line_s) {
+std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
+                                                  double stated_line_s) {
   std::vector<DiagnosedParameter> parameters;
-  const Eigen::MatrixXd covariance = common_covariance(fit);
+  const SizeUncertainty uncertainty(set, fit);
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const EffectParameter* parameter = globals[g].parameter;
@@ -52,8 +54,7 @@ std::vector<DiagnosedParameter> fitted_parameters(const MotionFit& fit, std::siz
     const auto at = static_cast<Eigen::Index>(g);
     ShownValue value = shown(*parameter, fit.at.global[at]);
     if (parameter->slot == slot_of(ids::rolling_shutter)) value.value += stated_line_s;
-    parameters.push_back({std::string(parameter->key), value.value,
-                          std::sqrt(std::max(0.0, covariance(at, at))) * std::abs(value.by_fitted)});
+    parameters.push_back({std::string(parameter->key), value.value, uncertainty.sd(at) * std::abs(value.by_fitted)});
   }
   return parameters;
 }
@@ -71,9 +72,7 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
   const auto index = [&](auto global) { return static_cast<Eigen::Index>(global - globals.begin()); };
   if (at(slot_of(ids::track_bow)) != globals.end()) return middles(set, 0.0, 0.0);
   if (const auto about = at(slot_of(ids::damping_gradient, 1)); about != globals.end()) {
-    const Eigen::MatrixXd covariance = common_covariance(fit);
-    const double variance = covariance(index(about), index(about));
-    return middles(set, fit.at.global[index(about)], std::sqrt(std::max(0.0, variance)));
+    return middles(set, fit.at.global[index(about)], SizeUncertainty(set, fit).sd(index(about)));
   }
   const auto in_metres = std::find_if(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_m"; });
   const bool in_pixels = std::any_of(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_px"; });

@@ -15,7 +15,8 @@ namespace glidelab::diagnose {
 
 /// An effect's parameters as a fit to the motion has them and files show them, with the standard deviations of its
 /// covariance. A shutter's line time is what the motion shows more than stated, added to `stated_line_s`.
-std::vector<DiagnosedParameter> fitted_parameters(const MotionFit& fit, std::size_t effect, double stated_line_s);
+std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
+                                                  double stated_line_s);
 
 /// Parameters that the list of effects states for an effect but that no fit has as such.
 ///

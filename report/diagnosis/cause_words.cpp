@@ -187,11 +187,13 @@ std::string sequence_words(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
-  std::vector<std::string> alone;
+  // What explains the gap first, then what is only seen.
+  std::vector<std::string> alone, alone_beside;
   std::string text;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     if (effect.alike.empty()) {
-      alone.push_back(effect_name(effect.id) + " " + percent(effect.probability));
+      const bool explains = diagnosis.explained.empty() || is_explained(diagnosis, effect.id);
+      (explains ? alone : alone_beside).push_back(effect_name(effect.id) + " " + percent(effect.probability));
       continue;
     }
     std::vector<std::string> members;
@@ -201,7 +203,12 @@ std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
     text += fmt::format(" These data cannot tell {} apart; one of them acts with a probability of {}.",
                         list_of(members), percent(effect.joint_probability));
   }
+  if (text.empty()) {
+    alone.insert(alone.end(), alone_beside.begin(), alone_beside.end());
+    alone_beside.clear();
+  }
   if (!alone.empty()) text = fmt::format(" Probability: {}.", list_of(alone, ", ")) + text;
+  if (!alone_beside.empty()) text += fmt::format(" Also likely: {}.", list_of(alone_beside, ", "));
   std::vector<std::string> besides;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     if (!is_explained(diagnosis, effect.id)) besides.push_back(effect_name(effect.id));

@@ -271,27 +271,30 @@ std::string weighed_words(const diagnose::ChangesWeighed& of) {
 /// An order: "Record a launch uphill at 1.2 m/s with 535 g".
 std::string change_words(const Change& change) {
   const std::string on = change.on.empty() ? "" : fmt::format(" on set-up \"{}\"", change.on);
-  std::string launch, grams;
+  std::string launch, mass;
   if (change.clip) {
-    launch = fmt::format("Record a launch {} at {:.2g} m/s", change.clip->v0_m_s < 0.0 ? "uphill" : "downhill",
-                         std::abs(change.clip->v0_m_s));
-    grams = base::digits_text(1000.0 * change.clip->mass_kg, 3) + " g";
+    launch = change.falls
+                 ? "Record a fall"
+                 : fmt::format("Record a launch {} at {:.2g} m/s", change.clip->v0_m_s < 0.0 ? "uphill" : "downhill",
+                               std::abs(change.clip->v0_m_s));
+    const double mass_kg = change.clip->mass_kg;
+    mass = mass_kg < 1.0 ? base::digits_text(1000.0 * mass_kg, 3) + " g" : base::digits_text(mass_kg, 3) + " kg";
   }
   switch (change.kind) {
     case ChangeKind::launch:
-      return fmt::format("{}{} with {}", launch, on, grams);
+      return fmt::format("{}{} with {}", launch, on, mass);
     case ChangeKind::mass:
-      return fmt::format("{}{} with the mass changed to {}", launch, on, grams);
+      return fmt::format("{}{} with the mass changed to {}", launch, on, mass);
     case ChangeKind::inclination:
-      return fmt::format("{} with {} on the track {}", launch, grams,
+      return fmt::format("{} with {} on the track {}", launch, mass,
                          change.set_up->alpha_rad == 0.0
                              ? "made level"
                              : fmt::format("tilted to {:.1f}°", change.set_up->alpha_rad / base::kRadPerDegree));
     case ChangeKind::frame_rate:
-      return fmt::format("{}{} with {} at {:.4g} frames per second instead of {:.4g}", launch, on, grams,
+      return fmt::format("{}{} with {} at {:.4g} frames per second instead of {:.4g}", launch, on, mass,
                          change.clip->rate_hz, change.rate_so_far_hz);
     case ChangeKind::exposure:
-      return fmt::format("{}{} with {} with half the exposure (it halves the blur)", launch, on, grams);
+      return fmt::format("{}{} with {} with half the exposure (it halves the blur)", launch, on, mass);
     case ChangeKind::plumb:
       return fmt::format("Film a plumb line{} (it states the inclination to {:.2g}°)", on,
                          change.statements.front().sd / base::kRadPerDegree);
@@ -354,6 +357,10 @@ std::string routine_words(diagnose::Routine routine) {
     case Routine::other_speeds:
       return "Record launches at two further speeds, with one mass and at one inclination: the missing force depends "
              "on the speed, and its shape shows what it is.";
+    case Routine::other_forces:
+      return "Drive it over the same places again with half and with twice the force: what depends on the speed "
+             "changes "
+             "with it, what depends on the place does not.";
     case Routine::measure_inclination:
       return "Measure the inclination again, with a level on the track or a plumb line in the image: the motion and "
              "the stated value cannot both be right.";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <variant>
 
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/expected_evidence.h"
@@ -104,6 +105,8 @@ TEST_CASE("what falls is dropped again, not thrown up nor laid on another slope"
   std::size_t drops = 0;
   for (const Change& change : changes) {
     CHECK(change.kind != ChangeKind::inclination);
+    if (change.clip) CHECK(change.clip->v0_m_s > 0.0);
+    if (change.clip) CHECK(change.falls);
     if (change.kind != ChangeKind::launch && change.kind != ChangeKind::mass) continue;
     ++drops;
     REQUIRE(change.clip);
@@ -261,4 +264,22 @@ TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and not
   for (const diagnose::Alternative& of : alike.doubt) CHECK_FALSE(of.one.is_nothing());  // never told from nothing
   REQUIRE(alike.by);
   CHECK((alike.by->kind == ChangeKind::pattern || alike.by->kind == ChangeKind::clock));
+}
+
+TEST_CASE("after a motion under a recorded force no launch is suggested, but the same places with other forces") {
+  tests::MadeEffect effect;
+  effect.recorded = [](double t) { return 0.3 * std::sin(2.9 * t); };
+  const auto made = tests::made_experiment({{0.4, 0.0, 0.0, 0.05}}, effect, 11, 2e-5, 800, 100.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(diagnose::is_driven(set));
+  CHECK_FALSE(diagnose::is_driven(inclined()));
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  for (const Change& change : diagnose::feasible_changes(set, nominal)) CHECK_FALSE(change.clip);
+  diagnose::Diagnosis diagnosis;
+  for (const char* variable : {"x_m", "v_m_s"}) {
+    diagnosis.regions = {{variable, 0.0, 0.1, 9.0, 0.1, "N", "force", ""}};
+    const diagnose::NextStep step = diagnose::next_for_unnamed(set, nominal, diagnosis);
+    REQUIRE(std::holds_alternative<diagnose::Routine>(step));
+    CHECK(std::get<diagnose::Routine>(step) == diagnose::Routine::other_forces);
+  }
 }

@@ -71,6 +71,10 @@ TEST_CASE("a change is an order with its numbers in units that people use") {
   using diagnose::ChangeKind;
   CHECK(words_for(launch(ChangeKind::launch, -1.2, 0.535))
             .starts_with("Record a launch uphill at 1.2 m/s with 535 g: of the 62"));
+  diagnose::Change heavy = launch(ChangeKind::launch, 0.3, 95.109);
+  CHECK(contains(words_for(heavy), "with 95.1 kg"));
+  heavy.falls = true;
+  CHECK(words_for(heavy).starts_with("Record a fall with 95.1 kg"));
   diagnose::Change other = launch(ChangeKind::mass, 2.16, 0.856);
   other.on = "flat";
   CHECK(words_for(other).starts_with(
@@ -131,8 +135,8 @@ TEST_CASE("a step without numbers has a sentence with its reason, and no step ha
   CHECK(report::next_step_words({}).empty());
   for (const Routine routine :
        {Routine::repeat_each_kind, Routine::repeat_launch, Routine::start_later, Routine::turn_glider,
-        Routine::set_up_again, Routine::move_camera, Routine::other_speeds, Routine::measure_inclination,
-        Routine::check_statements, Routine::second_mass}) {
+        Routine::set_up_again, Routine::move_camera, Routine::other_speeds, Routine::other_forces,
+        Routine::measure_inclination, Routine::check_statements, Routine::second_mass}) {
     const std::string words = report::next_step_words(routine);
     CHECK(contains(words, ":"));
     CHECK(words.ends_with("."));
