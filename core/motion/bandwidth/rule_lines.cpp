@@ -8,18 +8,21 @@
 #include <optional>
 
 #include "base/text/number_text.h"
+#include "core/math/least_squares.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/lines/line_fit.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kNoiseOfPoints = 0.0125;    // wanted: noise of a over its standard deviation along the line
-constexpr double kSlopeSeen = 3.0;           // standard deviations of K/m from which a line is not level
-constexpr double kBiasAllowed = 0.0035;      // of the lines' size, for the sake of quieter points
-constexpr double kNoiseAllowed = 1.25;       // growth of the lines' variance, for the sake of quieter points
-constexpr double kShareOfTime = 0.1;         // of the free time, below which a direction does not count
-constexpr double kPointsPerBandwidth = 3.0;  // points closer together say the same
+constexpr double kNoiseOfPoints = 0.0125;       // wanted: noise of a over its standard deviation along the line
+constexpr double kSlopeSeen = 3.0;              // standard deviations of K/m from which a line is not level
+constexpr double kBiasAllowed = 0.0035;         // of the lines' size, for the sake of quieter points
+constexpr double kNoiseAllowed = 1.25;          // growth of the lines' variance, for the sake of quieter points
+constexpr double kShareOfTime = 0.1;            // of the free time, below which a direction does not count
+constexpr double kPointsPerBandwidth = 3.0;     // points closer together say the same
+constexpr std::size_t kFewestOfLaw = 8;         // points that count, for a pilot law
+constexpr double kSpreadAboveRounding = 1e-12;  // of v, over its mean square
 
 double time_of(const Motion& motion, const FreeStretch& stretch) {
   return motion.t_s[stretch.first + stretch.count - 1] - motion.t_s[stretch.first];
@@ -27,10 +30,11 @@ double time_of(const Motion& motion, const FreeStretch& stretch) {
 
 struct Errors {
   double bandwidth_s = 0.0;
-  double square = 0.0;       // mean squared error of the lines, m^2/s^4, sum over directions
-  double random = 0.0;       // its part by noise
+  double random = 0.0;       // mean squared error of the lines by noise, m^2/s^4, sum over directions
+  double biased = 0.0;       // the same by the kernel's bias
   double bias_share = 0.0;   // bias of a line over its size, of the worse direction
   double noise_share = 0.0;  // noise of a over its standard deviation along the line, of the noisier direction
+  double square() const { return random + biased; }
 };
 
 /// Mean over 0 <= v <= top of (d a0 - v d k)^2 for the second moments (kk, ka, aa) of (d k, d a0).
@@ -80,7 +84,7 @@ class Scan {
       const double biased = mean_square(of.smoothing_k * of.smoothing_k, of.smoothing_k * of.smoothing_a0,
                                         of.smoothing_a0 * of.smoothing_a0, v_top);
       errors.random += random;
-      errors.square += random + biased;
+      errors.biased += biased;
       errors.bias_share = std::max(errors.bias_share, std::sqrt(biased / mean_square(k * k, k * a0, a0 * a0, v_top)));
       errors.noise_share = std::max(errors.noise_share, noise_share(*line, input));
     }
@@ -114,32 +118,38 @@ class Scan {
   double longest_s_ = 0.0;
 };
 
-/// Weighted least squares of a = a0 - k v; a constant where v hardly varies.
+/// Weighted least squares of a = a0 - k v.
 struct Law {
   double k = 0.0, a0 = 0.0;
 };
 
 /// The law of one direction, through the points that count, or all where too few do; nothing where there are none.
+///
+/// The kernel's bias goes with k^2, which noise makes too large by the variance of k: that is taken off (down to a
+/// constant, where k cannot be told from 0). The residuals say how large it is, each point counting as an independent
+/// one; the smoothed a of neighbours cancel rather than add, so that it is rather less.
 std::optional<Law> law_of_direction(const std::vector<StretchPoint>& points, int direction) {
   RowVariance variance({1.0});
   for (const bool only_used : {true, false}) {
-    double n = 0.0, w = 0.0, v = 0.0, a = 0.0, vv = 0.0, va = 0.0;
+    LineSums sums;
+    double aa = 0.0;
+    std::size_t n = 0;
     for (const StretchPoint& point : points) {
       if (point.direction != direction || !point.smoothed) continue;
       if (only_used && point.left_out != LeftOut::used) continue;
       const double weight = 1.0 / variance.of_a(*point.row);
-      n += 1.0;
-      w += weight;
-      v += weight * point.x.v_m_s;
-      a += weight * point.y.a_m_s2;
-      vv += weight * point.x.v_m_s * point.x.v_m_s;
-      va += weight * point.x.v_m_s * point.y.a_m_s2;
+      sums.add(weight, point.x.v_m_s, point.y.a_m_s2);
+      aa += weight * point.y.a_m_s2 * point.y.a_m_s2;
+      ++n;
     }
-    if (n == 0.0 || (only_used && n < 8.0)) continue;
+    if (n == 0 || (only_used && n < kFewestOfLaw)) continue;
+    if (n <= 2 || !sums.is_regular(kSpreadAboveRounding)) return Law{0.0, sums.y / sums.w};
+    const double slope = sums.slope(), spread = sums.determinant() / sums.w;
+    const double squares = std::max(0.0, aa - sums.intercept() * sums.y - slope * sums.xy);
+    const double variance_of_k = squares / (static_cast<double>(n - 2) * spread);
     Law law;
-    const double spread = vv - v * v / w;
-    if (spread > 1e-3 * vv) law.k = -(va - v * a / w) / spread;
-    law.a0 = (a + law.k * v) / w;
+    law.k = std::copysign(std::sqrt(std::max(0.0, slope * slope - variance_of_k)), -slope);
+    law.a0 = (sums.y + law.k * sums.x) / sums.w;
     return law;
   }
   return {};
@@ -174,11 +184,15 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
   std::vector<Errors> tried;
   for (double h = kLeastBandwidthSteps * motion.step_s;
        scan.has_directions() && 2.0 * kKernelMargin * h < scan.longest_s(); h *= kBandwidthRatio) {
-    if (const auto errors = scan.at(h)) tried.push_back(*errors);
+    auto errors = scan.at(h);
+    if (!errors) continue;
+    // The bias grows with h; where its estimate falls again, v(t) and its noise have made it so.
+    if (!tried.empty()) errors->biased = std::max(errors->biased, tried.back().biased);
+    tried.push_back(*errors);
   }
   if (tried.empty()) return choice;
   const auto best = std::min_element(tried.begin(), tried.end(),
-                                     [](const Errors& a, const Errors& b) { return a.square < b.square; });
+                                     [](const Errors& a, const Errors& b) { return a.square() < b.square(); });
   auto taken = best;
   while (taken->noise_share > kNoiseOfPoints && std::next(taken) != tried.end() &&
          std::next(taken)->bias_share <= kBiasAllowed && std::next(taken)->random <= kNoiseAllowed * best->random) {

@@ -8,7 +8,8 @@
 ///     E(h) = sum over directions of the mean over 0 <= v <= v_max of  variance + bias^2  of the fitted line
 ///
 /// is estimated: the variance exactly from the weights and the noise (line_fit.h), the bias by smoothing the double
-/// integral of f(v(t)), f the law fitted to the points of a first smoothing. The h of least E is the lines' own.
+/// integral of f(v(t)), f the law fitted to the points of a first smoothing; it counts as no less than at any smaller
+/// h, for v(t) is noisy and would let it vanish by chance somewhere. The h of least E is the lines' own.
 ///
 /// At low noise that h leaves the points more ragged than need be. Then it is raised until the noise
 /// of a is 1.25 % of the standard deviation of a along every line that is not level (noise alone then leaves R^2 at
@@ -36,7 +37,9 @@ struct BandwidthChoice {
 
 /// f(v(t)) at every point of the stretches (0 elsewhere): f is the line of each direction, v(t) is smoothed at
 /// `bandwidth_s`. The fit averages the noise of its points, so half the pilot's bandwidth, with a quarter of its bias,
-/// serves (law_bandwidth). A law that is no line gets the bias that its mean slope makes of the true v(t).
+/// serves (law_bandwidth). A law that is no line gets the bias that its mean slope makes of the true v(t). The slope is
+/// taken without its noise, and so as 0 only where it cannot be told from 0: a glider near its limit velocity has
+/// a slope as any other, however little v changes.
 std::vector<double> pilot_law(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
 double law_bandwidth(const Motion& motion, double pilot_bandwidth_s);

@@ -78,3 +78,39 @@ TEST_CASE("more noise and fewer frames make the bandwidth wider, a faster law ma
   };
   CHECK(of_law(6.0) < of_law(1.5));
 }
+
+namespace {
+
+/// A glider that is launched near its limit velocity: v changes by a tenth.
+core::ClipResult analyze_slow(const Law& law, double v0_m_s, unsigned seed) {
+  const auto track = tests::film(tests::launch(law, v0_m_s, 1.7), {200.0, 1.7, 2.6e-6, seed});
+  return core::analyze_motion(tests::clip_setup(core::Launched::down, law.alpha_deg), track, core::MotionOptions{});
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a glider launched near its limit velocity gets a bandwidth whose bias its law allows, and lies on its line") {
+  const Law slow{4.3, 0.004, 1.73};  // v_lim = 0.402 m/s
+  for (const double ratio : {0.94, 1.04, 1.12}) {
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+      const auto clip = analyze_slow(slow, ratio * slow.v_lim(), seed);
+      INFO(ratio << " v_lim, seed " << seed << ", h " << clip.bandwidth_s << " s");
+      REQUIRE(clip.segments.size() == 1);
+      const core::LineFit& line = clip.segments.front();
+      // (k h)^2 / 2, the kernel's bias of a and so of K/m, is 2.4 % at the widest bandwidth that the clip allows.
+      CHECK(0.5 * std::pow(slow.k_1_s * clip.bandwidth_s, 2) < 0.01);
+      // chi^2 of some ten independent residuals: 2 standard deviations of noise are left by one clip in 1e6.
+      CHECK(line.parts.scatter < 2.0);
+    }
+  }
+}
+
+TEST_CASE("where the slope of the law cannot be told from zero, the bandwidth is as wide as for a constant force") {
+  const Law constant{0.05, 0.0, 0.0};
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const auto clip = analyze_slow(constant, 0.4, seed);
+    // 2.5 bandwidths at either end: the clip has room for 0.34 s.
+    CHECK(clip.bandwidth_s > 0.1);
+  }
+}
