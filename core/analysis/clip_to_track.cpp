@@ -13,6 +13,8 @@
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
 #include "core/pictures/camera/restitution.h"
+#include "core/pictures/marker/second_look.h"
+#include "core/pictures/marker/still_background.h"
 #include "core/pictures/scene/scene_watch.h"
 #include "core/track/even_times.h"
 #include "core/track/read_track.h"
@@ -81,8 +83,10 @@ void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
   scene.finish(record);
 }
 
+/// `still`: the background, where what differs from it is to be looked at; else null.
 SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
-                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
+                  const cv::Mat* still = nullptr) {
   const bool with_color = signal_kind(marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
@@ -103,10 +107,18 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     scene.emplace(source->facts().lossy.value_or(false));
     seen.pictures = std::make_shared<PictureRecord>();
   }
-  while (const auto frame = look_at_scene ? source->next() : source->next_in_parts()) {
+  while (const auto frame = look_at_scene || still != nullptr ? source->next() : source->next_in_parts()) {
     seen.size = frame->grey.size();
     seen.frame_t_s.push_back(frame->t_s);
-    tracker.add(*frame);
+    if (still != nullptr) {
+      Frame changed;
+      cv::absdiff(frame->grey, *still, changed.grey);
+      changed.index = frame->index;
+      changed.t_s = frame->t_s;
+      tracker.add(changed);
+    } else {
+      tracker.add(*frame);
+    }
     if (scene) {
       scene->add(frame->grey, frame->t_s);
       seen.pictures->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
@@ -130,7 +142,10 @@ void FrameCounter::add(double share) {
   progress_("frames", std::min(1.0, (now + share) / static_cast<double>(clips_)));
 }
 
-SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+namespace {
+
+/// As a disc, bright or dark.
+SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
   const auto look = [&](const MarkerSetup& marker) {
     return look_for(marker, experiment, clip, setting, open, look_at_scene, counter);
@@ -160,6 +175,58 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   }
   if (no_bright) throw NoMarker(*no_bright);
   return *std::move(bright);
+}
+
+/// By what differs from the background; nothing where that shows no marker either.
+std::optional<SeenClip> see_change(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+                                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
+                                   const StillBackground& background) {
+  const cv::Mat still = background.median();
+  if (still.empty()) return std::nullopt;
+  MarkerSetup any = *experiment.marker;
+  any.color_bgr.reset();
+  try {
+    return look_for(any, experiment, clip, setting, open, look_at_scene, counter, &still);
+  } catch (const base::InputError&) {
+    return std::nullopt;  // what is said of the first look counts
+  }
+}
+
+}  // namespace
+
+SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+  const auto disc = [&] { return see_disc(experiment, clip, setting, open, look_at_scene, counter); };
+  const bool by_hue = signal_kind(*experiment.marker) == SignalKind::colored;
+  if (by_hue) return disc();
+  ClipAgain again;
+  again.open = [&] { return open(clip.file, *experiment.camera, false, setting.size); };
+  std::optional<SeenClip> seen;
+  std::optional<NoMarker> none;
+  try {
+    seen = disc();
+    again.frames = seen->frame_t_s.size();
+    if (!is_worth_a_second_look(seen->marker, again.frames)) return *std::move(seen);
+  } catch (const NoMarker& nothing) {
+    none = nothing;
+    const auto source = again.open();
+    while (source->next()) ++again.frames;
+  }
+  const StillBackground background = background_of(again);
+  const Restitution& restitution = setting.restitutions.at(clip.group);
+  const ShapeAt shape_at = [&](cv::Point2d pixel) { return restitution.marker_shape(pixel); };
+  const auto better = [&](SeenClip& first) {
+    auto marker = look_again(first.marker, again, background, shape_at);
+    if (!marker) return false;
+    first.notes.insert(first.notes.end(), marker->notes.begin(), marker->notes.end());
+    first.marker = *std::move(marker);
+    return true;
+  };
+  if (seen && better(*seen)) return *std::move(seen);
+  auto changed = see_change(experiment, clip, setting, open, look_at_scene, counter, background);
+  if (changed && better(*changed)) return *std::move(changed);
+  if (none) throw NoMarker(*none);
+  return *std::move(seen);
 }
 
 namespace {
