@@ -98,7 +98,8 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     if (!usual_px) usual_px = radius_px;
     return radius_px.value_or(usual_px.value_or(kSomeRadiusPx));
   };
-  MarkerTracker tracker(clip.file, marker, radius_at, clip.start_s);
+  MarkerTracker tracker = still != nullptr ? MarkerTracker::of_changes(clip.file, marker, radius_at, clip.start_s)
+                                           : MarkerTracker(clip.file, marker, radius_at, clip.start_s);
   SeenClip seen;
   const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
   constexpr std::size_t kTellEvery = 10;
@@ -214,7 +215,9 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   }
   const StillBackground background = background_of(again);
   const Restitution& restitution = setting.restitutions.at(clip.group);
-  const ShapeAt shape_at = [&](cv::Point2d pixel) { return restitution.marker_shape(pixel); };
+  const ShapeAt shape_at = [&](cv::Point2d pixel, MarkerBody body) {
+    return body == MarkerBody::sphere ? restitution.marker_shape(pixel) : restitution.disc_shape(pixel);
+  };
   const auto better = [&](SeenClip& first) {
     auto marker = look_again(first.marker, again, background, shape_at);
     if (!marker) return false;

@@ -154,6 +154,26 @@ std::optional<double> Restitution::marker_radius_px(cv::Point2d pixel) const {
   return 0.5 * (cv::norm(right - centre) + cv::norm(down - centre));
 }
 
+namespace {
+
+/// M of the ellipse through these points at even steps of its angle, whose covariance is M^-2 / 2.
+cv::Vec3d ellipse_through(const std::vector<cv::Point2d>& points) {
+  const auto count = static_cast<double>(points.size());
+  cv::Point2d middle;
+  for (const cv::Point2d& point : points) middle += point / count;
+  Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+  for (const cv::Point2d& point : points) {
+    const Eigen::Vector2d off(point.x - middle.x, point.y - middle.y);
+    square += off * off.transpose() * (2.0 / count);
+  }
+  // The root of a 2 x 2 matrix A is (A + s 1) / t with s = sqrt(det A), t = sqrt(tr A + 2 s).
+  const double s = std::sqrt(square.determinant()), t = std::sqrt(square.trace() + 2.0 * s);
+  const Eigen::Matrix2d m = ((square + s * Eigen::Matrix2d::Identity()) / t).inverse();
+  return {m(0, 0), m(0, 1), m(1, 1)};
+}
+
+}  // namespace
+
 std::optional<cv::Vec3d> Restitution::marker_shape(cv::Point2d pixel) const {
   if (!(radius_m_ > 0.0)) return std::nullopt;
   if (scale_) return cv::Vec3d(1.0, 0.0, 1.0) / (radius_m_ * scale_->px_per_m);
@@ -161,19 +181,20 @@ std::optional<cv::Vec3d> Restitution::marker_shape(cv::Point2d pixel) const {
   if (!plane) return std::nullopt;
   const std::vector<cv::Point2d> points = outline(*plane);
   if (points.empty()) return std::nullopt;
-  // An ellipse's points at even steps of its angle have the covariance M^-2 / 2.
-  cv::Point2d middle;
-  for (const cv::Point2d& point : points) middle += point / static_cast<double>(points.size());
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (const cv::Point2d& point : points) {
-    const Eigen::Vector2d off(point.x - middle.x, point.y - middle.y);
-    spread += off * off.transpose() * (2.0 / static_cast<double>(points.size()));
+  return ellipse_through(points);
+}
+
+std::optional<cv::Vec3d> Restitution::disc_shape(cv::Point2d pixel) const {
+  if (scale_) return marker_shape(pixel);
+  if (!(radius_m_ > 0.0)) return std::nullopt;
+  const auto plane = intersect(pixel);
+  if (!plane) return std::nullopt;
+  std::vector<cv::Point2d> points;
+  for (const cv::Point2d& around : kAround) {
+    const cv::Point2d at = *plane + radius_m_ * around;
+    points.push_back(project({at.x, at.y, -height_m_}));
   }
-  // M = spread^(-1/2): the root of a 2 x 2 matrix A is (A + s 1) / t with s = sqrt(det A), t = sqrt(tr A + 2 s).
-  const double s = std::sqrt(spread.determinant()), t = std::sqrt(spread.trace() + 2.0 * s);
-  const Eigen::Matrix2d root = (spread + s * Eigen::Matrix2d::Identity()) / t;
-  const Eigen::Matrix2d m = root.inverse();
-  return cv::Vec3d(m(0, 0), m(0, 1), m(1, 1));
+  return ellipse_through(points);
 }
 
 cv::Point2d Restitution::centre_pixel(cv::Point2d plane) const {

@@ -63,6 +63,9 @@ class Restitution {
   /// uv, vv of M (1/px); nothing where to_plane gives nothing.
   std::optional<cv::Vec3d> marker_shape(cv::Point2d pixel) const;
 
+  /// The same of a disc of the marker's diameter that lies in the plane in which its centre moves.
+  std::optional<cv::Vec3d> disc_shape(cv::Point2d pixel) const;
+
   /// The pixel onto which the marker's centre is projected, which is not where its outline is centred.
   cv::Point2d centre_pixel(cv::Point2d plane) const;
 

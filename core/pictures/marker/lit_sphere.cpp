@@ -18,10 +18,14 @@ constexpr int kSphereParameters = kAmbient + 1;
 using Parameters = Eigen::Matrix<double, kSphereParameters, 1>;
 using Equations = NormalEquations<kSphereParameters>;
 
-constexpr int kSamples = 4;          // of the surface, a side of a pixel at the rim
-constexpr double kRim_px = 1.6;      // on either side of the outline, where a pixel may be partly covered
+constexpr int kSamples = 4;  // of the surface, a side of a pixel at the rim
+constexpr double kRim_px =
+    0.85;  // on either side of the outline, where a pixel may be partly covered: its half diagonal
+constexpr double kRimBlurs = 4.0;    // and standard deviations of the edge
+constexpr double kBent_px = 2.0;     // inside the outline, where the surface is bent within a pixel
 constexpr double kSoft_px = 0.25;    // over which a sample's weight falls at the outline: half of their distance
 constexpr double kLampPrior = 0.02;  // codes, a unit of light: keeps what nothing shows from sliding away
+constexpr double kFlatPrior = 1e3;   // the same where there is none
 constexpr int kMostIterations = 25;
 constexpr int kToneNodes = 4096;
 
@@ -84,7 +88,7 @@ class Sphere {
     const double scale = std::exp(-p[kLogSize]);
     m_ = guess.shape * scale;
     radius_ = 1.0 / std::sqrt(m_[0] * m_[2] - m_[1] * m_[1]);
-    rim_ = kRim_px + 3.0 * blur_;
+    rim_ = kRim_px + kRimBlurs * blur_;
   }
 
   Seen seen_by(const SpherePixel& pixel) const {
@@ -93,24 +97,25 @@ class Sphere {
     const double rho = std::hypot(x, y);
     const double off_px = (1.0 - rho) * radius_;  // roughly
     if (off_px < -rim_) return {0.0, {}};
-    if (off_px > rim_) return {1.0, surface_at(x, y, p_)};
+    if (off_px > std::max(rim_, kBent_px)) return {1.0, surface_at(x, y, p_)};
+    if (off_px > rim_) return {1.0, mean_surface(x, y, 2)};
     const double nu = m_[0] * x + m_[1] * y, nv = m_[1] * x + m_[2] * y;  // M^2 d
     const double steep = std::hypot(nu, nv);
     if (!(steep > 0.0)) return {1.0, surface_at(x, y, p_)};
     const double inside_px = rho * (1.0 - rho) / steep;
     const double covered = pixel_edge(inside_px, nu / steep, nv / steep, blur_).value;
-    return {covered, mean_surface(x, y)};
+    return {covered, mean_surface(x, y, kSamples)};
   }
 
  private:
-  Surface4 mean_surface(double x, double y) const {
+  Surface4 mean_surface(double x, double y, int samples) const {
     Surface4 sum{0.0, 0.0, 0.0, 0.0};
     double weights = 0.0;
-    constexpr double kStep = 1.0 / kSamples;
-    for (int i = 0; i < kSamples; ++i) {
-      const double ou = (i + 0.5) * kStep - 0.5;
-      for (int j = 0; j < kSamples; ++j) {
-        const double ov = (j + 0.5) * kStep - 0.5;
+    const double step = 1.0 / samples;
+    for (int i = 0; i < samples; ++i) {
+      const double ou = (i + 0.5) * step - 0.5;
+      for (int j = 0; j < samples; ++j) {
+        const double ov = (j + 0.5) * step - 0.5;
         const double sx = x + m_[0] * ou + m_[1] * ov, sy = y + m_[1] * ou + m_[2] * ov;
         const double inside_px = (1.0 - std::sqrt(sx * sx + sy * sy)) * radius_;
         const double weight = std::clamp(0.5 + 0.5 * inside_px / kSoft_px, 1e-3, 1.0);
@@ -159,7 +164,8 @@ std::optional<Equations> equations_at(const std::vector<SpherePixel>& pixels, co
     const Code code = tone_of(guess.tone, light_in(pixel, seen));
     Parameters jacobian = Parameters::Zero();
     if (seen.covered > 0.0) {
-      for (std::size_t k = 0; k < 3; ++k) {
+      const bool flat = guess.flat && seen.covered >= 1.0;
+      for (std::size_t k = 0; k < 3 && !flat; ++k) {
         const double up = light_in(pixel, shifted[2 * k].seen_by(pixel));
         const double down = light_in(pixel, shifted[2 * k + 1].seen_by(pixel));
         jacobian[static_cast<Eigen::Index>(k)] = code.slope * (up - down) / (2.0 * steps[k]);
@@ -178,7 +184,7 @@ std::optional<Equations> equations_at(const std::vector<SpherePixel>& pixels, co
     equations.add(jacobian, strength * off, 1.0);
   };
   hold(kLogSize, p[kLogSize] - guess.log_size, guess.noise / log_size_sd);
-  for (const int k : {kLampX, kLampY, kLampZ}) hold(k, p[k], kLampPrior);
+  for (const int k : {kLampX, kLampY, kLampZ}) hold(k, p[k], guess.flat ? kFlatPrior : kLampPrior);
   return equations;
 }
 
@@ -199,6 +205,7 @@ SphereLight light_inside(const std::vector<SpherePixel>& pixels, const SphereGue
     b += light * n;
     lights.push_back(light);
   }
+  if (guess.flat) return {{0.0, 0.0, 0.0}, quantile(std::move(lights), 0.5)};
   const Eigen::Vector4d found = a.ldlt().solve(b);
   constexpr double kDarkest = 0.05;  // part of the pixels
   return {{found[0], found[1], found[2]}, quantile(std::move(lights), kDarkest)};
@@ -219,7 +226,8 @@ double code_of_light(ToneCurve tone, double light) {
 
 std::optional<SphereFit> fit_lit_sphere(const std::vector<SpherePixel>& pixels, const SphereGuess& guess) {
   if (pixels.size() < 3 * kSphereParameters) return std::nullopt;
-  const SphereLight light = guess.light ? *guess.light : light_inside(pixels, guess);
+  SphereLight light = guess.light ? *guess.light : light_inside(pixels, guess);
+  if (guess.flat) light.lamp = {0.0, 0.0, 0.0};
   Parameters start;
   start << guess.centre.x, guess.centre.y, guess.log_size, light.lamp[0], light.lamp[1], light.lamp[2], light.ambient;
   Parameters step;

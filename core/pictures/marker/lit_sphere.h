@@ -13,6 +13,8 @@
 /// of the whole clip, says where it is. The size is held by a prior; a centroid or a fit of free size follows the
 /// light.
 ///
+/// A disc is the same with L = 0 and the outline of a disc.
+///
 /// Assumes one distant lamp, a matte surface, a background that keeps still and is lit evenly in time. Pixels; the
 /// centre of the first pixel is (0, 0). Reference for the tone curve: IEC 61966-2-1 (sRGB).
 #pragma once
@@ -52,6 +54,7 @@ struct SphereGuess {
   double log_size_sd = 0.05;
   double blur_px = 0.1;
   ToneCurve tone = ToneCurve::linear;
+  bool flat = false;                 ///< a disc, of one brightness: L = 0
   double noise = 0.005;              ///< of a pixel's code
   std::optional<SphereLight> light;  ///< nothing: from the pixels inside the guess
 };

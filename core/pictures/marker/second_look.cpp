@@ -29,7 +29,9 @@ constexpr double kSectorInside = 0.6;         // of the radius: from there on a 
 constexpr int kFewestSectors = kSectors / 3;  // that look as they should
 constexpr double kFarOff = 3.0;               // times the usual residuals: no sphere
 constexpr std::size_t kFewestFits = 8;
-constexpr double kLeastGain = 0.8;  // of the residuals
+constexpr double kWellKnownSize = 0.05, kLeastSizeSd = 1e-3;  // of the size's logarithm
+constexpr double kRougher = 1.3;                              // times, that the path may be
+constexpr double kLeastGain = 0.8;                            // of the residuals
 
 double radius_of(const cv::Vec3d& shape) {
   return 1.0 / std::sqrt(shape[0] * shape[2] - shape[1] * shape[1]);
@@ -76,6 +78,24 @@ std::optional<cv::Point2d> course(const std::vector<Place>& places, std::size_t 
   return cv::Point2d(found(0, 0), found(0, 1));
 }
 
+/// Standard deviation of a coordinate by the fourth differences of consecutive frames' places, in which a motion leaves
+/// next to nothing; nothing with fewer than four of them.
+std::optional<double> roughness_of(const Places& places) {
+  std::vector<double> squares;
+  constexpr std::array<double, 5> kFourth{1.0, -4.0, 6.0, -4.0, 1.0};
+  for (auto first = places.begin(); first != places.end(); ++first) {
+    cv::Point2d sum;
+    auto here = first;
+    std::size_t k = 0;
+    for (; k < kFourth.size() && here != places.end() && here->first == first->first + k; ++k, ++here)
+      sum += kFourth[k] * here->second;
+    if (k == kFourth.size()) squares.push_back(sum.dot(sum));
+  }
+  if (squares.size() < 4) return std::nullopt;
+  constexpr double kVariance = 70.0;  // 1 + 16 + 36 + 16 + 1
+  return std::sqrt(median_of(squares) / (2.0 * std::log(2.0) * kVariance));
+}
+
 /// A frame's window, and what came out of it.
 struct Look {
   std::size_t frame = 0;
@@ -88,6 +108,7 @@ struct Look {
 
 /// What all frames share.
 struct Shared {
+  MarkerBody body = MarkerBody::sphere;
   ToneCurve tone = ToneCurve::linear;
   double blur_px = 0.1;
   double log_size = 0.0;
@@ -144,7 +165,7 @@ void SecondLook::read_windows() {
   while (const auto frame = source->next()) {
     const auto expected = course(places_, frame->index, false);
     if (!expected) continue;
-    const auto shape = shape_at_(*expected);
+    const auto shape = shape_at_(*expected, MarkerBody::sphere);
     if (!shape) continue;
     full_code_ = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
     const double radius = radius_of(*shape);
@@ -233,12 +254,13 @@ std::optional<SphereFit> SecondLook::fit(const Look& look, cv::Point2d start, co
   guess.log_size_sd = shared.log_size_sd;
   guess.blur_px = shared.blur_px;
   guess.tone = shared.tone;
+  guess.flat = shared.body == MarkerBody::disc;
   guess.noise = behind_.noise / full_code_;
   guess.light = light;
   std::optional<SphereFit> found;
   // A second round with the window around the first one's place.
   for (int round = 0; round < 2; ++round) {
-    const auto shape = shape_at_(guess.centre);
+    const auto shape = shape_at_(guess.centre, shared.body);
     if (!shape) return std::nullopt;
     guess.shape = *shape;
     int usable = 0;
@@ -254,45 +276,60 @@ std::optional<SphereFit> SecondLook::fit(const Look& look, cv::Point2d start, co
 }
 
 bool SecondLook::find_shared() {
-  std::vector<const Look*> sampled;
   std::vector<const Look*> seen;
   for (const Look& look : looks_) {
     const bool in_first = std::binary_search(places_.begin(), places_.end(), Place{look.frame, {}},
                                              [](const Place& a, const Place& b) { return a.frame < b.frame; });
     if (in_first) seen.push_back(&look);
   }
+  std::vector<const Look*> sampled;
   const std::size_t step = std::max<std::size_t>(1, seen.size() / kSampled);
   for (std::size_t i = step / 2; i < seen.size(); i += step) sampled.push_back(seen[i]);
-  double best = std::numeric_limits<double>::infinity();
-  for (const ToneCurve tone : {ToneCurve::linear, ToneCurve::srgb}) {
-    for (const double blur : {0.05, 0.2, 0.4, 0.7, 1.1}) {
+  std::optional<Shared> best;
+  const auto attempt = [&](Shared shared, std::size_t every) {
+    std::vector<double> residuals, sizes;
+    std::size_t tried = 0;
+    for (std::size_t i = 0; i < sampled.size(); i += every) {
+      ++tried;
+      const auto found = fit(*sampled[i], sampled[i]->expected, shared, std::nullopt);
+      if (!found) continue;
+      residuals.push_back(found->rms);
+      if (found->log_size_sd < kWellKnownSize) sizes.push_back(found->log_size);
+    }
+    if (2 * residuals.size() < tried || residuals.size() < 3) return false;
+    shared.usual_rms = median_of(residuals);
+    if (best && shared.usual_rms >= best->usual_rms) return false;
+    best = shared;
+    if (sizes.size() < 3) return true;
+    best->log_size = median_of(sizes);
+    std::vector<double> off;
+    for (const double size : sizes) off.push_back(std::abs(size - best->log_size));
+    best->log_size_sd =
+        std::max(kLeastSizeSd, kSdOverMedian * median_of(off) / std::sqrt(static_cast<double>(off.size())));
+    return true;
+  };
+  for (const MarkerBody body : {MarkerBody::sphere, MarkerBody::disc}) {
+    for (const ToneCurve tone : {ToneCurve::linear, ToneCurve::srgb}) {
       Shared shared;
+      shared.body = body;
       shared.tone = tone;
-      shared.blur_px = blur;
-      std::vector<double> residuals, sizes, size_sds;
-      for (const Look* look : sampled) {
-        const auto found = fit(*look, look->expected, shared, std::nullopt);
-        if (!found) continue;
-        residuals.push_back(found->rms);
-        if (found->log_size_sd < 0.05) sizes.push_back(found->log_size);
-      }
-      if (2 * residuals.size() < sampled.size() || residuals.size() < 3) continue;
-      const double usual = median_of(residuals);
-      if (usual >= best) continue;
-      best = usual;
-      shared.usual_rms = usual;
-      if (sizes.size() >= 3) {
-        shared.log_size = median_of(sizes);
-        std::vector<double> off;
-        for (const double size : sizes) off.push_back(std::abs(size - shared.log_size));
-        constexpr double kLeastSizeSd = 1e-3;
-        shared.log_size_sd =
-            std::max(kLeastSizeSd, kSdOverMedian * median_of(off) / std::sqrt(static_cast<double>(off.size())));
-      }
-      shared_ = shared;
+      shared.blur_px = 0.25;
+      attempt(shared, 3);
     }
   }
-  return std::isfinite(best);
+  if (!best) return false;
+  const Shared chosen = *best;
+  best.reset();
+  for (const double blur : {0.05, 0.15, 0.3, 0.5, 0.8, 1.2}) {
+    Shared shared;
+    shared.body = chosen.body;
+    shared.tone = chosen.tone;
+    shared.blur_px = blur;
+    if (!attempt(shared, 2) && best) break;
+  }
+  if (!best) return false;
+  shared_ = *best;
+  return true;
 }
 
 std::vector<Place> SecondLook::fitted_places() const {
@@ -374,7 +411,15 @@ bool SecondLook::is_better() const {
     theirs.push_back(first_.fits[i].rms);
   }
   if (found < kFewestFits || found < first_.sightings.size() || ours.size() < kFewestFits) return false;
-  return median_of(ours) < kLeastGain * median_of(theirs);
+  Places our_places, their_places;
+  for (const MarkerSighting& sighting : first_.sightings) their_places[sighting.frame] = {sighting.u_px, sighting.v_px};
+  for (const Look& look : looks_) {
+    if (look.fit && their_places.contains(look.frame)) our_places[look.frame] = look.fit->centre;
+  }
+  const auto our_roughness = roughness_of(our_places), their_roughness = roughness_of(their_places);
+  if (our_roughness && their_roughness && *our_roughness > kRougher * *their_roughness) return false;
+  const double usual = median_of(theirs);  // none of a centroid
+  return usual == 0.0 || median_of(ours) < kLeastGain * usual;
 }
 
 TrackedMarker SecondLook::tracked() const {
@@ -383,12 +428,13 @@ TrackedMarker SecondLook::tracked() const {
   for (const Look& look : looks_) {
     if (look.fit) places[look.frame] = look.fit->centre;
   }
-  // What correlates over pixels (the model's own errors) is not in the fit's covariance: second differences show it.
-  const double jitter = jitter_of(places).value_or(0.0) / std::sqrt(6.0);
+  // What correlates over pixels (the model's own errors) is not in the fit's covariance: differences along the path
+  // show it.
+  const double jitter = roughness_of(places).value_or(0.0);
   for (const Look& look : looks_) {
     if (!look.fit) continue;
     const SphereFit& fit = *look.fit;
-    const auto shape = shape_at_(fit.centre).value_or(look.shape) * std::exp(-fit.log_size);
+    const auto shape = shape_at_(fit.centre, shared_.body).value_or(look.shape) * std::exp(-fit.log_size);
     MarkerFit marker;
     marker.centre = fit.centre;
     marker.sd_px = std::max(fit.sd_px, jitter);
@@ -410,8 +456,9 @@ TrackedMarker SecondLook::tracked() const {
     tracked.fits.push_back(marker);
   }
   tracked.notes.push_back(
-      fmt::format("the marker is fitted as a sphere that is lit from one side, before the background of other frames "
-                  "(seen in {} frames, as a disc in {})",
+      fmt::format("the marker is fitted as a {}, before the background that other frames show: seen in {} frames, {} "
+                  "without",
+                  shared_.body == MarkerBody::sphere ? "sphere that is lit from one side" : "disc",
                   tracked.sightings.size(), first_.sightings.size()));
   return tracked;
 }

@@ -21,8 +21,11 @@
 
 namespace glidelab::core {
 
-/// The elements uu, uv, vv of M (1/px): the outline of the marker, a sphere, that is seen at a pixel, is |M d| = 1.
-using ShapeAt = std::function<std::optional<cv::Vec3d>(cv::Point2d)>;
+/// What the marker is: a sphere, or a disc that lies in the plane of motion.
+enum class MarkerBody { sphere, disc };
+
+/// The elements uu, uv, vv of M (1/px): the outline of the marker that is seen at a pixel is |M d| = 1.
+using ShapeAt = std::function<std::optional<cv::Vec3d>(cv::Point2d, MarkerBody)>;
 
 /// A clip that can be read again.
 struct ClipAgain {
