@@ -61,6 +61,11 @@ struct Surface4 {
   double x, y, z;  ///< its derivatives by the lamp
 };
 
+/// A disc that is not lit evenly: a plane of light.
+Surface4 flat_at(double x, double y, const Parameters& p) {
+  return {p[kAmbient] + p[kLampX] * x + p[kLampY] * y, x, y, 0.0};
+}
+
 Surface4 surface_at(double x, double y, const Parameters& p) {
   const double square = x * x + y * y;
   double z = 0.0;
@@ -84,7 +89,7 @@ struct Seen {
 
 class Sphere {
  public:
-  Sphere(const SphereGuess& guess, const Parameters& p) : p_(p), blur_(guess.blur_px) {
+  Sphere(const SphereGuess& guess, const Parameters& p) : p_(p), blur_(guess.blur_px), flat_(guess.flat) {
     const double scale = std::exp(-p[kLogSize]);
     m_ = guess.shape * scale;
     radius_ = 1.0 / std::sqrt(m_[0] * m_[2] - m_[1] * m_[1]);
@@ -97,17 +102,19 @@ class Sphere {
     const double rho = std::hypot(x, y);
     const double off_px = (1.0 - rho) * radius_;  // roughly
     if (off_px < -rim_) return {0.0, {}};
-    if (off_px > std::max(rim_, kBent_px)) return {1.0, surface_at(x, y, p_)};
+    if (off_px > std::max(rim_, kBent_px)) return {1.0, surface(x, y)};
     if (off_px > rim_) return {1.0, mean_surface(x, y, 2)};
     const double nu = m_[0] * x + m_[1] * y, nv = m_[1] * x + m_[2] * y;  // M^2 d
     const double steep = std::hypot(nu, nv);
-    if (!(steep > 0.0)) return {1.0, surface_at(x, y, p_)};
+    if (!(steep > 0.0)) return {1.0, surface(x, y)};
     const double inside_px = rho * (1.0 - rho) / steep;
     const double covered = pixel_edge(inside_px, nu / steep, nv / steep, blur_).value;
     return {covered, mean_surface(x, y, kSamples)};
   }
 
  private:
+  Surface4 surface(double x, double y) const { return flat_ ? flat_at(x, y, p_) : surface_at(x, y, p_); }
+
   Surface4 mean_surface(double x, double y, int samples) const {
     Surface4 sum{0.0, 0.0, 0.0, 0.0};
     double weights = 0.0;
@@ -119,7 +126,7 @@ class Sphere {
         const double sx = x + m_[0] * ou + m_[1] * ov, sy = y + m_[1] * ou + m_[2] * ov;
         const double inside_px = (1.0 - std::sqrt(sx * sx + sy * sy)) * radius_;
         const double weight = std::clamp(0.5 + 0.5 * inside_px / kSoft_px, 1e-3, 1.0);
-        const Surface4 here = surface_at(sx, sy, p_);
+        const Surface4 here = surface(sx, sy);
         weights += weight;
         sum.light += weight * here.light;
         sum.x += weight * here.x;
@@ -133,6 +140,7 @@ class Sphere {
 
   const Parameters& p_;
   double blur_;
+  bool flat_;
   cv::Vec3d m_;
   double radius_ = 0.0, rim_ = 0.0;
 };
@@ -164,8 +172,7 @@ std::optional<Equations> equations_at(const std::vector<SpherePixel>& pixels, co
     const Code code = tone_of(guess.tone, light_in(pixel, seen));
     Parameters jacobian = Parameters::Zero();
     if (seen.covered > 0.0) {
-      const bool flat = guess.flat && seen.covered >= 1.0;
-      for (std::size_t k = 0; k < 3 && !flat; ++k) {
+      for (std::size_t k = 0; k < 3; ++k) {
         const double up = light_in(pixel, shifted[2 * k].seen_by(pixel));
         const double down = light_in(pixel, shifted[2 * k + 1].seen_by(pixel));
         jacobian[static_cast<Eigen::Index>(k)] = code.slope * (up - down) / (2.0 * steps[k]);
@@ -184,7 +191,8 @@ std::optional<Equations> equations_at(const std::vector<SpherePixel>& pixels, co
     equations.add(jacobian, strength * off, 1.0);
   };
   hold(kLogSize, p[kLogSize] - guess.log_size, guess.noise / log_size_sd);
-  for (const int k : {kLampX, kLampY, kLampZ}) hold(k, p[k], guess.flat ? kFlatPrior : kLampPrior);
+  for (const int k : {kLampX, kLampY}) hold(k, p[k], kLampPrior);
+  hold(kLampZ, p[kLampZ], guess.flat ? kFlatPrior : kLampPrior);
   return equations;
 }
 
@@ -251,11 +259,19 @@ std::optional<SphereFit> fit_lit_sphere(const std::vector<SpherePixel>& pixels, 
   fit.centre = {p[kCentreU], p[kCentreV]};
   fit.log_size = p[kLogSize];
   fit.light = {{p[kLampX], p[kLampY], p[kLampZ]}, p[kAmbient]};
-  for (const SpherePixel& pixel : pixels) fit.weight += pixel.weight;
-  fit.cost = equations->cost;
+  const Sphere sphere(guess, p);
+  double added = 0.0, covered = 0.0;
+  for (const SpherePixel& pixel : pixels) {
+    fit.weight += pixel.weight;
+    const Seen seen = sphere.seen_by(pixel);
+    const double change = tone_of(guess.tone, light_in(pixel, seen)).value - tone_of(guess.tone, pixel.behind).value;
+    added += change * change;
+    covered += seen.covered;
+  }
+  fit.contrast = std::sqrt(added / std::max(covered, 1.0));
   const double freedom = fit.weight - kSphereParameters;
   if (!(freedom > 0.0)) return std::nullopt;
-  fit.rms = std::sqrt(fit.cost / freedom);
+  fit.rms = std::sqrt(equations->cost / freedom);
   const Eigen::LDLT<Equations::Matrix> factor(equations->jtj);
   const Equations::Matrix inverse = factor.solve(Equations::Matrix::Identity());
   const double variance = fit.rms * fit.rms;

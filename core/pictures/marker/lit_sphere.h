@@ -13,7 +13,7 @@
 /// of the whole clip, says where it is. The size is held by a prior; a centroid or a fit of free size follows the
 /// light.
 ///
-/// A disc is the same with L = 0 and the outline of a disc.
+/// A disc has the outline of a disc, and S = A + L_x x + L_y y.
 ///
 /// Assumes one distant lamp, a matte surface, a background that keeps still and is lit evenly in time. Pixels; the
 /// centre of the first pixel is (0, 0). Reference for the tone curve: IEC 61966-2-1 (sRGB).
@@ -54,7 +54,7 @@ struct SphereGuess {
   double log_size_sd = 0.05;
   double blur_px = 0.1;
   ToneCurve tone = ToneCurve::linear;
-  bool flat = false;                 ///< a disc, of one brightness: L = 0
+  bool flat = false;                 ///< a disc
   double noise = 0.005;              ///< of a pixel's code
   std::optional<SphereLight> light;  ///< nothing: from the pixels inside the guess
 };
@@ -65,8 +65,8 @@ struct SphereFit {
   double log_size = 0.0;
   double log_size_sd = 0.0;  ///< by the pixels alone
   SphereLight light;
-  double rms = 0.0;   ///< of the residuals, in codes
-  double cost = 0.0;  ///< sum of w r^2, in codes
+  double rms = 0.0;       ///< of the residuals, in codes
+  double contrast = 0.0;  ///< root mean square of what the sphere adds to the background's codes, where it covers it
   double weight = 0.0;
 };
 

@@ -38,10 +38,10 @@ MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, Rad
       radius_at_(std::move(radius_at)),
       start_s_(start_s) {}
 
-MarkerTracker MarkerTracker::of_changes(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
-                                        std::optional<double> start_s) {
+MarkerTracker MarkerTracker::of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
+                                          std::optional<double> start_s) {
   MarkerTracker tracker(std::move(clip), marker, std::move(radius_at), start_s);
-  tracker.kind_ = SignalKind::changed;
+  tracker.kind_ = SignalKind::any_shape;
   return tracker;
 }
 

@@ -6,36 +6,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "core/math/quantile.h"
 #include "core/pictures/marker/lit_sphere.h"
+#include "core/pictures/marker/sphere_window.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kDiscResidual = 0.04;        // of the amplitude: above what noise leaves of a disc in usual light
-constexpr std::size_t kFewLost = 3;           // frames at either end, or in all between
-constexpr std::size_t kNeighbours = 5;        // on either side, which say where the marker should be
-constexpr double kFarthestAhead = 30.0;       // frames beyond the first and the last sighting
-constexpr std::size_t kSampled = 24;          // frames that say what all share
-constexpr int kSectors = 24;                  // directions from the centre
-constexpr double kSectorFrom_px = 1.3;        // outside the outline: background alone
-constexpr double kSectorSds = 4.0;            // of its mean
-constexpr double kSectorCodes = 2.0 / 255.0;  // that a background may change from frame to frame
-constexpr double kSectorInside = 0.6;         // of the radius: from there on a strange direction does not count
-constexpr int kFewestSectors = kSectors / 3;  // that look as they should
-constexpr double kFarOff = 3.0;               // times the usual residuals: no sphere
+constexpr double kDiscResidual = 0.04;           // of the amplitude: above what noise leaves of a disc in usual light
+constexpr std::size_t kFewLost = 3;              // frames at either end, or in all between
+constexpr std::size_t kNeighbours = 5;           // on either side, which say where the marker should be
+constexpr double kFarthestAhead = 30.0;          // frames beyond the first and the last sighting
+constexpr std::size_t kSampled = 24;             // frames that say what all share
+constexpr double kFewestDirections = 1.0 / 3.0;  // that look as they should
+constexpr double kFarOff = 3.0;                  // times the usual residuals: no sphere
 constexpr std::size_t kFewestFits = 8;
 constexpr double kWellKnownSize = 0.05, kLeastSizeSd = 1e-3;  // of the size's logarithm
+constexpr double kRoughest_px = 0.3;                          // a path that the sphere makes
+constexpr double kLargestShare = 0.25;                        // of the contrast in the residuals
 constexpr double kRougher = 1.3;                              // times, that the path may be
 constexpr double kLeastGain = 0.8;                            // of the residuals
-
-double radius_of(const cv::Vec3d& shape) {
-  return 1.0 / std::sqrt(shape[0] * shape[2] - shape[1] * shape[1]);
-}
 
 struct Place {
   std::size_t frame = 0;
@@ -109,6 +104,7 @@ struct Look {
 /// What all frames share.
 struct Shared {
   MarkerBody body = MarkerBody::sphere;
+  Behind behind = Behind::still;
   ToneCurve tone = ToneCurve::linear;
   double blur_px = 0.1;
   double log_size = 0.0;
@@ -135,8 +131,6 @@ class SecondLook {
 
  private:
   void read_windows();
-  std::vector<SpherePixel> pixels_of(const Look& look, cv::Point2d centre, double radius_px, ToneCurve tone,
-                                     int* usable) const;
   std::optional<SphereFit> fit(const Look& look, cv::Point2d start, const Shared& shared,
                                const std::optional<SphereLight>& light) const;
   bool find_shared();
@@ -146,6 +140,8 @@ class SecondLook {
   void drop_strays();
   std::vector<Place> fitted_places() const;
   bool is_better() const;
+  bool is_distinct() const;
+  cv::Point2d light_of(const Look& look) const;
   TrackedMarker tracked() const;
 
   const TrackedMarker& first_;
@@ -154,9 +150,7 @@ class SecondLook {
   const ShapeAt& shape_at_;
   std::vector<Place> places_;  ///< of the first look
   std::vector<Look> looks_;    ///< frames rise
-  StillBackground::Part behind_;
-  cv::Rect region_;
-  double full_code_ = 255.0;
+  KnownBackground background_;
   Shared shared_;
 };
 
@@ -167,7 +161,7 @@ void SecondLook::read_windows() {
     if (!expected) continue;
     const auto shape = shape_at_(*expected, MarkerBody::sphere);
     if (!shape) continue;
-    full_code_ = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
+    background_.full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
     const double radius = radius_of(*shape);
     const bool seen = std::binary_search(places_.begin(), places_.end(), Place{frame->index, {}},
                                          [](const Place& a, const Place& b) { return a.frame < b.frame; });
@@ -182,68 +176,16 @@ void SecondLook::read_windows() {
     look.window = window;
     look.expected = *expected;
     look.shape = *shape;
-    region_ = looks_.empty() ? window : (region_ | window);
+    background_.region = looks_.empty() ? window : (background_.region | window);
     looks_.push_back(std::move(look));
   }
   if (looks_.empty()) return;
   std::vector<std::optional<std::pair<cv::Point2d, double>>> hidden(clip_.frames);
   for (const Look& look : looks_) hidden[look.frame] = std::pair(look.expected, 2.0 * radius_of(look.shape) + 4.0);
-  behind_ = still_.behind(region_, [&](std::size_t frame, cv::Point pixel) {
+  background_.part = still_.behind(background_.region, [&](std::size_t frame, cv::Point pixel) {
     return frame < hidden.size() && hidden[frame] &&
            cv::norm(cv::Point2d(pixel) - hidden[frame]->first) < hidden[frame]->second;
   });
-}
-
-std::vector<SpherePixel> SecondLook::pixels_of(const Look& look, cv::Point2d centre, double radius_px, ToneCurve tone,
-                                               int* usable) const {
-  const double reach = 1.25 * radius_px + 2.5;
-  const int left = static_cast<int>(std::ceil(centre.x - reach)),
-            right = static_cast<int>(std::floor(centre.x + reach));
-  const int top = static_cast<int>(std::ceil(centre.y - reach)),
-            bottom = static_cast<int>(std::floor(centre.y + reach));
-  if (left < look.window.x || top < look.window.y || right >= look.window.br().x || bottom >= look.window.br().y)
-    return {};
-  struct Sector {
-    double off = 0.0;
-    int count = 0;
-  };
-  std::array<Sector, kSectors> sectors{};
-  const auto sector_of = [&](double du, double dv) {
-    const double turn = (std::atan2(dv, du) / std::numbers::pi + 1.0) * 0.5 * kSectors;
-    return static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1));
-  };
-  std::vector<SpherePixel> pixels;
-  for (int v = top; v <= bottom; ++v) {
-    for (int u = left; u <= right; ++u) {
-      const double du = u - centre.x, dv = v - centre.y, distance = std::hypot(du, dv);
-      if (distance >= reach) continue;
-      if (behind_.known.at<unsigned char>(v - region_.y, u - region_.x) == 0) continue;
-      const double behind = behind_.codes.at<float>(v - region_.y, u - region_.x) / full_code_;
-      const double code = look.codes.at<float>(v - look.window.y, u - look.window.x) / full_code_;
-      pixels.push_back({static_cast<double>(u), static_cast<double>(v), code, behind, 1.0});
-      if (distance > radius_px + kSectorFrom_px) {
-        Sector& sector = sectors[sector_of(du, dv)];
-        sector.off += code - behind;
-        ++sector.count;
-      }
-    }
-  }
-  std::array<bool, kSectors> strange{};
-  const double noise = behind_.noise / full_code_;
-  for (std::size_t k = 0; k < kSectors; ++k) {
-    const Sector& sector = sectors[k];
-    if (sector.count == 0 ||
-        std::abs(sector.off / sector.count) < kSectorSds * noise / std::sqrt(sector.count) + kSectorCodes)
-      continue;
-    strange[k] = strange[(k + 1) % kSectors] = strange[(k + kSectors - 1) % kSectors] = true;
-  }
-  if (usable != nullptr) *usable = static_cast<int>(std::count(strange.begin(), strange.end(), false));
-  std::erase_if(pixels, [&](const SpherePixel& pixel) {
-    const double du = pixel.u - centre.x, dv = pixel.v - centre.y;
-    return strange[sector_of(du, dv)] && std::hypot(du, dv) > kSectorInside * radius_px;
-  });
-  for (SpherePixel& pixel : pixels) pixel.behind = light_of_code(tone, pixel.behind);
-  return pixels;
 }
 
 std::optional<SphereFit> SecondLook::fit(const Look& look, cv::Point2d start, const Shared& shared,
@@ -255,7 +197,7 @@ std::optional<SphereFit> SecondLook::fit(const Look& look, cv::Point2d start, co
   guess.blur_px = shared.blur_px;
   guess.tone = shared.tone;
   guess.flat = shared.body == MarkerBody::disc;
-  guess.noise = behind_.noise / full_code_;
+  guess.noise = background_.noise();
   guess.light = light;
   std::optional<SphereFit> found;
   // A second round with the window around the first one's place.
@@ -263,17 +205,20 @@ std::optional<SphereFit> SecondLook::fit(const Look& look, cv::Point2d start, co
     const auto shape = shape_at_(guess.centre, shared.body);
     if (!shape) return std::nullopt;
     guess.shape = *shape;
-    int usable = 0;
-    const auto pixels =
-        pixels_of(look, guess.centre, radius_of(*shape) * std::exp(guess.log_size), shared.tone, &usable);
-    if (usable < kFewestSectors) return std::nullopt;
-    found = fit_lit_sphere(pixels, guess);
+    const SphereWindow cut = cut_sphere_window(look.codes, look.window, background_, guess, shared.behind);
+    if (cut.usable < kFewestDirections) return std::nullopt;
+    found = fit_lit_sphere(cut.pixels, guess);
     if (!found) return std::nullopt;
     guess.centre = found->centre;
     guess.light = found->light;
   }
   return found;
 }
+
+constexpr std::array<std::pair<MarkerBody, ToneCurve>, 4> kChoices{{{MarkerBody::sphere, ToneCurve::linear},
+                                                                    {MarkerBody::sphere, ToneCurve::srgb},
+                                                                    {MarkerBody::disc, ToneCurve::linear},
+                                                                    {MarkerBody::disc, ToneCurve::srgb}}};
 
 bool SecondLook::find_shared() {
   std::vector<const Look*> seen;
@@ -308,9 +253,11 @@ bool SecondLook::find_shared() {
         std::max(kLeastSizeSd, kSdOverMedian * median_of(off) / std::sqrt(static_cast<double>(off.size())));
     return true;
   };
-  for (const MarkerBody body : {MarkerBody::sphere, MarkerBody::disc}) {
-    for (const ToneCurve tone : {ToneCurve::linear, ToneCurve::srgb}) {
+  for (const Behind behind : {Behind::still, Behind::moving}) {
+    if (best) break;  // what other frames show is known better than what lies around
+    for (const auto& [body, tone] : kChoices) {
       Shared shared;
+      shared.behind = behind;
       shared.body = body;
       shared.tone = tone;
       shared.blur_px = 0.25;
@@ -322,6 +269,7 @@ bool SecondLook::find_shared() {
   best.reset();
   for (const double blur : {0.05, 0.15, 0.3, 0.5, 0.8, 1.2}) {
     Shared shared;
+    shared.behind = chosen.behind;
     shared.body = chosen.body;
     shared.tone = chosen.tone;
     shared.blur_px = blur;
@@ -407,7 +355,7 @@ bool SecondLook::is_better() const {
     const auto look = std::lower_bound(looks_.begin(), looks_.end(), first_.sightings[i].frame,
                                        [](const Look& a, std::size_t frame) { return a.frame < frame; });
     if (look == looks_.end() || look->frame != first_.sightings[i].frame || !look->fit) continue;
-    ours.push_back(look->fit->rms * full_code_);
+    ours.push_back(look->fit->rms * background_.full_code);
     theirs.push_back(first_.fits[i].rms);
   }
   if (found < kFewestFits || found < first_.sightings.size() || ours.size() < kFewestFits) return false;
@@ -417,9 +365,40 @@ bool SecondLook::is_better() const {
     if (look.fit && their_places.contains(look.frame)) our_places[look.frame] = look.fit->centre;
   }
   const auto our_roughness = roughness_of(our_places), their_roughness = roughness_of(their_places);
+  if (!our_roughness || *our_roughness > kRoughest_px || !is_distinct()) return false;
   if (our_roughness && their_roughness && *our_roughness > kRougher * *their_roughness) return false;
   const double usual = median_of(theirs);  // none of a centroid
-  return usual == 0.0 || median_of(ours) < kLeastGain * usual;
+  return usual == 0.0 || found > first_.sightings.size() || median_of(ours) < kLeastGain * usual;
+}
+
+/// The residuals are small beside the contrast that makes them.
+bool SecondLook::is_distinct() const {
+  std::vector<double> shares;
+  for (const Look& look : looks_) {
+    if (look.fit) shares.push_back(look.fit->rms / look.fit->contrast);
+  }
+  return median_of(shares) < kLargestShare;
+}
+
+/// The centroid of what differs from the background within the outline, less the centre.
+cv::Point2d SecondLook::light_of(const Look& look) const {
+  SphereGuess guess;
+  guess.centre = look.fit->centre;
+  guess.shape = shape_at_(guess.centre, shared_.body).value_or(look.shape);
+  guess.log_size = look.fit->log_size;
+  guess.tone = shared_.tone;
+  const double radius = radius_of(guess.shape) * std::exp(guess.log_size);
+  cv::Point2d first;
+  double all = 0.0;
+  for (const SpherePixel& pixel :
+       cut_sphere_window(look.codes, look.window, background_, guess, shared_.behind).pixels) {
+    const cv::Point2d off = cv::Point2d(pixel.u, pixel.v) - guess.centre;
+    if (cv::norm(off) > radius) continue;
+    const double differs = std::abs(pixel.code - code_of_light(guess.tone, pixel.behind));
+    all += differs;
+    first += differs * off;
+  }
+  return all > 0.0 ? first / all : first;
 }
 
 TrackedMarker SecondLook::tracked() const {
@@ -443,22 +422,23 @@ TrackedMarker SecondLook::tracked() const {
     const double mean = 0.5 * (shape[0] + shape[2]), spread = std::hypot(0.5 * (shape[0] - shape[2]), shape[1]);
     marker.elongation = (mean + spread) / std::max(mean - spread, 1e-9);
     marker.blur_px = shared_.blur_px;
-    marker.rms = fit.rms * full_code_;
-    const cv::Point at(static_cast<int>(std::lround(fit.centre.x)) - region_.x,
-                       static_cast<int>(std::lround(fit.centre.y)) - region_.y);
-    marker.background = behind_.codes.at<float>(at.y, at.x);
+    marker.rms = fit.rms * background_.full_code;
+    const cv::Point at(static_cast<int>(std::lround(fit.centre.x)) - background_.region.x,
+                       static_cast<int>(std::lround(fit.centre.y)) - background_.region.y);
+    marker.background = background_.part.codes.at<float>(at.y, at.x);
     const double light = fit.light.ambient + std::max(0.0, fit.light.lamp[2]);
-    marker.amplitude = std::abs(full_code_ * code_of_light(shared_.tone, light) - marker.background);
+    marker.amplitude = std::abs(background_.full_code * code_of_light(shared_.tone, light) - marker.background);
     const double determinant = shape[0] * shape[2] - shape[1] * shape[1];
     const double a = shape[2] / determinant, b = -shape[1] / determinant, c = shape[0] / determinant;
     marker.moments = cv::Vec3d(a * a + b * b, b * (a + c), b * b + c * c) * 0.25;
+    marker.light_px = light_of(look);
     tracked.sightings.push_back({look.frame, fit.centre.x, fit.centre.y, marker.sd_px, marker.radius_px});
     tracked.fits.push_back(marker);
   }
   tracked.notes.push_back(
-      fmt::format("the marker is fitted as a {}, before the background that other frames show: seen in {} frames, {} "
-                  "without",
+      fmt::format("the marker is fitted as a {}, before {}: seen in {} frames, {} without",
                   shared_.body == MarkerBody::sphere ? "sphere that is lit from one side" : "disc",
+                  shared_.behind == Behind::still ? "the background that other frames show" : "what moves with it",
                   tracked.sightings.size(), first_.sightings.size()));
   return tracked;
 }
