@@ -229,6 +229,10 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   const auto better = [&](SeenClip& first) {
     auto marker = look_again(first.marker, again, background, shape_at);
     if (!marker) return false;
+    const std::vector<std::string>& as_disc = first.marker.notes;
+    std::erase_if(first.notes, [&](const std::string& note) {
+      return std::find(as_disc.begin(), as_disc.end(), note) != as_disc.end();
+    });
     first.notes.insert(first.notes.end(), marker->notes.begin(), marker->notes.end());
     first.marker = *std::move(marker);
     if (first.pictures) first.pictures->marker = looks_of(first.marker, first.frame_t_s);

@@ -123,6 +123,8 @@ std::string words_of_pull(const std::vector<FilmedClip>& clips) {
       pull, change);
 }
 
+}  // namespace
+
 /// Light along the path from how bright the marker is: ln(brightness) = a + g s + q s² about the image's middle.
 void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   const auto columns = static_cast<Eigen::Index>(clips.size() + 2);

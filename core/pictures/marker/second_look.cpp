@@ -29,8 +29,13 @@ constexpr std::size_t kFewestFits = 8;
 constexpr double kWellKnownSize = 0.05, kLeastSizeSd = 1e-3;  // of the size's logarithm
 constexpr double kRoughest_px = 0.3;                          // a path that the sphere makes
 constexpr double kLargestShare = 0.25;                        // of the contrast in the residuals
-constexpr double kRougher = 1.3;                              // times, that the path may be
-constexpr double kLeastGain = 0.8;                            // of the residuals
+constexpr double kRougher = 1.3;                              // times, that the path may be,
+constexpr double kRougherButExplained = 2.0;                  // where the residuals are nearly noise,
+constexpr double kRougherThanCentroid = 4.0;                  // or the first look's centre is drawn to the light
+constexpr double kExplained = 1.5;                            // times the noise
+constexpr double kOddStray_px = 0.05, kOddStrays = 4.0;       // off the neighbours' course, times the usual distance
+constexpr double kStray_px = 0.3, kStrays = 8.0;
+constexpr double kLeastGain = 0.8;  // of the residuals
 
 struct Place {
   std::size_t frame = 0;
@@ -137,7 +142,7 @@ class SecondLook {
   void fit_all();
   bool is_good(const SphereFit& fit) const { return fit.rms < kFarOff * shared_.usual_rms; }
   void fit_lost();
-  void drop_strays();
+  void drop_strays(double least_px, double times);
   std::vector<Place> fitted_places() const;
   bool is_better() const;
   bool is_distinct() const;
@@ -293,9 +298,9 @@ void SecondLook::fit_all() {
     const auto found = fit(look, look.expected, shared_, std::nullopt);
     if (found && is_good(*found)) look.fit = found;
   }
-  drop_strays();
+  drop_strays(kOddStray_px, kOddStrays);  // to be fitted again, from what their neighbours say
   fit_lost();
-  drop_strays();
+  drop_strays(kStray_px, kStrays);
 }
 
 /// From the neighbours of those that were found, outwards.
@@ -327,7 +332,7 @@ void SecondLook::fit_lost() {
 }
 
 /// Without fits that lie far off the course of their neighbours.
-void SecondLook::drop_strays() {
+void SecondLook::drop_strays(double least_px, double times) {
   const std::vector<Place> places = fitted_places();
   std::vector<std::pair<Look*, double>> off;
   std::vector<double> distances;
@@ -339,7 +344,7 @@ void SecondLook::drop_strays() {
     distances.push_back(off.back().second);
   }
   if (distances.empty()) return;
-  const double limit = 0.3 + 8.0 * median_of(distances);
+  const double limit = least_px + times * median_of(distances);
   for (const auto& [look, distance] : off) {
     if (distance > limit) look->fit.reset();
   }
@@ -366,9 +371,12 @@ bool SecondLook::is_better() const {
   }
   const auto our_roughness = roughness_of(our_places), their_roughness = roughness_of(their_places);
   if (!our_roughness || *our_roughness > kRoughest_px || !is_distinct()) return false;
-  if (our_roughness && their_roughness && *our_roughness > kRougher * *their_roughness) return false;
-  const double usual = median_of(theirs);  // none of a centroid
-  return usual == 0.0 || found > first_.sightings.size() || median_of(ours) < kLeastGain * usual;
+  const double usual = median_of(theirs), our_usual = median_of(ours);
+  const bool is_centroid = usual == 0.0;
+  const bool explained = our_usual < kExplained * background_.noise() * background_.full_code;
+  const double rougher = is_centroid ? kRougherThanCentroid : explained ? kRougherButExplained : kRougher;
+  if (their_roughness && *our_roughness > rougher * *their_roughness) return false;
+  return is_centroid || found > first_.sightings.size() || our_usual < kLeastGain * usual;
 }
 
 /// The residuals are small beside the contrast that makes them.

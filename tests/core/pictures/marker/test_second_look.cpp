@@ -62,7 +62,8 @@ core::TrackedMarker first_look(double off_px, double rms_codes) {
   for (std::size_t k = 4; k < kFrames; ++k) {
     if (k > 22 && k < 30) continue;
     core::MarkerFit fit;
-    fit.centre = place(k) + cv::Point2d(off_px, 0.3 * off_px);
+    const double shake = 0.05 * std::sin(7.0 * static_cast<double>(k * k));
+    fit.centre = place(k) + cv::Point2d(off_px + shake, 0.3 * off_px - shake);
     fit.shape = {1.0 / kRadius, 0.0, 1.0 / kRadius};
     fit.radius_px = kRadius;
     fit.amplitude = 60.0;
