@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -13,6 +14,8 @@
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
 #include "core/pictures/camera/restitution.h"
+#include "core/pictures/marker/second_look.h"
+#include "core/pictures/marker/still_background.h"
 #include "core/pictures/scene/scene_watch.h"
 #include "core/track/even_times.h"
 #include "core/track/read_track.h"
@@ -53,7 +56,7 @@ std::vector<MarkerLook> looks_of(const TrackedMarker& marker, const std::vector<
     const std::size_t frame = marker.sightings[i].frame;
     looks.push_back({frame, frame_t_s[frame], fit.centre.x, fit.centre.y, fit.moments[0] - fit.moments[2],
                      0.25 * b * (a + c), 0.25 * (b * b + c * c), fit.blur_px, fit.amplitude, fit.background,
-                     fit.slope_u, fit.slope_v});
+                     fit.slope_u, fit.slope_v, fit.light_px.x, fit.light_px.y});
   }
   return looks;
 }
@@ -81,8 +84,29 @@ void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
   scene.finish(record);
 }
 
+/// What to look for where a disc is not found well: anything of the marker's size, of whatever shape its lit part has.
+struct AnyShape {
+  cv::Mat still;      ///< in the difference from this background, where it is not empty; else in the grey value,
+  bool dark = false;  ///< or in its inverse
+
+  Frame seen_in(const Frame& frame) const {
+    Frame changed;
+    changed.index = frame.index;
+    changed.t_s = frame.t_s;
+    if (!still.empty()) {
+      cv::absdiff(frame.grey, still, changed.grey);
+    } else if (dark) {
+      cv::bitwise_not(frame.grey, changed.grey);
+    } else {
+      changed.grey = frame.grey;
+    }
+    return changed;
+  }
+};
+
 SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
-                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
+                  const AnyShape* any = nullptr) {
   const bool with_color = signal_kind(marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
@@ -94,7 +118,8 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     if (!usual_px) usual_px = radius_px;
     return radius_px.value_or(usual_px.value_or(kSomeRadiusPx));
   };
-  MarkerTracker tracker(clip.file, marker, radius_at, clip.start_s);
+  MarkerTracker tracker = any != nullptr ? MarkerTracker::of_any_shape(clip.file, marker, radius_at, clip.start_s)
+                                         : MarkerTracker(clip.file, marker, radius_at, clip.start_s);
   SeenClip seen;
   const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
   constexpr std::size_t kTellEvery = 10;
@@ -103,10 +128,10 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     scene.emplace(source->facts().lossy.value_or(false));
     seen.pictures = std::make_shared<PictureRecord>();
   }
-  while (const auto frame = look_at_scene ? source->next() : source->next_in_parts()) {
+  while (const auto frame = look_at_scene || any != nullptr ? source->next() : source->next_in_parts()) {
     seen.size = frame->grey.size();
     seen.frame_t_s.push_back(frame->t_s);
-    tracker.add(*frame);
+    tracker.add(any != nullptr ? any->seen_in(*frame) : *frame);
     if (scene) {
       scene->add(frame->grey, frame->t_s);
       seen.pictures->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
@@ -130,7 +155,10 @@ void FrameCounter::add(double share) {
   progress_("frames", std::min(1.0, (now + share) / static_cast<double>(clips_)));
 }
 
-SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+namespace {
+
+/// As a disc, bright or dark.
+SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
   const auto look = [&](const MarkerSetup& marker) {
     return look_for(marker, experiment, clip, setting, open, look_at_scene, counter);
@@ -160,6 +188,69 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   }
   if (no_bright) throw NoMarker(*no_bright);
   return *std::move(bright);
+}
+
+/// Nothing where there is no such thing either.
+std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSetup& clip,
+                                      const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene,
+                                      FrameCounter& counter, const AnyShape& any) {
+  try {
+    return look_for(*experiment.marker, experiment, clip, setting, open, look_at_scene, counter, &any);
+  } catch (const base::InputError&) {
+    return std::nullopt;  // what is said of the first look counts
+  }
+}
+
+}  // namespace
+
+SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+  const auto disc = [&] { return see_disc(experiment, clip, setting, open, look_at_scene, counter); };
+  const bool by_hue = signal_kind(*experiment.marker) == SignalKind::colored;
+  if (by_hue) return disc();
+  ClipAgain again;
+  again.open = [&] { return open(clip.file, *experiment.camera, false, setting.size); };
+  std::optional<SeenClip> seen;
+  std::optional<NoMarker> none;
+  try {
+    seen = disc();
+    again.frames = seen->frame_t_s.size();
+    if (!is_worth_a_second_look(seen->marker, again.frames)) return *std::move(seen);
+  } catch (const NoMarker& nothing) {
+    none = nothing;
+    const auto source = again.open();
+    while (source->next()) ++again.frames;
+  }
+  const StillBackground background = background_of(again);
+  const Restitution& restitution = setting.restitutions.at(clip.group);
+  const ShapeAt shape_at = [&](cv::Point2d pixel, MarkerBody body) {
+    return body == MarkerBody::sphere ? restitution.marker_shape(pixel) : restitution.disc_shape(pixel);
+  };
+  const auto better = [&](SeenClip& first) {
+    auto marker = look_again(first.marker, again, background, shape_at);
+    if (!marker) return false;
+    const std::vector<std::string>& as_disc = first.marker.notes;
+    std::erase_if(first.notes, [&](const std::string& note) {
+      return std::find(as_disc.begin(), as_disc.end(), note) != as_disc.end();
+    });
+    first.notes.insert(first.notes.end(), marker->notes.begin(), marker->notes.end());
+    first.marker = *std::move(marker);
+    if (first.pictures) first.pictures->marker = looks_of(first.marker, first.frame_t_s);
+    return true;
+  };
+  if (seen && better(*seen)) return *std::move(seen);
+  if (seen && well_seen(seen->marker)) return *std::move(seen);
+  const std::array<AnyShape, 3> shapes{AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}};
+  for (const AnyShape& any : shapes) {
+    auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, any);
+    if (!found || !better(*found)) continue;
+    if (!seen || static_cast<double>(found->marker.sightings.size()) >
+                     kFarBetter * static_cast<double>(seen->marker.sightings.size())) {
+      return *std::move(found);
+    }
+  }
+  if (none) throw NoMarker(*none);
+  return *std::move(seen);
 }
 
 namespace {

@@ -143,6 +143,30 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
   clip.pixel_noise = look.pixel_noise;
 }
 
+/// Nothing for fewer than some twenty outlines (a centroid has none).
+std::optional<MarkerLighting> lighting_of(const std::vector<MarkerFit>& fits) {
+  constexpr std::size_t kFewest = 20;
+  constexpr double kRare = 0.05;
+  std::vector<double> contrasts, pulls, along;
+  std::vector<const MarkerFit*> outlines;
+  for (const MarkerFit& fit : fits) {
+    if (fit.rms > 0.0) outlines.push_back(&fit);
+  }
+  if (outlines.size() < kFewest) return std::nullopt;
+  const cv::Point2d way = outlines.back()->centre - outlines.front()->centre;
+  const cv::Point2d direction = cv::norm(way) > 0.0 ? way / cv::norm(way) : cv::Point2d(1.0, 0.0);
+  for (const MarkerFit* fit : outlines) {
+    contrasts.push_back(fit->amplitude);
+    pulls.push_back(cv::norm(fit->light_px));
+    along.push_back(fit->light_px.dot(direction));
+  }
+  MarkerLighting light;
+  light.least_contrast = quantile(contrasts, kRare) / quantile(contrasts, 1.0 - kRare);
+  light.pull_px = median_of(pulls);
+  light.pull_change_px = 0.5 * (quantile(along, 1.0 - kRare) - quantile(along, kRare));
+  return light;
+}
+
 void check_images(const Experiment& experiment, const ClipAttempt& attempt, const ClipWatch& watch, double px_per_m,
                   ClipCheck& clip) {
   const TrackData& track = attempt.track;
@@ -155,6 +179,7 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
     sds.push_back(sighting.sd_px);
   }
   clip.marker_px = 2.0 * median_of(radii);
+  if (clip.contrast) clip.light = lighting_of(attempt.fits);
   clip.centre_sd_px = median_of(sds);
   clip.marker_expected_px = experiment.marker->diameter_m * px_per_m;
   const CameraSettings& camera = *experiment.camera;

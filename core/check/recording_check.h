@@ -78,6 +78,14 @@ struct MotionLook {
   bool smooth = false;  ///< smoother than any measurement
 };
 
+/// Light on the marker along its path.
+struct MarkerLighting {
+  double least_contrast = 1.0;  ///< of the darkest twentieth of the frames, over that of the brightest
+  double pull_px = 0.0;         ///< from the outline's centre to the centroid of the marker's light, median
+  /// Half the range, without a twentieth at either end, of its component along the path: by so much a centroid errs.
+  double pull_change_px = 0.0;
+};
+
 struct ClipCheck {
   std::string name;
   std::string failure;      ///< why nothing more is known; else empty
@@ -91,21 +99,22 @@ struct ClipCheck {
   int width_px = 0, height_px = 0;
   double frame_rate_hz = 0.0;  ///< as stated; of a track, the median
   std::optional<double> container_rate_hz;
-  std::size_t repeated = 0;            ///< frames equal to the one before, bit by bit
-  std::size_t irregular_steps = 0;     ///< between the file's time stamps
-  double drift_frames = 0.0;           ///< largest departure of the time stamps from even spacing, in frames
-  std::size_t jumps = 0;               ///< places where frames are missing (lost_frames.h)
-  std::size_t stalls = 0;              ///< single steps well below their neighbours: duplicated frames
-  double saturated = 0.0;              ///< share of the pixels at the largest code
-  double dark = 0.0;                   ///< share of the pixels at 0
-  double bright_level = 0.0;           ///< exceeded by 0.1 % of the pixels
-  double marker_px = 0.0;              ///< diameter, median
-  double marker_expected_px = 0.0;     ///< from its stated diameter and the scale along its path; 0: not known
-  std::optional<double> contrast;      ///< marker less its surroundings; none for one that is known by its hue
-  std::optional<double> marker_level;  ///< its own brightness
-  double pixel_noise = 0.0;            ///< of a pixel at rest from frame to frame; 0 if none is seen
-  double centre_sd_px = 0.0;           ///< of one coordinate of the marker's centre, from its fit, median
-  double distance_m = 0.0;             ///< from the uppermost position to the lowest
+  std::size_t repeated = 0;             ///< frames equal to the one before, bit by bit
+  std::size_t irregular_steps = 0;      ///< between the file's time stamps
+  double drift_frames = 0.0;            ///< largest departure of the time stamps from even spacing, in frames
+  std::size_t jumps = 0;                ///< places where frames are missing (lost_frames.h)
+  std::size_t stalls = 0;               ///< single steps well below their neighbours: duplicated frames
+  double saturated = 0.0;               ///< share of the pixels at the largest code
+  double dark = 0.0;                    ///< share of the pixels at 0
+  double bright_level = 0.0;            ///< exceeded by 0.1 % of the pixels
+  double marker_px = 0.0;               ///< diameter, median
+  double marker_expected_px = 0.0;      ///< from its stated diameter and the scale along its path; 0: not known
+  std::optional<double> contrast;       ///< marker less its surroundings; none for one that is known by its hue
+  std::optional<double> marker_level;   ///< its own brightness
+  std::optional<MarkerLighting> light;  ///< how it changes along the path; of a marker with an outline
+  double pixel_noise = 0.0;             ///< of a pixel at rest from frame to frame; 0 if none is seen
+  double centre_sd_px = 0.0;            ///< of one coordinate of the marker's centre, from its fit, median
+  double distance_m = 0.0;              ///< from the uppermost position to the lowest
   double top_speed_m_s = 0.0;
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, with the stated exposure

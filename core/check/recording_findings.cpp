@@ -80,6 +80,9 @@ constexpr std::size_t kMostUnseenAtEnd = 3;  // frames at a clip's start or end
 constexpr double kLeastPathInside = 0.95;    // of the marker's path
 constexpr double kSmallMarkerPx = 6.0, kUnusableMarkerPx = 3.0;
 constexpr double kLeastContrast = 0.15, kLeastSignalToNoise = 20.0, kUnusableSignalToNoise = 5.0;
+constexpr double kMostPullChange_px = 0.15;  // ten times what a centroid's noise makes of it
+constexpr double kLargePull = 0.05;          // of the marker's diameter
+constexpr double kLeastContrastAlong = 0.5;  // of the largest along the path
 constexpr double kSaturatedLevel = 0.985, kLeastBrightLevel = 0.25, kMostSaturatedShare = 0.05;
 constexpr double kMostBlur = 0.5, kUnusableBlur = 2.0;                        // marker diameters
 constexpr double kUnusableMissingShare = 0.01, kUnusableRepeatedShare = 0.1;  // shares of the frames
@@ -159,6 +162,37 @@ void judge_light(const ClipCheck& clip, FindingBook& book) {
   }
 }
 
+/// Light that changes from place to place, and what it does to the marker's apparent centre.
+void judge_lighting(const ClipCheck& clip, FindingBook& book) {
+  if (!clip.light) return;
+  const double px_per_m = clip.top_speed_m_s > 0.0 ? clip.top_speed_px_s / clip.top_speed_m_s : 0.0;
+  const auto length = [&](double px) {
+    return px_per_m > 0.0 ? fmt::format("{:.2g} px ({:.2g} mm)", px, 1e3 * px / px_per_m)
+                          : fmt::format("{:.2g} px", px);
+  };
+  if (clip.light->pull_change_px > kMostPullChange_px) {
+    book.add(
+        Severity::change,
+        fmt::format("light from one side: the marker's brightness is centred {} off its outline's centre, and that "
+                    "changes by ±{} along the path",
+                    length(clip.light->pull_px), length(clip.light->pull_change_px)),
+        "light the track evenly, with a second lamp from the other side or through a diffuser: the analysis fits "
+        "the outline, but where the lit part alone stands out, that is less certain");
+  } else if (clip.light->pull_px > kLargePull * clip.marker_px) {
+    book.add(Severity::note,
+             fmt::format("light from one side: the marker's brightness is centred {} off its outline's centre, by the "
+                         "same along the path to ±{}",
+                         length(clip.light->pull_px), length(clip.light->pull_change_px)),
+             "");
+  }
+  if (clip.light->least_contrast < kLeastContrastAlong) {
+    book.add(Severity::change,
+             fmt::format("the marker's contrast falls to {} of its largest along the path",
+                         percent_text(clip.light->least_contrast)),
+             "move lamps and bright or dark things in the background away from where the marker passes");
+  }
+}
+
 /// A marker that is smeared away where the glider is fastest is missing at a clip's start or end.
 void judge_ends(const ClipCheck& clip, FindingBook& book) {
   const std::size_t before = clip.first, after = clip.frames - clip.first - clip.spanned;
@@ -233,6 +267,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
   if (clip.pictures) {
     judge_marker(clip, book);
     judge_light(clip, book);
+    judge_lighting(clip, book);
     judge_times(experiment, clip, book);
   } else if (clip.seen < kFewSightings) {
     book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change,

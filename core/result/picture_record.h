@@ -20,8 +20,9 @@ struct MarkerLook {
   double stretch_px2 = 0.0;
   double uv_px2 = 0.0, vv_px2 = 0.0;  ///< second moments of the outline's area (0 and r²/4 for a disc)
   double blur_px = 0.0;
-  double amplitude = 0.0, background = 0.0;  ///< codes
-  double slope_u = 0.0, slope_v = 0.0;       ///< of the background, codes/px
+  double amplitude = 0.0, background = 0.0;   ///< codes
+  double slope_u = 0.0, slope_v = 0.0;        ///< of the background, codes/px
+  double light_u_px = 0.0, light_v_px = 0.0;  ///< centroid of what stands out, less the outline's centre
 };
 
 inline constexpr std::size_t kRowBands = 4;  ///< equal parts of the image's height, from its top

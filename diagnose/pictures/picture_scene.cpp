@@ -9,6 +9,7 @@
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
 #include "base/text/number_text.h"
+#include "core/math/quantile.h"
 #include "core/pictures/scene/camera_traces.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
@@ -101,6 +102,29 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   evidence.findings.push_back(std::move(finding));
 }
 
+namespace {
+
+/// What light from one side does to the centroid of the marker's light, where that is more than noise.
+std::string words_of_pull(const std::vector<FilmedClip>& clips) {
+  constexpr double kLeastPull_px = 0.1, kRare = 0.05;
+  std::vector<double> pulls, along;
+  for (const FilmedClip& clip : clips) {
+    for (const core::MarkerLook& look : clip.record->marker) {
+      pulls.push_back(std::hypot(look.light_u_px, look.light_v_px));
+      along.push_back(clip.down ? look.light_v_px : look.light_u_px);
+    }
+  }
+  const double pull = core::quantile(pulls, 0.5);
+  if (pull < kLeastPull_px) return "";
+  const double change = 0.5 * (core::quantile(along, 1.0 - kRare) - core::quantile(along, kRare));
+  return fmt::format(
+      " The centroid of the marker's light lies {:.2g} px off the centre of its outline, which is what is "
+      "fitted; along the path that changes by ±{:.2g} px.",
+      pull, change);
+}
+
+}  // namespace
+
 /// Light along the path from how bright the marker is: ln(brightness) = a + g s + q s² about the image's middle.
 void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   const auto columns = static_cast<Eigen::Index>(clips.size() + 2);
@@ -143,6 +167,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   finding.words = fmt::format("The light on the marker changes by {} % a metre {}; {:.0f} % is usual in a room.",
                               base::value_and_sd_text(100.0 * gradient, 100.0 * sd),
                               clips.front().down ? "down the image" : "to the right", 100.0 * kUsualGradient_1_m);
+  finding.words += words_of_pull(clips);
   evidence.findings.push_back(std::move(finding));
 }
 

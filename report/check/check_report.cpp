@@ -71,6 +71,11 @@ Json clip_json(const core::ClipCheck& clip) {
   put(json, "marker_expected_px", clip.marker_expected_px);
   put(json, "marker_level", clip.marker_level, "not a bright marker");
   put(json, "contrast", clip.contrast, "a marker that is known by its hue");
+  if (clip.light) {
+    json["least_contrast"] = clip.light->least_contrast;
+    json["light_pull_px"] = clip.light->pull_px;
+    json["light_pull_change_px"] = clip.light->pull_change_px;
+  }
   put(json, "pixel_noise", clip.pixel_noise);
   put(json, "centre_sd_px", clip.centre_sd_px);
   put(json, "top_speed_px_s", clip.top_speed_px_s);

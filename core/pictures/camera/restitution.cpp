@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -74,11 +76,11 @@ cv::Point2d Restitution::project(cv::Vec3d point_in_p) const {
   return calibration_.camera.to_pixel({p[0] / p[2], p[1] / p[2]});
 }
 
-/// Centre of the outline (the area's centroid) minus the projection of the sphere's centre, in pixels.
-cv::Point2d Restitution::outline_offset(cv::Point2d plane) const {
+/// Points of the outline about the projection of the sphere's centre, in pixels; none for a point.
+std::vector<cv::Point2d> Restitution::outline(cv::Point2d plane) const {
   const cv::Vec3d centre = plane_->pose.rotation * cv::Vec3d(plane.x, plane.y, -height_m_) + plane_->pose.shift;
   const double distance = cv::norm(centre);
-  if (!(distance > radius_m_)) return {0.0, 0.0};
+  if (!(distance > radius_m_)) return {};
   // The rays that touch the sphere touch it on a circle, nearer than the centre by R^2 / D and a little smaller.
   const cv::Vec3d along = centre / distance;
   const cv::Vec3d any = std::abs(along[0]) < 0.7 ? cv::Vec3d(1, 0, 0) : cv::Vec3d(0, 1, 0);
@@ -88,16 +90,23 @@ cv::Point2d Restitution::outline_offset(cv::Point2d plane) const {
   const cv::Vec3d middle = centre * (1.0 - share * share);
   const double rim = radius_m_ * std::sqrt(1.0 - share * share);
   const cv::Point2d reference = calibration_.camera.to_pixel({centre[0] / centre[2], centre[1] / centre[2]});
-  std::array<cv::Point2d, kOutlinePoints> outline;
+  std::vector<cv::Point2d> outline(kAround.size());
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const cv::Vec3d p = middle + rim * (kAround[k].x * across + kAround[k].y * other);
     outline[k] = calibration_.camera.to_pixel({p[0] / p[2], p[1] / p[2]}) - reference;
   }
+  return outline;
+}
+
+/// Centre of the outline (the area's centroid) minus the projection of the sphere's centre, in pixels.
+cv::Point2d Restitution::outline_offset(cv::Point2d plane) const {
+  const std::vector<cv::Point2d> points = outline(plane);
+  if (points.empty()) return {0.0, 0.0};
   double area = 0.0;
   cv::Point2d moment;
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    const cv::Point2d a = outline[k];
-    const cv::Point2d b = outline[(k + 1) % outline.size()];
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const cv::Point2d a = points[k];
+    const cv::Point2d b = points[(k + 1) % points.size()];
     const double cross = a.cross(b);
     area += cross;
     moment += (a + b) * cross;
@@ -143,6 +152,49 @@ std::optional<double> Restitution::marker_radius_px(cv::Point2d pixel) const {
   const cv::Point2d right = calibration_.camera.to_pixel({(c[0] + radius_m_) / c[2], c[1] / c[2]});
   const cv::Point2d down = calibration_.camera.to_pixel({c[0] / c[2], (c[1] + radius_m_) / c[2]});
   return 0.5 * (cv::norm(right - centre) + cv::norm(down - centre));
+}
+
+namespace {
+
+/// M of the ellipse through these points at even steps of its angle, whose covariance is M^-2 / 2.
+cv::Vec3d ellipse_through(const std::vector<cv::Point2d>& points) {
+  const auto count = static_cast<double>(points.size());
+  cv::Point2d middle;
+  for (const cv::Point2d& point : points) middle += point / count;
+  Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+  for (const cv::Point2d& point : points) {
+    const Eigen::Vector2d off(point.x - middle.x, point.y - middle.y);
+    square += off * off.transpose() * (2.0 / count);
+  }
+  // The root of a 2 x 2 matrix A is (A + s 1) / t with s = sqrt(det A), t = sqrt(tr A + 2 s).
+  const double s = std::sqrt(square.determinant()), t = std::sqrt(square.trace() + 2.0 * s);
+  const Eigen::Matrix2d m = ((square + s * Eigen::Matrix2d::Identity()) / t).inverse();
+  return {m(0, 0), m(0, 1), m(1, 1)};
+}
+
+}  // namespace
+
+std::optional<cv::Vec3d> Restitution::marker_shape(cv::Point2d pixel) const {
+  if (!(radius_m_ > 0.0)) return std::nullopt;
+  if (scale_) return cv::Vec3d(1.0, 0.0, 1.0) / (radius_m_ * scale_->px_per_m);
+  const auto plane = intersect(pixel);
+  if (!plane) return std::nullopt;
+  const std::vector<cv::Point2d> points = outline(*plane);
+  if (points.empty()) return std::nullopt;
+  return ellipse_through(points);
+}
+
+std::optional<cv::Vec3d> Restitution::disc_shape(cv::Point2d pixel) const {
+  if (scale_) return marker_shape(pixel);
+  if (!(radius_m_ > 0.0)) return std::nullopt;
+  const auto plane = intersect(pixel);
+  if (!plane) return std::nullopt;
+  std::vector<cv::Point2d> points;
+  for (const cv::Point2d& around : kAround) {
+    const cv::Point2d at = *plane + radius_m_ * around;
+    points.push_back(project({at.x, at.y, -height_m_}));
+  }
+  return ellipse_through(points);
 }
 
 cv::Point2d Restitution::centre_pixel(cv::Point2d plane) const {

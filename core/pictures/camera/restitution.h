@@ -59,6 +59,13 @@ class Restitution {
   /// Radius of the marker's image there, in pixels; nothing where to_plane gives nothing.
   std::optional<double> marker_radius_px(cv::Point2d pixel) const;
 
+  /// The outline of the marker, a sphere, that is seen centred on this pixel: |M d| = 1 about it, as the elements uu,
+  /// uv, vv of M (1/px); nothing where to_plane gives nothing.
+  std::optional<cv::Vec3d> marker_shape(cv::Point2d pixel) const;
+
+  /// The same of a disc of the marker's diameter that lies in the plane in which its centre moves.
+  std::optional<cv::Vec3d> disc_shape(cv::Point2d pixel) const;
+
   /// The pixel onto which the marker's centre is projected, which is not where its outline is centred.
   cv::Point2d centre_pixel(cv::Point2d plane) const;
 
@@ -76,6 +83,7 @@ class Restitution {
   Restitution() = default;
   std::optional<cv::Point2d> intersect(cv::Point2d pixel) const;
   cv::Point2d project(cv::Vec3d point_in_p) const;
+  std::vector<cv::Point2d> outline(cv::Point2d plane) const;
   cv::Point2d outline_offset(cv::Point2d plane) const;
 
   std::optional<ScaleSetup> scale_;

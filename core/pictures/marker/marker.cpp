@@ -177,9 +177,15 @@ double centre_sd(MarkerModel<N>& pixels, const LeastSquaresFit<N>& found, double
   return std::sqrt(0.5 * freedom * covariance.trace());
 }
 
-/// Second moments of what is above the fitted background.
-cv::Vec3d moments_of(const MarkerPixels& window, const MarkerFit& marker, double expected_radius_px) {
+struct Moments {
+  cv::Point2d first;
+  cv::Vec3d second;
+};
+
+/// Of what is above the fitted background.
+Moments moments_of(const MarkerPixels& window, const MarkerFit& marker, double expected_radius_px) {
   cv::Vec3d moments(0.0, 0.0, 0.0);
+  cv::Point2d first;
   double above = 0.0;
   const double reach = kMomentReach * expected_radius_px + kMomentMargin_px;  // short of what else moves with it
   for (std::size_t i = 0; i < window.size(); ++i) {
@@ -187,9 +193,10 @@ cv::Vec3d moments_of(const MarkerPixels& window, const MarkerFit& marker, double
     if (du * du + dv * dv > reach * reach) continue;
     const double value = window.value()[i] - marker.background - marker.slope_u * du - marker.slope_v * dv;
     above += value;
+    first += value * cv::Point2d(du, dv);
     moments += value * cv::Vec3d(du * du, du * dv, dv * dv);
   }
-  return moments * (1.0 / above);
+  return {first / above, moments * (1.0 / above)};
 }
 
 template <int N>
@@ -209,7 +216,9 @@ MarkerFit marker_of(const MarkerPixels& window, const MarkerGuess& guess, Marker
   marker.background = p[kLevel];
   marker.slope_u = p[kSlopeU];
   marker.slope_v = p[kSlopeV];
-  marker.moments = moments_of(window, marker, guess.radius_px);
+  const Moments moments = moments_of(window, marker, guess.radius_px);
+  marker.moments = moments.second;
+  marker.light_px = moments.first;
   marker.blur_px = std::exp(p[kLogBlur]);
   marker.rms = found.rms;
   marker.bic = total_weight * std::log(std::max(found.rms * found.rms * (total_weight - N) / total_weight, 1e-12)) +

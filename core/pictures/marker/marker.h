@@ -48,6 +48,9 @@ struct MarkerFit {
   /// Second moments uu, uv, vv (px²) about the centre of what stands above the background in a disc a little larger
   /// than the marker: of the pixels, whatever the model makes of them.
   cv::Vec3d moments;
+  /// The centroid of what stands out there, less the centre (px): where light from one side, or a background that is
+  /// not even, draws a centroid.
+  cv::Point2d light_px;
   double slope_u = 0.0, slope_v = 0.0;  ///< g, of the background, 1/px
   double blur_px = 0.0;                 ///< sigma
   double rms = 0.0;                     ///< of the residuals, in units of the signal

@@ -162,7 +162,7 @@ Remeasured remeasure(const std::vector<MarkerSample>& samples, SignalKind kind) 
   for (const MarkerSample& sample : samples) {
     std::vector<MarkerMethod> methods{MarkerMethod::uniform};
     if (sample.guess.radius_px >= kSmallestShadedPx) methods.push_back(MarkerMethod::shaded);
-    if (kind == SignalKind::colored) methods.push_back(MarkerMethod::centroid);
+    if (may_have_any_shape(kind)) methods.push_back(MarkerMethod::centroid);
     for (const MarkerMethod method : methods) {
       auto fit = measure_marker(sample.window, sample.guess, method, kind);
       if (!fit) continue;
@@ -190,7 +190,7 @@ MarkerMethod best_of(const Remeasured& again, std::size_t samples, SignalKind ki
   if (most(MarkerMethod::shaded) && again.both > 0 &&
       again.bic_gain > kLeastBicGainPerFrame * static_cast<double>(again.both))
     chosen = MarkerMethod::shaded;
-  if (kind == SignalKind::colored && most(MarkerMethod::centroid)) {
+  if (may_have_any_shape(kind) && most(MarkerMethod::centroid)) {
     std::vector<double> residuals{0.0};
     for (const auto& [frame, fit] : again.fits.at(chosen)) residuals.push_back(fit.rms / fit.amplitude);
     const auto of_fit = jitter(chosen);
@@ -211,7 +211,7 @@ std::optional<MarkerFit> measure_marker(const Signal& signal, const MarkerGuess&
     fit = fit_marker(signal, guess, Surface::uniform);
   if (method == MarkerMethod::shaded) fit = fit_marker(signal, guess, Surface::shaded);
   // A thing that is known by its hue may have any shape.
-  if (method == MarkerMethod::centroid || (!fit && method == MarkerMethod::undecided && kind == SignalKind::colored)) {
+  if (method == MarkerMethod::centroid || (!fit && method == MarkerMethod::undecided && may_have_any_shape(kind))) {
     fit = centroid_of_marker(signal, guess);
   }
   if (fit && fit->amplitude < least_contrast(kind)) return std::nullopt;

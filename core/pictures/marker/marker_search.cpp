@@ -147,7 +147,7 @@ std::optional<Signal> signal_of(const Frame& frame, const MarkerSetup& marker, S
     if (frame.color.empty()) return std::nullopt;
     return Signal{likeness(frame.color, cv::Vec3b(marker.color_bgr->data()))};
   }
-  if (kind == SignalKind::bright) return Signal{frame.grey, frame.draw};
+  if (kind == SignalKind::bright || kind == SignalKind::any_shape) return Signal{frame.grey, frame.draw};
   if (frame.draw) frame.draw(cv::Rect({}, frame.grey.size()));
   cv::Mat inverse;
   cv::bitwise_not(frame.grey, inverse);

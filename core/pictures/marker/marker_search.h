@@ -14,11 +14,17 @@ namespace glidelab::core {
 
 /// How the marker differs from the rest of the image.
 enum class SignalKind {
-  bright,  ///< the grey value
-  dark,    ///< its inverse: a colour without a hue that is darker than a quarter of full scale
-  colored  ///< likeness to the marker's hue
+  bright,    ///< the grey value
+  dark,      ///< its inverse: a colour without a hue that is darker than a quarter of full scale
+  colored,   ///< likeness to the marker's hue
+  any_shape  ///< the grey value, of something that need not look like a disc
 };
 SignalKind signal_kind(const MarkerSetup& marker);
+
+/// Whether the signal alone tells the marker from what else there is, so that it need not look like a disc.
+constexpr bool may_have_any_shape(SignalKind kind) {
+  return kind == SignalKind::colored || kind == SignalKind::any_shape;
+}
 
 /// The least contrast of a marker: a sixth of the likeness of its own colour, and next to nothing for a grey value
 /// (there the noise decides).

@@ -38,6 +38,13 @@ MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, Rad
       radius_at_(std::move(radius_at)),
       start_s_(start_s) {}
 
+MarkerTracker MarkerTracker::of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
+                                          std::optional<double> start_s) {
+  MarkerTracker tracker(std::move(clip), marker, std::move(radius_at), start_s);
+  tracker.kind_ = SignalKind::any_shape;
+  return tracker;
+}
+
 /// Where a path's thing is in the next frame: fitted where it should be, or looked for around there.
 std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
                                                               const std::vector<cv::Point2d>& taken) const {

@@ -30,6 +30,10 @@ class MarkerTracker {
   /// `start_s`: the time of the frame that the marker's start_px belongs to; nothing: the first frame.
   MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at, std::optional<double> start_s = {});
 
+  /// Of something bright, in grey values, that need not look like a disc: the lit part of a sphere.
+  static MarkerTracker of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
+                                    std::optional<double> start_s = {});
+
   /// Takes the next frame. InputError where a hue is to be looked for in a grey clip.
   void add(const Frame& frame);
 

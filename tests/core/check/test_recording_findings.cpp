@@ -68,6 +68,28 @@ TEST_CASE("duplicated frames above 10 % make a clip unusable, whether identical 
   }
 }
 
+TEST_CASE("light is named where the marker's contrast or the place of its brightness changes along the path") {
+  core::ClipCheck clip = fine_clip();
+  clip.top_speed_m_s = 1.0;
+  clip.top_speed_px_s = 500.0;
+  clip.light = core::MarkerLighting{0.9, 0.02, 0.01};
+  CHECK(of_clip(clip).empty());
+  clip.light = core::MarkerLighting{0.9, 1.5, 0.4};
+  auto findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::change);
+  CHECK_THAT(findings[0].found,
+             Contains("light from one side") && Contains("1.5 px (3 mm)") && Contains("±0.4 px (0.8 mm)"));
+  clip.light = core::MarkerLighting{0.9, 1.5, 0.1};  // the same everywhere: no position errs by more than another
+  findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::note);
+  clip.light = core::MarkerLighting{0.3, 0.02, 0.01};
+  findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK_THAT(findings[0].found, Contains("falls to 30 % of its largest"));
+}
+
 TEST_CASE("a camera is judged by the views that it rests on, not by those in which the pattern was found") {
   CHECK(of_pattern(pattern_of(9, 8)).empty());
   const auto findings = of_pattern(pattern_of(9, 7));

@@ -113,6 +113,30 @@ TEST_CASE("the centre of a sphere's image is put right to a few micrometres") {
   CHECK(std::abs(*corrected.marker_radius_px(seen) - 15.0) < 2.0);
 }
 
+TEST_CASE("the outlines of a sphere and of a disc off the axis are the ellipses that rays and the plane make") {
+  const KnownCamera known{
+      .fx = 500.0, .fy = 500.0, .k1 = 0.0, .k2 = 0.0, .p1 = 0.0, .p2 = 0.0};  // wide; no lens to undo
+  const KnownPlane plane = tests::known_plane({0.0, 0.0, 1.0}, 0.0, 0.0, 0.0, 0.16, 0.10);
+  cv::RNG random(1);
+  const auto corners = tests::known_corners(known, plane, 0.04, 0.0, random);
+  const double radius_m = 0.002;
+  const auto restitution = core::Restitution::from_pattern(exact(known), {corners}, 0.04, 0.0, 2.0 * radius_m);
+  const cv::Point2d place(0.76, 0.10);  // 0.6 m off the axis at 1 m
+  const auto sphere = restitution.marker_shape(restitution.to_pixel(place));
+  const auto disc = restitution.disc_shape(restitution.to_pixel(place));
+  REQUIRE(sphere);
+  REQUIRE(disc);
+  // A small sphere at the angle t off the axis: half axes R f / (D cos t) outwards and R f / D across, D = 1 m / cos t.
+  // What is left out is of the order (R / D)^2 = 3e-6 and, of the far side's scale, R tan t / D = 1e-3 at either end.
+  const double cosine = 1.0 / std::hypot(1.0, 0.6), across_px = radius_m * 500.0 * cosine;
+  CHECK(std::abs((*sphere)[2] * across_px - 1.0) < 1e-4);
+  CHECK(std::abs((*sphere)[0] * across_px / cosine - 1.0) < 1e-4);
+  CHECK(std::abs((*sphere)[1]) * across_px < 1e-6);
+  // The disc is parallel to the image: a circle of R f / Z.
+  CHECK(std::abs((*disc)[0] * radius_m * 500.0 - 1.0) < 1e-6);
+  CHECK(std::abs((*disc)[2] * radius_m * 500.0 - 1.0) < 1e-6);
+}
+
 TEST_CASE("a sphere's place comes back from the centre of its own image to a millionth of what is put right") {
   const KnownCamera known{.fx = 500.0, .fy = 500.0};
   const KnownPlane plane = slanted();

@@ -68,6 +68,23 @@ TEST_CASE("a disc's centre is found to 0.01 px without noise at any sub-pixel pl
   }
 }
 
+TEST_CASE("the centroid of a marker's light lies off its centre by a quarter of the shading's share of the radius") {
+  // Above the background A (1 + k x / r): the centroid is at k r / 4.
+  constexpr double kRadius = 8.0;
+  const cv::Point2d centre(24.3, 24.6);
+  for (const double share : {0.0, 0.2}) {
+    const cv::Mat picture = tests::paint({49, 49}, [&](double u, double v) {
+      const double x = (u - centre.x) / kRadius, y = (v - centre.y) / kRadius;
+      return kBackground + (std::hypot(x, y) < 1.0 ? 100.0 * (1.0 + share * x) : 0.0);
+    });
+    const auto fit = core::fit_marker(exact(picture), guess_of(centre, kRadius, 0.2), core::Surface::shaded);
+    REQUIRE(fit);
+    // The centre is good to 0.01 px; 16 samples a pixel of the rim change the sum by less than that.
+    CHECK(std::abs(fit->light_px.x - share * kRadius / 4.0) < 0.02);
+    CHECK(std::abs(fit->light_px.y) < 0.02);
+  }
+}
+
 TEST_CASE("a centroid above a threshold would be pulled by the background's slope") {
   const cv::Point2d centre(24.3, 24.6);
   const cv::Mat picture = tests::paint(

@@ -4,6 +4,7 @@
 
 #include "base/errors.h"
 #include "tests/catch.h"
+#include "tests/core/lit_scene.h"
 #include "tests/core/small_clip.h"
 
 using namespace glidelab;
@@ -308,5 +309,35 @@ TEST_CASE("small and large markers are found") {
     // The largest one's window (20 px) leaves the picture in the first frame.
     CHECK(tracked.sightings.size() >= kFrames - (radius > 10.0 ? 1 : 0));
     CHECK(error_px(tracked) < 3.0 * kNoiseLimitPx);
+  }
+}
+
+TEST_CASE("the lit part of a sphere is followed where it need not look like a disc") {
+  std::vector<cv::Mat> frames;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    tests::LitBall ball;
+    ball.centre = place(k);
+    ball.radius_px = kRadius;
+    ball.lamp_x = -0.6;
+    ball.lamp_y = -0.3;
+    ball.lamp_z = 0.1;
+    ball.ambient = 0.2;
+    frames.push_back(255.0 * tests::paint(
+                                 kSize, [&](double u, double v) { return tests::light_of(ball, u, v, 0.2); }, 4));
+  }
+  auto tracker = core::MarkerTracker::of_any_shape("clip.mkv", marker(), [](cv::Point2d) { return kRadius; });
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    core::Frame frame;
+    frame.index = k;
+    frame.grey = tests::expose(frames[k], 2.0, 300 + k);
+    tracker.add(frame);
+  }
+  const core::TrackedMarker tracked = tracker.finish();
+  CHECK(tracked.sightings.size() == kFrames);
+  for (const core::MarkerSighting& sighting : tracked.sightings) {
+    // The lit part lies within the outline, towards the lamp.
+    const cv::Point2d off = cv::Point2d(sighting.u_px, sighting.v_px) - place(sighting.frame);
+    CHECK(off.x < 0.0);
+    CHECK(cv::norm(off) < kRadius);
   }
 }
