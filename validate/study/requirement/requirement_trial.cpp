@@ -178,8 +178,7 @@ RecordedRuns::Outcome RecordedRuns::outcome_of(const Setting& setting, std::uint
 }
 
 void RecordedRuns::run_on(const Setting& setting, Confirm confirm, std::uint64_t runs, std::vector<Outcome>& done) {
-  // A studio whose clips go through a file draws what stands still with each of them.
-  if (confirm == Confirm::clips && !stage_ && !render::lossy(setting.scenario.codec)) {
+  if (confirm == Confirm::clips && !stage_) {
     stage_ = render::set_stage(setting.scenario, options_.jobs, options_.watch);
   }
   const std::size_t from = done.size();
