@@ -71,6 +71,7 @@ struct Trial {
   std::optional<Setting> setting;  ///< nothing if it was refused
   bool render = false;
   bool tracks_miss = false;
+  bool settled = false;                     ///< more rendered runs would change nothing
   std::unique_ptr<RecordedRuns> runs = {};  ///< where it is rendered
 };
 
@@ -84,12 +85,16 @@ RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
   return options;
 }
 
-void find_limits(const RequirementOptions& options, RecordedRuns& runs, Trial& trial) {
+/// By the bound and, where given, by runs.
+void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& trial) {
   Candidate& candidate = trial.candidate;
   candidate.limits.clear();
-  if (candidate.verdict == Verdict::reached || !std::isfinite(candidate.need)) return;
+  const bool none = candidate.verdict == Verdict::reached || candidate.verdict == Verdict::refused;
+  if (none || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
-  for (Limit& limit : runs.limits()) candidate.limits.push_back(std::move(limit));
+  if (runs != nullptr) {
+    for (Limit& limit : runs->limits()) candidate.limits.push_back(std::move(limit));
+  }
   std::stable_sort(candidate.limits.begin(), candidate.limits.end(),
                    [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
 }
@@ -106,7 +111,7 @@ void judge_by_tracks(const Sweep& sweep, const RequirementOptions& options, Tria
     if (candidate.verdict != Verdict::undecided) return;
   }
   candidate.verdict = runs.judge_after(as_tracks.runs, candidate.results);
-  if (!trial.render) find_limits(options, runs, trial);
+  if (!trial.render) find_limits(options, &runs, trial);
 }
 
 /// `work`, whose errors are the candidate's.
@@ -266,10 +271,15 @@ void judge_by_clips(const RequirementOptions& options, Trial& trial) {
   as_candidate(candidate, [&] {
     candidate.verdict = trial.runs->judge(candidate.results, confidence_of_look(options.runs));
     candidate.judged_by = Confirm::clips;
-    if (candidate.verdict == Verdict::reached && trial.tracks_miss && options.runs < kRunsForQuantile) {
-      candidate.verdict = Verdict::undecided;
+    trial.settled = candidate.verdict != Verdict::undecided;
+    if (candidate.verdict != Verdict::reached || !trial.tracks_miss) return;
+    if (options.runs < kRunsForQuantile) {
+      candidate.verdict = Verdict::undecided;  // for good
+    } else {
+      trial.settled = trial.runs->planned() == options.runs;
     }
   });
+  if (candidate.verdict == Verdict::refused) trial.settled = true;
 }
 
 /// Renders those that the bound allows: all of them kLeastRendered times, and those that are not decided then again and
@@ -303,10 +313,7 @@ void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, con
     rendering.expect(work_of_more(open, runs));
     rendering.render(open, runs);
     for (Trial* const trial : open) judge_by_clips(options, *trial);
-    std::erase_if(open, [&](const Trial* trial) {
-      return trial->candidate.verdict != Verdict::undecided &&
-             !(trial->candidate.verdict == Verdict::reached && trial->tracks_miss);
-    });
+    std::erase_if(open, [](const Trial* trial) { return trial->settled; });
   }
   for (Trial* const trial : chosen) {
     if (trial->candidate.verdict != Verdict::reached) continue;
@@ -316,14 +323,16 @@ void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, con
     if (trial->candidate.verdict == Verdict::reached) break;
   }
   progress("rendered runs", 1.0);
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    progress("what limits the others", static_cast<double>(i) / static_cast<double>(chosen.size()));
-    if (chosen[i]->candidate.verdict != Verdict::refused) {
-      as_candidate(chosen[i]->candidate, [&] { find_limits(options, *chosen[i]->runs, *chosen[i]); });
-    }
-    chosen[i]->runs.reset();
+  // Rendered runs say what limits those that one would rather buy; for the dearer ones the bound is asked.
+  const auto buy =
+      std::ranges::find(chosen, Verdict::reached, [](const Trial* trial) { return trial->candidate.verdict; });
+  for (auto trial = chosen.begin(); trial != chosen.end(); ++trial) {
+    progress("what limits the others",
+             static_cast<double>(trial - chosen.begin()) / static_cast<double>(chosen.size()));
+    RecordedRuns* const runs = trial < buy ? (*trial)->runs.get() : nullptr;
+    as_candidate((*trial)->candidate, [&] { find_limits(options, runs, **trial); });
+    (*trial)->runs.reset();
   }
-  if (!chosen.empty()) progress("what limits the others", 1.0);
 }
 
 /// The hardest error of a setting as tracks, over the targets; infinite where it is refused or its clips are too short.
