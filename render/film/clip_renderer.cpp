@@ -210,6 +210,28 @@ void ClipRenderer::read(const FrameMotion& frame, const PixelRect& rect, std::sp
   readout_.read(expected(frame, readout_.seen_by(rect)), stream_, static_cast<std::uint32_t>(frame.frame), rect, codes);
 }
 
+namespace {
+
+FloatPicture scaled(FloatPicture picture, double factor) {
+  for (float& value : picture.values) value = static_cast<float>(static_cast<double>(value) * factor);
+  return picture;
+}
+
+/// The stills were taken before the focus changed, of the first configuration's track, by a camera at rest.
+void set_stills(const Scenario& scenario, Stage& stage) {
+  const sim::ConfigurationSetup& first = scenario.motion.configurations.front();
+  if (scenario.mount.focal_change == 0.0) {
+    stage.behind_stills_e = stage.set_ups.at(first.group).background_e;
+    return;
+  }
+  stage.still_rays = make_ray_table(scenario.camera, scenario.vignetting);
+  StaticPainter painter(scenario.camera, *stage.still_rays, scenario.focus);
+  stage.behind_stills_e =
+      scaled(painter.paint(empty_track(scenario, first.body.incline_rad)), electrons_of_white(scenario));
+}
+
+}  // namespace
+
 std::shared_ptr<const Stage> set_stage(const Scenario& before, int jobs, const std::function<void()>& drawn) {
   const Scenario scenario = as_in_clips(before);
   const auto stage = std::make_shared<Stage>();
@@ -227,16 +249,14 @@ std::shared_ptr<const Stage> set_stage(const Scenario& before, int jobs, const s
     StaticPainter painter(scenario.camera, stage->rays, scenario.focus);
     for (std::size_t i = next(); i < set_ups.size(); i = next()) {
       Stage::SetUp& set_up = *set_ups[i];
-      set_up.background_e = painter.paint(set_up.scene);
-      for (float& value : set_up.background_e.values) {
-        value = static_cast<float>(static_cast<double>(value) * white_e);
-      }
+      set_up.background_e = scaled(painter.paint(set_up.scene), white_e);
       if (scenario.mount.moves()) {
         set_up.fine = fine_picture(scenario.camera, scenario.mount, scenario.focus, set_up.scene, longest_s);
       }
       if (drawn) drawn();
     }
   });
+  set_stills(before, *stage);
   return stage;
 }
 

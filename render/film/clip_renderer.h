@@ -76,6 +76,11 @@ struct Stage {
   };
   RayTable rays;                         ///< of the camera as in the clips
   std::map<std::string, SetUp> set_ups;  ///< by group
+  /// What stands behind the pattern in the stills, in electrons; of the first configuration's track.
+  FloatPicture behind_stills_e;
+  std::optional<RayTable> still_rays;  ///< nothing where the clips' camera took the stills too
+
+  const RayTable& rays_of_stills() const { return still_rays ? *still_rays : rays; }
 };
 
 /// Drawn on up to `jobs` threads. `drawn`, where there is one, is called for every set-up that is done, perhaps from

@@ -1,20 +1,15 @@
-/// A scenario rendered to an experiment folder, with the poses in which the chessboard is held before the camera, and
-/// its truth to the folder beside it.
+/// A scenario rendered to an experiment folder, and its truth to the folder beside it.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <vector>
+#include <memory>
 
 #include "base/long_work.h"
+#include "render/film/clip_renderer.h"
 #include "render/scenario/scenario.h"
-#include "render/scenario/scene.h"
 
 namespace glidelab::render {
-
-/// The boards of the calibration views: poses that fill different parts of the image, tilted up to 35 degrees, jittered
-/// by `seed`, each wholly visible with its white border. NumericalError where no such pose is found.
-std::vector<Chessboard> calibration_boards(const Scenario& scenario, std::uint64_t seed);
 
 struct RenderOptions {
   std::uint64_t seed = 1;
@@ -31,9 +26,11 @@ struct RenderSummary {
 
 /// Writes `experiment_dir` (experiment.toml, clips/, calibration/, plumb.png) and `truth_dir` (truth.json,
 /// `trajectory-<clip>.csv`, `marker-<clip>.csv`), two folders that exist and are empty (but for stills, where these
-/// are not asked for). EnvironmentError where a file cannot be written.
+/// are not asked for). EnvironmentError where a file cannot be written. The stage of another rendering of the same
+/// scene may be given; else it is set.
 RenderSummary render_experiment(const Scenario& scenario, const std::filesystem::path& experiment_dir,
                                 const std::filesystem::path& truth_dir, const RenderOptions& options,
-                                const base::Progress& progress = base::no_progress);
+                                const base::Progress& progress = base::no_progress,
+                                std::shared_ptr<const Stage> stage = nullptr);
 
 }  // namespace glidelab::render

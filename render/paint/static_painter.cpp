@@ -360,7 +360,7 @@ FloatPicture StaticPainter::paint(const StaticScene& scene) {
   return cast_rays(scene, {0, 0, camera_.width_px, camera_.height_px}, focus_ ? blur_reach_px(scene) : 0);
 }
 
-FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const StaticScene& scene) {
+FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const StaticScene& scene, double white) {
   show(scene);
   const int reach_px = focus_ ? blur_reach_px(scene) : 0;
   const PixelRect changed = pixels_before(camera_, scene, reach_px);
@@ -373,8 +373,9 @@ FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const Static
   const FloatPicture part = cast_rays(scene, drawn, reach_px);
   FloatPicture picture = empty;
   for (int y = changed.y; y < changed.y + changed.height; ++y) {
-    std::ranges::copy(part.row(y - drawn.y, changed.x - drawn.x, changed.width),
-                      picture.row(y, changed.x, changed.width).begin());
+    std::ranges::transform(part.row(y - drawn.y, changed.x - drawn.x, changed.width),
+                           picture.row(y, changed.x, changed.width).begin(),
+                           [white](float value) { return static_cast<float>(static_cast<double>(value) * white); });
   }
   return picture;
 }

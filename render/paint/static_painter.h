@@ -51,8 +51,9 @@ class StaticPainter {
   FloatPicture paint(const StaticScene& scene);
 
   /// The same, from `empty`, the image of the scene without its board and plumb line: only what these may change is
-  /// drawn. (With `focus` the pixels elsewhere have as many rays as `empty` needed.)
-  FloatPicture paint_before(const FloatPicture& empty, const StaticScene& scene);
+  /// drawn. (With `focus` the pixels elsewhere have as many rays as `empty` needed.) In both a radiance of 1 is worth
+  /// `white`.
+  FloatPicture paint_before(const FloatPicture& empty, const StaticScene& scene, double white = 1.0);
 
  private:
   void show(const StaticScene& scene);

@@ -268,7 +268,11 @@ class LibavWriter final : public VideoWriter {
       std::uint8_t* to = frame_->data[0] + static_cast<std::ptrdiff_t>(y) * frame_->linesize[0];
       if (video_range) {
         // Black at 16, white at 235 (ITU-R BT.601 and BT.709), rounded.
-        for (int x = 0; x < format_.width; ++x) to[x] = static_cast<std::uint8_t>(16 + (from[x] * 219 + 127) / 255);
+        for (int x = 0; x < format_.width; ++x) {
+          // t / 255 as (t + 1 + t / 256) / 256, which is the same for t below 65536 and needs no division.
+          const unsigned t = from[x] * 219U + 127U;
+          to[x] = static_cast<std::uint8_t>(16U + ((t + 1U + (t >> 8U)) >> 8U));
+        }
       } else {
         std::copy_n(from, format_.width, to);
       }

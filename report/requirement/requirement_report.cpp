@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "base/text/number_text.h"
 #include "report/html/folded.h"
@@ -104,12 +106,18 @@ std::string limit_text(const Candidate& candidate) {
   return text;
 }
 
-/// Error by runs, bound and runs beyond, of each target.
+/// The upper limit of the error.
+std::string limit_cell(const validate::TargetResult& result, double scale) {
+  return result.found && std::isfinite(result.high) ? base::digits_text(result.high / scale, 2) : "–";
+}
+
+/// Error by runs, its upper limit, bound and runs beyond, of each target.
 std::vector<std::string> result_cells(const Requirement& requirement, const Candidate& candidate) {
   std::vector<std::string> cells;
   for (std::size_t t = 0; t < candidate.results.size(); ++t) {
     const double scale = scale_of(requirement.targets[t]).size;
     cells.push_back(found_text(candidate.results[t], scale));
+    cells.push_back(limit_cell(candidate.results[t], scale));
     cells.push_back(bound_text(candidate.results[t].bound, scale));
     cells.push_back(beyond_text(candidate.results[t]));
   }
@@ -143,6 +151,7 @@ std::string candidate_table(const Requirement& requirement) {
   const std::size_t first_number = header.size();
   for (const Target& target : requirement.targets) {
     header.push_back(escape(target_name(target, scale_of(target).factor)));
+    header.push_back("at most" + escape(same_unit(target)));
     header.push_back("bound" + escape(same_unit(target)));
     header.push_back("runs beyond the target");
   }
@@ -168,12 +177,20 @@ std::string judged_by_text(const Requirement& requirement) {
     return fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
                        requirement.track_runs);
   }
+  const std::vector<std::uint64_t> looks = validate::looks(requirement.runs);
   return fmt::format(
-      "Where it allows the target, {} runs of tracks with that noise are made, and rendered runs judge, by the better "
-      "estimator: {} of each with a calibration of its own, more of those that these do not decide, and {} of the "
-      "cheapest that reaches the target, which share these calibrations. "
-      "What tracks miss, by their clock, fewer than {} rendered runs cannot reach: it is undecided.",
-      requirement.track_runs, std::min(validate::kLeastRendered, requirement.runs), requirement.runs,
+      "Where it allows the target, rendered runs judge, each with a calibration of its own, by the better estimator: "
+      "{} "
+      "of each camera{}, and {} of the cheapest that reaches the target. All limits at one look have a confidence of "
+      "{:.3g} %, so that the looks together err in at most 5 % of all cases. "
+      "Up to {} runs of tracks with the predicted noise are made besides: what they miss, by their clock, fewer than "
+      "{} "
+      "rendered runs cannot reach, and it is undecided.",
+      looks.front(),
+      looks.size() < 2
+          ? std::string()
+          : fmt::format(", then {} where these do not decide", fmt::join(looks.begin() + 1, looks.end(), ", ")),
+      requirement.runs, 100.0 * validate::confidence_of_look(requirement.runs), requirement.track_runs,
       validate::kRunsForQuantile);
 }
 
@@ -189,11 +206,12 @@ std::string how_judged(const Requirement& requirement) {
   return text +
          fmt::format(
              "<p>95 % of the runs stay within the 95 % error (of fewer than 20 runs: 1.96 times their rms error). A "
-             "target is reached where the upper limit of the error, of 95 % confidence, is within it, and missed "
+             "target is reached where the error's upper limit (“at most”) is within it, and missed "
              "where the lower limit is beyond it: with {} runs or more the limits are two of their errors, with fewer "
-             "they take the errors as normal. ± is one standard deviation, from {} bootstrap resamples of the runs "
-             "(bias: that of the errors over the root of their number). “Runs beyond the target” err by more than its "
-             "value: a few that are far off come from frames lost without a trace, not from noise.</p>\n",
+             "they take the errors as normal, and few runs decide only what is far from the target. ± is one standard "
+             "deviation, from {} bootstrap resamples of the runs (of fewer than 20: that of normal errors; bias: that "
+             "of the errors over the root of their number). “Runs beyond the target” err by more than its value, of "
+             "all that were made: a few that are far off come from frames lost without a trace, not from noise.</p>\n",
              validate::kRunsForQuantile, validate::kResamples);
 }
 
@@ -216,6 +234,7 @@ std::string requirement_text(const Requirement& requirement) {
   std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "frames/s", "noise (µm)"}};
   for (const Target& target : requirement.targets) {
     rows.front().push_back(target_name(target, scale_of(target).factor));
+    rows.front().push_back("at most" + same_unit(target));
     rows.front().push_back("bound" + same_unit(target));
     rows.front().push_back("runs beyond");
   }

@@ -5,14 +5,19 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
 #include <utility>
 
 #include "base/errors.h"
+#include "base/files/file_io.h"
 #include "core/analysis/clip_to_track.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/calibrate.h"
 #include "render/film/clip_renderer.h"
 #include "render/film/render_experiment.h"
+#include "render/film/stills.h"
 
 namespace glidelab::validate {
 
@@ -181,30 +186,50 @@ namespace {
 
 namespace fs = std::filesystem;
 
-core::Experiment rendered(const render::Scenario& scenario, const fs::path& folder,
-                          const render::RenderOptions& options, const base::Progress& progress) {
+/// Files of the experiment and its truth; clips where `clips`, else empty files in their place, as in that of stills.
+core::Experiment rendered(const render::Scenario& scenario, const fs::path& folder, std::uint64_t seed, int jobs,
+                          bool clips, const std::shared_ptr<const render::Stage>& stage,
+                          const base::Progress& progress) {
   const fs::path pictures = folder / "e", truth = folder / "t";
   fs::create_directories(pictures);
   fs::remove_all(pictures / "clips");
   fs::remove_all(truth);
   fs::create_directory(truth);
-  render::render_experiment(scenario, pictures, truth, options, progress);
-  core::Experiment experiment = core::read_experiment(pictures);
-  experiment.plumb.reset();  // tracks have no use for it
-  for (core::GroupSetup& group : experiment.groups) group.plumb.reset();
-  return experiment;
+  render::render_experiment(scenario, pictures, truth,
+                            {.seed = seed, .jobs = jobs, .ideal = false, .clips = clips, .stills = false}, progress,
+                            stage);
+  return core::read_experiment(pictures);
+}
+
+/// Tracks have no use for a plumb line.
+render::Scenario without_plumb(render::Scenario scenario) {
+  scenario.plumb.reset();
+  return scenario;
 }
 
 }  // namespace
 
-FilmStudio::FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
+FilmStudio::FilmStudio(const render::Scenario& with_plumb, std::uint64_t seed, int jobs,
                        std::shared_ptr<const render::Stage> stage, base::Progress progress)
     : folder_("run"), progress_(std::move(progress)), stage_(std::move(stage)) {
-  const core::Experiment experiment =
-      rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = false}, progress_);
+  const render::Scenario scenario = without_plumb(with_plumb);
+  if (!stage_) stage_ = render::set_stage(scenario, jobs, [this] { progress_("stage", 0.0); });
+  // The images stay in memory; empty files keep their places.
+  const fs::path pictures = folder_.path() / "e";
+  std::map<fs::path, cv::Mat> stills;
+  std::mutex mutex;
+  fs::create_directories(pictures / "calibration");
+  render::take_stills(scenario, *stage_, seed, jobs, [&](const std::string& name, const cv::Mat& codes) {
+    progress_("rendering", 0.0);
+    base::write_file(pictures / name, "");
+    const std::lock_guard lock(mutex);
+    stills[pictures / name] = codes.clone();
+  });
+  const core::Experiment experiment = rendered(scenario, folder_.path(), seed, jobs, false, stage_, progress_);
   const core::CalibrationSetup& setup = *experiment.calibration;
+  const core::GreyReader read = [&](const fs::path& file) { return stills.at(file); };
   pattern_.boards = core::find_board_views(core::pattern_files(experiment),
-                                           cv::Size(setup.inner_corners.columns, setup.inner_corners.rows), jobs);
+                                           cv::Size(setup.inner_corners.columns, setup.inner_corners.rows), jobs, read);
   pattern_.calibration = core::calibrate_any_lens(pattern_.boards, setup.square_m);
 }
 
@@ -224,30 +249,28 @@ std::optional<core::CameraModel> true_camera(const render::Camera& camera) {
   return model;
 }
 
-MadeTracks FilmStudio::film(const render::Scenario& scenario, std::uint64_t seed, int jobs,
+MadeTracks FilmStudio::film(const render::Scenario& with_plumb, std::uint64_t seed, int jobs,
                             const std::optional<core::CameraModel>& lens) {
+  const render::Scenario scenario = without_plumb(with_plumb);
   core::SeenPattern pattern = pattern_;
   if (lens) {
     pattern.calibration.camera = *lens;
     pattern.calibration.covariance.setZero();
   }
   const bool lossy = render::lossy(scenario.codec);
-  const core::Experiment experiment =
-      rendered(scenario, folder_.path(), {.seed = seed, .jobs = jobs, .ideal = false, .clips = lossy, .stills = false},
-               progress_);
-  core::FrameOpener open = core::open_frames;
-  if (!lossy) {
-    if (!stage_) stage_ = render::set_stage(scenario, jobs, [this] { progress_("stage", 0.0); });
-    open = rendered_opener(std::make_shared<const render::ClipSet>(scenario, stage_), seed, canvases_);
-  }
+  const core::Experiment experiment = rendered(scenario, folder_.path(), seed, jobs, lossy, stage_, progress_);
+  const core::FrameOpener open =
+      lossy ? core::FrameOpener(core::open_frames)
+            : rendered_opener(std::make_shared<const render::ClipSet>(scenario, stage_), seed, canvases_);
   MadeTracks made = make_tracks(scenario, seed);
   made.setups = experiment.clips;
   made.tracks = core::tracks_of(experiment, jobs, progress_, open, false, &pattern).tracks;
   return made;
 }
 
-MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs, const base::Progress& progress) {
-  return FilmStudio(scenario, seed, jobs, nullptr, progress).film(scenario, seed, jobs);
+MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs, const base::Progress& progress,
+                       std::shared_ptr<const render::Stage> stage) {
+  return FilmStudio(scenario, seed, jobs, std::move(stage), progress).film(scenario, seed, jobs);
 }
 
 }  // namespace glidelab::validate

@@ -61,9 +61,9 @@ core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, st
                                   std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());
 
 /// A camera with its calibration, for any number of recordings: of scenarios whose stills are those of the first
-/// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills and
-/// experiment.toml lie in a folder of its own under the system's folder for temporary files, which goes with it. One
-/// thread at a time.
+/// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills stay
+/// in memory; experiment.toml and what goes through a file lie in a folder of its own under the system's folder for
+/// temporary files, which goes with it. One thread at a time.
 class FilmStudio {
  public:
   /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio before the same scene
@@ -79,7 +79,6 @@ class FilmStudio {
   MadeTracks film(const render::Scenario& scenario, std::uint64_t seed, int jobs,
                   const std::optional<core::CameraModel>& lens = std::nullopt);
 
-  /// Nothing before the first recording without a lossy codec.
   const std::shared_ptr<const render::Stage>& stage() const { return stage_; }
 
  private:
@@ -93,8 +92,9 @@ class FilmStudio {
 /// The scenario's camera in the analysis' form; nothing for a rational lens, which that form does not have.
 std::optional<core::CameraModel> true_camera(const render::Camera& camera);
 
-/// One recording with a calibration of its own.
+/// One recording with a calibration of its own; the stage of another before the same scene may be given.
 MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs,
-                       const base::Progress& progress = base::no_progress);
+                       const base::Progress& progress = base::no_progress,
+                       std::shared_ptr<const render::Stage> stage = nullptr);
 
 }  // namespace glidelab::validate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -11,8 +12,11 @@
 namespace glidelab::core {
 namespace {
 
+constexpr int kLargestCoarse = 512;    // px; in the first look, which finds a board of large squares
+constexpr int kMostCoarse = 4;         // times coarser than the image, so that a corner is found to about a pixel
 constexpr int kLargestAtFirst = 1600;  // px; larger images are shrunk for the search
 constexpr int kLargestAgain = 4096;    // px; where nothing was found, for small squares may have got lost
+constexpr double kLargeSquare = 12.0;  // px of the first look: what it finds of smaller ones is looked for again
 constexpr int kSmallestSide = 20;      // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
 constexpr double kLeastNoiseToBlur = 8.0;  // codes
 constexpr int kMostBlurs = 5;              // by 1 px
@@ -109,6 +113,15 @@ class Search {
     step();
   }
 
+  /// The quicker detector alone, where the image is not crowded.
+  std::vector<cv::Point2f> run_quickly() {
+    if (eight_.empty() || crowded_ || detector_ == BoardDetector::sector_based) return {};
+    const bool found = classic(eight_, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+    step();
+    const bool whole = found && corners_.size() == static_cast<std::size_t>(inner_corners_.area());
+    return whole && least_side() >= kLargeSquare ? corners_ : std::vector<cv::Point2f>{};
+  }
+
   /// `thorough`: the slower detector takes part although the image is crowded.
   std::vector<cv::Point2f> run(bool thorough) {
     if (eight_.empty()) return {};
@@ -130,6 +143,17 @@ class Search {
  private:
   void step() const {
     if (between_) between_();
+  }
+
+  /// The shortest distance between neighbours in a row or a column.
+  double least_side() const {
+    double least = std::numeric_limits<double>::infinity();
+    const auto width = static_cast<std::size_t>(inner_corners_.width);
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      if ((i + 1) % width != 0) least = std::min(least, cv::norm(corners_[i + 1] - corners_[i]));
+      if (i + width < corners_.size()) least = std::min(least, cv::norm(corners_[i + width] - corners_[i]));
+    }
+    return least;
   }
 
   bool classic(const cv::Mat& image, int flags) {
@@ -192,8 +216,13 @@ std::size_t count_quads(const cv::Mat& white) {
 std::vector<cv::Point2f> search_board(const cv::Mat& grey, cv::Size inner_corners, BoardDetector detector,
                                       const std::function<void()>& between) {
   const cv::Mat eight = to_8_bits(grey);
-  cv::Mat seen = shrunk_to(eight, kLargestAtFirst);
-  std::vector<cv::Point2f> corners = Search(seen, inner_corners, detector, between).run(true);
+  cv::Mat seen = shrunk_to(eight, std::max(kLargestCoarse, std::max(eight.cols, eight.rows) / kMostCoarse));
+  std::vector<cv::Point2f> corners;
+  if (seen.size() != eight.size()) corners = Search(seen, inner_corners, detector, between).run_quickly();
+  if (corners.empty()) {
+    seen = shrunk_to(eight, kLargestAtFirst);
+    corners = Search(seen, inner_corners, detector, between).run(true);
+  }
   if (corners.empty() && seen.size() != eight.size()) {
     seen = shrunk_to(eight, kLargestAgain);
     corners = Search(seen, inner_corners, detector, between).run(false);

@@ -5,6 +5,7 @@
 /// a few hundred. Outlines are counted first, in black-and-white versions of the image as the detector makes them, and
 /// a version with more than a thousand is not looked through. An image in which any version has more (a noisy image of
 /// a board has them in its flat parts) is looked through version by version, without those. The image is first
+/// looked at with 512 pixels a side (or a quarter of its own), which shows a board of large squares; else it is
 /// searched at up to 1600 pixels a side, then at up to 4096.
 #pragma once
 

@@ -38,6 +38,12 @@ std::vector<cv::Point3d> pattern_points(cv::Size grid, double square_m) {
 
 BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_corners, int jobs,
                             std::size_t most_pixels, const base::Progress& progress) {
+  const GreyReader read = [most_pixels](const fs::path& file) { return read_grey_image(file, most_pixels); };
+  return find_board_views(files, inner_corners, jobs, read, progress);
+}
+
+BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_corners, int jobs,
+                            const GreyReader& read, const base::Progress& progress) {
   std::vector<fs::path> unique;
   for (const fs::path& file : files) {
     if (std::find(unique.begin(), unique.end(), file) == unique.end()) unique.push_back(file);
@@ -48,7 +54,7 @@ BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_c
   const auto tell = [&] { progress("pattern", static_cast<double>(done.load()) / static_cast<double>(unique.size())); };
   base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
     tell();
-    const cv::Mat grey = read_grey_image(unique[i], most_pixels);
+    const cv::Mat grey = read(unique[i]);
     sizes[i] = grey.size();
     corners[i] = find_board(grey, inner_corners, BoardDetector::any, tell);
     ++done;

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,13 @@ struct BoardViews {
 /// an image, has more than `most_pixels`, or another size than the first.
 BoardViews find_board_views(const std::vector<std::filesystem::path>& files, cv::Size inner_corners, int jobs,
                             std::size_t most_pixels = kMostPixels, const base::Progress& progress = base::no_progress);
+
+/// The grey image of a file (core/pictures/frames/read_image.h). Called from several threads at once.
+using GreyReader = std::function<cv::Mat(const std::filesystem::path&)>;
+
+/// The same with images from elsewhere, by the names of their files.
+BoardViews find_board_views(const std::vector<std::filesystem::path>& files, cv::Size inner_corners, int jobs,
+                            const GreyReader& read, const base::Progress& progress = base::no_progress);
 
 /// The views with a board; InputError, naming the images without one, if there are fewer than three.
 std::vector<const BoardView*> checked_views(const BoardViews& boards);

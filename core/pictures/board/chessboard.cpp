@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -47,22 +48,70 @@ Window cut_window(const cv::Mat& grey, cv::Point2d centre, double radius) {
 constexpr double kUsualBlurPx = 0.4;
 constexpr double kBlurStrength = 0.05;  // worth so much of the contrast in one pixel, a unit of ln(blur)
 
+/// Pixels beyond the reach of both edges, of which half of a window may consist: there the model is
+/// (1 + h . d) (b ± a), so that their part of the normal equations follows from a few sums.
+struct Plateau {
+  double weight = 0.0, u = 0.0, v = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;  // sums of w, w du, …, w dv²
+  double y = 0.0, uy = 0.0, vy = 0.0, yy = 0.0;                         // of w y, w du y, w dv y, w y²
+
+  void add(double du, double dv, double value, double w) {
+    const double wu = w * du, wv = w * dv, wy = w * value;
+    weight += w;
+    u += wu;
+    v += wv;
+    uu += wu * du;
+    uv += wu * dv;
+    vv += wv * dv;
+    y += wy;
+    uy += wy * du;
+    vy += wy * dv;
+    yy += wy * value;
+  }
+
+  /// The Jacobian of a pixel is M (1, du, dv), its model light . (1, du, dv) times the pattern.
+  void add_to(NormalEquations<kParameters>& equations, const Vector& p, double sign) const {
+    const double pattern = p[kMean] + sign * p[kAmplitude];
+    const Eigen::Vector3d light(1.0, p[kSlopeU], p[kSlopeV]), data(y, uy, vy);
+    Eigen::Matrix3d sums;
+    sums << weight, u, v, u, uu, uv, v, uv, vv;
+    Eigen::Matrix<double, kParameters, 3> m = Eigen::Matrix<double, kParameters, 3>::Zero();
+    m(kU, 0) = -p[kSlopeU] * pattern;
+    m(kV, 0) = -p[kSlopeV] * pattern;
+    m.row(kMean) = light.transpose();
+    m.row(kAmplitude) = sign * light.transpose();
+    m(kSlopeU, 1) = m(kSlopeV, 2) = pattern;
+    const Eigen::Vector3d model = pattern * (sums * light);
+    equations.jtj += m * sums * m.transpose();
+    equations.jtr += m * (model - data);
+    equations.cost += pattern * light.dot(model - 2.0 * data) + yy;
+    equations.weight += weight;
+  }
+};
+
 std::optional<NormalEquations<kParameters>> evaluate(const Window& window, double contrast, const Vector& p) {
   const double blur = std::exp(p[kLogBlur]);
   if (!(blur > 0.01) || blur > 10.0) return std::nullopt;
+  static const NormalNodes nodes = make_normal_nodes();
   NormalEquations<kParameters> equations;
   const double cx = std::cos(p[kAngleX]), sx = std::sin(p[kAngleX]);
   const double cy = std::cos(p[kAngleY]), sy = std::sin(p[kAngleY]);
   const double far = 5.0 * blur + 0.71;  // pixels that an edge leaves all dark or all bright: Phi(-5) = 3e-7
-  const auto response = [&](double d, double nu, double nv) {
-    return std::abs(d) > far ? PixelEdge{d > 0.0 ? 1.0 : 0.0, 0.0, 0.0} : pixel_edge(d, nu, nv, blur);
+  const EdgeBoxes first_boxes = edge_boxes(-sx, cx, blur), second_boxes = edge_boxes(-sy, cy, blur);
+  const auto response = [&](double d, const EdgeBoxes& boxes) {
+    return std::abs(d) > far ? PixelEdge{d > 0.0 ? 1.0 : 0.0, 0.0, 0.0} : edge_of(boxes, edge_corners(nodes, d, boxes));
   };
+  std::array<Plateau, 2> plateaus;  // where both edges are on one side, where not
   for (std::size_t i = 0; i < window.at.size(); ++i) {
     const double du = window.at[i].x - p[kU];
     const double dv = window.at[i].y - p[kV];
     // Signed distances from the edge along x (its normal is (-sx, cx)) and from the edge along y.
-    const PixelEdge first = response(-sx * du + cx * dv, -sx, cx);
-    const PixelEdge second = response(-sy * du + cy * dv, -sy, cy);
+    const double d1 = -sx * du + cx * dv, d2 = -sy * du + cy * dv;
+    if (std::abs(d1) > far && std::abs(d2) > far) {
+      plateaus[(d1 > 0.0) == (d2 > 0.0) ? 0 : 1].add(du, dv, window.value[i], window.weight[i]);
+      continue;
+    }
+    const PixelEdge first = response(d1, first_boxes);
+    const PixelEdge second = response(d2, second_boxes);
     const double e1 = 2.0 * first.value - 1.0, e2 = 2.0 * second.value - 1.0;
     const double light = 1.0 + p[kSlopeU] * du + p[kSlopeV] * dv;
     const double pattern = p[kMean] + p[kAmplitude] * e1 * e2;
@@ -80,6 +129,8 @@ std::optional<NormalEquations<kParameters>> evaluate(const Window& window, doubl
     jacobian[kSlopeV] = pattern * dv;
     equations.add(jacobian, light * pattern - window.value[i], window.weight[i]);
   }
+  plateaus[0].add_to(equations, p, 1.0);
+  plateaus[1].add_to(equations, p, -1.0);
   Vector jacobian = Vector::Zero();
   const double strength = kBlurStrength * contrast;
   jacobian[kLogBlur] = strength;

@@ -165,7 +165,7 @@ class VideoFrames final : public FrameSource {
 
   std::optional<Frame> next() override {
     if (ended_) return std::nullopt;
-    const auto decoded = decoder_->next();
+    const auto decoded = decoder_->next(!with_color_);
     if (!decoded) {
       ended_ = true;
       check_length();

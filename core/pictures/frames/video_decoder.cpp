@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -97,10 +98,11 @@ class VideoDecoder::Libav {
   Libav(const Libav&) = delete;
   Libav& operator=(const Libav&) = delete;
 
-  std::optional<DecodedFrame> next() {
+  std::optional<DecodedFrame> next(bool grey_will_do) {
     if (!decode()) return std::nullopt;
     DecodedFrame decoded;
-    decoded.image = upright(to_bgr());
+    const cv::Mat grey = grey_will_do ? to_grey_alone() : cv::Mat();
+    decoded.image = upright(grey.empty() ? to_bgr() : grey);
     const std::int64_t stamp = frame_->pts != AV_NOPTS_VALUE ? frame_->pts : frame_->pkt_dts;
     if (stamp != AV_NOPTS_VALUE) {
       const std::int64_t start = stream_->start_time != AV_NOPTS_VALUE ? stream_->start_time : 0;
@@ -282,6 +284,69 @@ class VideoDecoder::Libav {
     return cv::Mat(bgr_->height, bgr_->width, CV_8UC3, bgr_->data[0], static_cast<std::size_t>(bgr_->linesize[0]));
   }
 
+  /// Without a way through colours, where the frame has none; empty where it may have some. What libav would make of
+  /// each brightness is asked of libav.
+  cv::Mat to_grey_alone() {
+    check_size(frame_->width, frame_->height);
+    const cv::Mat luma(frame_->height, frame_->width, CV_8U, frame_->data[0],
+                       static_cast<std::size_t>(frame_->linesize[0]));
+    if (frame_->format == AV_PIX_FMT_GRAY8) return luma;
+    if (frame_->format != AV_PIX_FMT_YUV420P || !has_neutral_chroma()) return {};
+    if (greys_.empty()) {
+      greys_ = greys_of_luma();
+      cv::Mat grey, by_colours;
+      cv::LUT(luma, greys_, grey);
+      cv::cvtColor(to_bgr(), by_colours, cv::COLOR_BGR2GRAY);
+      by_luma_ = std::equal(grey.begin<std::uint8_t>(), grey.end<std::uint8_t>(), by_colours.begin<std::uint8_t>());
+    }
+    if (!by_luma_) return {};
+    cv::Mat grey;
+    cv::LUT(luma, greys_, grey);
+    return grey;
+  }
+
+  bool has_neutral_chroma() const {
+    constexpr std::uint8_t kNeutral = 128;
+    const int width = (frame_->width + 1) / 2, height = (frame_->height + 1) / 2;
+    for (int plane = 1; plane < 3; ++plane) {
+      for (int v = 0; v < height; ++v) {
+        const std::uint8_t* row = frame_->data[plane] + static_cast<std::ptrdiff_t>(v) * frame_->linesize[plane];
+        if (!std::all_of(row, row + width, [](std::uint8_t code) { return code == kNeutral; })) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Of each code of the luma.
+  static cv::Mat greys_of_luma() {
+    constexpr int kCodes = 256;
+    AVFrame* ramp = av_frame_alloc();
+    AVFrame* colours = av_frame_alloc();
+    for (AVFrame* const frame : {ramp, colours}) {
+      if (frame == nullptr) throw std::bad_alloc();
+      frame->width = kCodes;
+      frame->height = 2;
+      frame->format = frame == ramp ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_BGR24;
+      if (av_frame_get_buffer(frame, 0) < 0) throw std::bad_alloc();
+    }
+    for (int v = 0; v < 2; ++v) {
+      for (int code = 0; code < kCodes; ++code) {
+        ramp->data[0][v * ramp->linesize[0] + code] = static_cast<std::uint8_t>(code);
+        if (code < kCodes / 2) ramp->data[1 + v][code] = 128;
+      }
+    }
+    SwsContext* scaler = sws_getContext(kCodes, 2, AV_PIX_FMT_YUV420P, kCodes, 2, AV_PIX_FMT_BGR24, SWS_BICUBIC,
+                                        nullptr, nullptr, nullptr);
+    if (scaler == nullptr) throw std::bad_alloc();
+    sws_scale(scaler, ramp->data, ramp->linesize, 0, 2, colours->data, colours->linesize);
+    cv::Mat greys;
+    cv::cvtColor(cv::Mat(1, kCodes, CV_8UC3, colours->data[0]), greys, cv::COLOR_BGR2GRAY);
+    sws_freeContext(scaler);
+    av_frame_free(&colours);
+    av_frame_free(&ramp);
+    return greys;
+  }
+
   /// A copy, turned as the container says.
   cv::Mat upright(const cv::Mat& stored) const {
     cv::Mat image;
@@ -323,6 +388,8 @@ class VideoDecoder::Libav {
   AVFrame* bgr_ = nullptr;
   AVPacket* packet_ = nullptr;
   SwsContext* scaler_ = nullptr;
+  cv::Mat greys_;         ///< of each code of the luma; empty until a frame without colours came
+  bool by_luma_ = false;  ///< they are what the first such frame became by way of its colours
   int clockwise_deg_ = 0;
   bool at_end_ = false;
   std::size_t count_ = 0;
@@ -333,8 +400,8 @@ VideoDecoder::VideoDecoder(const fs::path& file, std::size_t most_pixels)
 
 VideoDecoder::~VideoDecoder() = default;
 
-std::optional<DecodedFrame> VideoDecoder::next() {
-  return av_->next();
+std::optional<DecodedFrame> VideoDecoder::next(bool grey_will_do) {
+  return av_->next(grey_will_do);
 }
 
 std::size_t VideoDecoder::stated_frames() const {

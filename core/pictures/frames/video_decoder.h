@@ -30,7 +30,9 @@ class VideoDecoder {
   VideoDecoder& operator=(const VideoDecoder&) = delete;
 
   /// The next frame; nothing at the end and where the rest cannot be decoded. InputError for a frame above the limit.
-  std::optional<DecodedFrame> next();
+  /// With `grey_will_do`, a frame that is stored without colours comes with one channel: the grey that its three equal
+  /// channels would be.
+  std::optional<DecodedFrame> next(bool grey_will_do = false);
 
   std::size_t stated_frames() const;  ///< as the container counts them, or its length times its rate; 0: not stated
   double rate_hz() const;             ///< as the container states it; 0 where it does not

@@ -14,13 +14,21 @@ namespace glidelab::validate {
 
 enum class Confirm { none, tracks, clips };
 
-/// Rendered runs of every point that the bound allows; more where these do not decide.
-inline constexpr std::uint64_t kLeastRendered = 4;
+/// Rendered runs of every point that the bound allows; twice as many, and so on, where these do not decide.
+inline constexpr std::uint64_t kLeastRendered = 2;
+/// Rendered runs with each limitation removed, of a point that does not reach the target.
+inline constexpr std::uint64_t kLimitRuns = 4;
+
+/// Numbers of rendered runs after which a point is judged: kLeastRendered, twice that, …, `most`.
+std::vector<std::uint64_t> looks(std::uint64_t most);
+
+/// Of each limit at one look, so that all looks together err with a probability of 1 - kConfidence at most.
+double confidence_of_look(std::uint64_t most);
 
 /// What is about to be rendered.
 struct ConfirmationSize {
   std::uint64_t close = 0, points = 0;  ///< to be rendered, of all
-  std::uint64_t recordings = 0;         ///< kLeastRendered of each
+  std::uint64_t recordings = 0;         ///< kLeastRendered of each, and all those of one, the one to buy
   double seconds = 0.0;  ///< on the threads asked for, from one recording; what is close to the target takes longer
 };
 

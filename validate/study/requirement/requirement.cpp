@@ -8,11 +8,14 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <memory>
 #include <sstream>
 
 #include "base/errors.h"
 #include "base/long_work.h"
 #include "render/film/clip_renderer.h"
+#include "render/film/stills.h"
 #include "render/scenario/scenario.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/requirement/requirement_trial.h"
@@ -67,7 +70,13 @@ struct Trial {
   std::uint64_t point = 0;
   std::optional<Setting> setting;  ///< nothing if it was refused
   bool render = false;
+  bool tracks_miss = false;
+  bool settled = false;                     ///< more rendered runs would change nothing
+  std::unique_ptr<RecordedRuns> runs = {};  ///< where it is rendered
 };
+
+constexpr std::uint64_t kFewTrackRuns =
+    60;  // the largest error of 59 is a limit of the 95 % error, of any distribution
 
 /// Options of the runs of one kind.
 RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
@@ -76,43 +85,33 @@ RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
   return options;
 }
 
-void find_limits(const RequirementOptions& options, RecordedRuns& runs, Trial& trial) {
+/// By the bound and, where given, by runs.
+void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& trial) {
   Candidate& candidate = trial.candidate;
   candidate.limits.clear();
-  if (candidate.verdict == Verdict::reached || !std::isfinite(candidate.need)) return;
+  const bool none = candidate.verdict == Verdict::reached || candidate.verdict == Verdict::refused;
+  if (none || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
-  for (Limit& limit : runs.limits()) candidate.limits.push_back(std::move(limit));
+  if (runs != nullptr) {
+    for (Limit& limit : runs->limits()) candidate.limits.push_back(std::move(limit));
+  }
   std::stable_sort(candidate.limits.begin(), candidate.limits.end(),
                    [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
 }
 
-/// By tracks, for good where nothing is to be rendered.
+/// By tracks, for good where nothing is to be rendered; else by fewer, where these decide.
 void judge_by_tracks(const Sweep& sweep, const RequirementOptions& options, Trial& trial) {
   const RequirementOptions as_tracks = options_of(options, Confirm::tracks);
   Candidate& candidate = trial.candidate;
   RecordedRuns runs(sweep, *trial.setting, trial.point, as_tracks);
-  candidate.verdict = runs.judge(candidate.results);
-  candidate.judged_by = Confirm::tracks;
   trial.render = options.confirm == Confirm::clips;
-  if (!trial.render) find_limits(options, runs, trial);
-}
-
-/// By rendered runs: all of them where the point would be the first that reaches the targets. What tracks, which are
-/// many, miss by their clock alone is not reached by a few rendered runs in which the clock did not show.
-void judge_by_clips(const Sweep& sweep, const RequirementOptions& options, bool none_before, Trial& trial) {
-  Candidate& candidate = trial.candidate;
-  RecordedRuns runs(sweep, *trial.setting, trial.point, options);
-  const bool tracks_miss = candidate.verdict == Verdict::missed;
-  for (TargetResult& result : candidate.results) result.by_tracks = result.found;
-  candidate.verdict = runs.judge(candidate.results);
-  candidate.judged_by = Confirm::clips;
-  if (candidate.verdict == Verdict::reached && (none_before || tracks_miss)) {
-    candidate.verdict = runs.judge_all(candidate.results);
+  candidate.judged_by = Confirm::tracks;
+  if (trial.render) {
+    candidate.verdict = runs.judge_after(std::min(kFewTrackRuns, as_tracks.runs), candidate.results);
+    if (candidate.verdict != Verdict::undecided) return;
   }
-  if (candidate.verdict == Verdict::reached && tracks_miss && options.runs < kRunsForQuantile) {
-    candidate.verdict = Verdict::undecided;
-  }
-  find_limits(options, runs, trial);
+  candidate.verdict = runs.judge_after(as_tracks.runs, candidate.results);
+  if (!trial.render) find_limits(options, &runs, trial);
 }
 
 /// `work`, whose errors are the candidate's.
@@ -177,61 +176,163 @@ Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions
   return trial;
 }
 
-/// What it takes to render a scenario's clips, in units of their pixels.
-double pixels_of(const render::Scenario& scenario) {
-  return static_cast<double>(render::count_clips(scenario, 1).frames) * scenario.camera.width_px *
-         scenario.camera.height_px;
+/// What it takes to take a scenario's stills and to render and read its clips, in nanoseconds of one core (about).
+double work_of(const render::Scenario& scenario) {
+  constexpr double kStill = 25.0, kLossless = 1.5, kLossy = 20.0;  // ns a pixel
+  constexpr double kAnalysis = 3e8;                                // ns
+  const double pixels = static_cast<double>(scenario.camera.width_px) * scenario.camera.height_px;
+  return kAnalysis + pixels * (kStill * static_cast<double>(render::count_stills(scenario)) +
+                               (render::lossy(scenario.codec) ? kLossy : kLossless) *
+                                   static_cast<double>(render::count_clips(scenario, 1).frames));
+}
+
+/// What it takes to draw what stands still, once for a camera; likewise.
+double stage_work_of(const render::Scenario& scenario) {
+  constexpr double kStage = 700.0;  // ns a pixel
+  return kStage * static_cast<double>(scenario.camera.width_px) * scenario.camera.height_px;
 }
 
 /// From the smallest recording of all, which is made for that and thrown away.
-ConfirmationSize size_of(const std::vector<Trial>& trials, const RequirementOptions& options) {
+ConfirmationSize size_of(const std::vector<Trial*>& trials, std::size_t points, const RequirementOptions& options) {
   ConfirmationSize size;
-  size.points = trials.size();
-  double all = 0.0;
-  const Trial* least = nullptr;
-  for (const Trial& trial : trials) {
-    if (!trial.render) continue;
-    ++size.close;
-    all += pixels_of(trial.setting->scenario);
-    if (least == nullptr || pixels_of(trial.setting->scenario) < pixels_of(least->setting->scenario)) least = &trial;
+  size.points = points;
+  size.close = trials.size();
+  if (trials.empty()) return size;
+  const std::uint64_t least = std::min(kLeastRendered, options.runs), rest = options.runs - least;
+  size.recordings = least * size.close + rest;
+  const auto work = [](const Trial* trial) { return work_of(trial->setting->scenario); };
+  double all = work(trials.front()) * static_cast<double>(rest);  // the cheapest may be the one to buy
+  for (const Trial* trial : trials) {
+    all += work(trial) * static_cast<double>(least) + stage_work_of(trial->setting->scenario);
   }
-  const std::uint64_t runs = std::min(kLeastRendered, options.runs);
-  size.recordings = size.close * runs;
-  if (least == nullptr) return size;
+  const Trial* smallest = *std::ranges::min_element(trials, {}, work);
   const auto start = std::chrono::steady_clock::now();
-  film_tracks(least->setting->scenario, 1, 1, [&](std::string_view, double) { options.watch(); });
+  film_tracks(smallest->setting->scenario, 1, 1, [&](std::string_view, double) { options.watch(); });
   const double one_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  size.seconds = one_s * all / pixels_of(least->setting->scenario) * static_cast<double>(runs) /
-                 std::min<double>(std::max(1, options.jobs), static_cast<double>(runs));
+  const double one = work(smallest) + stage_work_of(smallest->setting->scenario);
+  size.seconds = one_s * all / one / std::max(1, options.jobs);
   return size;
 }
 
-/// Renders those that the bound allows, the cheapest first: one after another, each with its runs on all threads.
+/// Rendered runs of several points at the same time, on all threads.
+class Rendering {
+ public:
+  Rendering(const RequirementOptions& options, const base::Progress& progress)
+      : options_(options), progress_(progress) {}
+
+  /// So much more is going to be rendered.
+  void expect(double work) { expected_ = expected_ + work; }
+
+  /// Each gets `runs` in all. Those of as many points as there are threads alternate, so that no thread waits for what
+  /// another draws of the same one.
+  void render(const std::vector<Trial*>& trials, std::uint64_t runs) {
+    struct Task {
+      Trial* trial;
+      std::uint64_t run;
+    };
+    std::vector<Task> tasks;
+    std::map<const Trial*, std::atomic<std::uint64_t>> left;
+    const std::size_t side_by_side = static_cast<std::size_t>(std::max(1, options_.jobs));
+    for (std::size_t first = 0; first < trials.size(); first += side_by_side) {
+      const std::size_t end = std::min(trials.size(), first + side_by_side);
+      for (std::uint64_t run = 0; run < runs; ++run) {
+        for (std::size_t i = first; i < end; ++i) {
+          if (run < trials[i]->runs->planned()) continue;
+          tasks.push_back({trials[i], run});
+          ++left[trials[i]];
+        }
+      }
+    }
+    for (Trial* const trial : trials) trial->runs->plan(runs);
+    base::for_each_parallel(tasks.size(), options_.jobs, [&](std::size_t i) {
+      const Task& task = tasks[i];
+      tell(0.0);
+      task.trial->runs->make(task.run);
+      tell(work_of(task.trial->setting->scenario));
+      if (--left.at(task.trial) == 0) task.trial->runs->clear_stage();
+    });
+  }
+
+ private:
+  void tell(double work) {
+    const double done = done_ += work;
+    progress_("rendered runs", std::min(1.0, done / std::max(expected_.load(), done)));
+  }
+
+  const RequirementOptions& options_;
+  const base::Progress& progress_;
+  std::atomic<double> done_ = 0.0, expected_ = 0.0;
+};
+
+/// By all rendered runs that it is given. What tracks, which are many, miss by their clock alone is not reached by a
+/// few rendered runs in which the clock did not show.
+void judge_by_clips(const RequirementOptions& options, Trial& trial) {
+  Candidate& candidate = trial.candidate;
+  as_candidate(candidate, [&] {
+    candidate.verdict = trial.runs->judge(candidate.results, confidence_of_look(options.runs));
+    candidate.judged_by = Confirm::clips;
+    trial.settled = candidate.verdict != Verdict::undecided;
+    if (candidate.verdict != Verdict::reached || !trial.tracks_miss) return;
+    if (options.runs < kRunsForQuantile) {
+      candidate.verdict = Verdict::undecided;  // for good
+    } else {
+      trial.settled = trial.runs->planned() == options.runs;
+    }
+  });
+  if (candidate.verdict == Verdict::refused) trial.settled = true;
+}
+
+/// Renders those that the bound allows: all of them kLeastRendered times, and those that are not decided then again and
+/// again; last, in full, the cheapest that reaches the targets.
 void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, const base::Progress& progress,
                       std::vector<Trial>& trials) {
-  const ConfirmationSize size = size_of(trials, options);
-  if (options.before_rendering) options.before_rendering(size);
-  double all = 0.0, done = 0.0;  // pixels of the cameras
-  for (const Trial& trial : trials) all += trial.render ? pixels_of(trial.setting->scenario) : 0.0;
-  std::atomic<std::uint64_t> begun = 0;  // of a camera's runs; more than the least count no more
-  double now = 0.0;
-  RequirementOptions watched = options_of(options, Confirm::clips);
-  watched.before_run = [&] {
-    if (options.before_run) options.before_run();
-    const double part = static_cast<double>(std::min(begun++, kLeastRendered)) / static_cast<double>(kLeastRendered);
-    progress("rendered clips", (done + part * now) / all);
-  };
-  progress("rendered clips", 0.0);
-  bool none_before = true;
+  std::vector<Trial*> chosen;
   for (Trial& trial : trials) {
-    if (!trial.render) continue;
-    begun = 0;
-    now = pixels_of(trial.setting->scenario);
-    as_candidate(trial.candidate, [&] { judge_by_clips(sweep, watched, none_before, trial); });
-    none_before = none_before && trial.candidate.verdict != Verdict::reached;
-    done += now;
+    if (trial.render) chosen.push_back(&trial);
   }
-  progress("rendered clips", 1.0);
+  const ConfirmationSize size = size_of(chosen, trials.size(), options);
+  if (options.before_rendering) options.before_rendering(size);
+  const RequirementOptions as_clips = options_of(options, Confirm::clips);
+  Rendering rendering(options, progress);
+  for (Trial* const trial : chosen) {
+    trial->tracks_miss = trial->candidate.verdict == Verdict::missed;
+    for (TargetResult& result : trial->candidate.results) result.by_tracks = result.found;
+    trial->runs = std::make_unique<RecordedRuns>(sweep, *trial->setting, trial->point, as_clips);
+  }
+  const auto work_of_more = [](const std::vector<Trial*>& some, std::uint64_t runs) {
+    double work = 0.0;
+    for (const Trial* trial : some) {
+      work += work_of(trial->setting->scenario) * static_cast<double>(runs - std::min(runs, trial->runs->planned()));
+    }
+    return work;
+  };
+  if (!chosen.empty())
+    rendering.expect(work_of_more({chosen.front()}, options.runs - std::min(kLeastRendered, options.runs)));
+  std::vector<Trial*> open = chosen;
+  for (const std::uint64_t runs : looks(options.runs)) {
+    rendering.expect(work_of_more(open, runs));
+    rendering.render(open, runs);
+    for (Trial* const trial : open) judge_by_clips(options, *trial);
+    std::erase_if(open, [](const Trial* trial) { return trial->settled; });
+  }
+  for (Trial* const trial : chosen) {
+    if (trial->candidate.verdict != Verdict::reached) continue;
+    rendering.expect(work_of_more({trial}, options.runs));
+    rendering.render({trial}, options.runs);
+    judge_by_clips(options, *trial);
+    if (trial->candidate.verdict == Verdict::reached) break;
+  }
+  progress("rendered runs", 1.0);
+  // Rendered runs say what limits those that one would rather buy; for the dearer ones the bound is asked.
+  const auto buy =
+      std::ranges::find(chosen, Verdict::reached, [](const Trial* trial) { return trial->candidate.verdict; });
+  for (auto trial = chosen.begin(); trial != chosen.end(); ++trial) {
+    progress("what limits the others",
+             static_cast<double>(trial - chosen.begin()) / static_cast<double>(chosen.size()));
+    RecordedRuns* const runs = trial < buy ? (*trial)->runs.get() : nullptr;
+    as_candidate((*trial)->candidate, [&] { find_limits(options, runs, **trial); });
+    (*trial)->runs.reset();
+  }
 }
 
 /// The hardest error of a setting as tracks, over the targets; infinite where it is refused or its clips are too short.
@@ -239,7 +340,8 @@ double need_by_tracks(const Sweep& sweep, std::uint64_t point, const Requirement
                       const Setting& setting) {
   Candidate candidate;
   candidate.results.resize(options.targets.size());
-  as_candidate(candidate, [&] { RecordedRuns(sweep, setting, point, options).judge(candidate.results); });
+  as_candidate(candidate,
+               [&] { RecordedRuns(sweep, setting, point, options).judge_after(options.runs, candidate.results); });
   return candidate.verdict == Verdict::refused ? std::numeric_limits<double>::infinity()
                                                : hardest_found(candidate.results, options.targets);
 }
@@ -252,9 +354,9 @@ void find_enough(const Sweep& sweep, const RequirementOptions& options, Trial& t
   const double found = hardest_found(candidate.results, options.targets);
   if (!(found * kMuchLess < 1.0)) return;
   candidate.enough = Enough{1.0 / found, {}, {}};
-  constexpr std::uint64_t kTrackRuns = 60;  // the least whose largest error is a limit of the 95 % error
+
   RequirementOptions as_tracks = options_of(options, Confirm::tracks);
-  as_tracks.runs = std::min(options.track_runs, kTrackRuns);
+  as_tracks.runs = std::min(options.track_runs, kFewTrackRuns);
   const double now = need_by_tracks(sweep, trial.point, as_tracks, *trial.setting);
   const double room = std::max(1.0, found / now);  // what rendering adds
   constexpr int kHalvings = 10;

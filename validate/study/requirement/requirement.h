@@ -4,13 +4,15 @@
 /// mean square error, a bias included ("sd": of an unbiased estimator the standard deviation), or the mean error
 /// ("bias"); target.h. The bound takes the noise of the sweep's tracks, or predicts it from the camera
 /// (validate/tracks/made_tracks.h), and is that of the standard deviation, times 1.96 for "error95". A point whose
-/// bound is above the target cannot reach it. Any other is run as tracks with that noise, for a bound knows nothing of
-/// dropped frames, and rendered, with lens, shutter, codec and calibration: kLeastRendered times, then twice as often,
-/// up to `runs` times, until the limits of the error (of the better estimator) are on one side of the target. The
-/// cheapest that reaches it is rendered `runs` times in any case: it is the one to buy. Where fewer than
-/// kRunsForQuantile rendered runs reach what many tracks miss, and where the limits span the target, nothing is
-/// decided. Without rendering the tracks judge alone. Where nothing is run, a bound below the target by kClearMargin is
-/// said to have room.
+/// bound is above the target cannot reach it. Any other is rendered, with lens, shutter, codec and calibration:
+/// kLeastRendered times, then twice as often, up to `runs` times, until the limits of the error (of the better
+/// estimator) are on one side of the target. The limits have such a confidence that all looks together err with 5 % at
+/// most, so that two runs decide what errs ten times less than it may, and four what errs four times less. The cheapest
+/// that reaches the target is rendered `runs` times in any case: it is the one to buy. Up to `track_runs` runs as
+/// tracks with that noise are made besides, for a bound knows nothing of dropped frames: where fewer than
+/// kRunsForQuantile rendered runs reach what these miss, and where the limits span the target, nothing is decided.
+/// Without rendering the tracks judge alone. Where nothing is run, a bound below the target by kClearMargin is said to
+/// have room.
 #pragma once
 
 #include <cstdint>

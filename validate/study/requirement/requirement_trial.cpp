@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "base/errors.h"
 #include "base/long_work.h"
 #include "core/math/quantile.h"
 #include "fit/estimators.h"
@@ -107,12 +108,12 @@ void add_errors(const std::vector<QuantityComparison>& quantities, std::vector<E
 }
 
 /// The better estimator's measure, each judged by its worst configuration.
-void judge_errors(const std::vector<Errors>& all, const Target& target, TargetResult& result) {
+void judge_errors(const std::vector<Errors>& all, const Target& target, double confidence, TargetResult& result) {
   for (const fit::Estimator& estimator : fit::judged_estimators()) {
     std::optional<ErrorMeasure> worst;
     for (const Errors& errors : all) {
       if (errors.estimator != estimator.name || errors.quantity != target.quantity) continue;
-      const ErrorMeasure measure = measure_errors(errors.errors, target);
+      const ErrorMeasure measure = measure_errors(errors.errors, target, confidence);
       if (!worst || measure.value > worst->value) worst = measure;
     }
     if (!worst || (result.found && *result.found <= worst->value)) continue;
@@ -140,20 +141,19 @@ Verdict verdict_of(const std::vector<TargetResult>& results, const std::vector<T
 
 }  // namespace
 
+std::shared_ptr<const render::Stage> RecordedRuns::stage() {
+  const std::lock_guard lock(drawing_);
+  if (!stage_) stage_ = render::set_stage(setting_.scenario, 1, options_.watch);
+  return stage_;
+}
+
 MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run,
                                    Confirm confirm) {
   const std::uint64_t seed = seed_of(sweep_, point_ * options_.runs + run);
   if (confirm == Confirm::clips) {
-    Studio& own = studios_[run % studios_.size()];
-    const std::lock_guard lock(own.busy);
-    if (!own.studio) {
-      // The stills' noise is that of the first run that the studio serves, whichever comes to it first.
-      const std::uint64_t first = seed_of(sweep_, point_ * options_.runs + run % studios_.size());
-      own.studio = std::make_unique<FilmStudio>(setting.scenario, first, 1, stage_,
-                                                [this](std::string_view, double) { options_.watch(); });
-    }
-    return own.studio->film(setting.scenario, seed, 1,
-                            setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
+    FilmStudio studio(setting.scenario, seed, 1, stage(), [this](std::string_view, double) { options_.watch(); });
+    return studio.film(setting.scenario, seed, 1,
+                       setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
   }
   // Clips of one scenario have about one noise: their root mean square.
   const std::vector<double> noise_m = noise_of(setting, clean.truth);
@@ -177,59 +177,73 @@ RecordedRuns::Outcome RecordedRuns::outcome_of(const Setting& setting, std::uint
   return outcome;
 }
 
-void RecordedRuns::run_on(const Setting& setting, Confirm confirm, std::uint64_t runs, std::vector<Outcome>& done) {
-  // A studio whose clips go through a file draws what stands still with each of them.
-  if (confirm == Confirm::clips && !stage_ && !render::lossy(setting.scenario.codec)) {
-    stage_ = render::set_stage(setting.scenario, options_.jobs, options_.watch);
+void RecordedRuns::make(std::uint64_t number) {
+  Run& run = done_.at(number);
+  if (run.made) return;
+  try {
+    run.outcome = outcome_of(setting_, number, options_.confirm);
+  } catch (const base::InputError&) {
+    run.error = std::current_exception();
+  } catch (const base::NumericalError&) {
+    run.error = std::current_exception();
   }
-  const std::size_t from = done.size();
-  if (runs <= from) return;
-  done.resize(runs);
-  base::for_each_parallel(runs - from, options_.jobs,
-                          [&](std::size_t i) { done[from + i] = outcome_of(setting, from + i, confirm); });
+  run.made = true;
+}
+
+std::vector<RecordedRuns::Outcome> RecordedRuns::outcomes_of(const Setting& setting, Confirm confirm,
+                                                             std::uint64_t runs) {
+  std::vector<Outcome> outcomes(runs);
+  base::for_each_parallel(runs, options_.jobs,
+                          [&](std::size_t run) { outcomes[run] = outcome_of(setting, run, confirm); });
+  return outcomes;
 }
 
 namespace {
 
 void judge_outcomes(const std::vector<std::vector<QuantityComparison>>& outcomes, const std::vector<Target>& targets,
-                    std::vector<TargetResult>& results) {
+                    double confidence, std::vector<TargetResult>& results) {
   std::vector<Errors> all;
   for (const std::vector<QuantityComparison>& outcome : outcomes) add_errors(outcome, all);
   for (std::size_t t = 0; t < targets.size(); ++t) {
     results[t].found.reset();
-    judge_errors(all, targets[t], results[t]);
+    judge_errors(all, targets[t], confidence, results[t]);
   }
 }
 
 }  // namespace
 
-Verdict RecordedRuns::judge(const Setting& setting, std::uint64_t runs, std::vector<TargetResult>& results) {
-  run_on(setting, options_.confirm, runs, done_);
-  judge_outcomes(done_, options_.targets, results);
+Verdict RecordedRuns::judge(std::vector<TargetResult>& results, double confidence) const {
+  std::vector<Outcome> outcomes;
+  for (const Run& run : done_) {
+    if (run.error) std::rethrow_exception(run.error);
+    outcomes.push_back(run.outcome);
+  }
+  judge_outcomes(outcomes, options_.targets, confidence, results);
   return verdict_of(results, options_.targets);
 }
 
-Verdict RecordedRuns::judge(std::vector<TargetResult>& results) {
-  if (options_.confirm != Confirm::clips) return judge_all(results);
-  for (std::uint64_t runs = std::min(kLeastRendered, options_.runs);; runs = std::min(2 * runs, options_.runs)) {
-    const Verdict verdict = judge(setting_, runs, results);
-    if (verdict != Verdict::undecided || runs == options_.runs) return verdict;
-  }
+Verdict RecordedRuns::judge_after(std::uint64_t runs, std::vector<TargetResult>& results, double confidence) {
+  plan(runs);
+  base::for_each_parallel(done_.size(), options_.jobs, [&](std::size_t run) { make(run); });
+  return judge(results, confidence);
 }
 
 std::vector<Limit> RecordedRuns::limits() {
   std::vector<Limit> limits;
   const Setting& setting = setting_;
-  const std::uint64_t runs =
-      options_.confirm == Confirm::clips ? std::min(kLeastRendered, options_.runs) : options_.runs;
-  run_on(setting, options_.confirm, runs, done_);
+  const std::uint64_t runs = options_.confirm == Confirm::clips ? std::min(kLimitRuns, options_.runs) : options_.runs;
+  plan(runs);
+  base::for_each_parallel(runs, options_.jobs, [&](std::size_t run) { make(run); });
+  std::vector<Outcome> as_it_is;
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    if (done_[run].error) return limits;
+    as_it_is.push_back(done_[run].outcome);
+  }
   std::vector<TargetResult> now(options_.targets.size());
-  judge_outcomes({done_.begin(), done_.begin() + static_cast<std::ptrdiff_t>(runs)}, options_.targets, now);
+  judge_outcomes(as_it_is, options_.targets, kConfidence, now);
   const auto try_without = [&](const char* name, const Setting& changed, Confirm confirm) {
-    std::vector<Outcome> outcomes;
-    run_on(changed, confirm, runs, outcomes);
     std::vector<TargetResult> then(options_.targets.size());
-    judge_outcomes(outcomes, options_.targets, then);
+    judge_outcomes(outcomes_of(changed, confirm, runs), options_.targets, kConfidence, then);
     double gain = 0.0;
     for (std::size_t t = 0; t < then.size(); ++t) {
       if (now[t].found && then[t].found) gain = std::max(gain, *now[t].found / *then[t].found);

@@ -2,15 +2,16 @@
 /// what limits it.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
+#include "render/film/clip_renderer.h"
 #include "render/scenario/scenario.h"
-#include "validate/film/film_studio.h"
 #include "validate/study/requirement/candidate.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/tracks/made_tracks.h"
@@ -38,22 +39,31 @@ double hardest(const std::vector<TargetResult>& results, const std::vector<Targe
 /// How many times smaller `need` were without one limitation, the largest gain first.
 std::vector<Limit> limits_of(const Setting& setting, double need, const std::vector<Target>& targets);
 
-/// The runs of one point, on options.jobs threads. Rendered ones share what stands still and kLeastRendered
-/// calibrations, each with the noise of its own stills, as the recordings of some afternoons do.
+/// The runs of one point. Each rendered one takes stills of its own and calibrates from them; they share what stands
+/// still before the camera.
 class RecordedRuns {
  public:
   /// As RequirementOptions::confirm says, tracks or clips: options.runs of them at most. All outlive this.
   RecordedRuns(const Sweep& sweep, const Setting& setting, std::uint64_t point, const RequirementOptions& options)
       : sweep_(sweep), setting_(setting), point_(point), options_(options) {}
 
-  /// Fills `results` (one for each target) with the better estimator's errors over the runs; reached, missed (any of
-  /// them), or undecided. Of tracks all runs; rendered ones until they decide.
-  Verdict judge(std::vector<TargetResult>& results);
-  /// The same with all runs.
-  Verdict judge_all(std::vector<TargetResult>& results) { return judge(setting_, options_.runs, results); }
+  /// How many runs are to be made in all; those that were made stay.
+  void plan(std::uint64_t runs) { done_.resize(std::max<std::size_t>(done_.size(), runs)); }
+  std::uint64_t planned() const { return done_.size(); }
+  /// Makes one of the planned runs, if it was not made before. For any thread, at most one for each run; an InputError
+  /// or NumericalError comes out of judge().
+  void make(std::uint64_t run);
+  /// What stands still is forgotten; it is drawn again where it is needed.
+  void clear_stage() { stage_.reset(); }
 
-  /// Limitations that no bound contains, removed one by one, by the same runs (of rendered ones the first
-  /// kLeastRendered): how many times smaller the errors are with an even clock; and, where clips are rendered, with a
+  /// Fills `results` (one for each target) with the better estimator's errors over the planned runs, all of which were
+  /// made, with limits of this confidence; reached, missed (any of them), or undecided.
+  Verdict judge(std::vector<TargetResult>& results, double confidence = kConfidence) const;
+  /// Plans and makes `runs` on options.jobs threads, and judges.
+  Verdict judge_after(std::uint64_t runs, std::vector<TargetResult>& results, double confidence = kConfidence);
+
+  /// Limitations that no bound contains, removed one by one, by the same runs on options.jobs threads (of rendered ones
+  /// kLimitRuns): how many times smaller the errors are with an even clock; and, where clips are rendered, with a
   /// global shutter, with a lossless codec, with the true camera in place of the calibrated one (not of a rational
   /// lens, which the analysis cannot write), and with the true positions and the noise that the camera lets one expect
   /// (no lens, no calibration, no tracker).
@@ -61,23 +71,23 @@ class RecordedRuns {
 
  private:
   using Outcome = std::vector<QuantityComparison>;  ///< of one run, by each estimator
-  Verdict judge(const Setting& setting, std::uint64_t runs, std::vector<TargetResult>& results);
+  struct Run {
+    Outcome outcome;
+    std::exception_ptr error;
+    bool made = false;
+  };
   Outcome outcome_of(const Setting& setting, std::uint64_t run, Confirm confirm);
-  void run_on(const Setting& setting, Confirm confirm, std::uint64_t runs, std::vector<Outcome>& done);
+  std::vector<Outcome> outcomes_of(const Setting& setting, Confirm confirm, std::uint64_t runs);
   MadeTracks tracks_of(const Setting& setting, const MadeTracks& clean, std::uint64_t run, Confirm confirm);
+  std::shared_ptr<const render::Stage> stage();
 
   const Sweep& sweep_;
   const Setting& setting_;
   std::uint64_t point_;
   const RequirementOptions& options_;
-  std::vector<Outcome> done_;  ///< of the setting itself, the first runs
-  /// A camera with its calibration: run r is filmed by number r % kLeastRendered, one at a time, once it is there.
-  struct Studio {
-    std::mutex busy;
-    std::unique_ptr<FilmStudio> studio;
-  };
-  std::array<Studio, kLeastRendered> studios_;
-  std::shared_ptr<const render::Stage> stage_;  ///< once any was
+  std::vector<Run> done_;  ///< of the setting itself, the first runs
+  std::mutex drawing_;
+  std::shared_ptr<const render::Stage> stage_;  ///< once a run needed it
 };
 
 }  // namespace glidelab::validate

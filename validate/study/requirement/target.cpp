@@ -37,13 +37,27 @@ double variance_of(std::span<const double> values) {
   return square / static_cast<double>(values.size() - 1);
 }
 
-constexpr double kNormal90 = 1.6448536269514722;  // two-sided; 95 % on one side
-constexpr std::size_t kLeastForQuantile = 20;     // of fewer the 95 % quantile would be the largest
+constexpr std::size_t kLeastForQuantile = 20;  // of fewer the 95 % quantile would be the largest
 
-/// The quantile of chi² at z standard deviations of a normal distribution: Wilson and Hilferty 1931, to 2 % for n >= 4.
-double chi2_quantile(double n, double z) {
-  const double part = 2.0 / (9.0 * n);
-  return n * std::pow(1.0 - part + z * std::sqrt(part), 3);
+/// Where a function that rises is 0, between two places.
+template <typename Function>
+double root_between(double low, double high, const Function& function) {
+  for (int i = 0; i < 200 && high - low > 1e-12 * (std::abs(low) + std::abs(high)); ++i) {
+    const double middle = 0.5 * (low + high);
+    (function(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// P(chi² of n degrees of freedom <= x), by the series of the incomplete gamma function.
+double chi2_cdf(double n, double x) {
+  const double a = 0.5 * n, half = 0.5 * x;
+  double term = 1.0, sum = 1.0;
+  for (double k = 1.0; term > 1e-17 * sum; ++k) {
+    term *= half / (a + k);
+    sum += term;
+  }
+  return std::min(1.0, sum * std::exp(a * std::log(half) - half - std::lgamma(a + 1.0)));
 }
 
 /// `sizes` are the errors without their signs; their order is lost.
@@ -62,25 +76,28 @@ double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
 
 /// Sorted errors between which their 95 % quantile lies: one has at most k - 1 of n below the quantile with the
 /// probability binomial_cdf(k - 1, n, 0.95).
-void set_quantile_limits(std::vector<double> sizes, ErrorMeasure& measure) {
+void set_quantile_limits(std::vector<double> sizes, double confidence, ErrorMeasure& measure) {
   std::sort(sizes.begin(), sizes.end());
   const std::size_t n = sizes.size();
   std::size_t high = n, low = 1;
-  while (high > 1 && binomial_cdf(static_cast<long>(high) - 2, n, 0.95) >= 0.95) --high;
-  while (low < n && binomial_cdf(static_cast<long>(low), n, 0.95) <= 0.05) ++low;
+  while (high > 1 && binomial_cdf(static_cast<long>(high) - 2, n, 0.95) >= confidence) --high;
+  while (low < n && binomial_cdf(static_cast<long>(low), n, 0.95) <= 1.0 - confidence) ++low;
   measure.low = sizes[low - 1];
   measure.high = sizes[high - 1];
 }
 
-void set_limits(const std::vector<double>& sizes, Measure of, ErrorMeasure& measure) {
+void set_limits(const std::vector<double>& sizes, Measure of, double confidence, ErrorMeasure& measure) {
   const double n = static_cast<double>(sizes.size());
-  if (of == Measure::error95 && sizes.size() >= kRunsForQuantile) return set_quantile_limits(sizes, measure);
-  if (of != Measure::bias && sizes.size() < kRunsForQuantile) {
-    measure.low = measure.value * std::sqrt(n / chi2_quantile(n, kNormal90));
-    measure.high = measure.value * std::sqrt(n / chi2_quantile(n, -kNormal90));
+  const bool many = 1.0 - std::pow(0.95, n) >= confidence;
+  if (of == Measure::error95 && many) return set_quantile_limits(sizes, confidence, measure);
+  if (of == Measure::error95 || (of == Measure::sd && sizes.size() < kRunsForQuantile)) {
+    measure.low = measure.value * std::sqrt(n / chi2_quantile(n, confidence));
+    measure.high = measure.value * std::sqrt(n / chi2_quantile(n, 1.0 - confidence));
     return;
   }
-  const double reach = (of == Measure::bias ? core::student_t975(n - 1.0) : kNormal90) * measure.sd;
+  const double wider = normal_quantile(confidence) / normal_quantile(kConfidence);
+  const double reach =
+      (of == Measure::bias ? core::student_t975(n - 1.0) * wider : normal_quantile(confidence)) * measure.sd;
   measure.low = std::isfinite(reach) ? std::max(0.0, measure.value - reach) : measure.value;
   measure.high = measure.value + reach;
 }
@@ -130,8 +147,19 @@ Target parse_target(const std::string& text) {
   return target;
 }
 
-ErrorMeasure measure_errors(std::span<const double> errors, const Target& target) {
-  assert(errors.size() >= 2);
+double chi2_quantile(double n, double p) {
+  double high = n + 10.0;
+  while (chi2_cdf(n, high) < p) high *= 2.0;
+  return root_between(0.0, high, [&](double x) { return x > 0.0 ? chi2_cdf(n, x) - p : -p; });
+}
+
+double normal_quantile(double p) {
+  const double z = std::sqrt(chi2_quantile(1.0, std::abs(2.0 * p - 1.0)));
+  return p < 0.5 ? -z : z;
+}
+
+ErrorMeasure measure_errors(std::span<const double> errors, const Target& target, double confidence) {
+  assert(errors.size() >= 2 && confidence > 0.5 && confidence < 1.0);
   constexpr double kNever = std::numeric_limits<double>::infinity();
   ErrorMeasure result;
   result.runs = errors.size();
@@ -143,13 +171,16 @@ ErrorMeasure measure_errors(std::span<const double> errors, const Target& target
     const bool answered = std::all_of(sizes.begin(), sizes.end(), [](double size) { return std::isfinite(size); });
     result.value = answered ? std::abs(mean_of(errors)) : kNever;
     result.sd = answered ? std::sqrt(variance_of(errors) / static_cast<double>(errors.size())) : kNever;
-    set_limits(sizes, target.measure, result);
+    set_limits(sizes, target.measure, confidence, result);
     return result;
   }
   std::vector<double> sorted = sizes;
   result.value = rms_or_quantile(sorted, target.measure);
-  result.sd = std::isfinite(result.value) ? bootstrap_sd(sizes, target.measure) : kNever;
-  set_limits(sizes, target.measure, result);
+  const double n = static_cast<double>(sizes.size());
+  result.sd = !std::isfinite(result.value)        ? kNever
+              : sizes.size() >= kLeastForQuantile ? bootstrap_sd(sizes, target.measure)
+                                                  : result.value / std::sqrt(2.0 * n);
+  set_limits(sizes, target.measure, confidence, result);
   return result;
 }
 

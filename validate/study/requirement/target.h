@@ -9,11 +9,13 @@
 ///     bias     |sum e_i / n|
 ///
 /// Errors of tracks have heavy tails (a frame that is lost without a trace), so that what a normal distribution says of
-/// these measures does not hold. A limit of 95 % confidence on either side of a measure (`low`, `high`):
+/// these measures does not hold. A limit on either side of a measure (`low`, `high`), each of a confidence of 95 % or
+/// as asked for:
 ///
 ///     error95, 59 errors or more   the sorted errors between which the quantile lies by the binomial distribution;
-///                                  59 is the least number whose largest error is such an upper limit
-///     error95 and sd, fewer        value sqrt(n / chi²), chi² the 95 % and the 5 % quantile of n degrees of freedom
+///                                  59 is the least number whose largest error is such an upper limit (of 95 %)
+///     error95 and sd, fewer        value sqrt(n / chi²), chi² the 95 % and the 5 % quantile of n degrees of freedom: a
+///                                  tolerance interval of normal errors (where these have a bias it is too wide)
 ///     sd, 59 errors or more        value ∓ 1.645 of its standard deviation
 ///     bias                         value ∓ Student's t of its standard deviation
 #pragma once
@@ -34,6 +36,7 @@ struct Target {
 
 /// Errors from which on the 95 % error has limits that rest on no distribution: 0.95^59 < 0.05.
 inline constexpr std::size_t kRunsForQuantile = 59;
+inline constexpr double kConfidence = 0.95;  ///< of a limit
 
 /// "mu=0.0005" (of the 95 % error), "k_over_m_1_s:sd=0.01"; InputError for anything else.
 Target parse_target(const std::string& text);
@@ -44,15 +47,21 @@ inline constexpr int kResamples = 1000;
 struct ErrorMeasure {
   double value = 0.0;  ///< in the errors' unit; infinite where the unanswered runs make it so
   /// Standard deviation of the value. "bias": that of the errors over sqrt(n). The others: that of the measure over
-  /// kResamples resamples of the errors (bootstrap; a fixed seed), times sqrt(n / (n - 1)). Infinite where a resample's
-  /// is.
+  /// kResamples resamples of the errors (bootstrap; a fixed seed), times sqrt(n / (n - 1)), infinite where a resample's
+  /// is; of fewer than 20 errors, which tell nothing of their distribution, value / sqrt(2 n) as of normal ones.
   double sd = 0.0;
-  double low = 0.0, high = 0.0;  ///< limits of the value, each of 95 % confidence (a bias: of 97.5 %)
+  double low = 0.0, high = 0.0;  ///< limits of the value
   std::size_t runs = 0;
   std::size_t beyond = 0;  ///< of these, with an error larger than the target's value
 };
 
-/// Two errors or more (asserted).
-ErrorMeasure measure_errors(std::span<const double> errors, const Target& target);
+/// Two errors or more (asserted), and a confidence of more than a half.
+ErrorMeasure measure_errors(std::span<const double> errors, const Target& target, double confidence = kConfidence);
+
+/// The value that chi² of n degrees of freedom is below with the probability p; to 1e-9 of it.
+double chi2_quantile(double n, double p);
+
+/// The value below which a normal deviate is with the probability p; to 1e-9.
+double normal_quantile(double p);
 
 }  // namespace glidelab::validate

@@ -90,13 +90,25 @@ FilmStudio& RunWorker::studio_for(const RunRecord& record, const std::string& te
   return *studio_;
 }
 
+std::shared_ptr<const render::Stage> RunWorker::stage_for(const RunRecord& record, const std::string& text,
+                                                          const render::Scenario& scenario) {
+  if (!stage_ || stage_point_ != record.point || stage_of_ != text) {
+    stage_.reset();
+    stage_ = render::set_stage(scenario, 1, [this] { progress_("stage", 0.0); });
+    stage_point_ = record.point;
+    stage_of_ = text;
+  }
+  return stage_;
+}
+
 void RunWorker::fill(RunRecord& record) {
   const RunScenario run = scenario_with(sweep_, record.values);
   MadeTracks made;
   std::vector<LeastSd> least;
   if (sweep_.level == Level::clips) {
-    made = sweep_.calibrate_once ? studio_for(record, run.text, run.scenario).film(run.scenario, record.seed, 1)
-                                 : film_tracks(run.scenario, record.seed, 1, progress_);
+    made = sweep_.calibrate_once
+               ? studio_for(record, run.text, run.scenario).film(run.scenario, record.seed, 1)
+               : film_tracks(run.scenario, record.seed, 1, progress_, stage_for(record, run.text, run.scenario));
   } else {
     const MadeTracks clean = tracks_for(record, run.text, run.scenario);
     made = with_noise(clean, run.noise_m, record.seed);

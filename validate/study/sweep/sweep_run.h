@@ -63,6 +63,8 @@ class RunWorker {
   MadeTracks tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
   /// Of the record's point, whose stills have the noise of its first run's seed.
   FilmStudio& studio_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
+  std::shared_ptr<const render::Stage> stage_for(const RunRecord& record, const std::string& text,
+                                                 const render::Scenario& scenario);
 
   const Sweep& sweep_;
   base::Progress progress_;
@@ -70,6 +72,10 @@ class RunWorker {
   std::uint64_t studio_point_ = 0;
   std::string studio_of_;
   std::unique_ptr<FilmStudio> studio_;
+  // What stands still is the same in them anyway.
+  std::uint64_t stage_point_ = 0;
+  std::string stage_of_;
+  std::shared_ptr<const render::Stage> stage_;
   // The motion of replicates of one point is the same, but for a clock that errs at random.
   std::string made_of_;
   MadeTracks made_;

@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/experiment/permissions.h"
+#include "core/pictures/frames/read_image.h"
 #include "tests/catch.h"
 #include "tests/core/small_clip.h"
 #include "tests/temp_dir.h"
@@ -81,6 +82,33 @@ TEST_CASE("frames, times and counts are those of OpenCV's reader, for each conta
   for (const char* name : {"grey.mkv", "colour.mkv", "colour.avi", "colour.mp4"}) check_against_opencv(dir / name);
   CHECK(core::VideoDecoder(dir / "grey.mkv", core::kMostPixels).codec() == "FFV1");
   CHECK(core::VideoDecoder(dir / "colour.avi", core::kMostPixels).codec() == "MJPG");
+}
+
+TEST_CASE("grey of a frame without colours is the grey of its colours, bit by bit, and a coloured frame keeps them") {
+  const TempDir dir;
+  std::vector<cv::Mat> grey = some_frames({98, 66}, 1), equal;
+  for (const cv::Mat& frame : grey) {
+    cv::Mat channels;
+    cv::merge(std::vector<cv::Mat>(3, frame), channels);
+    equal.push_back(channels);
+  }
+  tests::write_video(dir / "grey.mkv", grey, 50.0, 0.0, "FFV1");    // one plane
+  tests::write_video(dir / "equal.mp4", equal, 50.0, 0.0, "avc1");  // luma, and chroma that says grey
+  tests::write_video(dir / "colour.mp4", some_frames({98, 66}, 3), 50.0, 0.0, "mp4v");
+  for (const char* name : {"grey.mkv", "equal.mp4", "colour.mp4"}) {
+    INFO(name);
+    core::VideoDecoder decoder(dir / name, core::kMostPixels), by_colours(dir / name, core::kMostPixels);
+    int frames = 0;
+    while (const auto frame = decoder.next(true)) {
+      const auto wanted = by_colours.next();
+      REQUIRE(wanted);
+      CHECK(wanted->image.channels() == 3);
+      CHECK(frame->image.channels() == (std::string(name) == "colour.mp4" ? 3 : 1));
+      CHECK(cv::norm(core::to_grey(frame->image), core::to_grey(wanted->image), cv::NORM_INF) == 0.0);
+      ++frames;
+    }
+    CHECK(frames == 12);
+  }
 }
 
 TEST_CASE("a clip that a phone filmed on its side stands upright, and its sound is passed over") {

@@ -202,7 +202,7 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
   validate::RequirementOptions options;
   options.confirm = validate::Confirm::clips;
-  options.runs = 3;
+  options.runs = 4;
   // The bound, which knows no codec, says that this is just within reach; the runs must say that it is not.
   options.targets = {validate::parse_target("k_over_m_1_s:sd=1")};
   const double bound = *validate::find_requirement(sweep, options).candidates.front().results[0].bound;
@@ -215,7 +215,7 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   CHECK(validate::describe(only) == "missed, by clips");
   CHECK(size.close == 1);
   CHECK(size.points == 1);
-  CHECK(size.recordings == 3);
+  CHECK(size.recordings == 4);
   CHECK(size.seconds > 0.0);
   // On two threads the runs are the same.
   options.jobs = 2;
@@ -230,7 +230,8 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   options.targets[0].value = 1000.0 * bound;
   const validate::Requirement easy = validate::find_requirement(sweep, options);
   CHECK(validate::describe(easy.candidates.front()) == "reached, by clips");
-  CHECK(size.recordings == 3);
+  CHECK(size.recordings == 4);
+  CHECK(easy.candidates.front().results[0].runs == 4);  // all of them: it is the one to buy
   REQUIRE(easy.first_reached() != nullptr);
   CHECK(easy.first_reached()->mode.codec == "MJPEG of quality 20");
   // So much better than needed that fewer frames would do.

@@ -1,4 +1,4 @@
-#include "render/film/render_experiment.h"
+#include "render/film/stills.h"
 
 #include <cmath>
 #include <tuple>
