@@ -126,9 +126,10 @@ TEST_CASE("the outlines of a sphere and of a disc off the axis are the ellipses 
   const auto disc = restitution.disc_shape(restitution.to_pixel(place));
   REQUIRE(sphere);
   REQUIRE(disc);
-  // A small sphere at the angle t off the axis: half axes R f / (D cos t) outwards and R f / D across, D = 1 m / cos t.
-  // What is left out is of the order (R / D)^2 = 3e-6 and, of the far side's scale, R tan t / D = 1e-3 at either end.
-  const double cosine = 1.0 / std::hypot(1.0, 0.6), across_px = radius_m * 500.0 * cosine;
+  // A small sphere at the depth Z = 1 m and the angle t off the axis: half axes R f / (Z cos t) outwards, R f / Z
+  // across. What is left out is of the order (R / D)^2 = 3e-6 and, of the far side's scale, R tan t / D = 1e-3 at
+  // either end.
+  const double cosine = 1.0 / std::hypot(1.0, 0.6), across_px = radius_m * 500.0;
   CHECK(std::abs((*sphere)[2] * across_px - 1.0) < 1e-4);
   CHECK(std::abs((*sphere)[0] * across_px / cosine - 1.0) < 1e-4);
   CHECK(std::abs((*sphere)[1]) * across_px < 1e-6);
