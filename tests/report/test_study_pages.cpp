@@ -55,7 +55,7 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   CHECK(has(mu, "rms error of µ (10⁻⁶)  at most  bound (10⁻⁶)"));
   CHECK(has(mu, "3 of 200"));
   CHECK(has(mu, "19.8 ± 5.4"));
-  CHECK(has(mu, "27"));  // 1.5 of the bound: at most
+  CHECK(has(mu, "27"));               // 1.5 of the bound: at most
   CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
   const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
   CHECK(has(k, "rms error of K/m (10⁻³ 1/s)  at most  bound (10⁻³ 1/s)"));
