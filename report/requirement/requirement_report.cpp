@@ -151,7 +151,7 @@ std::string candidate_table(const Requirement& requirement) {
   const std::size_t first_number = header.size();
   for (const Target& target : requirement.targets) {
     header.push_back(escape(target_name(target, scale_of(target).factor)));
-    header.push_back("at most" + escape(same_unit(target)));
+    header.push_back("at most");
     header.push_back("bound" + escape(same_unit(target)));
     header.push_back("runs beyond the target");
   }
@@ -234,7 +234,7 @@ std::string requirement_text(const Requirement& requirement) {
   std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "frames/s", "noise (µm)"}};
   for (const Target& target : requirement.targets) {
     rows.front().push_back(target_name(target, scale_of(target).factor));
-    rows.front().push_back("at most" + same_unit(target));
+    rows.front().push_back("at most");
     rows.front().push_back("bound" + same_unit(target));
     rows.front().push_back("runs beyond");
   }

@@ -28,7 +28,7 @@ validate::Requirement one_camera(const std::string& quantity, double target, dou
   candidate.frame_rate_hz = 30.0;
   candidate.noise_m = 2.46e-5;
   candidate.mode = {640, 480, 0.002, "MJPEG of quality 70"};
-  candidate.results = {{bound, 1.1 * bound, 0.3 * bound, 200, 3, "trajectory"}};
+  candidate.results = {{bound, 1.1 * bound, 0.3 * bound, 200, 3, "trajectory", 0.9 * bound, 1.5 * bound}};
   requirement.candidates = {candidate};
   return requirement;
 }
@@ -52,14 +52,15 @@ validate::CoverageRow row(const std::string& estimator, const std::string& quant
 TEST_CASE("require says its target, and its columns in the thousandths, millionths … in which the target has digits") {
   const std::string mu = report::requirement_text(one_camera("mu", 0.0005, 1.8e-5));
   CHECK(has(mu, "rms error of µ at most 0.0005 on the worst configuration"));
-  CHECK(has(mu, "rms error of µ (10⁻⁶)  bound (10⁻⁶)"));
+  CHECK(has(mu, "rms error of µ (10⁻⁶)  at most  bound (10⁻⁶)"));
   CHECK(has(mu, "3 of 200"));
   CHECK(has(mu, "19.8 ± 5.4"));
+  CHECK(has(mu, "27"));               // 1.5 of the bound: at most
   CHECK(has(mu, "--confirm clips"));  // tracks judged: what they leave out, and what to do
   const std::string k = report::requirement_text(one_camera("k_over_m_1_s", 0.002, 0.00038));
-  CHECK(has(k, "rms error of K/m (10⁻³ 1/s)  bound (10⁻³ 1/s)"));
+  CHECK(has(k, "rms error of K/m (10⁻³ 1/s)  at most  bound (10⁻³ 1/s)"));
   const std::string alpha = report::requirement_text(one_camera("alpha_deg", 1.0, 0.5));
-  CHECK(has(alpha, "rms error of α (°)  bound (°)"));
+  CHECK(has(alpha, "rms error of α (°)  at most  bound (°)"));
   validate::Requirement rendered = one_camera("mu", 0.0005, 1.8e-5);
   rendered.confirm = validate::Confirm::clips;
   CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));

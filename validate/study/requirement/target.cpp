@@ -91,8 +91,13 @@ void set_limits(const std::vector<double>& sizes, Measure of, double confidence,
   const bool many = 1.0 - std::pow(0.95, n) >= confidence;
   if (of == Measure::error95 && many) return set_quantile_limits(sizes, confidence, measure);
   if (of == Measure::error95 || (of == Measure::sd && sizes.size() < kRunsForQuantile)) {
-    measure.low = measure.value * std::sqrt(n / chi2_quantile(n, confidence));
-    measure.high = measure.value * std::sqrt(n / chi2_quantile(n, 1.0 - confidence));
+    // Of normal errors, so from their root mean square also where the value is one of the sorted errors.
+    double square = 0.0;
+    for (const double size : sizes) square += size * size;
+    const double normal = (of == Measure::error95 ? core::kNormal95 : 1.0) * std::sqrt(square / n);
+    const double low = std::isfinite(normal) ? normal : measure.value;
+    measure.low = std::min(measure.value, low * std::sqrt(n / chi2_quantile(n, confidence)));
+    measure.high = std::max(measure.value, normal * std::sqrt(n / chi2_quantile(n, 1.0 - confidence)));
     return;
   }
   const double wider = normal_quantile(confidence) / normal_quantile(kConfidence);

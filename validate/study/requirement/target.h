@@ -14,8 +14,9 @@
 ///
 ///     error95, 59 errors or more   the sorted errors between which the quantile lies by the binomial distribution;
 ///                                  59 is the least number whose largest error is such an upper limit (of 95 %)
-///     error95 and sd, fewer        value sqrt(n / chi²), chi² the 95 % and the 5 % quantile of n degrees of freedom: a
-///                                  tolerance interval of normal errors (where these have a bias it is too wide)
+///     error95 and sd, fewer        rms sqrt(n / chi²), times 1.96 for error95, chi² the 95 % and the 5 % quantile of n
+///                                  degrees of freedom: a tolerance interval of normal errors (too wide where these
+///                                  have a bias)
 ///     sd, 59 errors or more        value ∓ 1.645 of its standard deviation
 ///     bias                         value ∓ Student's t of its standard deviation
 #pragma once
