@@ -21,7 +21,8 @@ namespace glidelab::diagnose {
 /// one, on the flattest and the steepest set-up; a level track and a steeper one; twice and half the frame rate; half
 /// the exposure, where filmed markers scatter the more the faster they are; a plumb view (0.05 degrees) of each of
 /// these set-ups that has none; the pattern at both ends of the range of places (0.5 mm); a stopwatch (one frame in
-/// ten seconds). Where a recorded force moves the glider, no clips, whose forces nobody knows. `nominal` is the fit of the nominal model to `set`.
+/// ten seconds). Where a recorded force moves the glider, no clips, whose forces nobody knows. `nominal` is the fit of
+/// the nominal model to `set`.
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal);
 
 /// How many, and of which kinds, in the order of ChangeKind.
