@@ -234,7 +234,7 @@ struct Example {
 std::string examples() {
   static const std::vector<Example> kExamples = {
       {"I plan an experiment:",
-       {"glidelab require scenarios/studies/cameras.toml --target mu=0.0001 --confirm tracks -o cameras",
+       {"glidelab require scenarios/studies/cameras.toml --target mu=0.0001 -o cameras",
         "glidelab sweep scenarios/studies/one-camera.toml -o bandwidth",
         "glidelab validate scenarios/rehearsals/raspberry-90.toml -o raspberry",
         "glidelab diagnose --plan scenarios/rehearsals/raspberry-90.toml --noise-m 1.5e-5 -o plan"}},
