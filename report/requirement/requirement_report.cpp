@@ -155,7 +155,7 @@ std::string candidate_table(const Requirement& requirement) {
     header.push_back("bound" + escape(same_unit(target)));
     header.push_back("runs beyond the target");
   }
-  header.insert(header.end(), {"frames/s", "position noise (µm)", "what limits it"});
+  header.insert(header.end(), {"frames/s", "position noise (µm)"});
   HtmlTable table(header, first_number);
   for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
     const Candidate& candidate = requirement.candidates[i];
@@ -165,10 +165,21 @@ std::string candidate_table(const Requirement& requirement) {
                                     reached(candidate) ? "<b>" + verdict + "</b>" : verdict};
     for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
     row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
-    row.push_back(reached(candidate) ? "" : escape(candidate.why.empty() ? limit_text(candidate) : candidate.why));
     table.row(row);
   }
   return table.str();
+}
+
+/// What stands in the way of those that do not reach it: words, for which a table has no room.
+std::string limits_list(const Requirement& requirement) {
+  std::string items;
+  for (const Candidate& candidate : requirement.candidates) {
+    const std::string limits = candidate.why.empty() ? limit_text(candidate) : candidate.why;
+    if (reached(candidate) || limits.empty()) continue;
+    items += fmt::format("<li><b>{}</b>: {}</li>\n", escape(candidate.name), escape(limits));
+  }
+  if (items.empty()) return {};
+  return "<h3>What limits the others</h3>\n<ul>\n" + items + "</ul>\n";
 }
 
 std::string judged_by_text(const Requirement& requirement) {
@@ -199,7 +210,8 @@ std::string how_judged(const Requirement& requirement) {
   std::string text = fmt::format(
       "<p>Errors are those of the worst configuration; {} first. The bound is the Cramér-Rao bound for the motion at "
       "this frame rate and position noise; the noise itself is the bound on the marker's centre for the camera's light "
-      "and noise. {} “What limits it” says how many times smaller the bound of the hardest target (“by runs”: the "
+      "and noise. {} “What limits the others” says how many times smaller the bound of the hardest target (“by runs”: "
+      "the "
       "error) would be without one limitation. A lens, a codec, a rolling shutter and the calibration enter in "
       "rendered runs only.</p>\n",
       order_text(requirement), judged_by_text(requirement));
@@ -225,7 +237,7 @@ Page requirement_report(const Requirement& requirement) {
   const std::string next = next_step(requirement);
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
   body += figures({requirement_plot(requirement)});
-  body += candidate_table(requirement);
+  body += candidate_table(requirement) + limits_list(requirement);
   body += folded("How this was judged", how_judged(requirement));
   return page(requirement.name, body);
 }

@@ -75,4 +75,8 @@ TEST_CASE("where nothing reaches the target the nearest is named, with what limi
   CHECK_THAT(report::requirement_answer(requirement),
              Contains("Nothing here reaches µ ± 0.0001. phone comes nearest: expect µ ± 0.0002") &&
                  Contains("What most limits it: light (no shot noise)"));
+  const std::string html = report::requirement_report(requirement).html;
+  CHECK_THAT(html, Contains("What limits the others") && Contains("<li><b>phone</b>: light (no shot noise) 3.0x</li>"));
+  requirement.candidates[2].verdict = validate::Verdict::reached;
+  CHECK_THAT(report::requirement_report(requirement).html, !Contains("<li><b>phone</b>"));
 }
