@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "core/math/quantile.h"
@@ -96,18 +98,36 @@ std::vector<MarkerPath> joined_pieces(std::vector<MarkerPath> paths) {
   }
 }
 
-std::optional<double> jitter_of(const Places& places) {
+namespace {
+
+/// Standard deviation of a coordinate of the weighted sums over consecutive frames.
+std::optional<double> sd_of_differences(const Places& places, std::span<const double> weights) {
   std::vector<double> squares;
-  for (const auto& [frame, here] : places) {
-    const auto before = frame == 0 ? places.end() : places.find(frame - 1);
-    const auto after = places.find(frame + 1);
-    if (before == places.end() || after == places.end()) continue;
-    const cv::Point2d second = before->second - 2.0 * here + after->second;
-    squares.push_back(second.dot(second));
+  for (auto first = places.begin(); first != places.end(); ++first) {
+    cv::Point2d sum;
+    std::size_t k = 0;
+    for (auto here = first; k < weights.size() && here != places.end() && here->first == first->first + k; ++here) {
+      sum += weights[k++] * here->second;
+    }
+    if (k == weights.size()) squares.push_back(sum.dot(sum));
   }
   if (squares.size() < 4) return std::nullopt;
   // The median of the sum of two squared Gaussian coordinates is 2 ln 2 variances; outliers do not matter.
   return std::sqrt(median_of(squares) / (2.0 * std::log(2.0)));
+}
+
+}  // namespace
+
+std::optional<double> jitter_of(const Places& places) {
+  constexpr std::array<double, 3> kSecond{1.0, -2.0, 1.0};
+  return sd_of_differences(places, kSecond);
+}
+
+std::optional<double> roughness_of(const Places& places) {
+  constexpr std::array<double, 5> kFourth{1.0, -4.0, 6.0, -4.0, 1.0};
+  constexpr double kVariance = 70.0;  // 1 + 16 + 36 + 16 + 1
+  const std::optional<double> sd = sd_of_differences(places, kFourth);
+  return sd ? std::optional(*sd / std::sqrt(kVariance)) : std::nullopt;
 }
 
 namespace {

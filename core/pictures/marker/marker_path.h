@@ -78,6 +78,10 @@ using Places = std::map<std::size_t, cv::Point2d>;
 /// fewer than four of them.
 std::optional<double> jitter_of(const Places& places);
 
+/// The same of the fourth differences, over the root of their weights' squares (1, 4, 6, 4, 1): of a coordinate itself,
+/// for a motion leaves next to nothing in them.
+std::optional<double> roughness_of(const Places& places);
+
 /// Nothing in the clip is like the marker.
 class NoMarker : public base::InputError {
   using base::InputError::InputError;

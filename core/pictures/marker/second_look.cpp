@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -78,24 +76,6 @@ std::optional<cv::Point2d> course(const std::vector<Place>& places, std::size_t 
   return cv::Point2d(found(0, 0), found(0, 1));
 }
 
-/// Standard deviation of a coordinate by the fourth differences of consecutive frames' places, in which a motion leaves
-/// next to nothing; nothing with fewer than four of them.
-std::optional<double> roughness_of(const Places& places) {
-  std::vector<double> squares;
-  constexpr std::array<double, 5> kFourth{1.0, -4.0, 6.0, -4.0, 1.0};
-  for (auto first = places.begin(); first != places.end(); ++first) {
-    cv::Point2d sum;
-    auto here = first;
-    std::size_t k = 0;
-    for (; k < kFourth.size() && here != places.end() && here->first == first->first + k; ++k, ++here)
-      sum += kFourth[k] * here->second;
-    if (k == kFourth.size()) squares.push_back(sum.dot(sum));
-  }
-  if (squares.size() < 4) return std::nullopt;
-  constexpr double kVariance = 70.0;  // 1 + 16 + 36 + 16 + 1
-  return std::sqrt(median_of(squares) / (2.0 * std::log(2.0) * kVariance));
-}
-
 /// A frame's window, and what came out of it.
 struct Look {
   std::size_t frame = 0;
@@ -135,6 +115,11 @@ class SecondLook {
   }
 
  private:
+  /// In the first look.
+  bool seen_first(std::size_t frame) const {
+    return std::binary_search(places_.begin(), places_.end(), Place{frame, {}},
+                              [](const Place& a, const Place& b) { return a.frame < b.frame; });
+  }
   void read_windows();
   std::optional<SphereFit> fit(const Look& look, cv::Point2d start, const Shared& shared,
                                const std::optional<SphereLight>& light) const;
@@ -168,9 +153,7 @@ void SecondLook::read_windows() {
     if (!shape) continue;
     background_.full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
     const double radius = radius_of(*shape);
-    const bool seen = std::binary_search(places_.begin(), places_.end(), Place{frame->index, {}},
-                                         [](const Place& a, const Place& b) { return a.frame < b.frame; });
-    const int half = static_cast<int>(std::ceil((seen ? 3.0 : 6.0) * radius + 6.0));
+    const int half = static_cast<int>(std::ceil((seen_first(frame->index) ? 3.0 : 6.0) * radius + 6.0));
     const cv::Rect window = cv::Rect(static_cast<int>(std::lround(expected->x)) - half,
                                      static_cast<int>(std::lround(expected->y)) - half, 2 * half + 1, 2 * half + 1) &
                             cv::Rect({}, frame->grey.size());
@@ -228,9 +211,7 @@ constexpr std::array<std::pair<MarkerBody, ToneCurve>, 4> kChoices{{{MarkerBody:
 bool SecondLook::find_shared() {
   std::vector<const Look*> seen;
   for (const Look& look : looks_) {
-    const bool in_first = std::binary_search(places_.begin(), places_.end(), Place{look.frame, {}},
-                                             [](const Place& a, const Place& b) { return a.frame < b.frame; });
-    if (in_first) seen.push_back(&look);
+    if (seen_first(look.frame)) seen.push_back(&look);
   }
   std::vector<const Look*> sampled;
   const std::size_t step = std::max<std::size_t>(1, seen.size() / kSampled);

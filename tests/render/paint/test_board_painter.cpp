@@ -5,6 +5,7 @@
 
 #include "render/paint/static_painter.h"
 #include "tests/catch.h"
+#include "tests/render/tilted_board.h"
 
 using namespace glidelab::render;
 
@@ -19,19 +20,6 @@ Camera camera_for_tests(const Lens& lens = {-0.2, 0.08, 0.0, 0.0007, -0.0005}) {
   camera.lens = lens;
   camera.X_WC = look_at({0.15, 0.2, 2.4}, {0.0, 0.0, 0.0}, 0.02);
   return camera;
-}
-
-Chessboard tilted_board() {
-  Chessboard board;
-  board.inner_columns = 5;
-  board.inner_rows = 4;
-  board.square_m = 0.11;
-  board.X_WP.linear() =
-      (Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(-0.3, Eigen::Vector3d::UnitX()) *
-       Eigen::AngleAxisd(3.14159265358979 + 0.05, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
-  board.X_WP.translation() = Eigen::Vector3d(-0.2, 0.17, 0.3);
-  return board;
 }
 
 /// In squares, where the ray of a point of the image meets the board; cast in double through the exact lens.
@@ -51,7 +39,7 @@ TEST_CASE("A painted board's pixels are the areas of its squares and of its plat
   const Camera camera = camera_for_tests();
   StaticScene scene;
   scene.light_falloff = 0.0;
-  scene.board = tilted_board();
+  scene.board = glidelab::tests::tilted_board();
   const Chessboard& board = *scene.board;
   // Nothing behind the board: what is seen is its light alone.
   const FloatPicture picture =
@@ -148,7 +136,7 @@ TEST_CASE("A board before the track is painted as the ray caster paints it") {
   scene.boxes.push_back(track);
   StaticPainter painter(camera, rays);
   const FloatPicture empty = painter.paint(scene);
-  scene.board = tilted_board();
+  scene.board = glidelab::tests::tilted_board();
   REQUIRE(stands_free(camera, scene));
   const FloatPicture cast = painter.paint_before(empty, scene, 1.0),
                      painted = paint_board(camera, rays, empty, scene, 1.0);
@@ -167,7 +155,7 @@ TEST_CASE("A board stands free unless a box is before it or between it and the l
   const Camera camera = camera_for_tests();
   StaticScene scene;
   CHECK_FALSE(stands_free(camera, scene));  // there is none
-  scene.board = tilted_board();
+  scene.board = glidelab::tests::tilted_board();
   CHECK(stands_free(camera, scene));
   StaticBox box;
   box.half_m = {0.1, 0.1, 0.02};

@@ -4,6 +4,7 @@
 
 #include "render/paint/sphere_image.h"
 #include "tests/catch.h"
+#include "tests/render/tilted_board.h"
 
 using namespace glidelab::render;
 
@@ -41,19 +42,6 @@ double part_of_pixel(const Camera& camera, int u, int v, int n, const Hit& hit) 
   return hits / static_cast<double>(n * n);
 }
 
-Chessboard tilted_board() {
-  Chessboard board;
-  board.inner_columns = 5;
-  board.inner_rows = 4;
-  board.square_m = 0.11;
-  board.X_WP.linear() =
-      (Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(-0.3, Eigen::Vector3d::UnitX()) *
-       Eigen::AngleAxisd(3.14159265358979 + 0.05, Eigen::Vector3d::UnitX()))
-          .toRotationMatrix();
-  board.X_WP.translation() = Eigen::Vector3d(-0.2, 0.17, 0.3);
-  return board;
-}
-
 }  // namespace
 
 TEST_CASE("The chessboard's pixels are the areas of its squares, by rays cast one by one in double") {
@@ -62,7 +50,7 @@ TEST_CASE("The chessboard's pixels are the areas of its squares, by rays cast on
   // sqrt(2000) = 2e-4.
   const Camera camera = camera_for_tests();
   StaticScene scene = bare_scene();
-  scene.board = tilted_board();
+  scene.board = glidelab::tests::tilted_board();
   StaticPainter painter(camera, make_ray_table(camera));
   const FloatPicture picture = painter.paint(scene);
   const Eigen::Isometry3d X_PW = scene.board->X_WP.inverse();
@@ -190,7 +178,7 @@ TEST_CASE("The plumb line darkens each pixel by its share of the thread's width,
 TEST_CASE("The same scene gives the same picture, and what stands nearer hides what stands behind") {
   const Camera camera = camera_for_tests();
   StaticScene scene = bare_scene();
-  scene.board = tilted_board();
+  scene.board = glidelab::tests::tilted_board();
   StaticBox box;
   box.center_W = {0.0, 0.0, -0.3};
   box.half_m = {0.5, 0.5, 0.05};
@@ -221,10 +209,10 @@ TEST_CASE("A board or a plumb line painted before the empty scene gives the pict
   StaticPainter painter(camera, rays);
   const FloatPicture empty = painter.paint(scene);
   SECTION("a board") {
-    scene.board = tilted_board();
+    scene.board = glidelab::tests::tilted_board();
   }
   SECTION("a board at the picture's corner, part of it outside") {
-    scene.board = tilted_board();
+    scene.board = glidelab::tests::tilted_board();
     scene.board->X_WP.translation() += Eigen::Vector3d(0.5, -0.35, 0.1);
   }
   SECTION("a plumb line") {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -38,27 +40,6 @@ double variance_of(std::span<const double> values) {
 }
 
 constexpr std::size_t kLeastForQuantile = 20;  // of fewer the 95 % quantile would be the largest
-
-/// Where a function that rises is 0, between two places.
-template <typename Function>
-double root_between(double low, double high, const Function& function) {
-  for (int i = 0; i < 200 && high - low > 1e-12 * (std::abs(low) + std::abs(high)); ++i) {
-    const double middle = 0.5 * (low + high);
-    (function(middle) < 0.0 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-/// P(chi² of n degrees of freedom <= x), by the series of the incomplete gamma function.
-double chi2_cdf(double n, double x) {
-  const double a = 0.5 * n, half = 0.5 * x;
-  double term = 1.0, sum = 1.0;
-  for (double k = 1.0; term > 1e-17 * sum; ++k) {
-    term *= half / (a + k);
-    sum += term;
-  }
-  return std::min(1.0, sum * std::exp(a * std::log(half) - half - std::lgamma(a + 1.0)));
-}
 
 /// `sizes` are the errors without their signs; their order is lost.
 double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
@@ -153,14 +134,11 @@ Target parse_target(const std::string& text) {
 }
 
 double chi2_quantile(double n, double p) {
-  double high = n + 10.0;
-  while (chi2_cdf(n, high) < p) high *= 2.0;
-  return root_between(0.0, high, [&](double x) { return x > 0.0 ? chi2_cdf(n, x) - p : -p; });
+  return quantile(boost::math::chi_squared(n), p);
 }
 
 double normal_quantile(double p) {
-  const double z = std::sqrt(chi2_quantile(1.0, std::abs(2.0 * p - 1.0)));
-  return p < 0.5 ? -z : z;
+  return quantile(boost::math::normal(), p);
 }
 
 ErrorMeasure measure_errors(std::span<const double> errors, const Target& target, double confidence) {
