@@ -26,6 +26,7 @@
 #include "report/analysis/result_files.h"
 #include "report/diagnosis/given_causes_report.h"
 #include "report/html/gnuplot.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::app {
 namespace {
@@ -56,9 +57,7 @@ void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
 }
 
 std::string title_of(const std::vector<fs::path>& folders, const core::TrackFileOptions& bare) {
-  std::string title = core::read_tracks(folders.front(), bare).name;
-  if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
-  return title;
+  return report::title_of(core::read_tracks(folders.front(), bare).name, folders.size());
 }
 
 constexpr const char* kWith = "--with";

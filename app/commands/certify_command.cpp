@@ -15,6 +15,7 @@
 #include "fit/estimators.h"
 #include "report/certificate/certificate_report.h"
 #include "report/html/gnuplot.h"
+#include "report/text/display_text.h"
 #include "validate/study/certify/certify.h"
 
 namespace glidelab::app {
@@ -36,8 +37,7 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   const fs::path out = output_folder(options.common, "certify", folders.front());
   refuse_scenarios(options.experiments);
   check_bare_options(options.bare, options.experiments);
-  std::string title = diagnose::read_recording(folders.front(), options.bare).name;
-  if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+  std::string title = report::title_of(diagnose::read_recording(folders.front(), options.bare).name, folders.size());
   report::check_gnuplot();
   check_writable(out);
   base::StagedOutput staged(out);

@@ -24,6 +24,7 @@
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
 #include "report/html/gnuplot.h"
+#include "report/text/display_text.h"
 #include "validate/film/twin_motions.h"
 #include "validate/tracks/made_tracks.h"
 
@@ -116,8 +117,7 @@ void diagnose(const DiagnoseCommand& options) {
   const fs::path out = output_folder(options.common, "diagnose", folders.front());
   refuse_scenarios(options.experiments);
   check_bare_options(options.bare, options.experiments);
-  std::string title = diagnose::read_recording(folders.front(), options.bare).name;
-  if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+  std::string title = report::title_of(diagnose::read_recording(folders.front(), options.bare).name, folders.size());
   if (!options.twin.empty()) {
     check_file_writable(options.twin);
     check_own_file(options.twin, "--twin", diagnose::kTwinHead);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,20 +14,8 @@
 namespace glidelab::core {
 
 double student_t975(double degrees) {
-  assert(degrees >= 1.0);
-  constexpr double z = kNormal95;
-  if (!std::isfinite(degrees)) return z;
-  // Quantile p = 0.975 in closed form at 1 and 2 degrees (tan(pi (p - 1/2)); sqrt 2 (2p-1) / sqrt(4p(1-p)) · …);
-  // between 1 and 3 the logarithm is interpolated.
-  constexpr double t1 = 12.706204736174694, t2 = 4.302652729749464, t3 = 3.182446305283708;
-  if (degrees < 2.0) return std::exp(std::log(t1) + (degrees - 1.0) * std::log(t2 / t1));
-  if (degrees < 3.0) return std::exp(std::log(t2) + (degrees - 2.0) * std::log(t3 / t2));
-  const double z2 = z * z, n = 1.0 / degrees;
-  const double g1 = (z2 + 1.0) * z / 4.0;
-  const double g2 = ((5.0 * z2 + 16.0) * z2 + 3.0) * z / 96.0;
-  const double g3 = (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) * z / 384.0;
-  const double g4 = ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) * z / 92160.0;
-  return z + n * (g1 + n * (g2 + n * (g3 + n * g4)));
+  if (!std::isfinite(degrees)) return kNormal95;
+  return boost::math::quantile(boost::math::students_t(degrees), 0.975);
 }
 
 Estimate estimate(double value, double sd, double degrees) {

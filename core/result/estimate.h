@@ -16,8 +16,7 @@ namespace glidelab::core {
 /// are infinite.
 Estimate estimate(double value, double sd, double degrees);
 
-/// The 97.5 % quantile of Student's t for any degrees >= 1 (Cornish-Fisher series in 1/degrees, exact to 1 % for
-/// degrees >= 3 and to 1e-4 for degrees >= 10; closed forms below 3).
+/// The 97.5 % quantile of Student's t for any degrees above 0; of the normal distribution where they are infinite.
 double student_t975(double degrees);
 
 /// chi^2 per degree of freedom that is exceeded by chance with a probability of 0.00135, as three standard deviations

@@ -150,6 +150,11 @@ struct Contest {
   }
 };
 
+/// Whether each rival is the leading explanation and something besides: nothing named is then in doubt.
+bool only_add(const Hypothesis& first, const std::vector<Contest>& contests) {
+  return std::all_of(contests.begin(), contests.end(), [&](const Contest& contest) { return contest.other == &first; });
+}
+
 std::vector<Alternative> alternatives(const std::vector<Contest>& contests) {
   std::vector<Alternative> doubt;
   for (const Contest& contest : contests) {
@@ -280,7 +285,12 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
     const bool fitted = fit_of(comparison, *contest.right) != nullptr && fit_of(comparison, *contest.other) != nullptr;
     if (pictures.empty() && fitted) contests.push_back(contest);
   }
-  if (!contests.empty()) return settle(set, comparison, std::move(contests));
+  std::vector<Alternative> undecided;
+  if (!contests.empty()) {
+    SettleDoubt step = settle(set, comparison, contests);
+    if (step.by || !only_add(*first, contests)) return step;
+    undecided = std::move(step.doubt);
+  }
   std::vector<std::string> named;
   for (const DiagnosedEffect& effect : diagnosis.effects) named.push_back(effect.id);
   if (std::string pictures = for_pictures(named); !pictures.empty()) return RecordForEffect{std::move(pictures), {}};
@@ -290,6 +300,7 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
   const MotionFit* fit = fit_of(comparison, *first);
   SharpenParameter step = sharpen(set, comparison, fit != nullptr ? *fit : comparison.fits.front());
   step.one_mass = diagnosis.verdict == Verdict::none && set.masses.size() == 1;
+  step.undecided = std::move(undecided);
   return step;
 }
 

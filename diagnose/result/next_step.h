@@ -105,7 +105,8 @@ struct SettleDoubt {
   double log_likelihood = 0.0;  ///< that the rivals are expected to lose; at most, where no change is enough
 };
 
-/// What would make the weakest parameter more certain, where nothing is in doubt; without a change where none would.
+/// What would make the weakest parameter more certain, where nothing is in doubt, or only whether something acts besides
+/// that no further clip would show; without a change where none would.
 struct SharpenParameter {
   std::string key, effect;  ///< of K and mu, key "K" or "mu" and no effect
   double value = 0.0, sd = 0.0;
@@ -113,6 +114,7 @@ struct SharpenParameter {
   ChangesWeighed weighed;
   double sd_after = 0.0;
   bool one_mass = false;  ///< nothing is missing, of one mass: a friction force would count as mu
+  std::vector<Alternative> undecided = {};  ///< what may act besides, and none of the changes would decide
 };
 
 /// What would tell a friction force from a smoothing bias in a table of lines: a glider of this mass, and by how much

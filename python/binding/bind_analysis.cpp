@@ -22,6 +22,7 @@
 #include "python/binding/watched_work.h"
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/result_files.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::python {
 
@@ -114,8 +115,7 @@ py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisCh
     how.bare = bare;
     how.smoother = choices.smoother;
     core::AnalysisResults of_lines = core::analyze(folders, how, progress);
-    title = core::read_tracks(folders.front(), bare).name;
-    if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+    title = report::title_of(core::read_tracks(folders.front(), bare).name, folders.size());
     return estimator.estimate(std::move(of_lines), {.robust = choices.robust});
   });
   return told(std::move(results), title, [folders, bare](const auto& of, const base::Progress& progress) {

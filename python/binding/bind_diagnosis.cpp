@@ -23,6 +23,7 @@
 #include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
+#include "report/text/display_text.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace glidelab::python {
@@ -68,8 +69,7 @@ py::tuple diagnose_files(const std::vector<std::string>& inputs, const std::vect
   std::string title;
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     diagnose::DiagnoseOptions how{.without = without, .jobs = jobs, .twin = false, .bare = bare};
-    title = diagnose::read_recording(folders.front(), how.bare).name;
-    if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+    title = report::title_of(diagnose::read_recording(folders.front(), how.bare).name, folders.size());
     return diagnose::diagnose(folders, how, progress);
   });
   return told(std::move(diagnosis), title);

@@ -24,6 +24,7 @@
 #include "report/coverage/coverage_report.h"
 #include "report/requirement/requirement_report.h"
 #include "report/sweep/sweep_report.h"
+#include "report/text/display_text.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
 #include "validate/study/certify/certify.h"
@@ -175,8 +176,7 @@ Outcome certify(const std::vector<std::string>& inputs, std::size_t twins, const
     how.seed = seed.value_or(how.seed);
     how.jobs = jobs;
     how.bare = bare;
-    title = diagnose::read_recording(folders.front(), bare).name;
-    if (folders.size() > 1) title += fmt::format(" and {} more", folders.size() - 1);
+    title = report::title_of(diagnose::read_recording(folders.front(), bare).name, folders.size());
     return std::make_shared<const validate::Certificate>(validate::certify(folders, how, progress));
   });
   return {report::certificate_json(*certificate), report::certificate_text(*certificate),

@@ -253,7 +253,8 @@ Html fitted_section(const core::AnalysisResults& results) {
 Page analysis_report(const std::string& title, const core::AnalysisResults& results,
                      const std::vector<core::Preview>& previews, const base::Progress& progress,
                      const Html& with_causes) {
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n", escape(title),
+  Html body = question_heading(title, "What are K/m, µ and α?") +
+              fmt::format("<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n",
                           escape(estimator_name(results.estimator)), size_words(results));
   // Where the law is in doubt the doubt comes before the numbers.
   const std::string values = value_tiles(results) + recovered_section(results), meaning = meaning_of(results);

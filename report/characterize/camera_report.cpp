@@ -209,10 +209,11 @@ std::string camera_meaning(const core::CameraMeasurement& camera) {
 }  // namespace
 
 Page camera_report(const core::CameraMeasurement& camera) {
-  Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">Measured by Glidelab from {} frames of {} × {} pixels, {} bits, by photon "
-      "transfer (EMVA 1288).</p>\n",
-      escape(camera.folder.name), camera.frames, camera.width_px, camera.height_px, camera.folder.bit_depth);
+  Html body = question_heading(camera.folder.name, "How much noise does this camera have?") +
+              fmt::format(
+                  "<p class=\"soft\">Measured by Glidelab from {} frames of {} × {} pixels, {} bits, by photon "
+                  "transfer (EMVA 1288).</p>\n",
+                  camera.frames, camera.width_px, camera.height_px, camera.folder.bit_depth);
   body += camera_meaning(camera);
   body += "<h2>Numbers</h2>\n" + numbers_table(camera);
   body += camera.outlying_pixels == 0

@@ -354,8 +354,8 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
 }  // namespace
 
 Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">The recording, checked before any analysis.</p>\n",
-                          escape(check.name));
+  Html body = question_heading(check.name, "Is this recording good enough?") +
+              "<p class=\"soft\">The recording, checked before any analysis.</p>\n";
   body += check_meaning(check);
   body += findings_section(check) + pattern_section(check) + clips_section(check, previews);
   return page("Check of " + check.name, body);

@@ -320,12 +320,14 @@ std::string coverage_text(const validate::Coverage& coverage) {
 }
 
 Page coverage_page(const std::string& title, const validate::Coverage& coverage) {
-  Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} of independent "
-      "noise in every position{}, a clock that is off by 20 ppm (one standard deviation) and no lost frames, analysed "
-      "by each estimator.</p>\n",
-      escape(title), coverage.replicates, noise_text(coverage),
-      coverage.camera_noise ? " (the least that the camera, the light and the marker allow)" : "");
+  Html body = question_heading(title, "How often do the stated intervals hold the truth?") +
+              fmt::format(
+                  "<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} of independent "
+                  "noise in every position{}, a clock that is off by 20 ppm (one standard deviation) and no lost "
+                  "frames, analysed "
+                  "by each estimator.</p>\n",
+                  coverage.replicates, noise_text(coverage),
+                  coverage.camera_noise ? " (the least that the camera, the light and the marker allow)" : "");
   body += coverage_meaning(coverage);
   const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(),
                                [](const validate::CoverageRow& row) { return row.determined > 0; });

@@ -229,7 +229,7 @@ Html picture_part(const diagnose::Diagnosis& diagnosis) {
 Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
                       const std::vector<validate::TwinMotion>& twin) {
   if (diagnosis.lines) return line_report(title, diagnosis);
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis by Glidelab.</p>\n", escape(title));
+  Html body = question_heading(title, kDiagnosisQuestion) + "<p class=\"soft\">Diagnosis by Glidelab.</p>\n";
   // The sentence of the causes holds what the tiles would say.
   const bool told = !sequence_words(diagnosis).empty();
   if (!told) body += tiles(diagnosis);

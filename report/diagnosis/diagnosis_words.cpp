@@ -422,17 +422,22 @@ struct Words {
   std::string operator()(const diagnose::SharpenParameter& of) const {
     const base::NamedUnit named =
         of.effect.empty() ? base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""} : base::name_and_unit(of.key);
-    std::string text =
-        fmt::format("Nothing else is likely. The least well known parameter is {}{} ({}).", named.name,
-                    of.effect.empty() ? "" : " of " + of.effect, base::size_and_sd_text(of.value, of.sd, named.unit));
+    const std::string weighed = weighed_words(of.weighed);
+    std::string text = of.undecided.empty()
+                           ? "Nothing else is likely."
+                           : fmt::format("None of {} would decide {}.", weighed, doubt_words(of.undecided));
+    text += fmt::format(" The least well known parameter is {}{} ({}).", named.name,
+                        of.effect.empty() ? "" : " of " + explanation_name({{of.effect}}),
+                        base::size_and_sd_text(of.value, of.sd, named.unit));
+    const std::string_view which = of.undecided.empty() ? std::string_view(weighed) : "these";
     if (of.by) {
-      text += fmt::format(" {}: of {}, this one reduces its uncertainty most, to ± {}.", change_words(*of.by),
-                          weighed_words(of.weighed), base::size_text(of.sd_after, 2, named.unit));
+      text += fmt::format(" {}: of {}, this one reduces its uncertainty most, to ± {}.", change_words(*of.by), which,
+                          base::size_text(of.sd_after, 2, named.unit));
     } else {
       text += fmt::format(
           " None of {} would reduce its uncertainty by 5 %; n times as many clips of each kind would reduce it as "
           "1/sqrt(n).",
-          weighed_words(of.weighed));
+          which);
     }
     if (of.one_mass) {
       text += " With one mass, load-independent friction cannot be told from mu; a second mass would separate them.";

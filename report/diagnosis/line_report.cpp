@@ -243,8 +243,8 @@ Json lines_json(const diagnose::LineComparison& lines) {
 
 Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n",
-                          escape(title), lines.lines);
+  Html body = question_heading(title, kDiagnosisQuestion) +
+              fmt::format("<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n", lines.lines);
   body += line_tiles(diagnosis);
   body += diagnosis_meaning(diagnosis) + next_step_note(diagnosis) + note_paragraphs(diagnosis);
   body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));

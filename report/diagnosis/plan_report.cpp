@@ -98,10 +98,9 @@ std::string plan_text(const diagnose::Plan& plan) {
 }
 
 Page plan_page(const std::string& title, const diagnose::Plan& plan) {
-  Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">What this experiment will be able to tell apart.</p>\n"
-      "{}",
-      escape(title), meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), what_follows(plan))));
+  Html body = question_heading(title, "Which effects would these motions show?") +
+              fmt::format("<p class=\"soft\">What this experiment will be able to tell apart.</p>\n{}",
+                          meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), what_follows(plan))));
   if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
   for (const std::string& note : notes_words(plan.notes))
     body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "diagnose/result/diagnosis.h"
 
 namespace glidelab::report {
+
+/// What a page of a diagnosis answers.
+inline constexpr std::string_view kDiagnosisQuestion = "What does the simple law leave out?";
 
 /// What a table of lines says, in plain words: a paragraph for somebody who knows the experiment and no statistics.
 /// `diagnosis.lines` is there.

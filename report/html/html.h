@@ -76,7 +76,11 @@ class Html {
 /// A number (or a word) large, and what it is below it; both are text.
 std::string tile(const std::string& number, const std::string& words);
 
-/// The part at the top of a page that says in plain words what its numbers say; HTML below a heading.
+/// The top of a page: the question that it answers, and above it in small type what it is about; both are text. HTML.
+std::string question_heading(std::string_view about, std::string_view question);
+
+/// The part at the top of a page that says in plain words what its numbers say; HTML below a heading, which is not
+/// shown where it would stand right below the page's question.
 std::string meaning_section(const std::string& html);
 
 /// Plots side by side where there is room, each on white paper with its caption, or why it has nothing to show.

@@ -346,10 +346,11 @@ std::string bandwidth_table(const SweepSummary& summary) {
     header.insert(header.end(), {"error of " + escape(with_unit(quantity->symbol, quantity->unit)), "coverage"});
   }
   HtmlTable table(header, 1);
-  const auto cells = [](const ErrorStatistics* of) -> std::vector<std::string> {
+  double known_to = 0.0;  // the largest relative standard error of an error
+  const auto cells = [&](const ErrorStatistics* of) -> std::vector<std::string> {
     if (of == nullptr) return {"–", "–"};
-    return {base::value_and_sd_text(of->rms, of->rms / std::sqrt(2.0 * static_cast<double>(of->answered))),
-            fmt::format("{:.1f} %", 100.0 * of->coverage)};
+    known_to = std::max(known_to, 1.0 / std::sqrt(2.0 * static_cast<double>(of->answered)));
+    return {base::number_text(of->rms, 3), fmt::format("{:.1f} %", 100.0 * of->coverage)};
   };
   const auto add = [&](const std::string& name, const auto& statistics) {
     std::vector<std::string> row = {name};
@@ -369,8 +370,10 @@ std::string bandwidth_table(const SweepSummary& summary) {
     if (!other.of_lines) add_estimator(std::string(other.title), other.name);
   }
   return table.str() +
-         "<p class=\"soft\">Root mean square errors, ± one standard error as of normal errors; coverage is the part of "
-         "the stated 95 % intervals that hold the truth.</p>\n";
+         fmt::format(
+             "<p class=\"soft\">Root mean square errors, known to {:.0f} % or better (one standard error, as of normal "
+             "errors); coverage is the part of the stated 95 % intervals that hold the truth.</p>\n",
+             100.0 * known_to);
 }
 
 }  // namespace glidelab::report

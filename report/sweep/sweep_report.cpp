@@ -250,7 +250,7 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       "scenario.</p>\n";
   if (const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary)) {
     Html body =
-        fmt::format("<h1>Which bandwidth? {}</h1>\n<p><b>{}</b></p>\n", escape(summary.name), escape(answer->text));
+        question_heading(summary.name, "Which bandwidth?") + fmt::format("<p><b>{}</b></p>\n", escape(answer->text));
     body += figures(bandwidth_plots(summary));
     body += bandwidth_table(summary) + soft + runs_of(summary);
     body += folded("In words", sweep_meaning(summary) + mass_study_section(summary.masses));
@@ -258,7 +258,8 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
     body += folded("Over each key of the sweep", axis_plots(summary, progress));
     return page(summary.name, body);
   }
-  Html body = fmt::format("<h1>{}</h1>\n", escape(summary.name)) + soft + runs_of(summary);
+  Html body =
+      question_heading(summary.name, "How large are the errors, and what do they depend on?") + soft + runs_of(summary);
   body += sweep_meaning(summary) + mass_study_section(summary.masses);
   body += tables_of(summary) + axis_plots(summary, progress);
   return page(summary.name, body);

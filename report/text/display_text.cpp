@@ -26,6 +26,10 @@ std::string heading_of(std::string_view key) {
   return with_unit(symbol_of(key), unit_of(key));
 }
 
+std::string title_of(std::string first, std::size_t count) {
+  return count > 1 ? fmt::format("{} and {} more", first, count - 1) : first;
+}
+
 std::string unit_suffix(std::string_view unit) {
   std::string text;
   if (!unit.empty() && unit != "°") text += ' ';

@@ -29,6 +29,9 @@ std::string with_unit(std::string_view name, std::string_view unit);
 /// "K/m (1/s)" for "k_over_m_1_s": a quantity at the head of a row or a column.
 std::string heading_of(std::string_view key);
 
+/// What a page of `count` recordings is about: the first one's name, "my glider and 2 more".
+std::string title_of(std::string first, std::size_t count);
+
 /// A unit behind a number: " 1/s", "°", and nothing of a pure number.
 std::string unit_suffix(std::string_view unit);
 

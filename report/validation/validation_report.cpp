@@ -374,10 +374,9 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   double lowest_r2 = 1.0;
   for (const validate::LineComparison& line : comparison.lines) lowest_r2 = std::min(lowest_r2, line.r2);
   const validate::RestitutionComparison& restitution = comparison.restitution;
-  Html body = fmt::format(
-      "<h1>{}</h1>\n<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the images alone by the "
-      "lines of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n",
-      escape(title));
+  Html body = question_heading(title, "How well are the true values recovered?") +
+              "<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the images alone by the lines "
+              "of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n";
   body += "<div class=\"tiles\">" +
           tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +
           (comparison.frames_out_of_view == 0

@@ -266,6 +266,35 @@ TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and not
   CHECK((alike.by->kind == ChangeKind::pattern || alike.by->kind == ChangeKind::clock));
 }
 
+TEST_CASE("what may act besides, and no change would show, does not stand before the weakest parameter") {
+  const diagnose::TrackSet set = inclined();
+  diagnose::Comparison comparison;
+  comparison.fits = {diagnose::fit_nominal(set)};
+  const diagnose::MotionFit& nominal = comparison.fits.front();
+  const auto drag = with(set, nominal, "quadratic_drag", 0.1, nominal.at.global[0], nominal.at.global[2]);
+  comparison.fits.push_back(drag);
+  comparison.fits.push_back(drag);  // of the rival, which moves the glider alike: no change tells them apart
+  const std::size_t of_drag = diagnose::effect_index("quadratic_drag"), bumper = diagnose::effect_index("end_stop");
+  diagnose::Hypothesis first, rival;
+  first.effects = {of_drag};
+  first.probability = 0.9;
+  first.fit = 1;
+  rival.effects = {of_drag, bumper};
+  rival.probability = 0.1;
+  rival.fit = 2;
+  diagnose::Diagnosis diagnosis;
+  diagnosis.verdict = diagnose::Verdict::effect;
+  comparison.all = {first, rival};
+  const auto sharpen = std::get<diagnose::SharpenParameter>(diagnose::next_experiment(set, comparison, diagnosis));
+  REQUIRE(sharpen.undecided.size() == 1);
+  CHECK(sharpen.undecided.front().one.effects == std::vector<std::string>{"end_stop"});
+  CHECK(sharpen.undecided.front().other.is_nothing());
+  // A rival in the first one's place puts its name in doubt, which goes first.
+  comparison.all[1].effects = {bumper};
+  const auto settle = std::get<diagnose::SettleDoubt>(diagnose::next_experiment(set, comparison, diagnosis));
+  CHECK_FALSE(settle.by);
+}
+
 TEST_CASE("after a motion under a recorded force no launch is suggested, but the same places with other forces") {
   tests::MadeEffect effect;
   effect.recorded = [](double t) { return 0.3 * std::sin(2.9 * t); };

@@ -121,9 +121,13 @@ TEST_CASE("a doubt is told as what each explanation has and the other lacks, eac
 
 TEST_CASE("the least well known parameter is named with its size, of the nominal model by its letter") {
   diagnose::SharpenParameter step{"c_kg_m", "quadratic_drag", 0.1, 0.01, {}, {62, {}}, 0.0};
-  CHECK(
-      report::next_step_words(step).starts_with("Nothing else is likely. The least well known parameter is c of "
-                                                "quadratic_drag (0.100 ± 0.010 kg/m). None of the 62"));
+  const std::string drag = report::explanation_name({{"quadratic_drag"}});
+  const std::string least = " The least well known parameter is c of " + drag + " (0.100 ± 0.010 kg/m). None of ";
+  CHECK(report::next_step_words(step).starts_with("Nothing else is likely." + least + "the 62"));
+  step.undecided = {{{{"end_stop"}}, {}}};
+  CHECK(report::next_step_words(step).starts_with("None of the 62 changes considered () would decide whether “" +
+                                                  report::explanation_name({{"end_stop"}}) + "” acts." + least +
+                                                  "these"));
   step = {"K", "", 0.93, 0.01, launch(diagnose::ChangeKind::launch, 1.0, 0.3), {62, {}}, 0.005, true};
   const std::string words = report::next_step_words(step);
   CHECK(contains(words, "The least well known parameter is K (0.930 ± 0.010 N s/m). Record a launch"));

@@ -1,6 +1,7 @@
 #include "validate/study/sweep/design/sweep.h"
 
 #include <fmt/format.h>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/random/sobol.hpp>
 
 #include <algorithm>
@@ -40,16 +41,8 @@ double unit(std::uint64_t word) {
   return static_cast<double>(word >> 11) * 0x1p-53;
 }
 
-/// The normal distribution's quantile: Newton's method on the error function from a rough start.
 double normal_quantile(double p) {
-  const double tail = p < 0.5 ? p : 1.0 - p;
-  const double t = std::sqrt(-2.0 * std::log(tail));
-  double z = t - (2.30753 + 0.27061 * t) / (1.0 + t * (0.99229 + 0.04481 * t));  // Hastings, within 0.003
-  for (int i = 0; i < 4; ++i) {
-    const double beyond = 0.5 * std::erfc(z / std::sqrt(2.0));
-    z += (beyond - tail) / (std::exp(-0.5 * z * z) / std::sqrt(2.0 * 3.14159265358979324));
-  }
-  return p < 0.5 ? -z : z;
+  return boost::math::quantile(boost::math::normal(), p);
 }
 
 double sobol(std::size_t axis, std::size_t axes, std::uint64_t point, std::uint64_t shift) {
