@@ -188,10 +188,8 @@ void hush_libraries() {
   if (::getenv("OPENCV_LOG_LEVEL") == nullptr) cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
 }
 
-}  // namespace
-
-int run(int argc, char** argv) {
-  catch_interrupts();  // first: from here on every command ends in one way
+/// Reads the command line and runs the command that it names.
+int run_words(int argc, char** argv) {
   hush_libraries();
   CLI::App app(
       "Glidelab rehearses video experiments on friction: it simulates a glider on a track, films it, analyses the film "
@@ -256,6 +254,18 @@ int run(int argc, char** argv) {
     return kWrongCommandLine;
   }
   return run_command(command);
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  try {
+    catch_interrupts();  // first: from here on every command ends in one way
+    return run_words(argc, argv);
+  } catch (const std::bad_alloc&) {  // before a command runs; of a command's own run_command() tells
+    std::fputs("glidelab: error: out of memory\n", stderr);
+    return kEnvironmentFailed;
+  }
 }
 
 }  // namespace glidelab::app

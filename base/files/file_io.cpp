@@ -16,6 +16,7 @@
 #include <functional>
 #include <iomanip>
 #include <map>
+#include <new>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -229,11 +230,12 @@ void rename_or_throw(const fs::path& from, const fs::path& to) {
 }
 
 /// Puts `from` where `to` stands. What stood there is in the place of `from` afterwards, or removed: a kill between
-/// leaves one of the two whole. A file system that cannot exchange names has an instant between two renames.
+/// leaves one of the two whole. A file system that cannot exchange names has an instant between two renames of folders.
 void swap_in(const fs::path& from, const fs::path& to) {
-  if (!fs::is_directory(fs::symlink_status(to))) return rename_or_throw(from, to);
+  if (!fs::exists(fs::symlink_status(to))) return rename_or_throw(from, to);
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
   if (errno != EINVAL && errno != ENOSYS) throw_system_error(to.string(), "cannot be put in place", errno);
+  if (!fs::is_directory(fs::symlink_status(to))) return rename_or_throw(from, to);
   const fs::path old = staging_name(to, ".old");
   rename_or_throw(to, old);
   try {
@@ -294,26 +296,65 @@ StagedOutput::StagedOutput(fs::path final_dir)
 }
 
 StagedOutput::~StagedOutput() {
-  std::error_code ignored;  // a destructor has nobody to tell
-  fs::remove_all(staging_, ignored);
-  forget_passing_folder(staging_);
+  try {
+    std::error_code ignored;  // a destructor has nobody to tell
+    fs::remove_all(staging_, ignored);
+    forget_passing_folder(staging_);
+  } catch (const std::bad_alloc&) {  // the next run to the same output removes it
+  }
 }
+
+namespace {
+
+/// What was put in place so far; unless it is kept, the end of this takes it back: what is new goes to its staged
+/// place, and what it replaced comes from there.
+class Placed {
+ public:
+  explicit Placed(const fs::path& final_dir) : final_(final_dir) {}
+  Placed(const Placed&) = delete;
+  Placed& operator=(const Placed&) = delete;
+  ~Placed() {
+    try {
+      for (const fs::path& staged : staged_) take_back(staged);
+    } catch (const std::bad_alloc&) {  // what is in place stays there; the error that led here is told
+    }
+  }
+  void add(const fs::path& staged) { staged_.push_back(staged); }
+  void keep() { staged_.clear(); }
+
+ private:
+  void take_back(const fs::path& staged) const {
+    std::error_code ignored;  // a destructor has nobody to tell
+    const fs::path now = final_ / staged.filename();
+    if (!fs::exists(fs::symlink_status(staged, ignored))) {
+      fs::rename(now, staged, ignored);
+    } else {
+      ::renameat2(AT_FDCWD, staged.c_str(), AT_FDCWD, now.c_str(), RENAME_EXCHANGE);
+    }
+  }
+
+  const fs::path& final_;
+  std::vector<fs::path> staged_;
+};
+
+}  // namespace
 
 void StagedOutput::publish_files() {
   begin_publishing();
-  std::error_code error;
-  fs::create_directories(final_, error);
-  if (error) throw_system_error(final_.string(), "output folder cannot be made", error.value());
   std::vector<fs::path> staged;  // listed first: exchanging changes the folder that is listed
   for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) staged.push_back(entry.path());
   for (const fs::path& path : staged) {
-    const fs::path old = final_ / path.filename();
-    if (fs::is_directory(path)) {
-      list_made_files(path);
-      if (fs::is_directory(fs::symlink_status(old))) keep_own_files(old, path);
-    }
-    swap_in(path, old);
+    if (fs::is_directory(path)) list_made_files(path);
   }
+  if (!fs::exists(fs::symlink_status(final_))) return rename_or_throw(staging_, final_);
+  Placed placed(final_);
+  for (const fs::path& path : staged) {
+    const fs::path old = final_ / path.filename();
+    if (fs::is_directory(path) && fs::is_directory(fs::symlink_status(old))) keep_own_files(old, path);
+    swap_in(path, old);
+    placed.add(path);
+  }
+  placed.keep();
 }
 
 void StagedOutput::publish_whole() {

@@ -74,9 +74,10 @@ class StagedOutput {
   const std::filesystem::path& dir() const { return staging_; }
   const std::filesystem::path& final_dir() const { return final_; }
 
-  /// Renames the staged files into the final folder one by one (made if need be); files of these names are replaced,
-  /// other files stay. A staged sub-folder replaces the one of its name; the user's own files in it are kept
-  /// (own_files()).
+  /// Renames the staging folder to the final name where there is none; else the staged files into the final folder one
+  /// by one: files of these names are replaced, other files stay. A staged sub-folder replaces the one of its name; the
+  /// user's own files in it are kept (own_files()). Where a file cannot be put in place the ones before it are taken
+  /// back, so that the folder is as it was.
   void publish_files();
 
   /// Renames the staging folder to the final name as a whole; an existing folder is swapped out and removed.

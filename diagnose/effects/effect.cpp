@@ -7,24 +7,6 @@
 
 namespace glidelab::diagnose {
 
-std::string_view to_text(Stage stage) {
-  switch (stage) {
-    case Stage::dynamics:
-      return "dynamics";
-    case Stage::optics:
-      return "optics";
-    case Stage::timing:
-      return "timing";
-    case Stage::sensor:
-      return "sensor";
-    case Stage::tracking:
-      return "tracking";
-    case Stage::analysis:
-      break;
-  }
-  return "analysis";
-}
-
 void TwinForces::replace_drag(std::string_view id, std::string text) {
   if (!drag.empty()) lacks.push_back({drag_by, "a drag law cannot contain another one"});
   drag = std::move(text);

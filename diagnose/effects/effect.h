@@ -22,14 +22,9 @@
 #include <vector>
 
 #include "diagnose/effects/effect_list.h"
+#include "diagnose/result/gap_place.h"
 
 namespace glidelab::diagnose {
-
-/// Where between the world and the result an effect acts.
-enum class Stage { dynamics, optics, timing, sensor, tracking, analysis };
-
-/// As files and pages have it: "dynamics".
-std::string_view to_text(Stage stage);
 
 /// What of a motion does not change while it lasts.
 struct GliderConstants {

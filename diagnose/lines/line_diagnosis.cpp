@@ -257,7 +257,7 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
   }
   join_sets(terms, all, diagnosis);
   if (is_effect) diagnosis.stage = diagnosis.effects.front().stage;
-  if (is_unknown) diagnosis.stage = "dynamics";
+  if (is_unknown) diagnosis.stage = Stage::dynamics;
   if (is_effect || is_unknown) diagnosis.regions = line_regions(lines, data, nominal, scatter);
   if (scatter.known()) {
     const LineSolution& after = is_effect ? leaders.named->solution : is_unknown ? leaders.unnamed->solution : nominal;

@@ -244,7 +244,7 @@ std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const L
   if (!scatter.known()) return regions;
   const Eigen::MatrixXd leaves_a = leaves(data.base_a0), leaves_k = leaves(data.base_log_k);
   const double drag = drag_of(lines);
-  const auto look = [&](const std::string& variable, double TableLine::*member, double value, int direction) {
+  const auto look = [&](GapVariable variable, double TableLine::*member, double value, int direction) {
     Eigen::VectorXd group(data.a0.size());
     for (Eigen::Index i = 0; i < group.size(); ++i) {
       const TableLine& line = lines[static_cast<std::size_t>(i)];
@@ -255,11 +255,12 @@ std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const L
     const Mean mean = slopes ? mean_of(nominal.off_k, leaves_k, group, scatter.slope)
                              : mean_of(nominal.off_a, leaves_a, group, scatter.intercept_m_s2);
     if (!(mean.sd > 0.0) || std::abs(mean.value) < kOff * mean.sd) return;
-    GapRegion region{variable, value, value, std::abs(mean.value) / mean.sd, mean.value, "m/s²", "intercept", ""};
+    GapRegion region{variable,           value, value, std::abs(mean.value) / mean.sd, mean.value, "m/s²",
+                     GapKind::intercept, ""};
     region.size_sd = mean.sd;
     region.direction = direction;
     if (slopes) {
-      region.what = "drag";
+      region.what = GapKind::drag;
       region.unit = "N s/m";
       region.size *= drag;
       *region.size_sd *= drag;
@@ -268,10 +269,10 @@ std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const L
   };
   for (const int direction : {-1, 1, 0}) {
     for (const double mass : different(lines, &TableLine::mass_kg)) {
-      look("mass_kg", &TableLine::mass_kg, mass, direction);
+      look(GapVariable::mass, &TableLine::mass_kg, mass, direction);
     }
     for (const double incline : different(lines, &TableLine::incline_deg)) {
-      look("group", &TableLine::incline_deg, incline, direction);
+      look(GapVariable::set_up, &TableLine::incline_deg, incline, direction);
     }
   }
   std::stable_sort(regions.begin(), regions.end(),

@@ -116,7 +116,7 @@ std::vector<LineTerm> of_each(const std::vector<TableLine>& lines, const std::ve
   for (Eigen::Index i = 0; i < count(lines); ++i) {
     const auto [found, first] = seen.emplace(cells[static_cast<std::size_t>(i)], terms.size());
     if (first) {
-      terms.push_back({"", friction ? "friction" : "drag", "dynamics", "", Eigen::VectorXd::Zero(count(lines)),
+      terms.push_back({"", friction ? "friction" : "drag", Stage::dynamics, "", Eigen::VectorXd::Zero(count(lines)),
                        Eigen::VectorXd::Zero(count(lines)), true, kUnlimited});
     }
     LineTerm& term = terms[found->second];
@@ -134,7 +134,7 @@ std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std
   std::vector<LineTerm> terms;
   for (const EffectInfo& effect : all_effects()) {
     if (effect.lines.change == nullptr || contains(without, std::string(effect.id))) continue;
-    LineTerm term{std::string(effect.id),    std::string(effect.lines.key), std::string(to_text(effect.stage)),
+    LineTerm term{std::string(effect.id),    std::string(effect.lines.key), effect.stage,
                   std::string(effect.words), Eigen::VectorXd(count(lines)), Eigen::VectorXd(count(lines)),
                   effect.both_signs,         effect.lines.largest};
     for (Eigen::Index i = 0; i < count(lines); ++i) {
@@ -169,7 +169,7 @@ std::vector<LineFamily> unnamed_line_families(const std::vector<TableLine>& line
     add(UnnamedInLines::Over::mass_and_set_up, [](const TableLine& l) { return Cell{l.mass_kg, l.incline_deg}; });
   }
   LineTerm ways{
-      "",   "drag",    "dynamics", "", Eigen::VectorXd::Zero(count(lines)), Eigen::VectorXd::Zero(count(lines)),
+      "",   "drag",    Stage::dynamics, "", Eigen::VectorXd::Zero(count(lines)), Eigen::VectorXd::Zero(count(lines)),
       true, kUnlimited};
   for (Eigen::Index i = 0; i < count(lines); ++i) ways.of_log_k[i] = at(lines, i).direction;
   families.push_back({{UnnamedInLines::What::drag, UnnamedInLines::Over::direction}, 1.0, {ways}});

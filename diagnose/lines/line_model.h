@@ -26,6 +26,7 @@
 
 #include "base/errors.h"
 #include "core/track/bare_track.h"
+#include "diagnose/result/gap_place.h"
 #include "diagnose/result/line_comparison.h"
 
 namespace glidelab::diagnose {
@@ -60,7 +61,9 @@ std::vector<double> different(const std::vector<TableLine>& lines, double TableL
 /// What may act beside the nominal model on a table of lines, an effect with a name or friction or drag without one:
 /// what one unit of it adds to ln(K/m) and to a0 (m/s²) of every line.
 struct LineTerm {
-  std::string id, key, stage, words;
+  std::string id, key;
+  Stage stage = Stage::dynamics;
+  std::string words;
   Eigen::VectorXd of_log_k, of_a0;
   bool both_signs = false;
   double largest = 0.0;  ///< in the unit of the key

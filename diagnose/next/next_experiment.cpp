@@ -57,17 +57,18 @@ AddMass mass_between(const TrackSet& set) {
 NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const Diagnosis& diagnosis) {
   if (diagnosis.regions.empty()) return Routine::repeat_launch;
   const GapRegion& region = diagnosis.regions.front();
-  const std::string& variable = region.variable;
+  const GapVariable variable = region.variable;
   if (!region.clip.empty()) return RepeatClip{region.clip};
-  if (is_driven(set) && (variable == "x_m" || variable == "v_m_s")) return Routine::other_forces;
-  if (variable == "x_m") {
+  if (is_driven(set) && (variable == GapVariable::position || variable == GapVariable::speed))
+    return Routine::other_forces;
+  if (variable == GapVariable::position) {
     const auto cover = best_cover(set, nominal, CoverRegion::Over::places, region,
                                   [&](double x, double) { return x >= region.from && x <= region.to; });
     if (cover) return *cover;
     return Routine::move_camera;
   }
-  if (variable == "v_m_s") {
-    const bool of_speed = region.what == "friction";  // whichever way it moves
+  if (variable == GapVariable::speed) {
+    const bool of_speed = region.what == GapKind::friction;  // whichever way it moves
     const auto cover = best_cover(set, nominal, CoverRegion::Over::speeds, region, [&](double, double v) {
       const double at = of_speed ? std::abs(v) : v;
       return at >= region.from && at <= region.to;
@@ -75,11 +76,11 @@ NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const D
     if (cover) return *cover;
     return Routine::other_speeds;
   }
-  if (variable == "mass_kg") return mass_between(set);
-  if (variable == "t_s") return Routine::start_later;
-  if (variable == "direction") return Routine::turn_glider;
-  if (variable == "group") return Routine::set_up_again;
-  if (variable == "u_px" || variable == "v_px") return Routine::move_camera;
+  if (variable == GapVariable::mass) return mass_between(set);
+  if (variable == GapVariable::time) return Routine::start_later;
+  if (variable == GapVariable::direction) return Routine::turn_glider;
+  if (variable == GapVariable::set_up) return Routine::set_up_again;
+  if (variable == GapVariable::column || variable == GapVariable::row) return Routine::move_camera;
   return Routine::repeat_launch;
 }
 

@@ -171,7 +171,7 @@ PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
   add_noise(clips, evidence);
   for (PictureFinding& finding : evidence.findings) {
     finding.seen = finding.log_evidence > kSeenInPictures;
-    finding.stage = to_text(effect_of(finding.id).stage);
+    finding.stage = effect_of(finding.id).stage;
   }
   evidence.clips = std::move(clips);
   return evidence;

@@ -9,6 +9,7 @@
 
 #include "core/result/results.h"
 #include "diagnose/result/explanation.h"
+#include "diagnose/result/gap_place.h"
 #include "diagnose/result/line_comparison.h"
 #include "diagnose/result/next_step.h"
 #include "diagnose/result/note.h"
@@ -31,7 +32,7 @@ struct AlikeEffect {
 
 struct DiagnosedEffect {
   std::string id;
-  std::string stage;
+  Stage stage = Stage::dynamics;
   std::string words;
   double probability = 0.0;                ///< that it acts, alone or with another
   std::vector<std::string> equivalent_to;  ///< what these data cannot tell from it
@@ -53,13 +54,13 @@ struct RankedExplanation {
 };
 
 struct GapRegion {
-  std::string variable;  ///< x_m, v_m_s, t_s, a_m_s2, mass_kg, direction, group, u_px, v_px, clip
+  GapVariable variable = GapVariable::time;
   double from = 0.0, to = 0.0;
   double excess = 0.0;  ///< size over its standard deviation, where that is largest
   double size = 0.0;    ///< the largest
   std::string unit;     ///< of size: N, m/s², m, N s/m
-  std::string what;     ///< force, friction, displacement, …
-  std::string clip;     ///< where it is one clip's
+  GapKind what = GapKind::force;
+  std::string clip;  ///< where it is one clip's
   /// What the nominal model lacks at most, in the size's unit, where the size is far more than that: not to be
   /// believed.
   std::optional<double> lacking = {};
@@ -70,7 +71,9 @@ struct GapRegion {
 
 /// A function of one variable that would explain the gap, for the plots.
 struct GapCurve {
-  std::string variable, what, unit;
+  GapVariable variable = GapVariable::time;
+  GapKind what = GapKind::force;
+  std::string unit;
   double log_evidence = 0.0;
   std::vector<double> at, size, sd;
 };
@@ -154,7 +157,8 @@ struct Isolability {
 
 /// What the images of filmed clips say of one effect, whether or not it moves the positions.
 struct PictureFinding {
-  std::string id, stage;
+  std::string id;
+  Stage stage = Stage::optics;
   bool seen = false;
   double log_evidence = 0.0;  ///< of its presence against its absence, from the images alone
   bool stated = false;        ///< the file itself says so: named only for what it does to the positions
@@ -244,7 +248,7 @@ struct Diagnosis {
   std::vector<DiagnosedEffect> effects;
   double none = 0.0, unknown = 0.0;
   std::vector<RankedExplanation> ranking;
-  std::string stage;  ///< where the gap is; empty for none
+  std::optional<Stage> stage;  ///< where the gap is
   std::vector<GapRegion> regions;
   std::vector<GapCurve> curves;
   std::optional<GapSizes> gap;

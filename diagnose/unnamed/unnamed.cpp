@@ -20,7 +20,7 @@ namespace {
 /// common size tau; what the common parameters take up is left aside.
 UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, int most) {
   const TrackSet& set = space.set();
-  UnnamedFamily family = family_of("clip", "displacement", "m");
+  UnnamedFamily family = family_of(GapVariable::clip, GapKind::displacement, "m");
   std::vector<ScoreColumn> columns;
   std::vector<Grid> grids;  // of each motion
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
@@ -115,7 +115,8 @@ void draw_settling(double size, double sd, double longest_s, const std::function
 /// lateness common to all.
 UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
   const TrackSet& set = space.set();
-  UnnamedFamily family = late ? family_of("t_s", "lateness", "s") : family_of("clip", "displacement", "m");
+  UnnamedFamily family = late ? family_of(GapVariable::time, GapKind::lateness, "s")
+                              : family_of(GapVariable::clip, GapKind::displacement, "m");
   double longest = 0.0, frame = 0.0;
   for (const TrackedMotion& motion : set.motions) {
     longest = std::max(longest, motion.t_s.back());
@@ -160,7 +161,7 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
 /// Each clip at a scale of its own, as when the camera is moved between them.
 UnnamedFamily scale_family(const ScoreSpace& space) {
   const TrackSet& set = space.set();
-  UnnamedFamily family = family_of("clip", "scale", "m/m");
+  UnnamedFamily family = family_of(GapVariable::clip, GapKind::scale, "m/m");
   std::vector<ScoreColumn> columns;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
     std::vector<Eigen::VectorXd> changes(set.motions.size());
@@ -180,7 +181,7 @@ UnnamedFamily scale_family(const ScoreSpace& space) {
 }
 
 /// A force of one kind whose size differs between members (masses, set-ups, motions).
-UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable, const std::string& what,
+UnnamedFamily member_family(const ScoreSpace& space, GapVariable variable, GapKind what,
                             std::size_t TrackedMotion::*member, std::size_t members, int kind) {
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of(variable, what, kind == 1 ? "N s/m" : "N");
@@ -200,9 +201,9 @@ UnnamedFamily member_family(const ScoreSpace& space, const std::string& variable
   if (evidence.mean.size() > 0) relative_to_mean(evidence);
   draw_members(evidence, family);
   for (std::size_t m = 0; m < family.at.size(); ++m) {
-    if (variable == "mass_kg") family.at[m] = set.masses[m].mass_kg;
-    if (variable == "group") family.names.push_back(set.groups[m].name);
-    if (variable == "clip") family.names.push_back(set.clips[m].name);
+    if (variable == GapVariable::mass) family.at[m] = set.masses[m].mass_kg;
+    if (variable == GapVariable::set_up) family.names.push_back(set.groups[m].name);
+    if (variable == GapVariable::clip) family.names.push_back(set.clips[m].name);
   }
   name_regions(family);
   return family;
@@ -217,16 +218,22 @@ void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& fa
   families.push_back(settling_family(space, false));
   families.push_back(settling_family(space, true));
   if (set.masses.size() > 1) {
-    families.push_back(member_family(space, "mass_kg", "friction", &TrackedMotion::mass, set.masses.size(), 2));
-    families.push_back(member_family(space, "mass_kg", "viscous drag", &TrackedMotion::mass, set.masses.size(), 1));
+    families.push_back(
+        member_family(space, GapVariable::mass, GapKind::friction, &TrackedMotion::mass, set.masses.size(), 2));
+    families.push_back(
+        member_family(space, GapVariable::mass, GapKind::viscous_drag, &TrackedMotion::mass, set.masses.size(), 1));
   }
   if (set.groups.size() > 1) {
-    families.push_back(member_family(space, "group", "force", &TrackedMotion::group, set.groups.size(), 0));
-    families.push_back(member_family(space, "group", "friction", &TrackedMotion::group, set.groups.size(), 2));
+    families.push_back(
+        member_family(space, GapVariable::set_up, GapKind::force, &TrackedMotion::group, set.groups.size(), 0));
+    families.push_back(
+        member_family(space, GapVariable::set_up, GapKind::friction, &TrackedMotion::group, set.groups.size(), 2));
   }
   if (set.clips.size() > 1) {
-    families.push_back(member_family(space, "clip", "force", &TrackedMotion::clip, set.clips.size(), 0));
-    families.push_back(member_family(space, "clip", "viscous drag", &TrackedMotion::clip, set.clips.size(), 1));
+    families.push_back(
+        member_family(space, GapVariable::clip, GapKind::force, &TrackedMotion::clip, set.clips.size(), 0));
+    families.push_back(
+        member_family(space, GapVariable::clip, GapKind::viscous_drag, &TrackedMotion::clip, set.clips.size(), 1));
     families.push_back(scale_family(space));
   }
 }
@@ -237,7 +244,8 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
   add_member_families(space, families);
   // One size for each clip; curves of each clip by itself have many.
   for (UnnamedFamily& family : families) {
-    if (family.variable == "clip" && family.columns.cols() > std::ssize(space.set().clips)) family.columns.resize(0, 0);
+    if (family.variable == GapVariable::clip && family.columns.cols() > std::ssize(space.set().clips))
+      family.columns.resize(0, 0);
   }
   const UnnamedFamily *shared = likeliest_shared(families), *of_clips = likeliest_of_clips(families);
   for (UnnamedFamily& family : families) {
@@ -251,7 +259,7 @@ namespace {
 const UnnamedFamily* likeliest_with_columns(const std::vector<UnnamedFamily>& families, bool of_clips) {
   const UnnamedFamily* likeliest = nullptr;
   for (const UnnamedFamily& family : families) {
-    if ((family.variable == "clip") != of_clips || family.columns.cols() == 0) continue;
+    if ((family.variable == GapVariable::clip) != of_clips || family.columns.cols() == 0) continue;
     if (likeliest == nullptr || family.log_evidence > likeliest->log_evidence) likeliest = &family;
   }
   return likeliest;
@@ -286,7 +294,7 @@ MotionFit with_unnamed(const TrackSet& set, const MotionFit& fit, const UnnamedF
 }
 
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families) {
-  std::map<std::string, std::vector<double>> by_variable;
+  std::map<GapVariable, std::vector<double>> by_variable;
   for (const UnnamedFamily& family : families) by_variable[family.variable].push_back(family.log_evidence);
   std::vector<double> logs;
   for (const auto& [variable, of_one] : by_variable) logs.push_back(base::log_mean(of_one));

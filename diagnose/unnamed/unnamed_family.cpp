@@ -99,10 +99,10 @@ double bump(double x, double middle, double width) {
   return std::abs(z) > 5.0 ? 0.0 : std::exp(-0.5 * z * z);
 }
 
-UnnamedFamily family_of(std::string variable, std::string what, std::string unit) {
+UnnamedFamily family_of(GapVariable variable, GapKind what, std::string unit) {
   UnnamedFamily family;
-  family.variable = std::move(variable);
-  family.what = std::move(what);
+  family.variable = variable;
+  family.what = what;
   family.unit = std::move(unit);
   return family;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/result/gap_place.h"
 
 namespace glidelab::diagnose {
 
@@ -19,9 +20,9 @@ struct UnnamedRegion {
 };
 
 struct UnnamedFamily {
-  std::string variable;  ///< x_m, v_m_s, t_s, mass_kg, direction, group, clip
-  std::string what;      ///< "force", "friction", "displacement", "acceleration", "lateness", "viscous drag", "scale"
-  std::string unit;      ///< of the sizes
+  GapVariable variable = GapVariable::time;
+  GapKind what = GapKind::force;
+  std::string unit;  ///< of the sizes
   double log_evidence = 0.0;
   double gain = 0.0;
   std::vector<double> at, size, sd;  ///< the unnamed function over its variable
@@ -45,7 +46,7 @@ struct Grid {
 /// Gauss's bump of unit height, as wide as the bumps are apart.
 double bump(double x, double middle, double width);
 
-UnnamedFamily family_of(std::string variable, std::string what, std::string unit);
+UnnamedFamily family_of(GapVariable variable, GapKind what, std::string unit);
 
 /// The family with the evidence of the columns' sizes, each N(0, tau²). Where the family leaves more than the noise,
 /// the sizes (their tau too) and how sure they are go by what is left.

@@ -45,7 +45,7 @@ enum class Load { none, mass, either };
 /// A force f(place) of any smooth shape; a friction, which turns with the motion; or a drag, which goes with the speed.
 /// The place among speeds is |v| but for what drives. In N, or in proportion to the mass; where there is more than one
 /// mass it may be either.
-void add_force(const ScoreSpace& space, const Grid& grid, Place over, const char* variable, Force kind, Load load,
+void add_force(const ScoreSpace& space, const Grid& grid, Place over, GapVariable variable, Force kind, Load load,
                std::vector<UnnamedFamily>& families) {
   const TrackSet& set = space.set();
   std::vector<ScoreColumn> in_n, by_mass;
@@ -62,12 +62,15 @@ void add_force(const ScoreSpace& space, const Grid& grid, Place over, const char
     for (std::size_t i = 0; i < changes.size(); ++i) changes[i] *= set.masses[set.motions[i].mass].mass_kg;
     by_mass.push_back(space.project(changes));
   }
-  const char* const what = kind == Force::drive ? "force" : kind == Force::friction ? "friction" : "viscous drag";
+  const GapKind what = kind == Force::drive      ? GapKind::force
+                       : kind == Force::friction ? GapKind::friction
+                                                 : GapKind::viscous_drag;
   if (!in_n.empty()) {
     add_shapes(space, in_n, grid, family_of(variable, what, kind == Force::drag ? "N s/m" : "N"), families);
   }
   if (by_mass.empty()) return;
-  add_shapes(space, by_mass, grid, family_of(variable, kind == Force::drive ? "acceleration" : what, "m/s²"), families);
+  add_shapes(space, by_mass, grid, family_of(variable, kind == Force::drive ? GapKind::acceleration : what, "m/s²"),
+             families);
 }
 
 enum class Seen { over_x, over_t, late };
@@ -91,8 +94,8 @@ void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std:
     columns.push_back(space.project(changes));
   }
   add_shapes(space, columns, grid,
-             family_of(seen == Seen::over_x ? "x_m" : "t_s", seen == Seen::late ? "lateness" : "displacement",
-                       seen == Seen::late ? "s" : "m"),
+             family_of(seen == Seen::over_x ? GapVariable::position : GapVariable::time,
+                       seen == Seen::late ? GapKind::lateness : GapKind::displacement, seen == Seen::late ? "s" : "m"),
              families);
 }
 
@@ -199,7 +202,7 @@ bool swings_by_rounding(const TrackSet& set, double f_1_m, double range_m) {
 /// A displacement that swings with the place: sin and cos of 2 pi f x, one f for all motions, averaged over.
 UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
-  UnnamedFamily family = family_of("x_m", "displacement", "m");
+  UnnamedFamily family = family_of(GapVariable::position, GapKind::displacement, "m");
   std::vector<double> ways;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const auto& at = space.modelled(i);
@@ -246,7 +249,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
 /// An acceleration that swings with the place, as magnets in a row or the teeth of a rack make it.
 UnnamedFamily pull_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
-  UnnamedFamily family = family_of("x_m", "acceleration", "m/s²");
+  UnnamedFamily family = family_of(GapVariable::position, GapKind::acceleration, "m/s²");
   const double range = x.high - x.low;
   if (!(range > 0.0)) return family;
   std::vector<double> logs;
@@ -280,18 +283,20 @@ void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& fam
   for (const int bumps : {kSmooth, kCoarse, kFine}) {
     Grid v = ranges.v, x = ranges.x, t = ranges.t, speed = ranges.speed;
     v.bumps = x.bumps = t.bumps = speed.bumps = bumps;
-    add_force(space, v, Place::v, "v_m_s", Force::drive, Load::none, families);
-    add_force(space, speed, Place::v, "v_m_s", Force::friction, more_masses ? Load::either : Load::none, families);
-    add_force(space, x, Place::x, "x_m", Force::drive, more_masses ? Load::either : Load::mass, families);
-    add_force(space, x, Place::x, "x_m", Force::friction, Load::mass, families);
+    add_force(space, v, Place::v, GapVariable::speed, Force::drive, Load::none, families);
+    add_force(space, speed, Place::v, GapVariable::speed, Force::friction, more_masses ? Load::either : Load::none,
+              families);
+    add_force(space, x, Place::x, GapVariable::position, Force::drive, more_masses ? Load::either : Load::mass,
+              families);
+    add_force(space, x, Place::x, GapVariable::position, Force::friction, Load::mass, families);
     add_displacement(space, x, Seen::over_x, families);
     add_displacement(space, t, Seen::over_t, families);
     add_displacement(space, t, Seen::late, families);
     if (bumps == kFine) continue;
-    add_force(space, t, Place::t, "t_s", Force::drive, more_masses ? Load::either : Load::mass, families);
-    add_force(space, t, Place::t, "t_s", Force::friction, Load::mass, families);
-    add_force(space, x, Place::x, "x_m", Force::drag, Load::none, families);
-    add_force(space, t, Place::t, "t_s", Force::drag, Load::none, families);
+    add_force(space, t, Place::t, GapVariable::time, Force::drive, more_masses ? Load::either : Load::mass, families);
+    add_force(space, t, Place::t, GapVariable::time, Force::friction, Load::mass, families);
+    add_force(space, x, Place::x, GapVariable::position, Force::drag, Load::none, families);
+    add_force(space, t, Place::t, GapVariable::time, Force::drag, Load::none, families);
   }
   families.push_back(swing_family(space, ranges.x));
   families.push_back(pull_family(space, ranges.x));

@@ -138,13 +138,13 @@ void add_ranking(const TrackSet& set, const Comparison& comparison, const NoiseA
                    [](const auto& a, const auto& b) { return a.log_evidence_gain > b.log_evidence_gain; });
 }
 
-std::string stage_of(const std::vector<UnnamedFamily>& families) {
+std::optional<Stage> stage_of(const std::vector<UnnamedFamily>& families) {
   const auto best = std::max_element(families.begin(), families.end(),
                                      [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
-  if (best == families.end()) return "";
-  return best->what == "displacement" || best->what == "scale" ? "optics"
-         : best->what == "lateness"                            ? "timing"
-                                                               : "dynamics";
+  if (best == families.end()) return std::nullopt;
+  return best->what == GapKind::displacement || best->what == GapKind::scale ? Stage::optics
+         : best->what == GapKind::lateness                                   ? Stage::timing
+                                                                             : Stage::dynamics;
 }
 
 Isolability isolability_of(const TrackSet& set, const MotionFit& nominal, const Comparison& comparison) {
@@ -233,7 +233,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
     for (const std::size_t e : named_effects(*best, noise_alone)) {
       const EffectInfo& info = effect_list()[e];
-      diagnosis.effects.push_back({std::string(info.id), std::string(to_text(info.stage)), std::string(info.words),
+      diagnosis.effects.push_back({std::string(info.id), info.stage, std::string(info.words),
                                    comparison.effect_probability[e], equivalents(comparison, *best, e),
                                    parameters_of(set, comparison, pictures, *best, e)});
     }
@@ -256,10 +256,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   const bool wrong_way =
       driven && diagnosis.verdict == Verdict::unknown;  // no function of anything is known to be missing
   if (wrong_way) {
-    diagnosis.stage = "dynamics";
+    diagnosis.stage = Stage::dynamics;
   } else if (diagnosis.verdict != Verdict::none) {
     if (diagnosis.verdict == Verdict::unknown) {
-      diagnosis.stage = add_error_runs(set, comparison.frames, families, diagnosis) ? "tracking" : stage_of(families);
+      const bool runs = add_error_runs(set, comparison.frames, families, diagnosis);
+      diagnosis.stage = runs ? Stage::tracking : stage_of(families);
     }
     add_regions(set, nominal, families, diagnosis);
   }

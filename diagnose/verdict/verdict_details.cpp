@@ -218,11 +218,11 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
   // The evidence is that of a linear neighbourhood: where it is large it is not known to a hundredth, and what clips
   // share goes before curves of each.
   const auto weight = [](const UnnamedFamily* family) {
-    return (family->variable == "clip" ? 0.99 : 1.0) * family->log_evidence;
+    return (family->variable == GapVariable::clip ? 0.99 : 1.0) * family->log_evidence;
   };
   std::sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return weight(a) > weight(b); });
   const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
-  std::set<std::pair<std::string, std::string>> shown;                               // variables and what acts there
+  std::set<std::pair<GapVariable, GapKind>> shown;                                   // variables and what acts there
   for (const UnnamedFamily* family : sorted) {
     // What a verdict rests on has its place named, however many looks there were.
     const bool rests = diagnosis.verdict == Verdict::unknown && diagnosis.regions.empty() && family == sorted.front();
@@ -246,12 +246,12 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
         region.size_sd = regions[r].sd;
         region.at = regions[r].at;
       }
-      if (family->variable == "clip") {  // a clip as a whole
+      if (family->variable == GapVariable::clip) {  // a clip as a whole
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
         const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
                                        [&](const GapRegion& other) { return other.clip == clip.name; });
         if (named) continue;  // by what explains it better
-        region.variable = "t_s";
+        region.variable = GapVariable::time;
         region.clip = clip.name;
         region.from = 0.0;
         region.to = clip.duration_s;
@@ -269,32 +269,35 @@ bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
   for (const FrameEffect& frame : frames) {
     if (!frame.run || frame.in_runs < kNotable || frame.log_evidence + frame.in_runs < most) continue;
     const std::string clip = frame.run->clip ? set.clips[*frame.run->clip].name : "";
-    diagnosis.regions.push_back(
-        {"t_s", frame.run->from_s, frame.run->to_s, frame.run->excess, frame.run->size_m, "m", "displacement", clip});
+    diagnosis.regions.push_back({GapVariable::time, frame.run->from_s, frame.run->to_s, frame.run->excess,
+                                 frame.run->size_m, "m", GapKind::displacement, clip});
     any = true;
   }
   return any;
 }
 
 void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
-  static const std::map<std::string, std::pair<const char*, const char*>> kWhere = {
-      {ids::exposure_blur, {"v_m_s", "marker's width"}},  {ids::rolling_shutter, {"v_px", "marker's shear"}},
-      {ids::light_flicker, {"t_s", "brightness"}},        {ids::light_gradient, {"u_px", "brightness"}},
-      {ids::camera_motion, {"t_s", "the scene's place"}}, {ids::compression, {"u_px", "steps between blocks"}}};
+  static const std::map<std::string, std::pair<GapVariable, GapKind>> kWhere = {
+      {ids::exposure_blur, {GapVariable::speed, GapKind::marker_width}},
+      {ids::rolling_shutter, {GapVariable::row, GapKind::marker_shear}},
+      {ids::light_flicker, {GapVariable::time, GapKind::brightness}},
+      {ids::light_gradient, {GapVariable::column, GapKind::brightness}},
+      {ids::camera_motion, {GapVariable::time, GapKind::scene_place}},
+      {ids::compression, {GapVariable::column, GapKind::block_steps}}};
   for (const DiagnosedEffect& effect : diagnosis.effects) {
     for (const PictureFinding& finding : pictures.findings) {
       const auto where = kWhere.find(finding.id);
       if (finding.id != effect.id || !finding.seen || where == kWhere.end() || finding.parameters.empty()) continue;
       GapRegion region;
       region.variable = where->second.first;
-      if (finding.id == ids::light_gradient && pictures.clips.front().down) region.variable = "v_px";
+      if (finding.id == ids::light_gradient && pictures.clips.front().down) region.variable = GapVariable::row;
       region.what = where->second.second;
       const core::PictureRecord& record = *pictures.clips.front().record;
-      region.to = region.variable == "u_px"   ? record.width_px
-                  : region.variable == "v_px" ? record.height_px
-                  : record.scene.empty()      ? 0.0
-                                              : record.scene.back().t_s;
-      if (region.variable == "v_m_s" && pictures.clips.front().px_per_m > 0.0) {
+      region.to = region.variable == GapVariable::column ? record.width_px
+                  : region.variable == GapVariable::row  ? record.height_px
+                  : record.scene.empty()                 ? 0.0
+                                                         : record.scene.back().t_s;
+      if (region.variable == GapVariable::speed && pictures.clips.front().px_per_m > 0.0) {
         region.to = pictures.fastest_px_s / pictures.clips.front().px_per_m;
       }
       const DiagnosedParameter& size = finding.parameters.front();

@@ -119,39 +119,44 @@ std::string over_noise_text(double gap) {
 
 std::string largest_words(const diagnose::GapRegion& region) {
   if (!region.at || !region.size_sd) return base::size_text(region.size, 2, region.unit);
-  const std::string unit = base::name_and_unit(region.variable).unit;
+  const std::string unit = base::name_and_unit(to_text(region.variable)).unit;
   return fmt::format("{} {} {}", base::size_and_sd_text(region.size, *region.size_sd, region.unit),
-                     region.variable == "t_s" ? "after" : "at", base::size_text(*region.at, 3, unit));
+                     region.variable == diagnose::GapVariable::time ? "after" : "at",
+                     base::size_text(*region.at, 3, unit));
 }
 
 std::string region_words(const diagnose::GapRegion& region) {
-  const std::string unit = base::name_and_unit(region.variable).unit;
+  const std::string unit = base::name_and_unit(to_text(region.variable)).unit;
   const auto range = [&](const char* of) {
     return fmt::format("at {} from {} to {} {}", of, base::number_text(region.from, 3), base::number_text(region.to, 3),
                        unit);
   };
-  std::string text;
-  if (region.variable == "x_m") {
-    text = range("positions");
-  } else if (region.variable == "v_m_s") {
-    text = range("speeds");
-  } else if (region.variable == "t_s") {
-    text = range("times");
-  } else if (region.variable == "a_m_s2") {
-    text = range("accelerations");
-  } else if (region.variable == "mass_kg") {
-    text = region.from == region.to ? fmt::format("with {:.6g} kg", region.from) : range("masses");
-  } else if (region.variable == "direction") {
-    text = region.from < 0.0 ? "in the motion with v < 0" : "in the motion with v > 0";
-  } else if (region.variable == "group") {
-    text = "in one of the set-ups";
-  } else if (region.variable == "u_px") {
-    text = range("image columns");
-  } else if (region.variable == "v_px") {
-    text = range("image rows");
-  } else {
-    text = "over " + region.variable;
-  }
+  const auto told = [&]() -> std::string {
+    switch (region.variable) {
+      case diagnose::GapVariable::acceleration:
+        return range("accelerations");
+      case diagnose::GapVariable::clip:
+        return "over the clips";
+      case diagnose::GapVariable::direction:
+        return region.from < 0.0 ? "in the motion with v < 0" : "in the motion with v > 0";
+      case diagnose::GapVariable::set_up:
+        return "in one of the set-ups";
+      case diagnose::GapVariable::mass:
+        return region.from == region.to ? fmt::format("with {:.6g} kg", region.from) : range("masses");
+      case diagnose::GapVariable::time:
+        return range("times");
+      case diagnose::GapVariable::column:
+        return range("image columns");
+      case diagnose::GapVariable::speed:
+        return range("speeds");
+      case diagnose::GapVariable::row:
+        return range("image rows");
+      case diagnose::GapVariable::position:
+        return range("positions");
+    }
+    return {};
+  };
+  const std::string text = told();
   return region.clip.empty() ? text : text + " of clip " + region.clip;
 }
 
@@ -254,7 +259,7 @@ std::string remainder_words(const diagnose::GapRemainder& of) {
 std::string clearest_words(const diagnose::GapRemainder& of, const std::string& subject) {
   if (of.regions.empty()) return {};
   const diagnose::GapRegion& region = of.regions.front();
-  const std::string where = fmt::format("{} is clearest {}: {}", subject, region_words(region), region.what);
+  const std::string where = fmt::format("{} is clearest {}: {}", subject, region_words(region), to_text(region.what));
   if (region.lacking) return where + ". Its size cannot be determined from these data.";
   return fmt::format("{} of up to {}.", where, largest_words(region));
 }

@@ -96,9 +96,9 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
 std::string region_table(const std::vector<diagnose::GapRegion>& regions) {
   HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where surest"}, 2);
   for (const diagnose::GapRegion& region : regions) {
-    const bool named = region.variable == "group";  // a set-up has a number that no reader knows
+    const bool named = region.variable == diagnose::GapVariable::set_up;  // a set-up has a number that no reader knows
     const std::string over = named ? "one of the set-ups" : axis_of(region.variable);
-    table.row({escape(over + (region.clip.empty() ? "" : " of " + region.clip)), escape(region.what),
+    table.row({escape(over + (region.clip.empty() ? "" : " of " + region.clip)), escape(to_text(region.what)),
                named ? "–" : base::number_text(region.from, 3), named ? "–" : base::number_text(region.to, 3),
                region.lacking ? "not known" : escape(region_size(region)),
                region.at && !region.lacking ? base::number_text(*region.at, 3) : "–",

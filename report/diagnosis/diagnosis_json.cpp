@@ -20,7 +20,7 @@ namespace {
 Json effect_json(const diagnose::DiagnosedEffect& effect) {
   Json object;
   object["id"] = effect.id;
-  object["stage"] = effect.stage;
+  object["stage"] = to_text(effect.stage);
   put(object, "probability", effect.probability);
   object["equivalent_to"] = effect.equivalent_to;
   put(object, "joint_probability", effect.joint_probability);
@@ -32,12 +32,12 @@ Json regions_json(const std::vector<diagnose::GapRegion>& regions) {
   Json list = Json::array();
   for (const diagnose::GapRegion& region : regions) {
     Json object;
-    object["variable"] = region.variable;
+    object["variable"] = to_text(region.variable);
     put(object, "from", region.from);
     put(object, "to", region.to);
     put(object, "excess", region.excess);
     if (!region.clip.empty()) object["clip"] = region.clip;
-    object["what"] = region.what;
+    object["what"] = to_text(region.what);
     put(object, "size", region.size);
     object["unit"] = region.unit;
     if (region.size_sd) put(object, "size_sd", *region.size_sd);
@@ -51,7 +51,7 @@ Json regions_json(const std::vector<diagnose::GapRegion>& regions) {
 
 Json where_json(const diagnose::Diagnosis& diagnosis) {
   Json where;
-  where["stage"] = diagnosis.stage.empty() ? Json(nullptr) : Json(diagnosis.stage);
+  where["stage"] = diagnosis.stage ? Json(to_text(*diagnosis.stage)) : Json(nullptr);
   where["regions"] = regions_json(diagnosis.regions);
   return where;
 }
@@ -262,7 +262,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
     Json one;
     one["id"] = finding.id;
-    one["stage"] = finding.stage;
+    one["stage"] = to_text(finding.stage);
     one["seen"] = finding.seen;
     put(one, "log_evidence", finding.log_evidence);
     one["parameters"] = parameters_json(finding.parameters);

@@ -94,11 +94,12 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
 Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
   PlotData data{"curve",
                 {},
-                {axis_of(curve.variable), fmt::format("{} ({})", curve.what, curve.unit),
+                {axis_of(curve.variable), fmt::format("{} ({})", to_text(curve.what), curve.unit),
                  fmt::format("standard deviation ({})", curve.unit)}};
   for (std::size_t i = 0; i < curve.at.size(); ++i) data.rows.push_back({curve.at[i], curve.size[i], curve.sd[i]});
   std::string script(kFrame);
-  script += fmt::format("set xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), curve.what, curve.unit);
+  script +=
+      fmt::format("set xlabel '{}'\nset ylabel '{}  ({})'\n", axis_of(curve.variable), to_text(curve.what), curve.unit);
   if (const auto [low, high] = std::minmax_element(curve.at.begin(), curve.at.end()); low != high && *low < *high) {
     script += even_tics("x", *low, *high, kMarks);
   }
@@ -110,13 +111,13 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
   return {
       Drawing{script, std::vector{data}},
       fmt::format("{} {} over {} that would fill the gap, with two standard deviations{}",
-                  alternatives > 1 ? "One smooth" : "The smooth", curve.what, axis_of(curve.variable),
+                  alternatives > 1 ? "One smooth" : "The smooth", to_text(curve.what), axis_of(curve.variable),
                   alternatives > 1 ? fmt::format(": any one of these {} curves alone, not all of them", alternatives)
                                    : std::string()),
-      fmt::format("Curve of the {} over {}", curve.what, axis_of(curve.variable))};
+      fmt::format("Curve of the {} over {}", to_text(curve.what), axis_of(curve.variable))};
 }
 
-Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& variable) {
+Plot residual_plot(const diagnose::Diagnosis& diagnosis, diagnose::GapVariable variable) {
   const std::vector<diagnose::ResidualCurve>& curves = diagnosis.residuals;
   const std::string axis = axis_of(variable);
   PlotData before{"before", {}, {axis, "measured - model before (mm)"}};
@@ -135,7 +136,7 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& vari
   }
   // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
   std::string script(kFrame);
-  if (variable == "t_s") script += kFromStart;
+  if (variable == diagnose::GapVariable::time) script += kFromStart;
   if (to > from) script += even_tics("x", from, to, kMarks);
   script += fmt::format("set xlabel '{}'\nset ylabel 'measured − model  (mm)'\n", axis);
   script += fmt::format(
@@ -152,9 +153,9 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, const std::string& vari
   return {
       Drawing{script, std::vector{never_empty(before), never_empty(after)}},
       fmt::format("Residuals of all clips against {}{}",
-                  variable == "x_m"     ? "position"
-                  : variable == "v_m_s" ? "speed"
-                                        : "time",
+                  variable == diagnose::GapVariable::position ? "position"
+                  : variable == diagnose::GapVariable::speed  ? "speed"
+                                                              : "time",
                   diagnosis.verdict == diagnose::Verdict::unknown ? "; after: with the likeliest free-form curve" : ""),
       one ? "Residuals" : "Residuals before and after"};
 }
@@ -229,19 +230,37 @@ std::string key_of(const OverTime& of) {
 
 }  // namespace
 
-std::string axis_of(const std::string& variable) {
-  if (variable == "x_m") return "position x (m)";
-  if (variable == "v_m_s") return "speed v (m/s)";
-  if (variable == "t_s") return "time t (s)";
-  if (variable == "mass_kg") return "mass (kg)";
-  return variable;
+std::string axis_of(diagnose::GapVariable variable) {
+  switch (variable) {
+    case diagnose::GapVariable::acceleration:
+      return "acceleration a (m/s²)";
+    case diagnose::GapVariable::clip:
+      return "clip";
+    case diagnose::GapVariable::direction:
+      return "direction of v";
+    case diagnose::GapVariable::set_up:
+      return "set-up";
+    case diagnose::GapVariable::mass:
+      return "mass (kg)";
+    case diagnose::GapVariable::time:
+      return "time t (s)";
+    case diagnose::GapVariable::column:
+      return "image column u (px)";
+    case diagnose::GapVariable::speed:
+      return "speed v (m/s)";
+    case diagnose::GapVariable::row:
+      return "image row v (px)";
+    case diagnose::GapVariable::position:
+      return "position x (m)";
+  }
+  return {};
 }
 
-const std::vector<double>& along(const diagnose::ResidualCurve& curve, std::string_view variable) {
-  if (variable == "x_m") return curve.x_m;
-  if (variable == "v_m_s") return curve.v_m_s;
-  if (variable == "t_s") return curve.t_s;
-  throw std::logic_error(fmt::format("no residuals over {}", variable));
+const std::vector<double>& along(const diagnose::ResidualCurve& curve, diagnose::GapVariable variable) {
+  if (variable == diagnose::GapVariable::position) return curve.x_m;
+  if (variable == diagnose::GapVariable::speed) return curve.v_m_s;
+  if (variable == diagnose::GapVariable::time) return curve.t_s;
+  throw std::logic_error(fmt::format("no residuals over {}", to_text(variable)));
 }
 
 std::string chart_labels(const std::vector<std::string>& names) {
@@ -264,7 +283,8 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots;
   const std::size_t shown = std::min(kCurves, diagnosis.curves.size());
   for (std::size_t c = 0; c < shown; ++c) plots.push_back(curve_plot(diagnosis.curves[c], shown));
-  for (const char* variable : {"v_m_s", "x_m", "t_s"}) {
+  using diagnose::GapVariable;
+  for (const GapVariable variable : {GapVariable::speed, GapVariable::position, GapVariable::time}) {
     if (!diagnosis.residuals.empty()) plots.push_back(residual_plot(diagnosis, variable));
   }
   return plots;

@@ -10,14 +10,14 @@
 
 namespace glidelab::report {
 
-/// What a gap lies over, for a reader: "x_m" is "place x (m)".
-std::string axis_of(const std::string& variable);
+/// What a gap lies over, for a reader: "position x (m)".
+std::string axis_of(diagnose::GapVariable variable);
 
 /// Labels of a horizontal bar chart, the first one at the top (y = 0, the next at -1): a command of gnuplot.
 std::string chart_labels(const std::vector<std::string>& names);
 
-/// Along what a residual lies: its x_m, v_m_s or t_s. std::logic_error for any other variable.
-const std::vector<double>& along(const diagnose::ResidualCurve& curve, std::string_view variable);
+/// Along what a residual lies: its position, speed or time. std::logic_error for any other variable.
+const std::vector<double>& along(const diagnose::ResidualCurve& curve, diagnose::GapVariable variable);
 
 /// Probability of each explanation; gap of each held-out clip (of published lines: of each line) before and after,
 /// where there is a gap.

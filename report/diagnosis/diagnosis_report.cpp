@@ -59,7 +59,7 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
       size += fmt::format("<br><small>{}</small>", symbols_html(effect_meaning(effect.id)));
     }
     for (const std::string& id : effect.equivalent_to) same += (same.empty() ? "" : ", ") + effect_html(id);
-    table.row({effect_html(effect.id), escape(effect.stage), probability_text(effect.probability),
+    table.row({effect_html(effect.id), escape(to_text(effect.stage)), probability_text(effect.probability),
                size.empty() ? "–" : size, same.empty() ? "–" : same,
                same.empty() ? "–" : probability_text(effect.joint_probability)});
   }

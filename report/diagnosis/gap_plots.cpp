@@ -50,7 +50,7 @@ Plot phase_plot(const diagnose::PhaseGap& gap, bool one) {
       "plot 0 with lines lw 1 lc rgb '{1}' notitle, "
       "$bins using 1:($2-$3):($2+$3) with filledcurves fillcolor rgb '{2}' fillstyle transparent solid 0.25 notitle, "
       "$bins using 1:2 with linespoints lw 2 pt 6 ps 0.8 lc rgb '{2}' title '{3}'",
-      axis_of("v_m_s"), kGrey, kColors[1], one ? kNominalModel : "before");
+      axis_of(diagnose::GapVariable::speed), kGrey, kColors[1], one ? kNominalModel : "before");
   if (!one) {
     script += fmt::format(
         ", $bins using 1:($4-$5):($4+$5) with filledcurves fillcolor rgb '{0}' fillstyle transparent solid 0.25 "
@@ -81,8 +81,8 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps, bool one) {
                           curves.empty() ? "" : ", ", of.name, color(data.size()), *gap.mass_kg);
     data.push_back(std::move(of));
   }
-  script +=
-      fmt::format("set xlabel '{}'\nset ylabel 'a measured − a modelled  (m/s²)'\nplot {}\n", axis_of("v_m_s"), curves);
+  script += fmt::format("set xlabel '{}'\nset ylabel 'a measured − a modelled  (m/s²)'\nplot {}\n",
+                        axis_of(diagnose::GapVariable::speed), curves);
   return {
       Drawing{script, std::move(data)},
       one ? "The same for each mass: where the masses differ, what is missing is not proportional to the load"
@@ -90,7 +90,7 @@ Plot phase_plot_by_mass(const std::vector<diagnose::PhaseGap>& gaps, bool one) {
       "Measured minus modelled acceleration against speed, by mass"};
 }
 
-Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& cells, const std::string& variable,
+Plot map_plot(const ResidualMap& map, const std::vector<std::vector<double>>& cells, diagnose::GapVariable variable,
               const char* when) {
   PlotData data{"cells", {}, {axis_of(variable), "clip (row)", "residual / noise"}};
   const double width = (map.high - map.low) / static_cast<double>(cells.front().size());
@@ -172,7 +172,7 @@ std::vector<Plot> phase_gap_plots(const diagnose::Diagnosis& diagnosis) {
   return plots;
 }
 
-ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, const std::string& variable,
+ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, diagnose::GapVariable variable,
                          std::size_t cells) {
   ResidualMap map;
   bool any = false;
@@ -209,10 +209,11 @@ ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, con
 }
 
 std::vector<Plot> residual_maps(const diagnose::Diagnosis& diagnosis) {
-  std::string variable = "t_s";
+  using diagnose::GapVariable;
+  GapVariable variable = GapVariable::time;
   if (!diagnosis.regions.empty()) {
-    const std::string& of = diagnosis.regions.front().variable;
-    if (of == "x_m" || of == "v_m_s") variable = of;
+    const GapVariable of = diagnosis.regions.front().variable;
+    if (of == GapVariable::position || of == GapVariable::speed) variable = of;
   }
   const ResidualMap map = residual_map(diagnosis.residuals, variable, kCells);
   if (!(map.high > map.low)) return {};

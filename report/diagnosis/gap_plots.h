@@ -29,9 +29,9 @@ struct ResidualMap {
   double low = 0.0, high = 0.0;                    ///< of the variable
   std::vector<std::vector<double>> before, after;  ///< [clip][cell]
 };
-/// `variable` is t_s, x_m or v_m_s (std::logic_error for another); cells as many as asked for (at least 1), of equal
-/// width. Each curve has as many noise_m as residuals.
-ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, const std::string& variable,
+/// `variable` is a time, position or speed (std::logic_error for another); cells as many as asked for (at least 1), of
+/// equal width. Each curve has as many noise_m as residuals.
+ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, diagnose::GapVariable variable,
                          std::size_t cells);
 
 /// What the measured positions lie off the twin's, over the time, beside noise alone; and a(v) of both.

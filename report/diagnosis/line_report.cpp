@@ -113,14 +113,15 @@ std::string sizes_text(const diagnose::LineCandidate& candidate) {
 std::string line_region_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"lines", "direction", "what", "off the nominal model", "off / sd"}, 3);
   for (const diagnose::GapRegion& region : diagnosis.regions) {
-    const std::string which = region.variable == "group" ? fmt::format("all at {:.3g}°", region.from)
-                                                         : fmt::format("all of {:.0f} g", 1e3 * region.from);
+    const std::string which = region.variable == diagnose::GapVariable::set_up
+                                  ? fmt::format("all at {:.3g}°", region.from)
+                                  : fmt::format("all of {:.0f} g", 1e3 * region.from);
     table.row(
         {escape(which),
          region.direction == 0  ? "both"
          : region.direction > 0 ? "v &gt; 0"
                                 : "v &lt; 0",
-         escape(region.what),
+         escape(to_text(region.what)),
          escape(fmt::format("{} {}", base::value_and_sd_text(region.size, region.size_sd.value_or(0.0)), region.unit)),
          base::number_text(region.excess, 2)});
   }

@@ -133,9 +133,10 @@ std::string unknown_words(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.regions.empty()) {
     const diagnose::GapRegion& most = diagnosis.regions.front();
     text += fmt::format(" The largest deviation from the nominal model, {} {}, is in the {} of {}{}.",
-                        base::value_and_sd_text(most.size, most.size_sd.value_or(0.0)), most.unit, most.what,
-                        most.variable == "group" ? fmt::format("the set-up at {:.3g} degrees", most.from)
-                                                 : fmt::format("{:.0f} g", 1e3 * most.from),
+                        base::value_and_sd_text(most.size, most.size_sd.value_or(0.0)), most.unit, to_text(most.what),
+                        most.variable == diagnose::GapVariable::set_up
+                            ? fmt::format("the set-up at {:.3g} degrees", most.from)
+                            : fmt::format("{:.0f} g", 1e3 * most.from),
                         most.direction == 0  ? ""
                         : most.direction > 0 ? " where v > 0"
                                              : " where v < 0");
@@ -224,13 +225,30 @@ std::string claim(const diagnose::DiagnosedEffect& effect) {
                      percent(effect.joint_probability), list_of(members, ", or "));
 }
 
-std::string in_words(const std::string& variable) {
-  if (variable == "x_m") return "the position on the track";
-  if (variable == "v_m_s") return "the speed";
-  if (variable == "t_s") return "the time";
-  if (variable == "mass_kg") return "the mass";
-  if (variable == "group") return "the set-up";
-  return variable;
+std::string_view in_words(diagnose::GapVariable variable) {
+  switch (variable) {
+    case diagnose::GapVariable::acceleration:
+      return "the acceleration";
+    case diagnose::GapVariable::clip:
+      return "the clip";
+    case diagnose::GapVariable::direction:
+      return "the direction";
+    case diagnose::GapVariable::set_up:
+      return "the set-up";
+    case diagnose::GapVariable::mass:
+      return "the mass";
+    case diagnose::GapVariable::time:
+      return "the time";
+    case diagnose::GapVariable::column:
+      return "the image column";
+    case diagnose::GapVariable::speed:
+      return "the speed";
+    case diagnose::GapVariable::row:
+      return "the image row";
+    case diagnose::GapVariable::position:
+      return "the position on the track";
+  }
+  return {};
 }
 
 /// `sequence`: the remainder with the causes in the model has been stated.
@@ -299,10 +317,10 @@ std::string first_region_words(const diagnose::Diagnosis& diagnosis) {
     return text + fmt::format(
                       ": {}. Its size cannot be determined from these data: the estimate, {}, far exceeds the largest "
                       "residual of the nominal model ({}).",
-                      region.what, base::size_text(region.size, 2, region.unit),
+                      to_text(region.what), base::size_text(region.size, 2, region.unit),
                       base::size_text(*region.lacking, 2, region.unit));
   }
-  return text + fmt::format(": {} of up to {}.", region.what, largest_words(region));
+  return text + fmt::format(": {} of up to {}.", to_text(region.what), largest_words(region));
 }
 
 /// Behind the sentence of the causes: how sure they are, and of `unknown` where the rest lies.

@@ -30,17 +30,23 @@ inline diagnose::Diagnosis two_causes() {
   of.points = 1056;
   of.none = 0.001;
   of.unknown = 0.02;
-  of.stage = "dynamics";
-  of.effects = {
-      {"quadratic_drag",
-       "dynamics",
-       "a drag that grows with the square of the speed",
-       0.97,
-       {},
-       {{"c_kg_m", 0.0031, 0.0002}},
-       0.97,
-       {}},
-      {"rotational_inertia", "dynamics", "wheels that turn", 0.81, {}, {{"mass_kg", 0.0123, 0.0014}}, 0.81, {}}};
+  of.stage = diagnose::Stage::dynamics;
+  of.effects = {{"quadratic_drag",
+                 diagnose::Stage::dynamics,
+                 "a drag that grows with the square of the speed",
+                 0.97,
+                 {},
+                 {{"c_kg_m", 0.0031, 0.0002}},
+                 0.97,
+                 {}},
+                {"rotational_inertia",
+                 diagnose::Stage::dynamics,
+                 "wheels that turn",
+                 0.81,
+                 {},
+                 {{"mass_kg", 0.0123, 0.0014}},
+                 0.81,
+                 {}}};
   of.ranking = {{{{"quadratic_drag", "rotational_inertia"}}, 0.79, 812.3, 830.0, 2, 1.35, {}},
                 {{{"quadratic_drag"}}, 0.18, 770.1, 780.0, 1, 1.86, {}}};
   diagnose::GapSizes gap;
@@ -65,7 +71,7 @@ inline diagnose::Diagnosis two_causes() {
   of.gap = gap;
   of.explained = {{"quadratic_drag", 0.91, diagnose::GapInterval{0.86, 0.95}, gap_with_left(5.3, 0.09)},
                   {"rotational_inertia", 0.06, diagnose::GapInterval{0.02, 0.1}, gap_with_left(5.3, 0.03)}};
-  diagnose::GapRegion region{"t_s", 0.0, 0.1, 4.1, 1.2e-3, "N", "force", ""};
+  diagnose::GapRegion region{diagnose::GapVariable::time, 0.0, 0.1, 4.1, 1.2e-3, "N", diagnose::GapKind::force, ""};
   region.size_sd = 1e-4;
   region.at = 0.05;
   of.remainder = diagnose::GapRemainder{0.03, gap.after, 4.1e-3, 8e-4, 0.021, {region}};
@@ -88,7 +94,7 @@ inline diagnose::Diagnosis two_causes() {
 inline diagnose::Diagnosis law_within() {
   diagnose::Diagnosis of = two_causes();
   of.effects = {{"configuration_friction",
-                 "dynamics",
+                 diagnose::Stage::dynamics,
                  "a friction of each configuration",
                  0.99,
                  {},
@@ -112,7 +118,13 @@ inline diagnose::Diagnosis no_half() {
   of.remainder->share = 0.69;
   of.remainder->gap = gap_with_left(5.3, 0.69);
   of.remainder->regions.front().clip = "m2-up";
-  of.curves = {{"x_m", "force", "N", 40.0, {0.0, 0.1, 0.2}, {0.001, 0.002, 0.001}, {1e-4, 1e-4, 1e-4}}};
+  of.curves = {{diagnose::GapVariable::position,
+                diagnose::GapKind::force,
+                "N",
+                40.0,
+                {0.0, 0.1, 0.2},
+                {0.001, 0.002, 0.001},
+                {1e-4, 1e-4, 1e-4}}};
   for (diagnose::RecoveredConfiguration& one : of.recovered) one.with = {"timestamp_jitter"};
   return of;
 }

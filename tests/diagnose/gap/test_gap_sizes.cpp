@@ -25,7 +25,8 @@ TEST_CASE("the gap of each domain is the root mean square of its differences ove
   blocks.stated = true;
   light.id = "light_flicker";
   light.log_evidence = -2.0;
-  auto domains = diagnose::gap_domains(gap, {blur, blocks, light}, {{"exposure_blur", "optics", "", 1.0, {}, {}}});
+  auto domains =
+      diagnose::gap_domains(gap, {blur, blocks, light}, {{"exposure_blur", diagnose::Stage::optics, "", 1.0, {}, {}}});
   REQUIRE(domains.size() == 4);
   CHECK(domains[0].before == 5.0);
   CHECK(domains[1].before == Approx(std::sqrt((9.0 + 16.0) / 2.0)));  // of the masses; all together are the same points

@@ -194,7 +194,8 @@ TEST_CASE("published lines say where they are off, by how much") {
   const double expected = kForce / kSixMasses.front() - mean;
   int found = 0;
   for (const diagnose::GapRegion& region : diagnosis.regions) {
-    if (region.variable != "mass_kg" || region.from != kSixMasses.front() || region.direction == 0) continue;
+    if (region.variable != diagnose::GapVariable::mass || region.from != kSixMasses.front() || region.direction == 0)
+      continue;
     ++found;
     REQUIRE(region.size_sd);
     CHECK(region.unit == "m/s²");

@@ -17,6 +17,8 @@
 using namespace glidelab;
 using diagnose::Change;
 using diagnose::ChangeKind;
+using diagnose::GapKind;
+using diagnose::GapVariable;
 
 namespace {
 
@@ -229,22 +231,25 @@ TEST_CASE("what only images or single frames show has a sentence with its reason
 TEST_CASE("what has no name is followed into the speeds, places and masses in which it lies") {
   const diagnose::TrackSet set = inclined();
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
-  const auto step = [&](const char* variable, double from, double to, const char* what, const char* clip = "") {
+  const auto step = [&](GapVariable variable, double from, double to, GapKind what, const char* clip = "") {
     diagnose::Diagnosis diagnosis;
     diagnosis.verdict = diagnose::Verdict::unknown;
     diagnosis.regions = {{variable, from, to, 5.0, 0.01, "N", what, clip}};
     return diagnose::next_for_unnamed(set, nominal, diagnosis);
   };
   // Only a launch of 1.8 times 1.2 m/s gets there, and only downhill.
-  const auto fast = std::get<diagnose::CoverRegion>(step("v_m_s", 1.5, 2.1, "force"));
+  const auto fast = std::get<diagnose::CoverRegion>(step(GapVariable::speed, 1.5, 2.1, GapKind::force));
   CHECK(fast.over == diagnose::CoverRegion::Over::speeds);
   CHECK(fast.launch.clip.value().v0_m_s == Approx(1.8 * 1.2).epsilon(0.02));
-  const auto back = std::get<diagnose::CoverRegion>(step("v_m_s", -2.1, -1.5, "force"));
+  const auto back = std::get<diagnose::CoverRegion>(step(GapVariable::speed, -2.1, -1.5, GapKind::force));
   CHECK(back.launch.clip.value().v0_m_s < -1.95);
-  CHECK(std::get<diagnose::CoverRegion>(step("x_m", 0.0, 0.1, "force")).over == diagnose::CoverRegion::Over::places);
-  CHECK(std::get<diagnose::AddMass>(step("mass_kg", 0.335, 0.335, "friction")).mass_kg == Approx(0.435));
-  CHECK(std::get<diagnose::RepeatClip>(step("t_s", 0.0, 1.0, "displacement", "clip2")).clip == "clip2");
-  CHECK(std::get<diagnose::Routine>(step("u_px", 0.0, 1.0, "displacement")) == diagnose::Routine::move_camera);
+  CHECK(std::get<diagnose::CoverRegion>(step(GapVariable::position, 0.0, 0.1, GapKind::force)).over ==
+        diagnose::CoverRegion::Over::places);
+  CHECK(std::get<diagnose::AddMass>(step(GapVariable::mass, 0.335, 0.335, GapKind::friction)).mass_kg == Approx(0.435));
+  CHECK(std::get<diagnose::RepeatClip>(step(GapVariable::time, 0.0, 1.0, GapKind::displacement, "clip2")).clip ==
+        "clip2");
+  CHECK(std::get<diagnose::Routine>(step(GapVariable::column, 0.0, 1.0, GapKind::displacement)) ==
+        diagnose::Routine::move_camera);
 }
 
 TEST_CASE("where nothing is in doubt the weakest parameter is sharpened, and nothing is told from nothing") {
@@ -305,8 +310,8 @@ TEST_CASE("after a motion under a recorded force no launch is suggested, but the
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
   for (const Change& change : diagnose::feasible_changes(set, nominal)) CHECK_FALSE(change.clip);
   diagnose::Diagnosis diagnosis;
-  for (const char* variable : {"x_m", "v_m_s"}) {
-    diagnosis.regions = {{variable, 0.0, 0.1, 9.0, 0.1, "N", "force", ""}};
+  for (const GapVariable variable : {GapVariable::position, GapVariable::speed}) {
+    diagnosis.regions = {{variable, 0.0, 0.1, 9.0, 0.1, "N", GapKind::force, ""}};
     const diagnose::NextStep step = diagnose::next_for_unnamed(set, nominal, diagnosis);
     REQUIRE(std::holds_alternative<diagnose::Routine>(step));
     CHECK(std::get<diagnose::Routine>(step) == diagnose::Routine::other_forces);

@@ -11,7 +11,8 @@ namespace {
 diagnose::Diagnosis named(const std::vector<std::string>& equivalent_to) {
   diagnose::Diagnosis diagnosis;
   diagnosis.verdict = diagnose::Verdict::effect;
-  diagnosis.effects.push_back({"scale_error", "optics", "a wrong length scale", 0.30, equivalent_to, {}, 0.0, {}});
+  diagnosis.effects.push_back(
+      {"scale_error", diagnose::Stage::optics, "a wrong length scale", 0.30, equivalent_to, {}, 0.0, {}});
   return diagnosis;
 }
 

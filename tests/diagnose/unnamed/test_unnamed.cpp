@@ -45,7 +45,7 @@ TEST_CASE("a picture that creeps in each clip by its own way is no hand that pus
     CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
     CHECK(surest(diagnosis) < 0.5);
     REQUIRE(diagnosis.regions.size() > 0);
-    CHECK(diagnosis.regions.front().what == "displacement");
+    CHECK(diagnosis.regions.front().what == diagnose::GapKind::displacement);
     CHECK_FALSE(diagnosis.regions.front().clip.empty());
     std::set<std::string> clips;
     for (const diagnose::GapRegion& region : diagnosis.regions) {
@@ -66,7 +66,7 @@ TEST_CASE("a tracker that lags behind by half a frame, from the first one on, ha
     CHECK(surest(diagnosis) < 0.5);
     // What settles does so from each clip's start on, and the diagnosis says that it is there.
     REQUIRE(diagnosis.regions.size() > 0);
-    CHECK(diagnosis.regions.front().variable == "t_s");
+    CHECK(diagnosis.regions.front().variable == diagnose::GapVariable::time);
     CHECK(diagnosis.regions.front().from < 0.02);
   }
 }
@@ -136,8 +136,8 @@ TEST_CASE("a lateness that settles is drawn as it settles, until a tenth is left
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
   const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
   // Of the latenesses over time the one without bumps comes last.
-  const auto settling =
-      std::find_if(families.rbegin(), families.rend(), [](const auto& family) { return family.what == "lateness"; });
+  const auto settling = std::find_if(families.rbegin(), families.rend(),
+                                     [](const auto& family) { return family.what == diagnose::GapKind::lateness; });
   REQUIRE(settling != families.rend());
   CHECK(settling->at.front() == 0.0);
   for (std::size_t i = 0; i < settling->at.size(); ++i) {
@@ -153,8 +153,8 @@ TEST_CASE("a lateness that settles is drawn as it settles, until a tenth is left
 
 TEST_CASE("unnamed evidence: a variable is as likely beforehand as another, however many shapes it has") {
   diagnose::UnnamedFamily none, strong;
-  none.variable = "x_m";
-  strong.variable = "mass_kg";
+  none.variable = diagnose::GapVariable::position;
+  strong.variable = diagnose::GapVariable::mass;
   strong.log_evidence = 20.0;
   const double few = diagnose::log_unnamed_evidence({none, strong});
   CHECK(few == Approx(20.0 - std::log(2.0)).margin(1e-6));
@@ -172,8 +172,8 @@ TEST_CASE("pixels that pull the marker are seen, also where it crosses several o
   INFO("period " << period_m << " m");
   CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE_FALSE(diagnosis.regions.empty());
-  CHECK(diagnosis.regions.front().variable == "x_m");
-  CHECK(diagnosis.regions.front().what == "displacement");
+  CHECK(diagnosis.regions.front().variable == diagnose::GapVariable::position);
+  CHECK(diagnosis.regions.front().what == diagnose::GapKind::displacement);
   CHECK(diagnosis.regions.front().to - diagnosis.regions.front().from > 1.0);  // m: all of the track
   // 20 µm, of which a 24th part is unsure; the largest of all periods that were tried is larger by some such.
   CHECK(std::abs(std::abs(diagnosis.regions.front().size) - 2e-5) < 4e-6);
@@ -206,8 +206,8 @@ TEST_CASE("friction over how fast it moves: in proportion to the load or not, as
   const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
   const auto best = std::max_element(families.begin(), families.end(),
                                      [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
-  CHECK(best->variable == "v_m_s");
-  CHECK(best->what == "friction");
+  CHECK(best->variable == diagnose::GapVariable::speed);
+  CHECK(best->what == diagnose::GapKind::friction);
   CHECK(best->unit == (with_load ? "m/s²" : "N"));
 }
 
@@ -218,8 +218,8 @@ TEST_CASE("a magnet at one place pulls every glider by the same force, whatever 
   CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE_FALSE(diagnosis.regions.empty());
   const diagnose::GapRegion& region = diagnosis.regions.front();
-  CHECK(region.variable == "x_m");
-  CHECK(region.what == "force");
+  CHECK(region.variable == diagnose::GapVariable::position);
+  CHECK(region.what == diagnose::GapKind::force);
   CHECK(region.unit == "N");
   CHECK(region.from < 0.1);
   CHECK(region.to > 0.1);
@@ -231,8 +231,8 @@ TEST_CASE("a brake that weakens in each clip is a drag over the time") {
   const diagnose::Diagnosis diagnosis = diagnosed(warm, 5);
   CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE_FALSE(diagnosis.regions.empty());
-  CHECK(diagnosis.regions.front().variable == "t_s");
-  CHECK(diagnosis.regions.front().what == "viscous drag");
+  CHECK(diagnosis.regions.front().variable == diagnose::GapVariable::time);
+  CHECK(diagnosis.regions.front().what == diagnose::GapKind::viscous_drag);
 }
 
 TEST_CASE("a drag of each mass is told as its difference from the others: what they share is the drag that is fitted") {
@@ -243,7 +243,7 @@ TEST_CASE("a drag of each mass is told as its difference from the others: what t
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
   const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
   const auto drag = std::find_if(families.begin(), families.end(), [](const auto& family) {
-    return family.variable == "mass_kg" && family.what == "viscous drag";
+    return family.variable == diagnose::GapVariable::mass && family.what == diagnose::GapKind::viscous_drag;
   });
   REQUIRE(drag != families.end());
   REQUIRE(drag->size.size() == 2);
@@ -260,8 +260,8 @@ TEST_CASE("magnets in a row: a force that swings with the place, too fine for sm
   CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE_FALSE(diagnosis.regions.empty());
   const diagnose::GapRegion& region = diagnosis.regions.front();
-  CHECK(region.variable == "x_m");
-  CHECK(region.what == "acceleration");
+  CHECK(region.variable == diagnose::GapVariable::position);
+  CHECK(region.what == diagnose::GapKind::acceleration);
   CHECK(region.to - region.from > 1.0);
   CHECK(std::abs(region.size) == Approx(0.3).epsilon(0.2));  // periods are tried in steps of a fiftieth
 }
@@ -279,8 +279,8 @@ TEST_CASE("a camera that is moved between the clips shows each at a scale of its
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
   const auto families = diagnose::unnamed_families(diagnose::ScoreSpace(set, nominal));
-  const auto scale =
-      std::find_if(families.begin(), families.end(), [](const auto& family) { return family.what == "scale"; });
+  const auto scale = std::find_if(families.begin(), families.end(),
+                                  [](const auto& family) { return family.what == diagnose::GapKind::scale; });
   REQUIRE(scale != families.end());
   REQUIRE(scale->size.size() == kMore.size());
   for (const auto& family : families) CHECK(family.log_evidence <= scale->log_evidence);

@@ -156,7 +156,7 @@ TEST_CASE("a force that nobody listed is unknown, and the place where it acts is
   const auto diagnosis = diagnosed(tests::made_experiment(tests::made_launches(), patch, 5));
   CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE(!diagnosis.regions.empty());
-  CHECK(diagnosis.regions.front().variable == "x_m");
+  CHECK(diagnosis.regions.front().variable == diagnose::GapVariable::position);
   // What has no chance is ranked by its evidence: probabilities that underflow are all the same.
   const auto& ranking = diagnosis.ranking;
   for (std::size_t r = 1; r < ranking.size(); ++r) {

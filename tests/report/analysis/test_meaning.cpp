@@ -147,7 +147,7 @@ bool tells(const report::Page& page, const std::string& part) {
 TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict means for the numbers of an analysis") {
   diagnose::Diagnosis of;
   of.none = 0.9;
-  of.effects = {{"quadratic_drag", "dynamics", "<a drag>", 0.9, {}, {}, 0.9, {}}};
+  of.effects = {{"quadratic_drag", diagnose::Stage::dynamics, "<a drag>", 0.9, {}, {}, 0.9, {}}};
   of.ranking = {{{{"quadratic_drag"}}, 0.5, 1.0, 1.0, 1, {}}};
   diagnose::Diagnosis lines = of;
   lines.lines.emplace();

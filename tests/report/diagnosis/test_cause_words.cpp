@@ -151,9 +151,10 @@ TEST_CASE("what is left is told as an acceleration and a scatter, with their uni
   CHECK(report::remainder_words(of).ends_with("From clip to clip, the drag scatters by 2.1 %."));
   of.acceleration_m_s2 = of.drag_scatter = 0.0;
   CHECK(report::remainder_words(of).empty());
-  diagnose::GapRegion region{"mass_kg", 0.335, 0.335, 4.0, 0.01, "m/s²", "acceleration", ""};
+  diagnose::GapRegion region{diagnose::GapVariable::mass,     0.335, 0.335, 4.0, 0.01, "m/s²",
+                             diagnose::GapKind::acceleration, ""};
   CHECK(report::region_words(region) == "with 0.335 kg");
-  region.variable = "x_m";
+  region.variable = diagnose::GapVariable::position;
   region.to = 0.5;
   region.clip = "m1-up";
   CHECK(report::region_words(region) == "at positions from 0.335 to 0.5 m of clip m1-up");

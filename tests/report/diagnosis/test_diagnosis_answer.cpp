@@ -93,7 +93,7 @@ TEST_CASE("where nothing has a name the curve over what matters most is open, an
     return page.substr(0, page.find("<details"));
   };
   CHECK_FALSE(shows(open_part(), "Curve of the force"));  // over the position, and the rest lies over time
-  of.curves.front().variable = "t_s";
+  of.curves.front().variable = diagnose::GapVariable::time;
   CHECK(shows(open_part(), "Curve of the force over time"));
   CHECK(shows(open_part(), "The smooth force over time"));
   of.verdict = diagnose::Verdict::effect;
@@ -101,10 +101,10 @@ TEST_CASE("where nothing has a name the curve over what matters most is open, an
   // Without a remainder `unknown` has the places of the whole gap.
   of.verdict = diagnose::Verdict::unknown;
   of.regions = of.remainder->regions;
-  of.regions.front().what = "friction";
+  of.regions.front().what = diagnose::GapKind::friction;
   of.remainder.reset();
   CHECK(shows(open_part(), "<h2>Where the gap lies</h2>"));
   CHECK(shows(open_part(), "<td>friction</td>"));
-  of.regions.front().variable = "group";
+  of.regions.front().variable = diagnose::GapVariable::set_up;
   CHECK(shows(open_part(), "one of the set-ups of m2-up"));
 }

@@ -18,7 +18,8 @@ nlohmann::json json_of(const diagnose::Diagnosis& diagnosis) {
 TEST_CASE("a parameter that is a word has a value and no standard deviation") {
   diagnose::Diagnosis diagnosis;
   diagnosis.verdict = diagnose::Verdict::effect;
-  diagnosis.effects.push_back({"compression", "sensor", "", 0.9, {}, {{"codec", 0.0, 0.0, "MJPG"}, {"e", 2.0, 0.5}}});
+  diagnosis.effects.push_back(
+      {"compression", diagnose::Stage::sensor, "", 0.9, {}, {{"codec", 0.0, 0.0, "MJPG"}, {"e", 2.0, 0.5}}});
   std::string json = report::diagnosis_json(diagnosis);
   std::erase_if(json, [](unsigned char c) { return c == ' ' || c == '\n'; });
   CHECK(json.find("\"codec\":{\"value\":\"MJPG\"}") != std::string::npos);

@@ -33,9 +33,16 @@ diagnose::Diagnosis two_masses() {
   gap.phase_plane = {{{}, {bin}}, {0.335, {bin}}, {0.535, {bin}}};
   gap.domains = {{"positions", 6.0, 1.1}, {"parameters", 3.0, {}}};
   of.gap = gap;
-  of.curves = {{"x_m", "force", "N", 40.0, {0.0, 0.1}, {0.001, 0.002}, {1e-4, 1e-4}},
-               {"t_s", "displacement", "m", 30.0, {0.0, 0.1}, {0.001, 0.002}, {1e-4, 1e-4}}};
-  of.regions = {{"x_m", 0.0, 0.1, 12.0, -0.0036, "m", "displacement", ""}};
+  of.curves = {
+      {diagnose::GapVariable::position, diagnose::GapKind::force, "N", 40.0, {0.0, 0.1}, {0.001, 0.002}, {1e-4, 1e-4}},
+      {diagnose::GapVariable::time,
+       diagnose::GapKind::displacement,
+       "m",
+       30.0,
+       {0.0, 0.1},
+       {0.001, 0.002},
+       {1e-4, 1e-4}}};
+  of.regions = {{diagnose::GapVariable::position, 0.0, 0.1, 12.0, -0.0036, "m", diagnose::GapKind::displacement, ""}};
   of.residuals = {{"up", {0.0, 1.0}, {0.0, 0.1}, {1.0, 0.9}, {2e-5, -2e-5}, {0.0, 0.0}, {1e-5, 1e-5}}};
   return of;
 }
@@ -73,7 +80,7 @@ TEST_CASE("a cell of the residual map is a standard normal deviate of its positi
   again.before_m = {-3e-5, -3e-5, -3e-5, -3e-5};
   diagnose::ResidualCurve down = up;
   down.clip = "down";
-  const auto map = report::residual_map({up, again, down}, "t_s", 2);
+  const auto map = report::residual_map({up, again, down}, diagnose::GapVariable::time, 2);
   CHECK(map.clips == std::vector<std::string>{"up", "down"});
   CHECK(map.low == 0.0);
   CHECK(map.high == 1.0);

@@ -57,8 +57,8 @@ TEST_CASE("the chart of what was held out speaks of lines where lines were held 
 
 TEST_CASE("residuals lie over place, speed or time, and over nothing else") {
   const diagnose::ResidualCurve curve{"one", {1.0}, {2.0}, {3.0}, {}, {}};
-  CHECK(report::along(curve, "t_s").front() == 1.0);
-  CHECK(report::along(curve, "x_m").front() == 2.0);
-  CHECK(report::along(curve, "v_m_s").front() == 3.0);
-  CHECK_THROWS_AS(report::along(curve, "mass_kg"), std::logic_error);
+  CHECK(report::along(curve, diagnose::GapVariable::time).front() == 1.0);
+  CHECK(report::along(curve, diagnose::GapVariable::position).front() == 2.0);
+  CHECK(report::along(curve, diagnose::GapVariable::speed).front() == 3.0);
+  CHECK_THROWS_AS(report::along(curve, diagnose::GapVariable::mass), std::logic_error);
 }

@@ -47,7 +47,7 @@ TEST_CASE("what is not ruled out is neither claimed nor called explained") {
 TEST_CASE("effects that look the same are named as one set, an effect that stands alone by itself") {
   diagnose::Diagnosis of;
   of.verdict = diagnose::Verdict::effect;
-  of.effects = {{"scale_error", "optics", "a wrong length scale", 0.30, {}, {}, 0.30, {}}};
+  of.effects = {{"scale_error", diagnose::Stage::optics, "a wrong length scale", 0.30, {}, {}, 0.30, {}}};
   CHECK(report::verdict_words(of).starts_with("The data show a wrong length scale (scale_error, 30 %)."));
   of.effects.front().joint_probability = 0.98;
   of.effects.front().alike = {{"direction_asymmetry", "an uneven friction", 0.49},
@@ -104,7 +104,8 @@ TEST_CASE("a size far beyond what the accelerations lack is not stated as one") 
   diagnose::Diagnosis diagnosis;
   diagnosis.verdict = diagnose::Verdict::unknown;
   diagnosis.unknown = 0.99;
-  diagnosis.regions.push_back({"v_m_s", 0.0, 0.2, 5.0, 190.0, "N", "force", "", 30.0});
+  diagnosis.regions.push_back(
+      {diagnose::GapVariable::speed, 0.0, 0.2, 5.0, 190.0, "N", diagnose::GapKind::force, "", 30.0});
   CHECK(contains(report::verdict_words(diagnosis), "Its size cannot be determined from these data"));
   diagnosis.regions.front().lacking.reset();
   CHECK(contains(report::verdict_words(diagnosis), "force of up to 190 N."));
@@ -118,7 +119,7 @@ TEST_CASE("a table of lines that does not tell two effects apart names both with
   of.verdict = diagnose::Verdict::effect;
   of.none = 0.01;
   of.unknown = 0.24;
-  of.effects = {{"load_independent_friction", "dynamics", "a dry friction", 0.37, {}, {}, 0.37, {}}};
+  of.effects = {{"load_independent_friction", diagnose::Stage::dynamics, "a dry friction", 0.37, {}, {}, 0.37, {}}};
   of.ranking = {{{{"load_independent_friction"}}, 0.37, 1.0, 1.0, 1, {}}};
   diagnose::LineComparison lines;
   lines.lines = 12;

@@ -63,7 +63,7 @@ diagnose::Diagnosis evil_diagnosis() {
   of.verdict = diagnose::Verdict::effect;
   of.points = 100;
   of.effects = {{kEvil,
-                 kEvil,
+                 diagnose::Stage::optics,
                  kEvil,
                  0.9,
                  {kEvil},
@@ -74,9 +74,10 @@ diagnose::Diagnosis evil_diagnosis() {
                 {{{kEvil}}, 0.0, 0.0, 0.0, 1, {}, diagnose::ImpossibleSize{kEvil, -1.0, {}}}};
   of.none = 0.05;
   of.unknown = 0.05;
-  of.stage = kEvil;
+  of.stage = diagnose::Stage::optics;
   of.next = diagnose::RecordForEffect{kEvil, diagnose::Alternative{{{kEvil}}, {{kEvil}}}};
-  of.regions = {{"t_s", 0.0, 1.0, 5.0, 1e-3, kEvil, kEvil, kEvil, {}, 1e-4, 0, 0.5}};
+  of.regions = {
+      {diagnose::GapVariable::time, 0.0, 1.0, 5.0, 1e-3, kEvil, diagnose::GapKind::force, kEvil, {}, 1e-4, 0, 0.5}};
   of.effects.front().parameters.push_back({"mu." + kEvil, 1.0, 0.1, "", ""});
   of.effects.front().parameters.push_back({"mu.2" + kEvil, 1.0, 0.1, "", ""});
   of.explained = {{kEvil, 0.9, diagnose::GapInterval{0.8, 0.95}, 1.2}};
@@ -89,7 +90,7 @@ diagnose::Diagnosis evil_diagnosis() {
               diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
               diagnose::LaunchedOtherWay{kEvil, true}, diagnose::ContradictedReading{0.3, kEvil},
               of.limits.contradicted.front()};
-  of.pictures = {{kEvil, kEvil, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
+  of.pictures = {{kEvil, diagnose::Stage::optics, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
   of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
   of.residuals = {{kEvil,
                    {0.0, 1.0, 2.0},

@@ -57,7 +57,7 @@ TEST_CASE("the page of a diagnosis tells an effect by its name, and its id besid
   of.verdict = diagnose::Verdict::effect;
   diagnose::DiagnosedEffect effect{};
   effect.id = "load_independent_friction";
-  effect.stage = "dynamics";
+  effect.stage = diagnose::Stage::dynamics;
   effect.probability = effect.joint_probability = 0.9;
   of.effects = {effect};
   diagnose::RankedExplanation ranked{};

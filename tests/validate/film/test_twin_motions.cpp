@@ -105,7 +105,8 @@ TEST_CASE("each force that a scenario has moves the twin as the fit's own model 
     const std::size_t effect = diagnose::effect_index(id);
     const diagnose::MotionFit fit =
         diagnose::linearise_at(set, {effect}, diagnose::with_effect(set, nominal, effect, values, {}));
-    const diagnose::Twin twin = diagnose::twin_of(set, fit, {{id, "dynamics", "", 1.0, {}, {}, 1.0, {}}}, false, {});
+    const diagnose::Twin twin =
+        diagnose::twin_of(set, fit, {{id, diagnose::Stage::dynamics, "", 1.0, {}, {}, 1.0, {}}}, false, {});
     CHECK(twin.lacks.empty());
     const auto tracks =
         validate::make_tracks(render::read_scenario(twin.toml, "twin.toml", render::ScenarioChecks::values), 1);

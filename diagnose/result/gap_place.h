@@ -1,0 +1,39 @@
+/// Where a gap lies: between the world and the result, and over which variable, and what of a motion or an image it is.
+#pragma once
+
+#include <string_view>
+
+namespace glidelab::diagnose {
+
+/// Where between the world and the result an effect acts.
+enum class Stage { dynamics, optics, timing, sensor, tracking, analysis };
+
+/// What a gap lies over.
+enum class GapVariable { acceleration, clip, direction, set_up, mass, time, column, speed, row, position };
+
+/// What differs there from the model.
+enum class GapKind {
+  force,
+  friction,
+  viscous_drag,
+  acceleration,
+  displacement,
+  lateness,
+  scale,
+  intercept,     ///< of a published line
+  drag,          ///< of a published line
+  marker_width,  ///< from here on in images
+  marker_shear,
+  brightness,
+  scene_place,
+  block_steps
+};
+
+/// As files have it: "dynamics".
+std::string_view to_text(Stage stage);
+/// As diagnosis.json has it: "x_m", "group".
+std::string_view to_text(GapVariable variable);
+/// As files and pages have it: "viscous drag".
+std::string_view to_text(GapKind kind);
+
+}  // namespace glidelab::diagnose
