@@ -47,7 +47,12 @@ void render_command(const RenderCommandOptions& options) {
   base::list_made_files(staged_experiment.dir());
   check_replaceable(out, truth);  // what came there meanwhile
   staged_truth.publish_whole();
-  staged_experiment.publish_whole();
+  try {
+    staged_experiment.publish_whole();
+  } catch (const base::EnvironmentError&) {  // no truth without its experiment
+    staged_truth.take_back();
+    throw;
+  }
   display.clear();
 
   if (options.common.json) {

@@ -306,6 +306,16 @@ StagedOutput::~StagedOutput() {
 
 namespace {
 
+/// After swap_in(from, to): each where it was.
+void undo_swap(const fs::path& from, const fs::path& to) {
+  std::error_code ignored;  // the error that led here is the one to tell
+  if (!fs::exists(fs::symlink_status(from, ignored))) {
+    fs::rename(to, from, ignored);
+  } else {
+    ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE);
+  }
+}
+
 /// What was put in place so far; unless it is kept, the end of this takes it back: what is new goes to its staged
 /// place, and what it replaced comes from there.
 class Placed {
@@ -315,7 +325,7 @@ class Placed {
   Placed& operator=(const Placed&) = delete;
   ~Placed() {
     try {
-      for (const fs::path& staged : staged_) take_back(staged);
+      for (const fs::path& staged : staged_) undo_swap(staged, final_ / staged.filename());
     } catch (const std::bad_alloc&) {  // what is in place stays there; the error that led here is told
     }
   }
@@ -323,16 +333,6 @@ class Placed {
   void keep() { staged_.clear(); }
 
  private:
-  void take_back(const fs::path& staged) const {
-    std::error_code ignored;  // a destructor has nobody to tell
-    const fs::path now = final_ / staged.filename();
-    if (!fs::exists(fs::symlink_status(staged, ignored))) {
-      fs::rename(now, staged, ignored);
-    } else {
-      ::renameat2(AT_FDCWD, staged.c_str(), AT_FDCWD, now.c_str(), RENAME_EXCHANGE);
-    }
-  }
-
   const fs::path& final_;
   std::vector<fs::path> staged_;
 };
@@ -360,6 +360,10 @@ void StagedOutput::publish_files() {
 void StagedOutput::publish_whole() {
   begin_publishing();
   swap_in(staging_, final_);
+}
+
+void StagedOutput::take_back() {
+  undo_swap(staging_, final_);
 }
 
 }  // namespace glidelab::base

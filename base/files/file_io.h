@@ -83,6 +83,10 @@ class StagedOutput {
   /// Renames the staging folder to the final name as a whole; an existing folder is swapped out and removed.
   void publish_whole();
 
+  /// After publish_whole(): what stood under the final name before stands there again, as far as the file system lets
+  /// it.
+  void take_back();
+
  private:
   std::filesystem::path final_;
   std::filesystem::path staging_;

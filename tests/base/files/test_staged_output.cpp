@@ -89,6 +89,25 @@ TEST_CASE("a whole folder replaces the one that stood there") {
   CHECK(entries(temp.path()) == 1);
 }
 
+TEST_CASE("a whole folder that is taken back gives its place to the one before, or to none") {
+  const glidelab::tests::TempDir temp;
+  const auto publish_and_take_back = [&] {
+    StagedOutput output(temp / "out");
+    write_file(output.dir() / "new.txt", "new");
+    output.publish_whole();
+    CHECK(fs::exists(temp / "out/new.txt"));
+    output.take_back();
+  };
+  publish_and_take_back();
+  CHECK(entries(temp.path()) == 0);
+  fs::create_directories(temp / "out");
+  write_file(temp / "out/old.txt", "old");
+  publish_and_take_back();
+  CHECK(read_file(temp / "out/old.txt") == "old");
+  CHECK_FALSE(fs::exists(temp / "out/new.txt"));
+  CHECK(entries(temp.path()) == 1);
+}
+
 TEST_CASE("an output that is not published leaves nothing behind") {
   const glidelab::tests::TempDir temp;
   { StagedOutput output(temp / "out"); }
