@@ -108,7 +108,7 @@ What goes where, and what follows. `experiment.toml` explains every key.
 Then, before you put anything away:
 
     glidelab check .       # is the recording good enough? what to change
-    glidelab analyze .     # K/m, mu, inclination, limit velocity
+    glidelab analyze .     # K/m, mu, inclination, terminal velocity
     glidelab diagnose .    # what the simple law does not explain, if anything
 )";
 

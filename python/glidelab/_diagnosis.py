@@ -56,7 +56,7 @@ class Cause:
 
 @dataclass(frozen=True)
 class Recovered:
-    """K/m, mu, alpha and the limit velocity of one configuration, with the causes `with_causes` in the model."""
+    """K/m, mu, alpha and the terminal velocity of one configuration, with the causes `with_causes` in the model."""
 
     group: str
     mass_kg: float

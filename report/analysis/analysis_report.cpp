@@ -51,7 +51,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     }
   }
   if (c.v_lim_m_s.estimate) {
-    text += fmt::format("{}its limit velocity is {} m/s", text.empty() ? "" : "; ",
+    text += fmt::format("{}its terminal velocity is {} m/s", text.empty() ? "" : "; ",
                         base::value_and_sd_text(c.v_lim_m_s.estimate->value, c.v_lim_m_s.estimate->sd));
   }
   if (text.empty()) text = "the data determine neither drag nor friction; the table says why";
@@ -156,7 +156,8 @@ std::string analysis_answer(const core::AnalysisResults& results) {
     const std::string words = value_words(results, which);
     if (!words.empty()) values += (values.empty() ? "" : ", ") + words;
   }
-  if (values.empty()) return "The data determine none of K/m, µ, α and the limit velocity; why stands below the table.";
+  if (values.empty())
+    return "The data determine none of K/m, µ, α and the terminal velocity; why stands below the table.";
   const std::string doubted = doubts_about(results).empty() ? "" : " (but the law is in doubt: see below the table)";
   const std::size_t many = results.configurations.size();
   return fmt::format("{}{}{}.", values, many == 1 ? "" : fmt::format(" over {} configurations", many), doubted);
@@ -206,7 +207,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
 
 namespace {
 
-/// K/m, µ, α and the limit velocity with ±, of each of few configurations; of many the table has them.
+/// K/m, µ, α and the terminal velocity with ±, of each of few configurations; of many the table has them.
 std::string value_tiles(const core::AnalysisResults& results) {
   constexpr std::size_t kMostTiled = 2;
   if (results.configurations.size() > kMostTiled) return {};

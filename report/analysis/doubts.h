@@ -1,5 +1,5 @@
 /// Whether the assumed law (drag in proportion to the speed, dry friction, gravity) fits what was analysed. Where it
-/// does not, the standard deviations of K/m, µ, α and the limit velocity say nothing of how far these are from the
+/// does not, the standard deviations of K/m, µ, α and the terminal velocity say nothing of how far these are from the
 /// glider's.
 #pragma once
 

@@ -39,7 +39,7 @@ std::string paragraph(const std::string& words, const char* kind = "") {
 
 std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.recovered.empty()) return {};
-  std::string text = "<h2>K/m, µ, α and limit velocity</h2>\n";
+  std::string text = "<h2>K/m, µ, α and terminal velocity</h2>\n";
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
     text += paragraph(fmt::format("Of each configuration, {}.{}", with_words(table.with),
                                   diagnosis.remainder ? " The standard deviations include the remainder." : ""));

@@ -38,7 +38,7 @@ struct BandwidthChoice {
 /// f(v(t)) at every point of the stretches (0 elsewhere): f is the line of each direction, v(t) is smoothed at
 /// `bandwidth_s`. The fit averages the noise of its points, so half the pilot's bandwidth, with a quarter of its bias,
 /// serves (law_bandwidth). A law that is no line gets the bias that its mean slope makes of the true v(t). The slope is
-/// taken without its noise, and so as 0 only where it cannot be told from 0: a glider near its limit velocity has
+/// taken without its noise, and so as 0 only where it cannot be told from 0: a glider near its terminal velocity has
 /// a slope as any other, however little v changes.
 std::vector<double> pilot_law(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
