@@ -17,6 +17,6 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 inline constexpr double kBelowZero = 2.0;  ///< standard deviations: what chance does in one of forty
 
 /// Below a table of values that are in doubt.
-inline constexpr const char* kIfItHeld = "The law does not fit these clips: ± hold only if it did.";
+inline constexpr const char* kIfItHeld = "The law does not fit these clips: the ± would hold only if it did.";
 
 }  // namespace glidelab::report

@@ -94,7 +94,7 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
 }  // namespace
 
 std::string region_table(const std::vector<diagnose::GapRegion>& regions) {
-  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where surest"}, 2);
+  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where clearest"}, 2);
   for (const diagnose::GapRegion& region : regions) {
     const bool named = region.variable == diagnose::GapVariable::set_up;  // a set-up has a number that no reader knows
     const std::string over = named ? "one of the set-ups" : axis_of(region.variable);

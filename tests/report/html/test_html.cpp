@@ -143,7 +143,7 @@ TEST_CASE("a page says in words where a plot has nothing to show, and keeps its 
   const report::Plot seen = {{"plot $a using 1:2", {{"a", {{0.0, 1.0}, {1.0, 2.0}}}}}, "seen", "a plot"};
   const report::Plot nothing = {{"plot $a using 1:2", {{"a", {{0.0, HUGE_VAL}}}}}, "not <seen>", "an empty plot"};
   const report::Page page = report::page("two", report::figures({nothing, seen}));
-  CHECK(page.html.find("This plot is left out, for its numbers leave nothing to draw") != std::string::npos);
+  CHECK(page.html.find("This plot is left out because its numbers leave nothing to draw") != std::string::npos);
   CHECK(page.html.find("<code>plots/01-an-empty-plot.csv</code>") != std::string::npos);
   CHECK(page.html.find("not &lt;seen&gt;") != std::string::npos);
   CHECK(page.html.find("<img alt=\"a plot\" src=\"data:image/svg+xml") != std::string::npos);
