@@ -217,8 +217,7 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
     return meaning_section(
         "<p>There is nothing to count: no estimator found a value whose truth is known. K/m and µ have a true value "
         "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the "
-        "terminal "
-        "velocity where the forces balance, and these motions do not determine them.</p>\n");
+        "terminal velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
   std::string text;
   if (narrow.empty()) {

@@ -195,8 +195,7 @@ std::string judged_by_text(const Requirement& requirement) {
       "estimator: {} of each camera{}, and {} of the cheapest that reaches the target. All limits at one look have a "
       "confidence of {:.3g} %, so that the looks together err in at most 5 % of all cases. Up to {} runs of tracks "
       "with the predicted noise and the clock are made as well: a camera that misses the target there and reaches it "
-      "in "
-      "fewer than {} rendered runs is undecided.",
+      "in fewer than {} rendered runs is undecided.",
       looks.front(),
       looks.size() < 2
           ? std::string()

@@ -253,8 +253,7 @@ std::string bandwidths_of(const SweepSummary& summary) {
   // Two standard errors of the ratio of two rms errors, of normal errors.
   return fmt::format(
       "<p>Of the {} given bandwidths of the lines, the smallest rms error is that of {}. Two whose errors differ by "
-      "less "
-      "than {:.0f} % may be equivalent.</p>\n",
+      "less than {:.0f} % may be equivalent.</p>\n",
       given.size(), winners, 200.0 / std::sqrt(static_cast<double>(answered)));
 }
 
