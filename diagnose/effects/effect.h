@@ -78,9 +78,8 @@ struct EffectLaw {
   SeenBy seen_by = SeenBy::lens;
   double (*stretch)(const double* p) = nullptr;  ///< true time over stated time
   double (*row_s)(const double* p) =
-      nullptr;  ///< how much later a row is exposed than the one above, over what is stated
-  bool passing =
-      false;  ///< acts at some positions, times or clips only, and has no part in the balance at terminal velocity
+      nullptr;           ///< how much later a row is exposed than the one above, over what is stated
+  bool passing = false;  ///< acts at some positions, times or clips only: no part of the balance at terminal velocity
 
   bool acts(const double* p) const {
     return std::any_of(p + size, p + size + sizes, [](double value) { return value != 0.0; });

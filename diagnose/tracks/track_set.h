@@ -34,9 +34,9 @@ void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t
 std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedMotion>& motions);
 
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
-/// start or for a stop stays in the motion, else it is left out. Motions with fewer than 6 points are left out, and so
-/// are pieces with fewer than 12 of a clip that holds a longer one. Of more than 30,000 positions in all every second,
-/// third, ... is taken (thin_out()).
+/// start or for a stop stays in the motion; otherwise it is left out. Motions with fewer than 6 points are left out,
+/// and so are pieces with fewer than 12 of a clip that holds a longer one. Of more than 30,000 positions in all every
+/// second, third, ... is taken (thin_out()).
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
 
 /// Point i off the cubic through its four nearest neighbours, over the standard deviation that unit noise gives it: its
