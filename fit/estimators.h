@@ -15,7 +15,7 @@
 namespace glidelab::fit {
 
 struct EstimateOptions {
-  bool robust = false;  ///< leave out positions that lie off the motion; of estimators that `take_robust`
+  bool robust = false;  ///< leave out outliers; only for estimators that `take_robust`
 };
 
 struct Estimator {
@@ -25,7 +25,7 @@ struct Estimator {
   core::LineMethod lines = core::LineMethod::ordinary;  ///< that it starts from
   bool of_lines = true;                                 ///< the lines give the quantities: they are what was smoothed
   bool takes_robust = false;
-  bool judged = false;  ///< validate, require and a baseline judge by it; a sweep runs it where none is named
+  bool judged = false;  ///< validate, require and a baseline use it; a sweep runs it where none is named
   /// The quantities of all configurations, from an analysis with `lines`.
   core::AnalysisResults (*estimate)(core::AnalysisResults of_lines, const EstimateOptions& options) = nullptr;
 };
@@ -36,11 +36,11 @@ inline const Estimator& default_estimator() {
   return estimators().front();
 }
 std::vector<Estimator> judged_estimators();
-/// Null where there is none of the name.
+/// Null where there is none of that name.
 const Estimator* find_estimator(std::string_view name);
 std::vector<std::string> estimator_names();
 
-/// What each of `wanted` makes of one experiment; `analyze` is asked once for each method that they start from.
+/// The results of each of `wanted` for one experiment; `analyze` is called once for each method that they start from.
 std::vector<core::AnalysisResults> estimate_each(const std::vector<Estimator>& wanted,
                                                  const std::function<core::AnalysisResults(core::LineMethod)>& analyze);
 

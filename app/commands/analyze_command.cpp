@@ -82,7 +82,7 @@ void check_smoother(const AnalyzeOptions& options, const fit::Estimator& estimat
   const std::string expected = fmt::format("--smoother {}", core::kLocalPolynomial);
   if (options.bandwidth_given) {
     throw CommandLineError(base::describe({"", 0, "--bandwidth", fmt::format("--smoother {}", options.smoother),
-                                           expected + " (the others find their own strength)"}));
+                                           expected + " (the other smoothers choose their own strength)"}));
   }
   if (estimator.lines == core::LineMethod::generalised) {
     throw CommandLineError(
@@ -96,7 +96,7 @@ void analyze(const AnalyzeOptions& options) {
   if (options.robust && !estimator.takes_robust) {
     throw CommandLineError(
         base::describe({"", 0, "--robust", options.estimator,
-                        "the estimator trajectory (lines leave positions off the motion out anyway)"}));
+                        "the estimator trajectory (the line estimators leave out outliers in any case)"}));
   }
   check_smoother(options, estimator);
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
@@ -171,8 +171,8 @@ void add_analyze(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "EXPERIMENT", options->experiments,
-          "Folders that hold an experiment.toml; several share the glider and the track. Or files with a track: "
-          "t_s,x_m, what Tracker, Logger Pro, Capstone or phyphox export, or a project of Tracker (.trk, .trz)")
+          "Folders that hold an experiment.toml; several must share the glider and the track. Or track files: t_s,x_m, "
+          "an export from Tracker, Logger Pro, Capstone or phyphox, or a Tracker project (.trk, .trz)")
       ->type_name("DIR|FILE")
       ->required();
   command->add_option("--smoother", options->smoother, smoother_help())
@@ -194,12 +194,13 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("NAME")
       ->check(CLI::IsMember(fit::estimator_names()))
       ->capture_default_str();
-  command->add_flag("--robust", options->robust,
-                    "With \"trajectory\": leave out positions more than four scaled median absolute deviations off the "
-                    "motion, found with Huber's weights");
+  command->add_flag(
+      "--robust", options->robust,
+      "With \"trajectory\": leave out positions that lie more than four scaled median absolute deviations "
+      "from the motion, which is fitted with Huber's weights");
   command
       ->add_option("--with", options->with,
-                   "Give K/m, mu, alpha and v_lim also with this effect in the model (ids as in "
+                   "Also give K/m, mu, alpha and v_lim with this effect in the model (ids as in "
                    "docs/reference/effects.md); may be repeated")
       ->type_name("EFFECT")
       ->allow_extra_args(false);

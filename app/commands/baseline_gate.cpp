@@ -71,7 +71,7 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
     std::error_code error;  // of a file that is not there
     if (!gate.compare.empty() && fs::equivalent(gate.compare, gate.write, error)) {
       throw base::InputError(base::Issue{gate.write, 0, "--write-baseline", "the file of --baseline",
-                                         "another file: a baseline that is compared with is kept"});
+                                         "another file: the baseline of the comparison is not overwritten"});
     }
   }
   const std::string text = base::read_file(scenario_file);
@@ -79,18 +79,18 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
   std::optional<validate::Baseline> then;
   if (!gate.compare.empty()) then = validate::read_baseline(gate.compare);
   if (then && then->scenario != text) {
-    throw base::InputError(base::Issue{gate.compare, 0, "scenario", "the text of another scenario",
-                                       fmt::format("that of {}, as when the baseline was written", scenario_file)});
+    throw base::InputError(
+        base::Issue{gate.compare, 0, "scenario", "the text of another scenario",
+                    fmt::format("that of {}, unchanged since the baseline was written", scenario_file)});
   }
   if (then && gate.noise_m && *gate.noise_m != then->noise_m) {
-    throw base::InputError(
-        base::Issue{gate.compare, 0, "--noise-m", fmt::format("{}", *gate.noise_m),
-                    fmt::format("{}, with which the baseline was made, or the option left out", then->noise_m)});
+    throw base::InputError(base::Issue{gate.compare, 0, "--noise-m", fmt::format("{}", *gate.noise_m),
+                                       fmt::format("{}, as for the baseline, or the option left out", then->noise_m)});
   }
   if (then && then->seed && common.seed == then->seed) {
     throw base::InputError(base::Issue{
         gate.compare, 0, "--seed", fmt::format("{}, with which the baseline was made", *then->seed),
-        "another one, or the option left out: with the same noise an unchanged analysis would prove nothing"});
+        "another seed, or the option left out: with the same noise an unchanged analysis would prove nothing"});
   }
   validate::BaselineOptions options;
   options.noise_m = then ? then->noise_m : gate.noise_m.value_or(options.noise_m);

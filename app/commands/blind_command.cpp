@@ -101,9 +101,10 @@ void add_blind(CLI::App& app, Command& chosen) {
       command->add_flag("--leave-out", options->blind.leave_out,
                         "Diagnose each case of one effect again with that effect taken off the list");
   command
-      ->add_flag("--everyday", options->blind.everyday,
-                 "Tracks as students record them: one cause, two, none or one off the list, each beside three to five "
-                 "small imperfections")
+      ->add_flag(
+          "--everyday", options->blind.everyday,
+          "Tracks as students record them: one cause, two, none, or one that is not on the list, each with three "
+          "to five small imperfections")
       ->excludes(pictures)
       ->excludes(leave_out);
   add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");

@@ -35,7 +35,7 @@ struct ChallengeCommand {
 
 void refuse_to_replace(const fs::path& path) {
   if (!fs::exists(path)) return;
-  throw base::InputError(base::Issue{path.string(), 0, "", "something that is there", "a name that is free"});
+  throw base::InputError(base::Issue{path.string(), 0, "", "something that exists", "a new name"});
 }
 
 void make(const ChallengeCommand& options) {
@@ -55,7 +55,7 @@ void make(const ChallengeCommand& options) {
   display.clear();
   const std::string made = base::read_file(folder / "challenge.json");
   print_result(options.common.json ? made
-                                   : fmt::format("{} cases in {}\nthe truth is in {}: keep it back until all answers "
+                                   : fmt::format("{} cases in {}\nthe truth is in {}: keep it secret until all answers "
                                                  "are in; its SHA-256 is in challenge.json\n",
                                                  options.cases, folder.string(), truth.string()));
 }
@@ -138,9 +138,10 @@ void check_use(const CLI::App& command, const ChallengeCommand& options) {
   only_for("make", {"--level", "--cases", "--seed"});
   only_for("run", {"--estimator", "--estimator-command"});
   only_for("score", {"--truth", "RESULTS"});
-  if (options.action == "make" && given("--out")) throw CLI::ValidationError("--out", "FOLDER is where it goes");
+  if (options.action == "make" && given("--out"))
+    throw CLI::ValidationError("--out", "FOLDER already says where it goes");
   if (options.action == "run" && given("--estimator") == given("--estimator-command")) {
-    throw CLI::RequiresError("challenge run", "--estimator or --estimator-command, one of them,");
+    throw CLI::RequiresError("challenge run", "either --estimator or --estimator-command");
   }
   if (options.action == "score" && options.results.empty()) throw CLI::RequiresError("challenge score", "RESULTS");
 }
@@ -149,10 +150,10 @@ void check_use(const CLI::App& command, const ChallengeCommand& options) {
 
 void add_challenge(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<ChallengeCommand>();
-  CLI::App* command = app.add_subcommand(
-      "challenge",
-      "Make experiments with a sealed truth (make), have an estimator answer them (run), and rank answers where they "
-      "differ (score)");
+  CLI::App* command = app.add_subcommand("challenge",
+                                         "Make experiments with a sealed truth (make), have an estimator answer them "
+                                         "(run), and rank the answers of several "
+                                         "estimators (score)");
   command->add_option("ACTION", options->action, "What to do")
       ->type_name("make|run|score")
       ->check(CLI::IsMember({"make", "run", "score"}))
@@ -176,7 +177,7 @@ void add_challenge(CLI::App& app, Command& chosen) {
   add_outside_options(*command, options->outside);
   add_common_options(*command, options->common,
                      "glidelab-out/answers-<name of the estimator>, glidelab-out/challenge-<name of the folder>",
-                     "For make: seed of the cases, which stands in the truth alone; default: 1");
+                     "For make: seed of the cases, which is written in the truth only; default: 1");
   command->callback([options, command, &chosen] {
     check_use(*command, *options);
     chosen = [options] {

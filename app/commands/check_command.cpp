@@ -59,7 +59,7 @@ void add_check(CLI::App& app, Command& chosen) {
       "check", "Check a recording before any analysis: pattern, marker, exposure, blur, frame times; with advice");
   command
       ->add_option("RECORDING", options->input,
-                   "A folder that holds an experiment.toml, or a file with a track, as analyze takes it")
+                   "A folder that holds an experiment.toml, or a track file, as analyze takes it")
       ->type_name("DIR|FILE")
       ->required();
   add_bare_options(*command, options->bare);

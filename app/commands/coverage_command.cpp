@@ -75,7 +75,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
     throw base::NotMet(
         fmt::format("{}: nothing to count: no estimator found a value whose truth is known. K/m and mu have a true "
                     "value only for viscous drag with Coulomb friction; under another law only the inclination and the "
-                    "limit velocity have one, and only where the motions determine them",
+                    "terminal velocity have one, and only where the motions determine them",
                     options.scenario));
   }
   if (bandwidth_given && std::all_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {

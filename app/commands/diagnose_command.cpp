@@ -60,11 +60,11 @@ void check_plan(const DiagnoseCommand& options) {
   if (options.experiments.size() > 1) {
     throw CommandLineError(
         base::describe({"", 0, "EXPERIMENT", fmt::format("{} of them, the first a file", options.experiments.size()),
-                        "with --plan one scenario, or folders"}));
+                        "with --plan, one scenario, or folders only"}));
   }
   if (!options.noise_m) {
     throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "nothing",
-                                           "the position noise in metres, which a scenario alone does not have"}));
+                                           "the position noise in metres, which a scenario does not state"}));
   }
 }
 
@@ -169,8 +169,8 @@ void add_diagnose(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "EXPERIMENT", options->experiments,
-          "Folders that hold an experiment.toml; several share the glider and the track. Or files with a track, as "
-          "analyze takes them; or one .csv, a table of lines")
+          "Folders that hold an experiment.toml; several must share the glider and the track. Or track files, as "
+          "analyze takes them; or one .csv with a table of lines")
       ->type_name("DIR|FILE")
       ->required();
   CLI::Option* without =

@@ -40,7 +40,7 @@ void add_explore(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<ExploreOptions>();
   CLI::App* command = app.add_subcommand(
       "explore", "Make a page for class: sliders for the law, K/m, mu, alpha and v0; x(t), v(t) and a(v) together");
-  command->add_option("--language", options->language, "Language in which the page opens; its menu has all")
+  command->add_option("--language", options->language, "Language in which the page opens; its menu offers all")
       ->check(CLI::IsMember(teach::language_codes()))
       ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/explore-page",

@@ -56,7 +56,7 @@ void make_worksheets(const LawsOptions& options, const std::vector<fs::path>& fi
     studies.push_back(teach::study_law(file));
     if (!names.insert(file.stem().string()).second) {
       throw base::InputError(base::Issue{file.string(), 0, "", "a second scenario of this name",
-                                         "scenarios of different names, after which worksheets are named"});
+                                         "scenarios with different names: worksheets are named after them"});
     }
     if (std::ranges::none_of(studies.back().curves, [](const teach::LawCurve& c) { return !c.down_v_m_s.empty(); })) {
       throw base::InputError(base::Issue{file.string(), 0, "", "no motion downhill",
@@ -110,8 +110,8 @@ void laws(const LawsOptions& options) {
 void add_laws(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<LawsOptions>();
   CLI::App* command = app.add_subcommand(
-      "laws", "Make one page of friction laws: for each a film, x(t), and a(v) with its equilibrium");
-  command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders with some (scenarios/laws)")
+      "laws", "Make one page of friction laws: for each law a film, x(t), and a(v) with its equilibrium");
+  command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders of them (scenarios/laws)")
       ->type_name("PATH")
       ->required();
   command->add_flag("--worksheet", options->worksheet,
@@ -119,7 +119,7 @@ void add_laws(CLI::App& app, Command& chosen) {
                     "(NAME-answers.pdf)");
   command
       ->add_option("--language", options->language,
-                   "Language in which the page opens (its menu has all), and of the worksheets")
+                   "Language in which the page opens (its menu offers all), and of the worksheets")
       ->check(CLI::IsMember(teach::language_codes()))
       ->capture_default_str();
   add_common_options(*command, options->common, "glidelab-out/laws-<name of the first>",

@@ -35,7 +35,7 @@ void check_free(const fs::path& folder) {
 void make_new(const NewOptions& options) {
   if (!options.folder.empty() && !options.common.out.empty()) {
     throw CommandLineError(
-        base::describe({"", 0, "--out", options.common.out, "either FOLDER or --out, which say the same"}));
+        base::describe({"", 0, "--out", options.common.out, "either FOLDER or --out, which mean the same"}));
   }
   CommonOptions where = options.common;
   if (where.out.empty()) where.out = options.folder;

@@ -40,7 +40,8 @@ std::pair<int, int> corners_of(const std::string& text) {
     const bool counts = std::min(first, second) >= 3 && std::max(first, second) <= 100;
     if (second_error == std::errc{} && last == end && counts) return {std::max(first, second), std::min(first, second)};
   }
-  throw base::InputError(base::Issue{"", 0, "--corners", text, "two numbers of inner corners from 3 to 100, as 9x6"});
+  throw base::InputError(
+      base::Issue{"", 0, "--corners", text, "two numbers of inner corners from 3 to 100, such as 9x6"});
 }
 
 void pattern(const PatternOptions& options) {

@@ -80,9 +80,9 @@ void add_render(CLI::App& app, Command& chosen) {
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
       ->type_name("FILE")
       ->required();
-  command->add_flag(
-      "--ideal", options->ideal,
-      "Render sharp frames without noise and distortion, and write the marker's centre in each beside the truth");
+  command->add_flag("--ideal", options->ideal,
+                    "Render sharp frames without noise or distortion, and write the marker's centre in each of them "
+                    "beside the truth");
   add_common_options(*command, options->common, "glidelab-out/render-<name of the scenario file>",
                      "Seed of the camera's noise; default: the scenario's");
   command->callback([options, &chosen] { chosen = [options] { render_command(*options); }; });

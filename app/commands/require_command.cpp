@@ -53,8 +53,8 @@ void require_command(const RequireOptions& options) {
   how.before_rendering = [&](const validate::ConfirmationSize& size) {
     display.clear();
     say(options.common,
-        fmt::format("the bound allows {} of {}: {} recordings to render, about {:.2g} min on {} threads, and longer "
-                    "for those that are close to the target and to find what limits those that miss it",
+        fmt::format("the bound allows {} of {}: {} recordings to render, about {:.2g} min on {} threads; candidates "
+                    "close to the target take longer, and so does finding what limits those that miss it",
                     size.close, size.points, size.recordings, size.seconds / 60.0, options.common.jobs));
   };
   how.watch = throw_if_interrupted;
@@ -94,12 +94,12 @@ void add_require(CLI::App& app, Command& chosen) {
   command
       ->add_option("--confirm", options->confirm,
                    "How to judge what the bound allows: by rendered \"clips\" (the default for a sweep of level "
-                   "clips), by \"tracks\" with the predicted noise (the default else), or by \"none\"")
+                   "clips), by \"tracks\" with the predicted noise (the default otherwise), or by \"none\"")
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}));
   CLI::Option* runs = command
                           ->add_option("--runs", options->runs,
-                                       "Rendered runs of a camera, at most: of the one to buy, and of those "
+                                       "Most rendered runs of one camera: of the one to buy, and of those "
                                        "that are close to the target")
                           ->type_name("N")
                           ->check(CLI::Range(2, 100000))

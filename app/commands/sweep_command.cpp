@@ -56,7 +56,7 @@ std::optional<validate::Shard> read_shard(const std::string& text) {
 
 std::string check_shard(const std::string& text) {
   if (read_shard(text)) return {};
-  return fmt::format("\"{}\" is not a part such as 2/8, of at most {}", text, kMostShards);
+  return fmt::format("\"{}\" is not a part such as 2/8, with at most {} parts", text, kMostShards);
 }
 
 std::string duration_text(double seconds) {
@@ -89,7 +89,7 @@ void check_size(const SweepOptions& options, const validate::Sweep& sweep) {
     const validate::RunCost cost = validate::cost_of_runs(sweep, {}, runs, options.common.jobs);
     const auto all = static_cast<double>(runs);
     throw base::InputError(base::Issue{options.sweep, 0, "",
-                                       fmt::format("{} runs (about {} on {} threads, {} of disk)", runs,
+                                       fmt::format("{} runs (about {} on {} threads, {} of disk space)", runs,
                                                    duration_text(cost.seconds * all / options.common.jobs),
                                                    options.common.jobs, bytes_text(cost.bytes * all)),
                                        fmt::format("at most {}, or the option --many-runs", kManyRuns)});
@@ -118,9 +118,10 @@ void only_interrupts(std::string_view, double) {
 }
 
 void say_size(const SweepOptions& options, const validate::SweepEstimate& estimate) {
-  say(options.common, fmt::format("{} runs, {} of them to do: about {} on {} threads, {} of disk in the end ({} free)",
-                                  estimate.runs, estimate.missing, duration_text(estimate.seconds), options.common.jobs,
-                                  bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
+  say(options.common,
+      fmt::format("{} runs, {} of them still to do: about {} on {} threads, {} of disk space in the end ({} free)",
+                  estimate.runs, estimate.missing, duration_text(estimate.seconds), options.common.jobs,
+                  bytes_text(estimate.bytes), bytes_text(estimate.free_bytes)));
 }
 
 std::string estimate_json(const SweepOptions& options, const validate::SweepEstimate& estimate) {

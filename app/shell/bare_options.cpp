@@ -25,7 +25,7 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
   command
       .add_option(
           "--column", options.column,
-          "For a file: the column that holds x, by header or number; default: found by its header. Of a Tracker "
+          "For a file: the column that holds x, by header or number; default: found by its header. For a Tracker "
           "project: the point mass; default: the only one")
       ->type_name("NAME|NUMBER");
   CLI::Option* mass = command.add_option("--mass", options.mass_kg, "For a file: mass of the glider in kilograms")
@@ -34,11 +34,13 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
   command.add_option("--incline", options.incline_deg, "For a file: stated inclination in degrees")
       ->type_name("DEG")
       ->check(check_incline);
-  CLI::Option* runs = command.add_option("--runs", options.runs,
-                                         "For a file of several runs or masses: which become clips, \"all\" or their "
-                                         "numbers as 1,3");
+  CLI::Option* runs =
+      command.add_option("--runs", options.runs,
+                         "For a file with several runs or masses: which of them become clips, \"all\" or "
+                         "their numbers, such as 1,3");
   runs->type_name("all|N,N")->excludes("--column");
-  command.add_option("--masses", options.masses_kg, "With --runs: the mass of each in kilograms, as 0.0088,0.0079")
+  command
+      .add_option("--masses", options.masses_kg, "With --runs: the mass of each in kilograms, such as 0.0088,0.0079")
       ->type_name("KG,KG")
       ->delimiter(',')
       ->check(check_above_0)

@@ -125,7 +125,7 @@ void check_writable(const fs::path& folder) {
   if (::stat(folder.c_str(), &own) == 0 && ::stat(folder.parent_path().c_str(), &parent) == 0 &&
       own.st_dev != parent.st_dev) {
     throw base::EnvironmentError(fmt::format(
-        "{}: is a file system of its own, into which results cannot be moved at once; give a folder inside it",
+        "{}: is a file system of its own, into which results cannot be moved in one step; give a folder inside it",
         folder.string()));
   }
 }
@@ -213,7 +213,7 @@ constexpr double kMostMegapixels = 1000.0;  // OpenCV decodes no image of more t
 void add_permissions(CLI::App& command, core::Permissions& permitted) {
   command.add_flag_callback(
       "--allow-outside", [&permitted] { permitted.outside = core::OutsideFiles::allowed; },
-      "Follow absolute names and `..` in experiment.toml to files outside the folder");
+      "Allow absolute names and `..` in experiment.toml, which lead to files outside the folder");
   add_max_megapixels(command, permitted.most_pixels);
 }
 

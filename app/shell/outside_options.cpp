@@ -30,18 +30,19 @@ void add_outside_options(CLI::App& command, OutsideOptions& options) {
   CLI::Option* judged =
       command
           .add_option("--estimator-command", options.command,
-                      "An estimator of your own, judged as well: a program that reads the experiment folder {folder} "
+                      "Also judge an estimator of your own: a program that reads the experiment folder {folder} "
                       "and writes {out}/results.json (docs/reference/own-estimator.md)")
           ->type_name("COMMAND");
-  command.add_option("--estimator-name", options.name, "Its name in results; default: that of the program's file")
+  command
+      .add_option("--estimator-name", options.name, "Its name in the results; default: the name of the program file")
       ->type_name("NAME")
       ->needs(judged);
-  command.add_option("--estimator-seconds", options.seconds, "Time that a run of it may take")
+  command.add_option("--estimator-seconds", options.seconds, "Longest time that one run of it may take")
       ->type_name("SECONDS")
       ->check(check_above_0)
       ->needs(judged)
       ->capture_default_str();
-  command.add_option("--estimator-megabytes", options.megabytes, "Memory that a process of it may take")
+  command.add_option("--estimator-megabytes", options.megabytes, "Most memory that one of its processes may use")
       ->type_name("MB")
       ->check(check_above_0)
       ->needs(judged)

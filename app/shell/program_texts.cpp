@@ -283,9 +283,9 @@ std::string man_page(const CLI::App& app) {
   text += examples();
   text +=
       ".SH EXIT STATUS\n"
-      ".TP\n.B 0\ndone\n.TP\n.B 1\nthe input is wrong\n.TP\n.B 2\na wrong command line\n"
+      ".TP\n.B 0\ndone\n.TP\n.B 1\nthe input is wrong\n.TP\n.B 2\nthe command line is wrong\n"
       ".TP\n.B 3\nthe environment failed: disk full, codec missing\n"
-      ".TP\n.B 4\na requirement is not met: a baseline, a target\n.TP\n.B 130\ninterrupted\n";
+      ".TP\n.B 4\na requirement (a baseline, a target) is not met\n.TP\n.B 130\ninterrupted\n";
   return text;
 }
 

@@ -155,7 +155,8 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
         return false;
       }
     });
-    if (found == factors.end()) break;  // what one clip lacks in every size the others may lack too: it takes time
+    if (found == factors.end())
+      break;  // a marker found in no size in one clip is hardly found in the others, and each try takes time
     attempts[i].track.notes.push_back("a marker of the stated diameter_m is not found: " +
                                       std::exchange(attempts[i].failure, {}));
     std::rotate(factors.begin(), found, found + 1);
@@ -195,7 +196,7 @@ RecordingCheck check_recording(const Experiment& experiment, int jobs, const bas
   ClipWatches watches(open);
   std::vector<ClipAttempt> attempts(experiment.clips.size());
   if (no_camera) {
-    for (ClipAttempt& attempt : attempts) attempt.failure = "not looked at: there is no camera without the pattern";
+    for (ClipAttempt& attempt : attempts) attempt.failure = "not examined: without the pattern the camera is not known";
   } else {
     attempts = attempt_all(experiment, jobs, progress, watches, seen_pattern ? &*seen_pattern : nullptr, check);
   }

@@ -1,10 +1,10 @@
 /// Whether positions can be those of a body that slides along a straight incline, from the positions alone.
 ///
 /// Typical acceleration a: the median of |a| of parabolas through a tenth of the points each, or of one through all of
-/// them where only that tells it from the noise and it goes through each to a twentieth of the range; for friction and
-/// drag aside no incline makes more than g. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of a
-/// over six turns or more. Bend: the sagitta of the marker's path in the image over its length, by a parabola. Smooth:
-/// the scatter off neighbouring positions is below 1e-7 of the distance, which no camera or sensor reaches.
+/// them where only that rises above the noise and passes each point to within a twentieth of the range; friction and
+/// drag aside, no incline gives more than g. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of
+/// a over six turns or more. Bend: the sagitta of the marker's path in the image over its length, by a parabola.
+/// Smooth: the scatter about neighbouring positions is below 1e-7 of the distance, which no camera or sensor reaches.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ namespace glidelab::core {
 MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
                           std::span<const MarkerSighting> sightings, bool forced);
 
-/// What is amiss with it; Severity::unusable is what no diagnosis can speak on.
+/// What is wrong with it; Severity::unusable is what no diagnosis can judge.
 std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2);
 
 }  // namespace glidelab::core

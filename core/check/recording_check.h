@@ -27,7 +27,7 @@ enum class Severity {
 enum class Topic {
   other,
   length,   ///< a distance, a speed or an acceleration
-  size,     ///< of the marker beside its stated diameter
+  size,     ///< of the marker against its stated diameter
   incline,  ///< the stated inclination against the motion
   time,     ///< frame times
   mass,
@@ -82,7 +82,7 @@ struct MotionLook {
 struct MarkerLighting {
   double least_contrast = 1.0;  ///< of the darkest twentieth of the frames, over that of the brightest
   double pull_px = 0.0;         ///< from the outline's centre to the centroid of the marker's light, median
-  /// Half the range, without a twentieth at either end, of its component along the path: by so much a centroid errs.
+  /// Half the range, without a twentieth at either end, of its component along the path: the error of a centroid.
   double pull_change_px = 0.0;
 };
 
@@ -107,9 +107,9 @@ struct ClipCheck {
   double saturated = 0.0;               ///< share of the pixels at the largest code
   double dark = 0.0;                    ///< share of the pixels at 0
   double bright_level = 0.0;            ///< exceeded by 0.1 % of the pixels
-  double marker_px = 0.0;               ///< diameter, median
+  double marker_px = 0.0;               ///< median diameter
   double marker_expected_px = 0.0;      ///< from its stated diameter and the scale along its path; 0: not known
-  std::optional<double> contrast;       ///< marker less its surroundings; none for one that is known by its hue
+  std::optional<double> contrast;       ///< marker minus its surroundings; none for one that is known by its hue
   std::optional<double> marker_level;   ///< its own brightness
   std::optional<MarkerLighting> light;  ///< how it changes along the path; of a marker with an outline
   double pixel_noise = 0.0;             ///< of a pixel at rest from frame to frame; 0 if none is seen

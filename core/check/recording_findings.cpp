@@ -173,23 +173,24 @@ void judge_lighting(const ClipCheck& clip, FindingBook& book) {
   if (clip.light->pull_change_px > kMostPullChange_px) {
     book.add(
         Severity::change,
-        fmt::format("light from one side: the marker's brightness is centred {} off its outline's centre, and that "
+        fmt::format("light from one side: the marker's brightness is centred {} from its outline's centre, and that "
                     "changes by ±{} along the path",
                     length(clip.light->pull_px), length(clip.light->pull_change_px)),
         "light the track evenly, with a second lamp from the other side or through a diffuser: the analysis fits "
         "the outline, but where the lit part alone stands out, that is less certain");
   } else if (clip.light->pull_px > kLargePull * clip.marker_px) {
-    book.add(Severity::note,
-             fmt::format("light from one side: the marker's brightness is centred {} off its outline's centre, by the "
-                         "same along the path to ±{}",
-                         length(clip.light->pull_px), length(clip.light->pull_change_px)),
-             "");
+    book.add(
+        Severity::note,
+        fmt::format("light from one side: the marker's brightness is centred {} from its outline's centre, the same "
+                    "along the path to within ±{}",
+                    length(clip.light->pull_px), length(clip.light->pull_change_px)),
+        "");
   }
   if (clip.light->least_contrast < kLeastContrastAlong) {
     book.add(Severity::change,
              fmt::format("the marker's contrast falls to {} of its largest along the path",
                          percent_text(clip.light->least_contrast)),
-             "move lamps and bright or dark things in the background away from where the marker passes");
+             "move lamps, and bright or dark objects in the background, away from the marker's path");
   }
 }
 
@@ -260,7 +261,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
         Severity::unusable, clip.failure,
         clip.pictures
             ? "check that the file plays, that the marker is in the image and moves, and that [marker] describes it"
-            : "mend the file, or say which of its columns is x",
+            : "repair the file, or say which of its columns is x",
         Topic::failure);
     return;
   }
@@ -317,7 +318,7 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
   for (const ClipSetup& setup : experiment.clips) {
     if (setup.launched != Launched::unknown) continue;
     findings.push_back({Severity::note, setup.name,
-                        fmt::format("a file on its own: its mass is taken as {:.6g} kg and its inclination as {:.4g}°",
+                        fmt::format("a single file: its mass is taken as {:.6g} kg and its inclination as {:.4g}°",
                                     setup.mass_kg, setup.incline_rad * base::kDegreesPerRad + 0.0),
                         "--mass and --incline state others; K/m, µ and α do not depend on them"});
   }

@@ -9,7 +9,7 @@
 
 namespace glidelab::core {
 
-/// The most severe first; what several clips have in common is said once.
+/// The most severe first; what several clips have in common is stated once.
 std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCheck& check);
 
 }  // namespace glidelab::core

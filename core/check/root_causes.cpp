@@ -86,11 +86,11 @@ std::vector<Root> stated_roots(const Experiment& experiment, double longest_m) {
   if (experiment.scale && experiment.scale->px_per_m < kLeastScale_px_m) {
     const double value = experiment.scale->px_per_m;
     const Unit unit = likely_unit(1.0 / value, 1.0 / kUsualScale_px_m);
-    roots.push_back(
-        {{Severity::unusable, "scale",
-          fmt::format("px_per_m = {:.6g} looks like pixels a {} ({:.6g} a metre)", value, unit.one, value * unit.per_m),
-          fmt::format("state it for a metre: px_per_m = {:.6g}", value * unit.per_m)},
-         kByLength});
+    roots.push_back({{Severity::unusable, "scale",
+                      fmt::format("px_per_m = {:.6g} looks like pixels per {} ({:.6g} per metre)", value, unit.one,
+                                  value * unit.per_m),
+                      fmt::format("state it per metre: px_per_m = {:.6g}", value * unit.per_m)},
+                     kByLength});
   }
   if (experiment.marker) {
     add(long_length("diameter_m", experiment.marker->diameter_m, kLargestMarker_m, kUsualMarker_m,

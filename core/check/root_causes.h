@@ -1,7 +1,7 @@
 /// Statements in a wrong unit, found from their size and from what the motion says: the one cause behind many findings.
 ///
-/// A square, a marker, a track, a mass, an inclination and a frame rate each have a size that laboratories have; one
-/// that is a hundred or a thousand times as large is in centimetres, millimetres or grams. An inclination that agrees
+/// A square, a marker, a track and a mass each have a usual size in a laboratory; one that is a hundred or a thousand
+/// times as large is in centimetres, millimetres or grams. An inclination that agrees
 /// with the motion once it is taken as radians is in radians, and one that agrees once the file's frame rate is taken
 /// has a wrong frame_rate_hz. docs/reference/check.md explains the limits.
 #pragma once
@@ -14,11 +14,11 @@
 
 namespace glidelab::core {
 
-/// "square_m = 40 looks like millimetres (0.04 m)", and the advice; of what is stated alone. For a recording whose
-/// clips cover so long a distance that gliders do not (20 m), a mass of any size passes: 0 where that is not known.
+/// "square_m = 40 looks like millimetres (0.04 m)", and the advice; from the statements alone. `longest_m`: the longest
+/// distance that a clip covers, 0 where it is not known; beyond 20 m, which no glider covers, any mass passes.
 std::vector<Finding> unit_findings(const Experiment& experiment, double longest_m);
 
-/// The findings with each root cause before those that follow from it, which stand in its `follow` and nowhere else.
+/// The findings with each root cause in place of those that follow from it, which move into its `follow`.
 std::vector<Finding> with_root_causes(const Experiment& experiment, const RecordingCheck& check,
                                       std::vector<Finding> findings);
 

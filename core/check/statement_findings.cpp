@@ -191,7 +191,7 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
        fmt::format("{}{}, as {} say; that is {} of its free motion", whose, sentence(*worst->against_launch),
                    of_worst.sentence, percent_text(worst->against_launch->share)),
        fmt::format("check which of the two is wrong: launched of {}, or downhill in {}; if neither is, "
-                   "state with start_s when the hand lets go",
+                   "state in start_s when the hand lets go",
                    many ? "these clips" : "this clip",
                    own && shared ? "[track] or [group]"
                    : own         ? "[group]"

@@ -1,7 +1,7 @@
 /// Contradictions between experiment.toml and the recording, or within experiment.toml: masses, launch, lengths,
 /// inclination.
 ///
-/// Each is reported once, with the clips that show it and the keys of which one is wrong.
+/// Each is reported once, with the clips that show it and the keys, one of which is wrong.
 #pragma once
 
 #include <vector>

@@ -28,7 +28,7 @@ frame_rate_hz = 240.0              # what it filmed at; the file may play at ano
 pattern = "chessboard"
 inner_corners = [9, 6]             # where four squares meet; a board of 10 x 7 squares has 9 x 6
 square_m = 0.025                   # side of one square AS PRINTED: measure 9 in a row with a ruler
-views = "calibration/view-*.png"   # a dozen images: tilted to all sides, near and far, out to the image's corners
+views = "calibration/view-*.png"   # a dozen images: tilted in all directions, near and far, out to the image's corners
 plane = "calibration/plane.png"    # the pattern where the marker moves, its long side along the track; several images
                                    # along the track are better: "calibration/plane-*.png"
 
@@ -48,8 +48,8 @@ plane = "calibration/plane.png"    # the pattern where the marker moves, its lon
 # ---- The marker: a disc or ball that contrasts with everything near its path.
 [marker]
 diameter_m = 0.016                 # AS PRINTED: the sheet of "glidelab pattern" has discs of 8, 12, 16 and 24 mm
-#height_m = 0.0                    # its centre off the pattern's plane, towards the camera
-#color = "#101010"                 # a black disc (left out, a bright one is looked for first); or the hue of an object, as "#e04020"
+#height_m = 0.0                    # distance of its centre from the pattern's plane, towards the camera
+#color = "#101010"                 # a black disc (left out, a bright one is looked for first); or the hue of an object, such as "#e04020"
 #start_px = [400, 120]             # where it is in the frame at start_s, or in the first one, if something else moves as well
 
 [track]
@@ -100,15 +100,15 @@ What goes where, and what follows. `experiment.toml` explains every key.
    board flat, and write the side of a square *as measured* into `experiment.toml`.
 2. **Camera.** On something that does not move, at right angles to the track. Focus, exposure and zoom fixed; short exposure, much
    light. From here on do not touch the camera.
-3. **`calibration/`.** `view-00.png`, `view-01.png`, …: a dozen images of the board, tilted to all sides, near and far, reaching
-   into all corners of the image. `plane.png`: the board held where the marker will move, its long side along the track.
+3. **`calibration/`.** `view-00.png`, `view-01.png`, …: a dozen images of the board, tilted in all directions, near and far,
+   reaching into all corners of the image. `plane.png`: the board held where the marker will move, its long side along the track.
 4. **`clips/`.** One clip for each motion, both directions, and more than one mass if you can. In `experiment.toml`, state the mass, the
    inclination and the launch of each.
 
 Then, before you put anything away:
 
     glidelab check .       # is the recording good enough? what to change
-    glidelab analyze .     # K/m, mu, inclination, limit velocity
+    glidelab analyze .     # K/m, mu, inclination, terminal velocity
     glidelab diagnose .    # what the simple law does not explain, if anything
 )";
 

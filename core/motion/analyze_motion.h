@@ -28,8 +28,8 @@ struct SmoothedClip {
   double mass_kg = 0.0;
 };
 
-/// Every frame of the clip, smoothed with the points of its own stretch, or of what lies between two of them; and why
-/// it does not count, where it does not.
+/// Every frame of the clip, smoothed with the points of its own stretch, or of what lies between two of them, and the
+/// reason where it does not count.
 std::vector<MotionPoint> frames_of(const SmoothedClip& clip);
 /// The same for frames that are smoothed already.
 std::vector<MotionPoint> frames_of(const SmoothedClip& clip, std::vector<MotionPoint> smoothed);
@@ -40,10 +40,10 @@ std::vector<std::vector<double>> shared_of_frames(const TrackData& track);
 /// Frames in a row that are left out for one reason.
 std::vector<LeftOutInterval> intervals_of(const std::vector<MotionPoint>& frames);
 
-/// The stretches that have points which count.
+/// The stretches that have points that count.
 std::vector<Stretch> used_stretches(const SmoothedClip& clip);
 
-/// Whether times are put right by the frames that the motion shows to be lost (lost_frames.h).
+/// Whether times are corrected for the frames that the motion shows to be lost (lost_frames.h).
 enum class LostFrameTimes { put_right, kept };
 
 struct MotionOptions {
@@ -54,8 +54,8 @@ struct MotionOptions {
   std::string smoother = "local-polynomial";  ///< a name of smoother.h (asserted)
 };
 
-/// InputError for an unknown smoother, and for one without a bandwidth beside what needs one: a bandwidth, a rule that
-/// chooses one, generalised lines.
+/// InputError for an unknown smoother, and for a smoother without a bandwidth together with what needs one: a
+/// bandwidth, a rule that chooses one, generalised lines.
 void check_smoothing(const MotionOptions& options);
 
 /// Smooths one clip's x(t), decides which points count, and fits a line for v < 0 and v

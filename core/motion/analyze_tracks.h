@@ -11,8 +11,8 @@
 
 namespace glidelab::core {
 
-/// Setups and tracks are as many (asserted), in one order; the clips share the glider and the track. `jobs` clips at a
-/// time. The clips' `experiment` is left empty. The progress counts clips.
+/// There is one track for each setup (asserted), in the same order; the clips share the glider and the track. `jobs`
+/// clips at a time. The clips' `experiment` is left empty. The progress counts clips.
 AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::vector<TrackData>& tracks,
                                double gravity_m_s2, const MotionOptions& options, int jobs,
                                const base::Progress& progress = base::no_progress);

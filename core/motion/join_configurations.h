@@ -1,4 +1,5 @@
-/// Clips of one configuration joined: lines through the points of all of them, and from these mu, alpha and v_lim.
+/// Clips of one configuration joined: lines through the points of all of them, and from their intercepts mu, alpha and
+/// v_lim (mu_and_alpha_of_intercepts() in the .cpp).
 #pragma once
 
 #include <vector>

@@ -1,8 +1,9 @@
-/// A clip smoothed as a whole, by a smoother that finds its own strength (smoothing/smoother.h).
+/// A clip smoothed as a whole, by a smoother that chooses its own strength (smoothing/smoother.h).
 ///
-/// The free motion has one strength, and what is not free (a hand, a stop, a rest) another one. Where the motion turns
-/// it is smoothed as one with a break of a, for dry friction jumps there while x and v go on; elsewhere every part
-/// starts anew. Points count for lines where the variance of a is below kEndVariance of its median.
+/// The free motion has one strength, and what is not free (a hand, a stop, a rest) another. Where the motion turns,
+/// both sides are smoothed together with a jump of a, because dry friction jumps there while x and v are continuous;
+/// elsewhere every part starts anew. Points count for lines where the variance of a is below kEndVariance of its
+/// median.
 #pragma once
 
 #include <vector>
@@ -30,11 +31,11 @@ struct SmoothedWhole {
 SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, const Motion& motion,
                            const FreeMotion& free, double mass_kg);
 
-/// As smoothing_bias() of line_fit.h, with motions that go on over their turns.
+/// Like smoothing_bias() of line_fit.h, with motions that continue through their turns.
 std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<double>& law_m_s2, const SmoothedWhole& whole);
 
-/// Points that follow each other and are smoothed together: the stretches, and what lies between two of them.
+/// Consecutive points that are smoothed together: the stretches, and what lies between two of them.
 std::vector<PointRange> pieces_of(const std::vector<FreeStretch>& stretches, std::size_t points);
 
 /// The frames of a track with their times and what was measured.

@@ -27,8 +27,8 @@ double chi2_ratio_limit(double degrees);
 Quantity determined(const Estimate& estimate, std::optional<double> noise_sd = {});
 Quantity undetermined(std::string why);
 
-/// Why a line a = a0 - (K/m) v of v > 0 has no limit velocity a0/(K/m); empty where it has one: both coefficients are
-/// above zero by 1.96 standard deviations. `k_is` begins the sentence: "K/m".
+/// Why a line a = a0 - (K/m) v of v > 0 has no terminal velocity a0/(K/m); empty where it has one: both coefficients
+/// are above zero by 1.96 standard deviations. `k_is` begins the sentence: "K/m".
 std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view k_is, const Estimate& a0_m_s2);
 
 /// A glider of a laboratory is lighter; grams for kilograms are not.

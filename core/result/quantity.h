@@ -23,7 +23,7 @@ inline constexpr std::array<QuantityName, 4> kQuantities = {{
     {Measurand::k_over_m, "k_over_m_1_s", "K/m", "1/s"},
     {Measurand::mu, "mu", "µ", ""},
     {Measurand::alpha, "alpha_deg", "α", "°"},
-    {Measurand::v_lim, "v_lim_m_s", "limit velocity", "m/s"},
+    {Measurand::v_lim, "v_lim_m_s", "terminal velocity", "m/s"},
 }};
 
 /// As options and files have it: "mu".

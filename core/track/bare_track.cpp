@@ -42,7 +42,7 @@ namespace {
 std::string runs_text(const std::vector<TrackRun>& runs) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < runs.size(); ++i) names.push_back(fmt::format("{}: {}", i + 1, runs[i].label));
-  return names.empty() ? "no column that is called x or position" : fmt::format("{}", fmt::join(names, ", "));
+  return names.empty() ? "no column called x or position" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 base::InputError wrong_runs(const std::filesystem::path& file, const std::string& found,

@@ -240,7 +240,7 @@ double angle_to_line(const std::vector<Place>& places, bool along_y) {
 
 double metres_of(const fs::path& file, const TrackerProject& project, std::vector<std::string>& notes) {
   if (project.length_unit.empty()) {
-    notes.emplace_back("the project states no unit of length: metres are taken");
+    notes.emplace_back("the project states no unit of length: metres are assumed");
     return 1.0;
   }
   if (const auto metres = metres_per(project.length_unit)) return *metres;

@@ -6,8 +6,8 @@
 ///
 /// The causes that a verdict names come first, the one with the largest share first of them; then others of the list,
 /// each fitted in full beside all before it, and what differs from clip to clip after the laws that all clips have in
-/// common. The gap is by the position noise alone, as the contract has it, whatever remainder the causes were weighed
-/// with. Intervals are over clips (gap_sizes.h). A single clip is held out in quarters, and has no interval.
+/// common. The gap is measured in the position noise alone, whichever remainder the causes were weighed with. Intervals
+/// are over clips (gap_sizes.h). A single clip is held out in quarters, and has no interval.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
 /// Whether a fit's gap is above its floor by more than kClearGap standard errors.
 bool has_gap(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);
 
-inline constexpr double kLeastShare = 0.02;  ///< of the excess: less is no cause that a person would look for
+inline constexpr double kLeastShare = 0.02;  ///< of the excess: nobody would look for a cause of less
 
 /// g² - 1 of a fit to `set`, g the gap of held-out clips, or of the quarters of a single one.
 double held_out_excess(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);

@@ -1,16 +1,16 @@
 /// Explanations weighed together with an unmodelled remainder, where the nominal model and the list of effects leave
 /// more than the noise.
 ///
-/// Real recordings have one or two main causes and several small imperfections. Against the noise alone whatever is
-/// left beside a name refutes it. Here each explanation, the nominal model too, has a remainder of its own
-/// (remainder.h), and it earns its name by how far it makes that remainder shrink:
+/// Real recordings have one or two main causes and several small imperfections. Measured against the noise alone,
+/// anything left beside a named cause refutes it. Here each explanation, the nominal model too, has a remainder of its
+/// own (remainder.h), and it earns its name by how far it makes that remainder shrink:
 ///
 ///     log evidence = max over the remainder's sizes of log L(positions; explanation, remainder)
 ///                    + log prior density of the effect's parameters at the fit
 ///
 /// Sizes of effects and functions without a name are uniform in their logarithm over four decades, and so is the width
 /// of the normal distribution that sizes of one kind are drawn from (of each clip, say); other parameters are uniform
-/// over their ranges; the pushes of one hand that lets go late go with the motions and are about alike. The
+/// over their ranges; the pushes of a hand that lets go late act along the motions and are about equal. The
 /// explanations are those that the search of hypotheses.h finds when the remainder of the best one so far counts as
 /// noise, and the likeliest by the noise alone. Functions without a name compete as before, with remainders of their
 /// own. Probabilities follow from the evidence and from what each explanation leaves of the gap (cause_odds.h).
@@ -27,7 +27,7 @@
 
 namespace glidelab::diagnose {
 
-/// A fit of the comparison, linearised by the noise alone, and the remainder that serves it best.
+/// A fit of the comparison, linearised by the noise alone, and the remainder that suits it best.
 struct WeighedFit {
   MotionFit noise_alone;
   RemainderSizes sizes;
@@ -43,8 +43,8 @@ struct WeighedCauses {
 WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
                            const PictureEvidence* pictures, const std::function<void(double)>& done);
 
-/// The comparison by the noise alone once more, each of its likeliest explanations with the remainder that serves it
-/// best: for data without a gap, in which small imperfections show all the same.
+/// Repeats the comparison by the noise alone, each of its likeliest explanations with the remainder that suits it best:
+/// for data without a gap, in which small imperfections still show.
 void allow_for_remainders(const TrackSet& set, const std::set<std::size_t>& without, int jobs, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

@@ -2,7 +2,7 @@
 ///
 /// The nominal model is fitted to all clips, to those of each configuration (mass and set-up) by themselves, and to
 /// each clip by itself. The gap of a level is the root of the sum of squared residuals over the noise, divided by the
-/// number of positions less what the fits took. It is 1 where the law holds at that level.
+/// number of positions less the number of fitted parameters. It is 1 where the law holds at that level.
 #pragma once
 
 #include <optional>

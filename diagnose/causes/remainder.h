@@ -1,4 +1,4 @@
-/// The unmodelled remainder: what no cause of the list makes, as a random acceleration along the way.
+/// The unmodelled remainder: what no cause of the list explains, as a random acceleration along the track.
 ///
 /// In place of m dv/dt = F(x, v, t) each motion follows
 ///
@@ -13,8 +13,9 @@
 ///     s_k))
 ///
 /// and the likelihood, with all parameters of the fit and each motion's start integrated out over flat priors (REML),
-/// costs a few products of small matrices whatever the number of frames. Linear in the neighbourhood of a fit. A motion
-/// that is worse than the others (a kick, a hand) may have a remainder that is wider by a factor of its own. SI units.
+/// costs a few products of small matrices, independent of the number of frames. Linear in the neighbourhood of a fit. A
+/// motion that is worse than the others (a kick, a hand) may have a remainder that is larger by its own factor. SI
+/// units.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
-/// An effect and all that the program knows about one: its stage, its parameters, its law, its lines in a table, its
-/// twin in a scenario.
+/// An effect and everything that the program knows about it: its stage, its parameters, its law, its lines in a table,
+/// its twin in a scenario.
 ///
 /// While an effect acts, the model calls the functions of its law (EffectLaw), which change the motion and its
 /// observation:
@@ -7,8 +7,8 @@
 ///     (m + m_w) dv/dt = W slope - K v factor / divisor along - against + forces - sign(v) (mu W cos(alpha) + F_0)
 ///
 /// with the weight W = m g. The terms slope, factor, divisor, along, against, mu and F_0 are those of the nominal model
-/// (sin alpha, 1, 1, 1, 0, mu, 0) until an effect changes them. All is in SI units, x and v are positive downhill, and
-/// t is the true time from the clip's first frame.
+/// (sin alpha, 1, 1, 1, 0, mu, 0) until an effect changes them. Everything is in SI units, x and v are positive
+/// downhill, and t is the true time from the clip's first frame.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 
 namespace glidelab::diagnose {
 
-/// What of a motion does not change while it lasts.
+/// The constants of a motion.
 struct GliderConstants {
   double mass_kg = 0.0;
   double weight_n = 0.0;
@@ -45,20 +45,20 @@ struct GliderState {
   bool pushed;  ///< before late_release's end
 };
 
-/// All but dry friction and what only adds a force.
+/// Everything but dry friction and effects that only add a force.
 struct Resistance {
   double slope;  ///< sin(alpha)
   double drag_factor = 1.0, drag_divisor = 1.0;
-  double drag_along = 1.0;  ///< factor by the place
+  double drag_along = 1.0;  ///< factor that depends on position
   double against_n = 0.0;   ///< against x, whichever way it moves
 };
 
 struct DryFriction {
   double mu;
-  double force_n = 0.0;  ///< whatever the load
+  double force_n = 0.0;  ///< independent of the load
 };
 
-/// The order in which changes of the measured position follow each other.
+/// The order in which changes of the measured position are applied.
 enum class SeenBy { lens, plane, scale, mount };
 
 /// How an effect changes the motion and its observation. `p` are the effect's parameters in the order of its file.
@@ -68,18 +68,18 @@ struct EffectLaw {
   void (*resistance)(const double* p, const GliderConstants& glider, const GliderState& at, Resistance& of) = nullptr;
   double (*force_n)(const double* p, const GliderConstants& glider, const GliderState& at) = nullptr;
   void (*friction)(const double* p, const GliderConstants& glider, const GliderState& at, DryFriction& of) = nullptr;
-  double (*inertia_kg)(const double* p, const GliderConstants& glider) = nullptr;  ///< beside the mass that weighs
+  double (*inertia_kg)(const double* p, const GliderConstants& glider) = nullptr;  ///< added to the weighed mass
   double (*known_factor)(const double* p) = nullptr;  ///< the force that acts over the recorded one
   double (*known_late_s)(const double* p) = nullptr;  ///< how much later it acts than recorded
-  /// As fast as it makes the motion change: a step is at most 0.3 of its inverse.
+  /// How fast it makes the motion change: a step is at most 0.3 of its inverse.
   double (*rate_1_s)(const double* p, double mass_kg) = nullptr;
-  /// The measured x of what stands at `x_m` and was seen at `seen_m` so far.
+  /// The measured x of an object at `x_m` that was seen at `seen_m` so far.
   double (*seen_m)(const double* p, const GliderConstants& glider, double x_m, double t_s, double seen_m) = nullptr;
   SeenBy seen_by = SeenBy::lens;
   double (*stretch)(const double* p) = nullptr;  ///< true time over stated time
   double (*row_s)(const double* p) =
       nullptr;           ///< how much later a row is exposed than the one above, over what is stated
-  bool passing = false;  ///< acts at some places, times or clips only: no part of what balances at terminal velocity
+  bool passing = false;  ///< acts at some positions, times or clips only: no part of the balance at terminal velocity
 
   bool acts(const double* p) const {
     return std::any_of(p + size, p + size + sizes, [](double value) { return value != 0.0; });
@@ -126,7 +126,7 @@ class TwinSizes {
   std::vector<std::pair<std::string, double>> sizes_;
 };
 
-/// How the data were filmed, and the camera and clock that the scenario gets. World: x along the track, z to the
+/// How the data were filmed, and the camera and clock that the scenario gets. World: x along the track, z towards the
 /// camera.
 struct TwinCamera {
   // As filmed.
@@ -157,7 +157,7 @@ struct TwinCamera {
 enum class TwinPart { exposure, clock, shutter, light, mount, codec };
 
 /// An effect in a scenario, as part of a simulation that behaves like the data. One of the three is given: why no
-/// scenario can say it, its force, or its change of the camera and the clock.
+/// scenario can express it, its force, or its change of the camera and the clock.
 class EffectTwin {
  public:
   using Force = void (*)(const double* p, TwinForces& forces);
@@ -178,7 +178,7 @@ class EffectTwin {
 /// What bounds a parameter besides `low` and `high`, in given data (range_of() of fit_model.h).
 enum class Reach {
   stated,      ///< nothing
-  with_mass,   ///< `high` is that of a glider of up to 1 kg, of a heavier one as many times more
+  with_mass,   ///< `high` holds for gliders of up to 1 kg and grows in proportion to the mass beyond
   places,      ///< it lies among the positions
   waves,       ///< a frequency that the clips can show
   release,     ///< a time at the start of the clips
@@ -190,10 +190,10 @@ enum class ShownAs {
   itself,
   one_more,      ///< n from n - 1, s from s - 1
   inverse_root,  ///< v_c from 1/v_c²
-  together,      ///< by what all of its kind make together (derived_parameters() of verdict_details.h), under one key
+  together,      ///< all of its kind together (derived_parameters() of verdict_details.h), under one key
 };
 
-/// Who has a value of its own of a parameter. A configuration is a mass on a set-up.
+/// What has its own value of a parameter. A configuration is a mass on a set-up.
 enum class Each { experiment, configuration, clip, motion };
 
 /// One free parameter of an effect.
@@ -201,15 +201,15 @@ struct EffectParameter {
   std::string_view key;  ///< as files have it, with its unit (base::name_and_unit()); empty: not shown
   double absent;         ///< where the effect is absent; of a shape, any value
   double low, high;      ///< what it may be, as it is fitted
-  double step;           ///< for the finite difference of the motion by it
+  double step;           ///< for the finite difference of the motion with respect to it
   Reach reach = Reach::stated;
   ShownAs shown_as = ShownAs::itself;
   Each each = Each::experiment;
   bool only_filmed = false;  ///< fitted to filmed motions only
-  /// Standard deviation that holds it back at 0 where the data leave it open, as a deviation of every clip from a mean
-  /// that is fitted too; 0: nothing does.
+  /// Standard deviation of a prior that holds it at 0 where the data leave it open, as a deviation of every clip from a
+  /// mean that is fitted too; 0: no prior.
   double held_sd = 0.0;
-  EffectSlot slot = {};  ///< where its value stands; by the list
+  EffectSlot slot = {};  ///< where its value is; set by the list
 };
 
 /// How the first fit is found.
@@ -220,10 +220,10 @@ enum class Search {
   wave,       ///< a frequency, with a phase in every motion
   pushes,     ///< a time, with a size in every motion
   frames,     ///< frames that are missing: found one by one
-  noise,      ///< the scatter of single points tells, no trajectory
+  noise,      ///< shown by the scatter of single points, not by a trajectory
   rows,       ///< one parameter that acts in proportion, by the row of the image: on filmed tracks only
-  pictures,   ///< the images tell, no position need move
-  lines,      ///< only a table of lines tells
+  pictures,   ///< shown by the images; no position need move
+  lines,      ///< shown by a table of lines only
 };
 
 /// Whether such an effect shows in the motion as a whole, not in single frames or in the images alone.
@@ -236,11 +236,11 @@ constexpr bool takes_part_of_gap(Search search) {
   return search == Search::frames || shows_in_motion(search);
 }
 
-/// What a search on a grid goes by.
+/// What a search on a grid needs to know.
 struct ShapeReach {
   double x_low_m, x_high_m;  ///< of the positions
   bool several_setups;
-  double held_m_s;  ///< slower than this a codec may hold the marker
+  double held_m_s;  ///< below this speed a codec may hold the marker
 };
 
 /// One line a = a0 - (K/m) v of a table.
@@ -263,7 +263,7 @@ struct OnLines {
   std::string_view same_as = {};  ///< the effect whose lines these are to first order
 };
 
-/// The effect that comes before this one in the list and that no experiment of tracks tells apart from it.
+/// The effect before this one in the list that no experiment with tracks can tell from it.
 struct Alike {
   std::string_view id = {};  ///< empty: none
   bool filmed = false;       ///< nor can clips
@@ -277,7 +277,7 @@ struct EffectInfo {
   Stage stage;
   std::string_view words;    ///< a phrase for a sentence: "a drag that grows with the square of the speed"
   std::string_view name;     ///< up to 30 characters, for the axes of a plot: "quadratic drag"
-  std::string_view meaning;  ///< what the letters beside its size mean; empty where its size is a word
+  std::string_view meaning;  ///< what the symbols of its sizes mean; empty where its size is a word
   Search search;
   bool both_signs;
   std::vector<EffectParameter> parameters;  ///< the amplitude first, then the shape
@@ -289,14 +289,14 @@ struct EffectInfo {
   Alike alike;
 };
 
-/// The value as files and pages have it; the derivative by what is fitted goes with it, for the standard deviation.
+/// The value as files and pages have it, and its derivative with respect to what is fitted, for the standard deviation.
 struct ShownValue {
   double value = 0.0;
   double by_fitted = 1.0;
 };
 ShownValue shown(const EffectParameter& parameter, double fitted);
 
-/// `parts` midpoints of equal parts of the positions' range: a grid for a place.
+/// `parts` midpoints of equal parts of the range of positions: a grid for a position.
 std::vector<double> places_of(const ShapeReach& reach, int parts);
 
 }  // namespace glidelab::diagnose

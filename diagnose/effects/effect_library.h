@@ -1,4 +1,4 @@
-/// The library of effects: all that effect_list.h names, each defined in its own file.
+/// The library of effects: all those that effect_list.h names, each defined in its own file.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ const std::vector<EffectInfo>& effect_list();
 /// All of them.
 const std::vector<EffectInfo>& all_effects();
 
-/// What is known of one; std::out_of_range for a word that is no effect's id.
+/// What is known about one; std::out_of_range for a word that is not an effect's id.
 const EffectInfo& effect_of(std::string_view id);
 
-/// The ids of all, which are what may be left out of a diagnosis.
+/// The ids of all: those that may be left out of a diagnosis.
 std::vector<std::string> effect_words();
 
-/// The first of the effects that no experiment of tracks tells apart from this one: a wrong scale and a wrong frame
-/// rate; of positions alone, not `filmed`, a camera and a table that shake. An effect without such a double: itself.
+/// The first of the effects that no experiment with tracks can tell apart: a wrong scale and a wrong frame rate; from
+/// positions alone, not `filmed`, a shaking camera and a shaking table. An effect without such a double: itself.
 std::size_t first_alike(std::size_t effect, bool filmed);
 
-/// Whether an effect has sizes of each clip's own: with these it follows whatever differs between clips.
+/// Whether an effect has a size of its own for each clip: then it can follow whatever differs between clips.
 bool differs_between_clips(std::size_t effect);
 
 /// The same, or pushes, each clip its own.

@@ -1,7 +1,7 @@
-/// The list of effects: it names each once. Everything else about an effect stands in its file ID.cpp: in force/ what
-/// moves the glider, in camera/ what an image shows, in record/ what the record states and how it is smoothed.
-/// A new effect is a line here and that file. The order is that of the indices by which the searches know an effect.
-/// What only a table of lines shows comes last.
+/// The list of effects, which names each once. Everything else about an effect is in its file ID.cpp: in force/ what
+/// moves the glider, in camera/ what an image shows, in record/ what the record states and how it is smoothed. A new
+/// effect is a line here and that file. The order is that of the indices by which the searches know an effect. What
+/// only a table of lines shows comes last.
 #pragma once
 
 #include <array>

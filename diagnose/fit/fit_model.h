@@ -20,18 +20,18 @@ namespace glidelab::diagnose {
 /// Standard deviations that the largest size of an effect must make to be visible at all.
 inline constexpr double kVisible_sd = 4.0;
 
-/// Standard deviation that holds back an inclination which nobody states: as good as free.
+/// Standard deviation of the prior of an inclination that is not stated: practically free.
 inline constexpr double kOpenInclination_rad = 0.35;
 
 /// Near the vertical the inclination is taken as stated, to within a plumb line's error where none is stated. Where
-/// nothing but falls was recorded mu is held at 0 and not determined: next to no force presses on a track, and together
-/// with a free inclination mu would imitate any constant force.
+/// only falls were recorded, mu is held at 0 and not determined: almost no force presses on a track, and together with
+/// a free inclination mu would imitate any constant force.
 inline constexpr double kFallInclination_rad = 0.0175, kFallFriction = 1e-4;
 
-/// Log evidence from which on something is acted upon without being weighed against anything else.
+/// Log evidence above which something is acted upon without being weighed against anything else.
 inline constexpr double kBeyondDoubt = 5.0;
 
-/// Points from which on the shape of a scatter tells anything.
+/// The fewest points at which the shape of a scatter says anything.
 inline constexpr std::size_t kFewestScatter = 50;
 
 /// Uneven times of filmed clips below this are none: a hundredth of a short exposure.
@@ -42,14 +42,14 @@ struct ParameterRange {
 };
 
 /// The range of an effect's parameter in given data: one range for the scan, which averages evidence over it, and for
-/// the fit. A fit that went further would gain by what its evidence was never asked to pay for. A wave slower than the
-/// clips is any drift. A cable that tightens before the first position, or a lens whose axis is out of the image, is
-/// any bend.
+/// the fit. A fit that went further would gain from sizes that its evidence does not average over. A wave slower than
+/// the clips can imitate any drift; a cable that tightens before the first position, or a lens whose axis is outside
+/// the image, can imitate any bend.
 ///
-/// Sizes are as the effects state them, those that go with the mass for the heaviest glider. A place lies within the
-/// positions. A frequency makes at least two turns in the longest motion. A release comes after four frames, and within
-/// half a second and the first two fifths of the longest motion. A Stribeck speed lies above that at which a codec may
-/// hold the marker (TrackSet::held_m_s).
+/// Sizes are as the effects state them, those proportional to the mass for the heaviest glider. A place lies within the
+/// range of positions. A frequency makes at least two turns in the longest motion. A release comes after four frames,
+/// and within half a second and the first two fifths of the longest motion. A Stribeck speed lies above that at which a
+/// codec may hold the marker (TrackSet::held_m_s).
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
 
 /// From the least to the largest position.
@@ -67,13 +67,12 @@ struct Configuration {
 /// Those of a set's motions, in order.
 std::vector<Configuration> configurations_of(const TrackSet& set);
 
-/// The parameters of the nominal model with any set of effects: which there are for a set of tracks, and where they
-/// stand.
+/// The parameters of the nominal model with any set of effects: which exist for a set of tracks, and their indices.
 class ParameterLayout {
  public:
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects);
-  /// For motions that `like` does not know: an effect's parameters are those of its configurations and clips, and its
-  /// places are the same.
+  /// For motions that are not in `like`: an effect's parameters are those of the configurations and clips of `like`,
+  /// and the range of places is the same.
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like);
 
   struct Global {
@@ -98,7 +97,7 @@ class ParameterLayout {
   /// The indices among globals of one parameter of an effect: more than one where each configuration or clip has its
   /// own.
   std::vector<std::size_t> all_of(const EffectSlot& slot) const;
-  /// Ranges that hold where a fit starts: what was found in whole clips may lie beyond what a part of them shows.
+  /// Ranges that include where a fit starts: what was found in whole clips may lie beyond what a part of them shows.
   void widen_to(const Eigen::VectorXd& start);
 
  private:
@@ -129,7 +128,7 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
 std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
                                   std::size_t motion, const std::vector<double>& x_m);
 
-/// What is later than stated of each point of each motion (dropped frames); empty: nothing.
+/// How much later than stated each point of each motion is (dropped frames); empty: not at all.
 using Lateness = std::vector<std::vector<double>>;
 
 /// One motion at a point of the parameters: what the model leaves of its positions, and the model's derivatives by the
@@ -142,8 +141,9 @@ struct FitMotion {
   std::vector<double> v_m_s;
 };
 
-/// `forward` finds the way of a fit in half the time; `central`, with an error that is the square of that, is for what
-/// rests on the result: what is left of an effect that the nuisance nearly takes up must not be their error.
+/// `forward` differences take half the time and are for the steps of a fit; `central` ones, with the square of their
+/// error, are for what rests on the result: the rest of an effect that the nuisance parameters nearly absorb must not
+/// be the error of the derivatives.
 enum class Derivatives { none, forward, central };
 
 /// Of the motion with this index, by finite differences.

@@ -1,5 +1,5 @@
-/// The linear neighbourhood of a fit: what is left of motions and of additions to the model once all that was fitted
-/// has readjusted.
+/// The linear neighbourhood of a fit: what is left of motions, and of additions to the model, once everything that was
+/// fitted has readjusted.
 ///
 /// Each motion's own parameters are projected out. What is left are the common parameters and their normal equations,
 ///
@@ -57,10 +57,10 @@ struct CommonNormal {
 CommonNormal without_clip(const TrackSet& set, CommonNormal all, const std::vector<ProjectedMotion>& motions,
                           std::size_t clip);
 
-/// Of what is stated alone.
+/// From the statements alone.
 CommonNormal statements_normal(const MotionFit& fit);
 
-/// Inverse of a scaled, hardly held-back matrix: directions that nothing determines become very uncertain.
+/// Inverse of a scaled, slightly regularised matrix: directions that nothing determines become very uncertain.
 Eigen::MatrixXd inverse_normal(const Eigen::MatrixXd& matrix);
 
 /// A change of all positions over the noise, with each motion's own parameters projected out.
@@ -100,7 +100,7 @@ class ScoreSpace {
   const ScoreColumn& residual() const { return residual_; }
   const MotionFit& fit() const { return fit_; }
   const TrackSet& set() const { return set_; }
-  /// Positions of a motion as the fit has them: free of the noise that a residual is made of.
+  /// Positions of a motion according to the fit: without the noise that is in the residuals.
   const std::vector<double>& modelled(std::size_t motion) const { return base_[motion]; }
   /// What a motion's own parameters leave of a change of it, over the noise.
   Eigen::VectorXd own_rest(std::size_t motion, const Eigen::VectorXd& change_m) const;

@@ -2,10 +2,10 @@
 ///
 ///     x_ij = x(t_ij; K, mu, alpha_group, masses, effects; x0_i, v0_i, own_i) + sum_k c_k shared_k(t_ij) + noise
 ///
-/// weighted with the noise of each motion; what is stated joins as data of its own: inclinations with their standard
-/// deviation, masses with theirs, the camera's and plane's errors c_k ~ N(0, 1). Gauss and Newton's steps damped by
-/// Levenberg and Marquardt, derivatives by finite differences, each motion's own parameters eliminated. An effect's
-/// common parameter stays within its range (fit_model.h): it stops at the edge, the others go on.
+/// weighted with the noise of each motion; statements are further data: inclinations with their standard deviation,
+/// masses with theirs, the camera's and plane's errors c_k ~ N(0, 1). Gauss and Newton's steps damped by Levenberg and
+/// Marquardt, derivatives by finite differences, each motion's own parameters eliminated. An effect's common parameter
+/// stays within its range (fit_model.h): it stops at the edge, while the others go on.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ struct FitStatement {
   double value = 0.0;
   double sd = 0.0;
   std::string against;
-  bool counts = true;  ///< false: holds back what the data leave open, and is no evidence
+  bool counts = true;  ///< false: a prior for what the data leave open, not evidence
 };
 
 struct MotionFit {
@@ -50,7 +50,7 @@ MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effe
 /// A fit as it stands, with residuals and derivatives by the noise of another set of the same motions.
 MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
 
-/// The nominal model from a first guess of its own.
+/// The nominal model, from its own first guess.
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late = {});
 
 /// One more effect than `base` has, from where a search puts it. Where that leads to a worse fit than `base`, which is

@@ -1,7 +1,7 @@
 /// Effects that single frames show: uneven times, outliers among the positions (and missing_frames.h).
 ///
-/// They are judged by what a smooth curve through each motion's residuals leaves, so that a force that the model lacks
-/// is not taken for them.
+/// They are judged by the residuals about a smooth curve through each motion's residuals, so that a force that the
+/// model lacks is not taken for them.
 #pragma once
 
 #include <optional>
@@ -28,17 +28,17 @@ struct FrameEffect {
   std::optional<ErrorRun> run = {};  ///< the largest, where in_runs is above 0
 };
 
-/// Scatter that goes with the speed: variance sd² + (v tau)².
+/// Scatter that grows with the speed: variance sd² + (v tau)².
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit);
 
 /// A fraction of positions with a scatter many times the others'. Where they follow each other on one side, or come in
-/// the first three frames of the clips, it is no scatter but something that lasts or a tracker that has to find its
-/// marker: with k of m so and a chance p of that,
+/// the first three frames of the clips, it is not scatter but something that lasts, or a tracker that still has to find
+/// its marker: with k of m such frames and a chance p of that,
 ///
 ///     in_runs = log B(k + 1, m - k + 1) - k log(p) - (m - k) log(1 - p),
 ///
-/// any other chance as likely beforehand as another (the larger of both); 0 where fewer than four, or a quarter of
-/// them, are so.
+/// every other chance equally likely beforehand (the larger of the two); 0 where fewer than four, or a quarter of them,
+/// are such.
 FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit);
 
 /// Where the scatter has such tails beyond doubt, the positions that more likely belong to them than not become

@@ -5,18 +5,18 @@
 /// whole frames (a gain of 14 in log likelihood), the clearest first; or, where that ends better, those that the
 /// analysis finds (core/motion/free/lost_frames.h). Then those that raise the likelihood of the whole fit by 12, one in
 /// each motion at a time or all together, K, mu and the inclination free; then all of them placed anew along the fitted
-/// path (Viterbi). These count only where they leave chi² below 2 a point: many a curve that the model lacks looks like
-/// a row of losses.
+/// path (Viterbi). These count only where they leave chi² below 2 per point: many a curve that the model lacks looks
+/// like a series of losses.
 #pragma once
 
 #include "diagnose/frames/frame_effects.h"
 
 namespace glidelab::diagnose {
 
-/// How many frames a fit has as missing, all clips together.
+/// How many frames are missing according to a fit, over all clips.
 std::size_t missing_in(const TrackSet& set, const MotionFit& fit);
 
-/// What was found; the fit that goes with them has their lateness.
+/// What was found; the fit that belongs to it includes their delays.
 struct MissingFrames {
   FrameEffect effect;
   std::size_t count = 0;
@@ -24,8 +24,8 @@ struct MissingFrames {
 };
 MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit);
 
-/// Those that a fit with losses in its times, one at least, hides: its own and these. The effect's gain and evidence
-/// are what the further ones add.
+/// Losses that a fit with at least one loss in its times hides: its own and these. The effect's gain and evidence are
+/// what the further ones add.
 MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& with_losses);
 
 }  // namespace glidelab::diagnose

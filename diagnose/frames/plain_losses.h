@@ -18,10 +18,11 @@ struct LostBefore {
 
 /// Frames that are obviously missing, found before anything is fitted to the whole motion. Around such a place the
 /// positions make a parabola only if all from there on are later by whole frames. With S(k) the squares that the
-/// parabola leaves over the noise, k frames being lost, (S(0) - S(k))/2 is above 14, and S(k) is below four a point or
-/// below 0.3 S(0).
+/// parabola leaves over the noise, k frames being lost, (S(0) - S(k))/2 is above 14, and S(k) is below four per point
+/// or below 0.3 S(0).
 ///
-/// The clearest come first, as one may hide another near by. Where the stamps themselves show a gap they are believed.
+/// The clearest come first, because one may hide another nearby. Where the time stamps themselves show a gap, they are
+/// trusted.
 LostBefore plain_losses(const TrackSet& set);
 
 /// Those that the analysis finds (core/motion/free/lost_frames.h), clip by clip.
@@ -34,13 +35,14 @@ struct EdgePosition {
 /// Positions beyond a gap: frames are missing right after a clip's first frames or right before its last.
 ///
 /// The few positions on the far side of such a gap lie off the rest, and so the analysis takes them for outliers. They
-/// are none where all of them lie on the path that the others make, each by the same whole number of frames earlier
-/// (the first ones) or later (the last).
+/// are not outliers where all of them lie on the path of the others, each the same whole number of frames earlier (the
+/// first ones) or later (the last ones).
 ///
 /// What is returned are the outliers among the first and last three positions of each motion of which a gap of one to
 /// five frames makes sense. They lie within four standard deviations of the path of `fit` that many frames away,
 /// continued by the polynomial of fourth order through its nearest five points, and more than six off it where they
-/// are. Where the glider hardly moves (under ten standard deviations a frame) nothing is said. No NumericalError.
+/// are. Nothing is returned where the glider hardly moves (less than ten standard deviations per frame). No
+/// NumericalError.
 std::vector<EdgePosition> positions_beyond_gaps(const TrackSet& set, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose

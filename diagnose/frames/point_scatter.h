@@ -8,9 +8,9 @@
 
 namespace glidelab::diagnose {
 
-/// Of all points of a motion, outliers too.
+/// Of all points of a motion, including outliers.
 struct Leftover {
-  std::vector<double> over_sd;  ///< each over its own noise, and over what so many bumps take up of white noise
+  std::vector<double> over_sd;  ///< each over its own noise, corrected for the white noise that so many bumps absorb
   std::vector<double> v_m_s;    ///< modelled
 };
 
@@ -18,11 +18,11 @@ struct Leftover {
 /// that the model lacks.
 ///
 /// The curve is a least-squares sum of Gaussian bumps, as fine as it must be until neighbours no longer err alike.
-/// Where the law is off by hundreds of standard deviations, a coarse curve shows an error of its own, first of all at
-/// the clip's ends.
+/// Where the law is wrong by hundreds of standard deviations, a coarse curve has an error of its own, especially at the
+/// clip's ends.
 Leftover leftover_of(const TrackSet& set, const MotionFit& fit, std::size_t motion);
 
-/// Residuals of single positions beside their speeds.
+/// Residuals of single positions with their speeds.
 struct SpeedScatter {
   std::vector<double> squares;  ///< over the motion's sd_m
   std::vector<double> fast;     ///< (v / sd_m)², 1/s²
@@ -40,10 +40,10 @@ struct SpeedNoise {
   double jitter_s = 0.0, sd_s = 0.0;
 };
 
-/// `independent` is the share of the residuals that counts as such. Nothing is found in fewer than 50.
+/// `independent` is the share of the residuals that counts as independent. Nothing is found in fewer than 50.
 SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, double independent);
 
-/// Where positions scatter about their neighbours (no model goes in) the more the faster they are, beyond doubt, each
+/// Where the scatter of positions about their neighbours (no model is involved) grows with the speed beyond doubt, each
 /// gets the noise of its speed, so that no force is fitted to the scatter of the fast ones. `late` as in the fit;
 /// empty: nothing. False where they do not.
 bool give_fast_positions_their_noise(TrackSet& set, const Lateness& late);

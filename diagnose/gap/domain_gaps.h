@@ -13,14 +13,14 @@ namespace glidelab::diagnose {
 ///     d(v) = mean over the points of a bin of speeds of   a[x] - a[x^] + (K/m) (v[x] - v[x^]),
 ///
 /// in m/s². Here v[] and a[] are core's local cubic of measured positions x and of modelled ones x^ at the same times,
-/// with the bandwidth that the analysis took, so that its own bias cancels. The last term takes the modelled
-/// acceleration from the modelled speed to the measured one (the nominal model's a falls by K/m with v). A force f that
-/// the model lacks makes d = f/m. The v on the axis is v[x].
+/// with the bandwidth of the analysis, so that its own bias cancels. The last term carries the modelled acceleration
+/// from the modelled speed to the measured one (the nominal model's a falls by K/m with v). A force f that the model
+/// lacks makes d = f/m. The v on the axis is v[x].
 ///
 /// The modelled motion is that of the clip held out: its common parameters come from the other clips, as in held_out.h.
-/// d is linear in the noise of all positions, and its variance is that of exactly this sum. It contains what
-/// neighbouring values of a share by the kernel and by the noise's own correlation, the fitted start, and the errors of
-/// the parameters.
+/// d is linear in the noise of all positions, and its variance is that of exactly this sum. It includes what
+/// neighbouring values of a share through the kernel and the noise's own correlation, the fitted start, and the errors
+/// of the parameters.
 ///
 /// Points within two bandwidths of a motion's ends are left out. There are twelve bins over the range of all speeds,
 /// with one edge at v = 0. A bin of fewer than five points is left out.
@@ -32,12 +32,12 @@ std::vector<PhaseGap> phase_gaps(const TrackSet& set, const MotionFit& before, c
 /// The gap in the parameters: K between masses, mu between masses and directions.
 ///
 /// The nominal model (K, mu, inclinations, masses; effects held) is fitted to the motions of one mass alone, and to
-/// those stretches of them that go one way; q is what it gives for K or mu. Against the fit to all,
+/// those stretches of them that go in one direction; q is the K or mu that it gives. Against the fit to all,
 ///
 ///     z = (q_alone - q_all) / sd,    sd² = var q_alone - var q_all,
 ///
-/// as the fit to all is efficient and what is alone is a part of it. With a named effect in the model, whose size s is
-/// that of the fit to all,
+/// because the fit to all is efficient and the part's data are among its data. With a named effect in the model, whose
+/// size s is that of the fit to all,
 ///
 ///     sd² = a' N a - 2 a' N C b + b' C b,    a = N_θθ^-1 e,    b = e + N_sθ a,
 ///

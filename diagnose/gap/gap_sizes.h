@@ -8,9 +8,9 @@
 ///
 ///     se² = (n - 1)/n sum_c (T_(c) - mean)²,      T ± t(0.975, n - 1) se.
 ///
-/// A root mean square is taken by its logarithm, so that its interval stays above zero. Clips count as independent of
-/// each other, although each one's model comes from the others. Fewer than three clips have no interval, since one
-/// difference between two tells nothing of the next.
+/// For a root mean square the interval is that of its logarithm, so that it stays above zero. Clips count as
+/// independent of each other, although each one's model comes from the others. Fewer than three clips have no interval,
+/// since the one difference between two clips says nothing about a third.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ namespace glidelab::diagnose {
 
 inline constexpr std::size_t kFewestClips = 3;
 
-/// So many clips, where they are too few for an interval.
+/// The number of clips, where it is too small for an interval.
 std::optional<std::size_t> too_few_clips(std::size_t clips);
 
 /// What a clip adds to a mean square: a sum of squares, and their number.
@@ -35,12 +35,13 @@ struct ClipSquares {
   double count = 0.0;
 };
 
-/// Of sqrt(sum/count) over all clips. None for fewer than three clips that count, nor where one of them is all there
-/// is.
+/// Of sqrt(sum/count) over all clips. None for fewer than three clips that count, nor where a single one contributes
+/// everything.
 std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips);
 
-/// 1, or the gap that the best fit leaves where that is clearly below: noise is estimated from neighbouring positions,
-/// and a wave of few frames looks like it until a cause takes it out. No residual is smaller than the noise.
+/// 1, or the gap that the best fit leaves where that is clearly below 1: noise is estimated from neighbouring
+/// positions, and a wave of a few frames looks like noise until a cause removes it. No residual is smaller than the
+/// noise.
 double floor_of(double gap_after, double standard_error);
 
 /// Of (before - after)/(before - floor), the clips being the same in both. None for fewer than three clips, nor where
@@ -55,7 +56,7 @@ std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, st
 
 /// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips. `best` has a named
 /// effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut into stretches that
-/// are fitted anew, and a note says so. The domains are left empty.
+/// are fitted again, and a note says so. The domains are left empty.
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
                 std::vector<Note>& notes);
 

@@ -1,6 +1,6 @@
 /// How far a model lies from data that it was not fitted to.
 ///
-/// Each clip in turn is left out: the common parameters come from the other clips (and from what is stated), its own
+/// Each clip in turn is left out: the common parameters come from the other clips and from the statements, its own
 /// start is fitted to it, and its residuals are standardised by their predictive covariance, the position noise and
 /// what the uncertainty of the common parameters adds. The root mean square over all clips is 1 where the model is
 /// right. In the linear neighbourhood of the fit to all clips: a clip is taken out of its normal equations and one step
@@ -38,7 +38,7 @@ struct HeldOutGap {
 /// `set` needs two clips or more (see split_clip).
 HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit);
 
-/// A single clip as four stretches that count as clips of their own.
+/// A single clip as four stretches that count as separate clips.
 TrackSet split_clip(const TrackSet& set);
 
 /// Covariance of the common parameters: positions and statements.
@@ -49,8 +49,8 @@ Eigen::MatrixXd common_covariance(const MotionFit& fit);
 MotionFit at_linear_minimum(const TrackSet& set, MotionFit fit);
 
 /// How far a statement lies from what everything else says, in standard deviations of the difference: z = (stated -
-/// fitted) / sqrt(sd² - C), C the fitted angle's variance. Everything else says what the fit does with the statement
-/// taken out again: (fitted sd² - stated C)/(sd² - C) ± sd sqrt(C/(sd² - C)). Of a fit that is at its minimum.
+/// fitted) / sqrt(sd² - C), C the fitted angle's variance. What everything else says is the fit with the statement
+/// removed again: (fitted sd² - stated C)/(sd² - C) ± sd sqrt(C/(sd² - C)). Of a fit that is at its minimum.
 struct StatementPull {
   std::string quantity;  ///< "alpha_deg"
   std::string against;   ///< "plumb", "stated"

@@ -4,16 +4,16 @@
 ///
 ///     ln(k m) = ln K,     a0 = gravity sin(alpha_g) - s mu gravity cos(alpha_g).
 ///
-/// A table states no errors: those of ln(k) and of a0 are unknown and are what the lines scatter, so that few lines
-/// carry little. Of n lines with p0 nominal parameters, p terms that leave RSS of the nominal model's RSS_0 have the
-/// Bayes factor, for unknown scatter and terms of a size g that one line tells, give or take (Zellner and Siow 1980;
-/// Liang et al. 2008),
+/// A table states no errors: those of ln(k) and of a0 are unknown and are taken from the scatter of the lines, so that
+/// few lines carry little information. Of n lines with p0 nominal parameters, p terms that leave RSS of the nominal
+/// model's RSS_0 have the Bayes factor, for unknown scatter and terms of a size g that one line tells, give or take
+/// (Zellner and Siow 1980; Liang et al. 2008),
 ///
 ///     ∫ (1 + g)^((n - p0 - p) / 2) (1 + g RSS / RSS_0)^(-(n - p0) / 2) sqrt(n / (2 pi)) g^(-3/2) exp(-n / (2 g)) dg
 ///
 /// for each kind of data. Neither RSS is less than what rounding to the table's decimals leaves, since lines that were
-/// calculated, and rounded, tell no more than their digits. (With g = n fixed it stays below (1 + n)^((n - p0 - p) / 2)
-/// however little is left. Two causes at once would never be found where one of them explains nearly all.)
+/// calculated and rounded carry no more information than their digits. (With g = n fixed it stays below (1 + n)^((n -
+/// p0 - p) / 2) however little is left. Two causes at once would never be found where one of them explains nearly all.)
 #pragma once
 
 #include <Eigen/Core>
@@ -38,7 +38,7 @@ struct TableLine {
   int direction = 0;  ///< sign of v in the fitted range
   double a0_m_s2 = 0.0;
   double k_over_m_1_s = 0.0;
-  double a0_digit_m_s2 = 0.0, k_digit_1_s = 0.0;  ///< what the last digit in the table is worth; 0: not rounded
+  double a0_digit_m_s2 = 0.0, k_digit_1_s = 0.0;  ///< the unit of the last digit in the table; 0: not rounded
 };
 
 inline constexpr std::size_t kFewestLines = 6;
@@ -49,7 +49,7 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file);
 
 /// An experiment folder; or a table of lines that lies in no folder, a CSV file whose header has k_over_m_1_s: an
 /// experiment named after the file, of its lines alone, with the default gravity; or any other file, a track.
-/// InputError as read_tracks() (core/track/bare_track.h); what is in a table is not looked at.
+/// InputError as from read_tracks() (core/track/bare_track.h); the contents of a table are not examined.
 core::Experiment read_recording(const std::filesystem::path& path, const core::TrackFileOptions& bare);
 
 /// The issue of a table with too few lines.
@@ -58,7 +58,7 @@ base::Issue too_few_lines(const std::string& file, std::size_t lines);
 /// The values of a member among the lines, ascending, each once.
 std::vector<double> different(const std::vector<TableLine>& lines, double TableLine::*member);
 
-/// What may act beside the nominal model on a table of lines, an effect with a name or friction or drag without one:
+/// What may act on a table of lines besides the nominal model, an effect with a name, or friction or drag without one:
 /// what one unit of it adds to ln(K/m) and to a0 (m/s²) of every line.
 struct LineTerm {
   std::string id, key;

@@ -2,9 +2,9 @@
 ///
 ///     m dv/dt = m g sin(alpha) - K v - sign(v) mu m g cos(alpha) + a known force + an unnamed one
 ///
-/// sliding, changed by the laws of the effects that act (diagnose/effects/effect.h); at v = 0 the glider stays while
-/// friction of up to its limit, whichever way, can hold it. Runge and Kutta's fourth order in equal parts of every
-/// frame interval, or over several frames, with a polynomial of fifth order between (steps of at most 12.6 ms
+/// sliding, changed by the laws of the effects that act (diagnose/effects/effect.h); at v = 0 the glider stays as long
+/// as static friction, up to its limit in either direction, can hold it. Runge and Kutta's fourth order in equal parts
+/// of every frame interval, or over several frames, with a polynomial of fifth order between (steps of at most 12.6 ms
 /// or an eighth of the frame interval; k h at most 0.3, a shaking's omega h at most 0.9), stopped exactly at v = 0 and
 /// at t_r: a smooth function of all parameters, so that its derivatives follow by finite differences. SI units.
 #pragma once
@@ -27,7 +27,7 @@ struct KnownForce {
   std::vector<double> force_n;
 };
 
-/// All that determines one motion.
+/// Everything that determines one motion.
 struct TrackModel {
   double mass_kg = 0.0;
   double gravity_m_s2 = 9.80665;

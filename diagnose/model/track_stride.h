@@ -44,7 +44,7 @@ class Stride {
   double c3_ = 0.0, c4_ = 0.0, c5_ = 0.0;
 };
 
-/// sin(omega t + phase) at instants that follow each other by equal steps, without a sine for each.
+/// sin(omega t + phase) at equally spaced instants, without a sine for each.
 class SineSteps {
  public:
   SineSteps(double hz, double phase) : omega_(2.0 * std::numbers::pi * hz), phase_(phase) {}

@@ -4,9 +4,9 @@
 ///
 ///     split = 1/2 u' (1 + G C G')^-1 u,        C' = C - C G' (1 + G C G')^-1 G C
 ///
-/// u is what explanation A makes of the new clip and the new statements less what B expects, over their noise; G the
-/// derivatives of B by its common parameters, the clip's own start projected out; C their covariance so far. The first
-/// is the log likelihood that B is expected to lose if A is right.
+/// u is what explanation A predicts for the new clip and the new statements minus what B predicts, over their noise; G
+/// the derivatives of B by its common parameters, the clip's own start projected out; C their covariance so far.
+/// `split` is the log likelihood that B is expected to lose if A is right.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,10 +1,10 @@
 /// What an experimenter could do next: one further clip that differs in one thing, as a fit expects it, or one further
 /// measurement of what is stated.
 ///
-/// A clip begins a twentieth of the range of places inside that range's upper or lower end. It lasts as long as the
-/// longest one so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions so far:
-/// for tracks sd² (1 + c v²), with c from `wider` of the motions (0 where that is empty), for films as in whitening.h.
-/// Half the exposure leaves a quarter of what grows with the speed. SI units.
+/// A clip begins inside the range of positions so far, a twentieth of it from its upper or lower end. It lasts as long
+/// as the longest one so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions
+/// so far: for tracks sd² (1 + c v²), with c from `wider` of the motions (0 where that is empty), for films as in
+/// whitening.h. Half the exposure leaves a quarter of what grows with the speed. SI units.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,15 +20,15 @@ namespace glidelab::diagnose {
 /// Launches each way at half, once and 1.8 times the speeds so far, with the masses so far and a heavier and a lighter
 /// one, on the flattest and the steepest set-up; a level track and a steeper one; twice and half the frame rate; half
 /// the exposure, where filmed markers scatter the more the faster they are; a plumb view (0.05 degrees) of each of
-/// these set-ups that has none; the pattern at both ends of the range of places (0.5 mm); a stopwatch (one frame in
-/// ten seconds). Where a recorded force moves the glider, no clips, whose forces nobody knows. `nominal` is the fit of
-/// the nominal model to `set`.
+/// these set-ups that has none; the pattern at both ends of the range of places (0.5 mm); a stopwatch (one frame in ten
+/// seconds). Where a recorded force moves the glider, no clips, because nobody knows their forces. `nominal` is the fit
+/// of the nominal model to `set`.
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal);
 
 /// How many, and of which kinds, in the order of ChangeKind.
 ChangesWeighed weighed(const std::vector<Change>& changes);
 
-/// Where a new set-up's inclination stands among the common parameters: behind those of the others.
+/// The index of a new set-up's inclination among the common parameters: after those of the others.
 Eigen::Index new_alpha(const TrackSet& set);
 
 /// A fit's parameters for the change's clip. What every clip has of its own is as in the clips so far, on average. The
@@ -38,10 +38,10 @@ FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& cha
 /// A further clip as a fit expects it.
 struct NextMotion {
   TrackSet set;  ///< the set-ups and masses so far and the change's, with its clip as the only one
-  Moved moved;   ///< empty where the clip cannot be made: fewer than 12 positions within the range so far
+  Moved moved;   ///< empty where the clip is not feasible: fewer than 12 positions within the range so far
 };
 
-/// The change's clip as the fit makes it, without noise, cut where it leaves the places so far.
+/// The change's clip as the fit predicts it, without noise, cut where it leaves the range of positions so far.
 NextMotion next_motion(const TrackSet& set, const MotionFit& fit, const Change& change);
 
 }  // namespace glidelab::diagnose

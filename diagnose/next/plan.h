@@ -1,8 +1,8 @@
 /// Which effects an experiment will be able to tell apart, before anything is recorded.
 ///
-/// Every effect that displaces positions in one direction (in the space of all positions, over their noise, with all
-/// that a fit may change projected out) has a size that makes one standard deviation, and a cosine with any other.
-/// Nothing but the planned motions and their noise goes in; measured residuals do not.
+/// Every effect that displaces positions in one direction (in the space of all positions, over their noise, with
+/// everything that a fit may change projected out) has a size that makes one standard deviation, and a cosine with any
+/// other. Only the planned motions and their noise enter, not measured residuals.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ struct PlannedEffect {
   std::string id;
   std::string words;
   std::string key;                 ///< of its size, with the unit
-  double seen_from = 0.0;          ///< size of four standard deviations; of n and s what they are off 1
-  bool seen = false;               ///< the largest size that is considered makes as much
+  double seen_from = 0.0;          ///< size of four standard deviations; for n and s the deviation from 1
+  bool seen = false;               ///< the largest size that is considered reaches that
   std::vector<std::string> alike;  ///< those whose cosine with it is kAlike or more
 };
 

@@ -1,11 +1,11 @@
 /// The noise of positions, measured: how much is white, how much neighbouring frames share (whitening.h), and how much
 /// grows with the speed.
 ///
-/// Restricted maximum likelihood finds those amplitudes and lengths that make most likely what the positions hold
-/// besides everything slow, so that neither the nominal model nor what it lacks goes in. The residuals of a stretch are
-/// r = B b + noise with b anything. B is what is set aside as slow: bumps ten frames apart (30 where a codec makes
-/// images out of those before, whose errors last for up to a dozen frames) and, where a wave shows, its sine and cosine
-/// and what the fit made of it. Then
+/// Restricted maximum likelihood finds the amplitudes and lengths that make the positions most likely once everything
+/// slow is set aside, so that neither the nominal model nor what it lacks enters. The residuals of a stretch are r = B
+/// b + noise with b anything. B is what is set aside as slow: bumps ten frames apart (30 where a codec makes images out
+/// of those before, whose errors last for up to a dozen frames) and, where a wave shows, its sine and cosine and what
+/// the fit made of it. Then
 ///
 ///     log L = sum over motions of  -f log s_i - q_i/(2 s_i²) - (log|V| + log|B' V^-1 B|)/2 - (log(s_i/s)/0.3)²/2
 ///
@@ -14,9 +14,9 @@
 /// predicts images from those before, what is known of its errors is added. Lengths are in pixels (unit_m() of
 /// whitening.h).
 ///
-/// Nobody knows the pixels of imported tracks. Their noise may last for some frames, as that of a tracker does that
-/// follows its own last image, and is taken as white unless that shows beyond doubt. What lasts for four frames or
-/// longer may be what the model lacks, and is left to it.
+/// Nobody knows the pixels of imported tracks. Their noise may last for some frames, as with a tracker that follows its
+/// own last image, and is taken as white unless that shows beyond doubt. What lasts for four frames or longer may be an
+/// effect that the model lacks, and does not count as noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,7 +48,7 @@ struct Likelihood {
   std::vector<double> own_px;  ///< s of each motion
 };
 
-/// How likely it is that the noise of filmed positions has a shape (whitening.h): the restricted likelihood.
+/// How likely a shape of the noise of filmed positions (whitening.h) is: the restricted likelihood.
 class NoiseLikelihood {
  public:
   /// `pilot_px`: about s, for the part of the covariance that has a size of its own. `handed_on`: the file's codec
@@ -62,7 +62,7 @@ class NoiseLikelihood {
   Likelihood of(const NoiseShape& shape) const;
 
  private:
-  /// What is left of a motion under a shape: the residuals' square over unit s, their number, log |V| and the like.
+  /// What remains of a motion under a shape: the residuals' square over unit s, their number, log |V| and the like.
   struct Left {
     double square = 0.0, freedom = 0.0, logs = 0.0;
   };

@@ -2,8 +2,8 @@
 ///
 /// Each finding weighs one effect's presence against its absence: a measured size with its standard deviation against
 /// what is stated (or against nothing), averaged over the sizes that the effect may have. Standard deviations come from
-/// the scatter of the measurements themselves, with what neighbouring frames have in common; a floor stands for what
-/// the marker's model and the lens do to them (each derived where it is used).
+/// the scatter of the measurements themselves, with what neighbouring frames have in common; a floor allows for errors
+/// of the marker's model and of the lens (each derived where it is used).
 #pragma once
 
 #include <optional>

@@ -60,7 +60,7 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   finding.words = fmt::format("{}; steps between pixels are {} at the edges of 8 × 8 blocks {} elsewhere.",
                               lossy > 0      ? fmt::format("The file is compressed with loss ({})", lossy_codec)
                               : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
-                                             : std::string("What the file was compressed with is not known"),
+                                             : std::string("The file's compression is not known"),
                               steps, relative > 2.0 ? "as" : "than");
   if (memory > kUsualMemory)
     finding.words +=

@@ -7,7 +7,7 @@
 
 namespace glidelab::diagnose {
 
-/// Log evidence that pixels at rest remember what they were: a codec's predicted images do.
+/// Log evidence that static pixels keep their earlier values: those of a codec's predicted images do.
 double memory_log_evidence(const std::vector<FilmedClip>& clips);
 
 /// Whether the clip was lossily compressed, and whether that is visible. To be called after add_flicker and add_sway,
@@ -15,9 +15,9 @@ double memory_log_evidence(const std::vector<FilmedClip>& clips);
 ///
 /// Blocks: steps between pixels at the edges of 8 x 8 blocks against those of the other seven columns. Memory: a
 /// resting pixel's change over two frames against that over one, 1 where noise is new in every frame. Light or a scene
-/// that changes makes it differ from 1 as well, so that it counts only where both rest. (What flickers by less than 1 %
-/// where pixels remember is no light: picture_scene.h.) A file that says itself that it is compressed with loss
-/// withholds nothing: it is named for what it does to the positions (joined_evidence.h).
+/// that changes makes it differ from 1 as well, so that it counts only where both rest. (A flicker of less than 1 %
+/// where pixels keep their values is not the light's: picture_scene.h.) A file that itself says that it is lossily
+/// compressed hides nothing: compression is named for what it does to the positions (joined_evidence.h).
 void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
 /// Whether frames are missing or repeated.
 void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
@@ -40,9 +40,9 @@ struct ShapeFit {
 ///     m_uu - m_vv = p(u) + (w_u² - w_v²) T²/12 - 2 line w_v m_vv
 ///     m_uv        = q(u) + w_u w_v T²/12 + line w_u m_vv
 ///
-/// p and q are cubic in the place in the image, one pair for each view. They stand for perspective and lens, which do
-/// not go with the speed. T is found by trying exposures, all else by least squares. Outliers beyond seven median
-/// deviations are left out, and variances are multiplied by how long residuals last.
+/// p and q are cubic in the place in the image, one pair for each view. They allow for perspective and lens, which do
+/// not depend on the speed. T is found by trying exposures, everything else by least squares. Outliers beyond seven
+/// median deviations are left out, and variances are multiplied by how long residuals last.
 ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips);
 
 }  // namespace glidelab::diagnose

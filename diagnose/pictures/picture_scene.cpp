@@ -118,8 +118,8 @@ std::string words_of_pull(const std::vector<FilmedClip>& clips) {
   if (pull < kLeastPull_px) return "";
   const double change = 0.5 * (core::quantile(along, 1.0 - kRare) - core::quantile(along, kRare));
   return fmt::format(
-      " The centroid of the marker's light lies {:.2g} px off the centre of its outline, which is what is "
-      "fitted; along the path that changes by ±{:.2g} px.",
+      " The centroid of the marker's light lies {:.2g} px from the centre of its outline, which is what is "
+      "fitted; this offset changes by ±{:.2g} px along the path.",
       pull, change);
 }
 

@@ -12,9 +12,9 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
 /// from the middle of the image, against the 10 % a metre that any lamp makes.
 void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
 
-/// Whether the camera moves: does the fixed scene sway or drift in the image, or stay in place? Patches are trusted to
-/// 0.02 px. A wave is looked for in both directions of all clips. A drift is the range of the means of eight parts of a
-/// clip beyond what noise makes of it.
+/// Whether the camera moves: whether the fixed scene sways or drifts in the image, or stays in place. Patches are
+/// trusted to 0.02 px. A wave is looked for in both directions of all clips. A drift is the range of the means of eight
+/// parts of a clip beyond what noise alone gives.
 void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
 
 /// Log likelihood of the fixed scene's motion under a camera that sways by this (along the motion, in metres) over that

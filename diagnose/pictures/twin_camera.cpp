@@ -260,7 +260,7 @@ TwinView view_of(const std::optional<Filming>& filming, double reference_m, doub
   }
   if (!view.pattern) view.assumed.emplace_back("the pattern and its place");
   if (!filming->settings.exposure_s) view.assumed.emplace_back("the exposure");
-  view.assumed.emplace_back("the scene, its light and how bright it is");
+  view.assumed.emplace_back("the scene, its light and its brightness");
   if (filming->others) view.assumed.emplace_back("one camera, the first folder's, for all clips");
   return view;
 }

@@ -1,6 +1,6 @@
 /// How an experiment was filmed, as far as its folder and calibration show, written as sections of a scenario.
 ///
-/// The calibration gives the camera and where the pattern of the plane stands before it (p_C = R p_P + s). The marker's
+/// The calibration gives the camera and the pose of the plane's pattern in front of it (p_C = R p_P + s). The marker's
 /// pixels, restituted onto the plane Z = -height of the pattern's frame P, give the line of motion p_P = through + x
 /// along. With the fitted inclination that line is the track's direction in the world, and so the camera's place in it
 /// follows. By a scale alone the camera is taken to look straight at the line of motion from f / (px_per_m) away. SI

@@ -20,14 +20,14 @@ struct DiagnosedParameter {
   std::string key;  ///< with its unit, as in the list of effects
   double value = 0.0;
   double sd = 0.0;        ///< 0: not fitted
-  std::string text = {};  ///< of what is a word (a codec's name), instead of value and sd
-  std::string why = {};   ///< why the data do not tell it; its value is then no number
+  std::string text = {};  ///< a word (a codec's name) instead of value and sd
+  std::string why = {};   ///< why the data do not determine it; its value is then not a number
 };
 
 /// One of several effects that would look the same.
 struct AlikeEffect {
   std::string id, words;
-  std::optional<double> probability;  ///< none where no explanation that was weighed holds it: it counts as another's
+  std::optional<double> probability;  ///< none where no weighed explanation holds it: it counts under another's
 };
 
 struct DiagnosedEffect {
@@ -35,7 +35,7 @@ struct DiagnosedEffect {
   Stage stage = Stage::dynamics;
   std::string words;
   double probability = 0.0;                ///< that it acts, alone or with another
-  std::vector<std::string> equivalent_to;  ///< what these data cannot tell from it
+  std::vector<std::string> equivalent_to;  ///< effects that these data cannot tell from it
   std::vector<DiagnosedParameter> parameters;
   double joint_probability = 0.0;  ///< that it or one of `equivalent_to` acts
   /// It and those, by falling probability; empty where it stands alone.
@@ -50,7 +50,7 @@ struct RankedExplanation {
   std::size_t parameters = 0;                   ///< more than the nominal model has
   std::optional<double> gap_after;              ///< of held-out clips; where it was fitted in full
   std::optional<ImpossibleSize> left_out = {};  ///< why it was not weighed, where it was not
-  bool converged = true;                        ///< false: its fit has not come to a minimum; it gains at least so much
+  bool converged = true;                        ///< false: its fit did not reach a minimum; it gains at least this much
 };
 
 struct GapRegion {
@@ -64,8 +64,8 @@ struct GapRegion {
   /// What the nominal model lacks at most, in the size's unit, where the size is far more than that: not to be
   /// believed.
   std::optional<double> lacking = {};
-  std::optional<double> size_sd = {};  ///< of the size; none of what is found otherwise than by a curve or in lines
-  int direction = 0;                   ///< sign of v of the lines it is of; 0 where it is of both, or of no lines
+  std::optional<double> size_sd = {};  ///< of the size; none where it is not from a curve or from lines
+  int direction = 0;                   ///< sign of v of its lines; 0 for both directions, and where there are no lines
   std::optional<double> at = {};       ///< the variable where a curve has that size
 };
 
@@ -80,7 +80,7 @@ struct GapCurve {
 
 struct GapOfParameter {
   std::string quantity, against, group;
-  std::optional<double> z_before = {}, z_after = {};  ///< none where it cannot be said
+  std::optional<double> z_before = {}, z_after = {};  ///< none where it cannot be determined
   /// Of a part of the data alone, against all: the nominal model's fits, in the quantity's unit.
   std::optional<DiagnosedParameter> alone = {}, together = {};
 };
@@ -92,7 +92,7 @@ struct GapInterval {
 
 struct GapIntervals {
   std::optional<GapInterval> before, after, shrink, acceleration_before, acceleration_after;
-  std::optional<std::size_t> too_few = {};  ///< clips, where that is why there is no interval
+  std::optional<std::size_t> too_few = {};  ///< number of clips, where it is the reason for the missing interval
 };
 
 /// A difference with its standard deviation.
@@ -100,7 +100,7 @@ struct GapValue {
   double value = 0.0, sd = 0.0;
 };
 
-/// Measured less modelled acceleration over a stretch of speeds (domain_gaps.h), m/s².
+/// Measured minus modelled acceleration over an interval of speeds (domain_gaps.h), m/s².
 struct PhaseBin {
   double from_m_s = 0.0, to_m_s = 0.0;
   double v_m_s = 0.0;  ///< mean over its points
@@ -117,11 +117,11 @@ struct PhaseGap {
 struct GapDomain {
   std::string domain;  ///< positions, phase_plane, parameters, picture
   double before = 0.0;
-  std::optional<double> after = {};  ///< none where it cannot be said
+  std::optional<double> after = {};  ///< none where it cannot be determined
 };
 
-/// Standard errors above the floor from which on there is a gap. Three would do if the noise were white and normal to
-/// the last; half as many more leave room for noise that is not quite so.
+/// There is a gap from this many standard errors above the floor. Three would do if the noise were exactly white and
+/// normal; half as many more leave room for noise that is not.
 inline constexpr double kClearGap = 4.5;
 
 struct GapSizes {
@@ -148,7 +148,7 @@ struct ResidualCurve {
 /// Two effects are called alike from this cosine on: the second one then explains 90 % of what the first one gains.
 inline constexpr double kAlike = 0.95;
 
-/// How alike what two effects change is: the cosine of the angle between them, everything fitted projected out.
+/// How alike the changes by two effects are: the cosine of the angle between them, everything fitted projected out.
 struct Isolability {
   std::vector<std::string> ids;
   std::vector<double> least_seen;           ///< size of each that makes one standard deviation
@@ -175,19 +175,19 @@ struct PictureCurve {
   std::vector<double> expected, fitted;  ///< as stated, and as found; empty where there is none
 };
 
-/// What a camera's fit leaves of the pattern's corners.
+/// The residuals of the pattern's corners about a camera's fit.
 struct CalibrationRests {
   std::string experiment;
   core::CornerMap rests;
 };
 
-/// What a twin has not, because no scenario can say it.
+/// What a twin lacks because no scenario can express it.
 struct TwinLack {
   std::string what;  ///< an effect, or words
   std::string why;
 };
 
-/// Positions of one clip as the analysis has them, for what stands beside a twin.
+/// Positions of one clip as the analysis has them, for the comparison with a twin.
 struct MeasuredMotion {
   std::string clip;
   double start_s = 0.0;      ///< of the twin's clip, after the data's first frame
@@ -212,7 +212,7 @@ struct ExplainedCause {
   double gap_after = 0.0;                            ///< g_i
 };
 
-/// What is left of the gap beside the causes that were named.
+/// What is left of the gap beside the named causes.
 struct GapRemainder {
   double share = 1.0;              ///< of the excess g²_0 - 1: what the causes' shares leave to 1
   double gap = 1.0;                ///< of held-out clips, with all causes in the model
@@ -223,11 +223,12 @@ struct GapRemainder {
 };
 
 /// Gaps of held-out clips, or of fits, with parameters that are a clip's own, a configuration's (mass and set-up), or
-/// common to all; all are root mean squares of residuals over the noise, reduced by the freedom that the fits take.
+/// common to all; all are root mean squares of residuals over the noise, corrected for the degrees of freedom that the
+/// fits take.
 struct GapLevels {
   double all = 1.0;
-  std::optional<double> configuration = {};  ///< none where there is one configuration alone
-  std::optional<double> clip = {};           ///< none where there is one clip alone
+  std::optional<double> configuration = {};  ///< none where there is only one configuration
+  std::optional<double> clip = {};           ///< none where there is only one clip
   /// K/m and mu of each configuration by itself, for the table: where configuration_friction or configuration_drag is
   /// named, or the law holds within configurations and not across them.
   bool holds_within = false;
@@ -272,8 +273,8 @@ struct Diagnosis {
   std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
 };
 
-/// Whether the nominal model follows the positions to within their noise, and the verdict is unknown for what is stated
-/// alone: an inclination that the motion contradicts, a drag or friction below zero.
+/// Whether the nominal model follows the positions to within their noise, and the verdict is unknown only because of
+/// what is stated: an inclination that the motion contradicts, a drag or friction below zero.
 bool only_statements_fail(const Diagnosis& diagnosis);
 
 /// An explanation that names effects and nothing else.

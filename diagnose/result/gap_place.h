@@ -1,4 +1,5 @@
-/// Where a gap lies: between the world and the result, and over which variable, and what of a motion or an image it is.
+/// Where a gap lies: at which stage between the world and the result, over which variable, and in which quantity of a
+/// motion or an image.
 #pragma once
 
 #include <string_view>

@@ -19,11 +19,11 @@ struct GivenCause {
 struct GivenCauses {
   std::vector<GivenCause> causes;  ///< in the order in which they were named
   std::vector<RecoveredConfiguration> recovered;
-  /// Of clips that are held out (of quarters of a single one), with the nominal model and with the causes; 1 is the
-  /// floor (gap/held_out.h).
+  /// Of held-out clips (of quarters of a single one), with the nominal model and with the causes; 1 is the floor
+  /// (gap/held_out.h).
   double gap_before = 1.0, gap_after = 1.0;
   double standard_error = 0.0;  ///< of a gap at the floor
-  bool converged = true;        ///< false: the fit has not come to a minimum
+  bool converged = true;        ///< false: the fit did not reach a minimum
   std::vector<Note> notes;
 };
 

@@ -16,7 +16,7 @@ struct LineSize {
   double sd = 0.0;  ///< from what the explanation leaves
 };
 
-/// A size that a fit needs and nature does not have.
+/// A size that a fit needs but that is physically impossible.
 struct ImpossibleSize {
   std::string key;  ///< with its unit
   double value = 0.0;

@@ -53,7 +53,7 @@ struct ChangesWeighed {
   std::vector<ChangeKind> kinds;  ///< each once
 };
 
-/// What each of two explanations has and the other lacks; nothing in `other`: the doubt is whether `one` acts at all.
+/// What each of two explanations has and the other lacks; with `other` empty the doubt is whether `one` acts at all.
 struct Alternative {
   Explanation one, other;
 };
@@ -78,7 +78,7 @@ struct RepeatClip {
   std::string clip;
 };
 
-/// The launch that covers best the places or speeds in which something without a name acts.
+/// The launch that best covers the positions or speeds at which something without a name acts.
 struct CoverRegion {
   enum class Over { places, speeds } over = Over::places;
   double from = 0.0, to = 0.0;
@@ -91,29 +91,29 @@ struct AddMass {
   double mass_kg = 0.0;
 };
 
-/// What shows an effect that only images or single frames tell.
+/// What would show an effect that only images or single frames reveal.
 struct RecordForEffect {
   std::string words;                 ///< the effect's own
   std::optional<Alternative> doubt;  ///< between two explanations; none where the effect is named
 };
 
-/// What would tell the leading explanation from its rivals; without a change where none would.
+/// What would tell the leading explanation from its rivals; no change where none would.
 struct SettleDoubt {
   std::vector<Alternative> doubt;
   std::optional<Change> by;
   ChangesWeighed weighed;
-  double log_likelihood = 0.0;  ///< that the rivals are expected to lose; at most, where no change is enough
+  double log_likelihood = 0.0;  ///< that the rivals are expected to lose; the most, where no change is enough
 };
 
-/// What would make the weakest parameter more certain, where nothing is in doubt, or only whether something acts besides
-/// that no further clip would show; without a change where none would.
+/// What would make the weakest parameter more certain, where nothing is in doubt, or only whether something else acts
+/// that no further clip would show; no change where none would.
 struct SharpenParameter {
   std::string key, effect;  ///< of K and mu, key "K" or "mu" and no effect
   double value = 0.0, sd = 0.0;
   std::optional<Change> by;
   ChangesWeighed weighed;
   double sd_after = 0.0;
-  bool one_mass = false;  ///< nothing is missing, of one mass: a friction force would count as mu
+  bool one_mass = false;                    ///< nothing is missing, of one mass: a friction force would count as mu
   std::vector<Alternative> undecided = {};  ///< what may act besides, and none of the changes would decide
 };
 

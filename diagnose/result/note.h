@@ -9,7 +9,7 @@
 
 namespace glidelab::diagnose {
 
-// Which part of the data took part.
+// Which part of the data was used.
 
 /// A clip holds no free motion of so many points.
 struct NoFreeMotion {
@@ -38,13 +38,13 @@ struct HandLeftOut {
   std::size_t frames = 0;
 };
 
-/// A large part of the positions takes no part: left out, or outliers.
+/// A large part of the positions is not used: left out, or outliers.
 struct SetAside {
   std::size_t positions = 0;  ///< of the motion, all
   double part = 0.0;
 };
 
-/// Of a single clip, pieces or quarters are held out in place of clips.
+/// With a single clip, pieces or quarters are held out in place of clips.
 struct PiecesHeldOut {};
 struct QuartersHeldOut {};
 
@@ -66,7 +66,7 @@ struct NoInclination {
   std::vector<std::string> groups;
 };
 
-/// Nothing but falls was recorded: friction on a track is not determined.
+/// Only falls were recorded: friction on a track is not determined.
 struct OnlyFalls {};
 
 /// Clips of one set-up state different inclinations.
@@ -74,7 +74,7 @@ struct SplitSetUps {
   std::vector<std::string> groups;
 };
 
-/// A clip begins the other way than it is stated to be launched.
+/// A clip begins in the opposite direction to its stated launch.
 struct LaunchedOtherWay {
   std::string clip;
   bool stated_up = false;
@@ -95,7 +95,8 @@ struct ContradictedIncline {
   double z = 0.0;
 };
 
-/// A stated inclination without its uncertainty, which holds no fit, and which the accelerations contradict grossly.
+/// A stated inclination without its uncertainty, which constrains no fit, and which the accelerations contradict
+/// grossly.
 struct ContradictedReading {
   double mass_kg = 0.0;
   std::string sentence;  ///< core::InclineContradiction's
@@ -108,10 +109,10 @@ struct BeyondGravity {
   double stated_deg = 0.0, intercept_m_s2 = 0.0, gravity_m_s2 = 0.0;
 };
 
-/// The inclination that the mean intercept of lines makes.
+/// The inclination that corresponds to the mean intercept of lines.
 struct MeanIncline {
   double stated_deg = 0.0, intercept_deg = 0.0;
-  double read_deg = 0.0;  ///< how well the stated one is taken to be read
+  double read_deg = 0.0;  ///< how well the stated one is assumed to have been read
 };
 
 /// A table states neither errors nor speeds.

@@ -35,9 +35,9 @@ struct PairScan {
 
 /// Two effects together, of those whose scans hold directions (an amplitude, perhaps with a second parameter), by
 /// falling evidence. Each by itself may show little because the other hides it: two sizes that work against each other,
-/// or a first fit that the second effect leads astray. Both are therefore fitted at once to what the nominal model
-/// leaves, for all pairs and all second parameters that were tried. Pairs that these data cannot tell from one of the
-/// two are left out.
+/// or a first fit that the second effect leads astray. Both are therefore fitted together to the residuals of the
+/// nominal model, for all pairs and all second parameters that were tried. Pairs that these data cannot tell from one
+/// of the two are left out.
 std::vector<PairScan> scan_pairs(const ScoreSpace& space, const std::vector<EffectScan>& scans);
 
 }  // namespace glidelab::diagnose

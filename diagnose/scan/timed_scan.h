@@ -1,4 +1,5 @@
-/// The scans for what has a time of its own, a wave or a push, and the form in which every scan states its result.
+/// The scans for effects with a time of their own, a wave or a push, and the form in which every scan states its
+/// result.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +30,7 @@ struct EffectScan {
 };
 
 /// A wave in time, one amplitude and one frequency for all motions and a free phase in each: the best of all, as a
-/// displacement. f_hz is 0 where nothing swings.
+/// displacement. f_hz is 0 where there is no wave.
 struct Wave {
   double gain = 0.0, log_evidence = 0.0, size_m = 0.0, f_hz = 0.0;
 };
@@ -39,14 +40,15 @@ struct Wave {
 /// effect that is a wave.
 Wave find_wave(const ScoreSpace& space);
 
-/// That wave as an effect's: a camera's sway, or the acceleration of a base that shakes, which moves the glider so.
+/// That wave as an effect: the sway of a camera, or the acceleration of a shaking base that moves the glider in this
+/// way.
 EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& wave);
 
 /// A hand that pushes at the start of clips until one moment: a size in each motion that begins with its clip.
 ///
 /// Nine times in ten it is one hand: its pushes are a common size along the motions and, from clip to clip, half as
-/// much again (one standard deviation), all along the motions or, one time in ten of these, all against them. Else they
-/// are of any size and sign. The evidence is averaged over both, over the sizes and over the moment.
+/// much again (one standard deviation), all along the motions or, one time in ten of these, all against them. Otherwise
+/// they have any size and sign. The evidence is averaged over both, over the sizes and over the moment.
 EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect);
 
 }  // namespace glidelab::diagnose

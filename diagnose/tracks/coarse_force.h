@@ -1,10 +1,10 @@
-/// A recorded force at no more samples than its motion can tell.
+/// A recorded force with no more samples than its motion can resolve.
 ///
 /// A motor's force comes at some thousand samples a second, each of which costs the integration a step. Means over k
-/// samples, weighted with a triangle of that half-width, keep its integral and any straight line; what they leave out
-/// moves the positions by
+/// samples, weighted with a triangle of that half-width, preserve its integral and any straight line; what they smooth
+/// away moves the positions by
 ///
-///     d(t) = integral of integral of (F - F_k)/m,     but for a straight line, which the start x0, v0 takes up.
+///     d(t) = integral of integral of (F - F_k)/m,     up to a straight line, which the start x0, v0 absorbs.
 #pragma once
 
 #include "diagnose/tracks/tracked_motions.h"

@@ -3,11 +3,11 @@
 /// The error of rounding to a step q is e = x - q round(x/q): a saw-tooth of the true place with a standard deviation
 /// of q/sqrt(12). From frame to frame the place in the tooth moves on by d = v dt/q less the nearest whole number; with
 /// u the shift between two frames along it, the correlation of their errors is 1 - 6 u + 6 u², and changes its sign at
-/// u = 0.21. So where the motion passes many steps a frame by no round number, the errors are as good as independent.
-/// Where it is slow, or passes a whole number of steps a frame, n successive frames err alike: they count as one
-/// measurement, each with sqrt(n) times the standard deviation. (Of what moves on steadily the errors average out even
-/// faster; of a turn or a rest they do not.) Noise of the sensor itself, added before the rounding, breaks that up:
-/// with a standard deviation s of it the correlation falls by exp(-(2 pi s/q)²).
+/// u = 0.21. So where the motion passes many steps per frame, and not a round number of them, the errors are
+/// practically independent. Where it is slow, or passes a whole number of steps per frame, n successive frames err
+/// alike: they count as one measurement, each with sqrt(n) times the standard deviation. (In steady motion the errors
+/// average out even faster; at a turn or a rest they do not.) Noise of the sensor itself, added before the rounding,
+/// breaks that up: with a standard deviation s of it the correlation falls by exp(-(2 pi s/q)²).
 ///
 /// B. Widrow, I. Kollar, Quantization Noise (2008), 5 and 20.
 #pragma once
@@ -25,7 +25,7 @@ std::vector<double> frames_alike(const std::vector<double>& t_s, const std::vect
 /// Raises sd_m to what rounding makes, and sets `wider`; a motion without a step is left as it is.
 void add_rounding(TrackedMotion& motion);
 
-/// Whether what rounding makes is most of the noise of some motion: then neighbouring positions tell of no other.
+/// Whether rounding makes most of the noise of some motion: then neighbouring positions show no other noise.
 bool noise_is_rounding(const TrackSet& set);
 
 }  // namespace glidelab::diagnose

@@ -1,15 +1,15 @@
 /// The motions that a diagnosis fits (tracked_motions.h), from the results of an analysis, with their noise and the
 /// errors of square pixels.
 ///
-/// The fit of a blurred edge to pixels errs with the place of the centre between two pixels, by a few thousandths of a
-/// pixel, the same wherever that place is the same. All clips of an experiment share these errors:
+/// The fit of a blurred edge to pixels has an error that depends on where the centre lies between two pixels: a few
+/// thousandths of a pixel, the same wherever that sub-pixel position is the same. All clips of an experiment share
+/// these errors:
 ///
 ///     x error = (a sin 2 pi s + b cos 2 pi s + c sin 4 pi s + d cos 4 pi s) / (pixels a metre),
 ///
-/// with s the centre's coordinate (column or row) along which it moves more. a to d are not known. Each is
-/// N(0, (0.01 px)²), which is what good trackers are reported to reach, and ten times what this one was seen to do on
-/// sharp images. Over many pixels this cannot imitate a force. If it is left out, it is taken for waves as soon as the
-/// noise is small.
+/// with s the centre's coordinate (column or row) along which it moves more. a to d are unknown. Each is N(0, (0.01
+/// px)²), the accuracy reported for good trackers, and ten times the error that this one showed on sharp images. Over
+/// many pixels this cannot imitate a force. Without it, such errors are taken for waves as soon as the noise is small.
 #pragma once
 
 #include <vector>
@@ -28,15 +28,15 @@ inline constexpr std::size_t kPixelModes = 4;
 void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t>& frames, std::size_t first_mode,
                      TrackedMotion& motion);
 
-/// Positions without such errors, as far as neighbouring positions show them, for the measure of their noise. They
+/// Positions without such errors, as far as neighbouring positions show them, from which the noise is measured. They
 /// differ between neighbours as noise does: most where the marker moves by half a pixel a frame, not at all by a whole
 /// one. Least squares over those differences, sd_m being the weights, with what is known of the amplitudes beforehand.
 std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedMotion>& motions);
 
 /// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
-/// start or for a stop stays in the motion, else it is left out. Motions with fewer than 6 points are left out, and so
-/// are pieces with fewer than 12 of a clip that holds a longer one. Of more than 30,000 positions in all every second,
-/// third, ... is taken (thin_out()).
+/// start or for a stop stays in the motion; otherwise it is left out. Motions with fewer than 6 points are left out,
+/// and so are pieces with fewer than 12 of a clip that holds a longer one. Of more than 30,000 positions in all every
+/// second, third, ... is taken (thin_out()).
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
 
 /// Point i off the cubic through its four nearest neighbours, over the standard deviation that unit noise gives it: its

@@ -57,7 +57,8 @@ struct TrackedMotion {
   double m_per_px = 0.0;         ///< along the motion; 0: not filmed
   std::vector<double> row_px;    ///< of the image, where the marker is; empty: not filmed
   std::vector<double> along_px;  ///< of the image, along the motion; empty: not filmed, or hardly moving
-  /// Of consecutive points, all in all: makes white noise of theirs over sd_of() (whitening.h). Empty: it is white.
+  /// For consecutive points, which together hold all: turns their noise over sd_of() into white noise (whitening.h).
+  /// Empty: it is white.
   std::vector<Eigen::MatrixXd> whitening;
   Remainder remainder;  ///< none: its span has no columns
   KnownForce known;     ///< where one was recorded
@@ -83,8 +84,8 @@ struct TrackGroup {
   double x_mid_m = 0.0;                      ///< middle of the range of x
 };
 
-/// From this stated inclination on a motion is a fall: sin(alpha) is known to 0.3 % where alpha is to a degree, and the
-/// normal force is less than a sixth of the weight.
+/// From this stated inclination upwards a motion is a fall: sin(alpha) is known to 0.3 % where alpha is to a degree,
+/// and the normal force is less than a sixth of the weight.
 inline constexpr double kFall_rad = 80.0 * 3.14159265358979 / 180.0;
 bool is_fall(const TrackGroup& group);
 
@@ -94,7 +95,8 @@ struct TrackedClip {
   double duration_s = 0.0;
   std::size_t frames = 0;
   double bandwidth_s = 0.0;  ///< of the analysis' smoothing
-  /// As the analysis finds them (core/motion/free/lost_frames.h), in the file's times from the clip's first frame.
+  /// As the analysis finds them (core/motion/free/lost_frames.h), in the file's times, counted from the clip's first
+  /// frame.
   std::vector<core::LostFrames> lost = {};
 };
 
@@ -122,7 +124,7 @@ struct TrackSet {
 /// Whether nothing but falls was recorded.
 bool only_falls(const TrackSet& set);
 
-/// Whether a recorded force moves some of it: its next clip is no launch.
+/// Whether a recorded force moves some of it: its next clip is then not a launch.
 bool is_driven(const TrackSet& set);
 
 /// Points from, from + every, ... before `to` of a motion; without its whitening.
@@ -130,23 +132,23 @@ TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::si
 
 /// Of more than 30,000 positions in all (but for motions with a recorded force: cut_driven_motions()) every second,
 /// third, ... is kept, with a note: enough for any law. What single frames show needs neighbours, and is weaker then.
-/// Motions that have fewer than `fewest` left go.
+/// Motions with fewer than `fewest` points left are dropped.
 void thin_out(TrackSet& set, std::size_t fewest);
 
 /// Cuts motions that a recorded force drives to and fro into pieces.
 ///
-/// What the model lacks in force adds up twice over the time, and a turn that comes a little early starts the next run
-/// elsewhere. Over tens of turns chi² then has a local minimum for every order in which the modelled motion turns and
-/// rests, and no fit converges to the right one. A piece turns twice, so that it holds both directions, and has a start
-/// of its own. It is cut half way between turns, where the glider is fast. What shows over longer than a piece only,
-/// such as a slow drift, is lost.
+/// An error of the modelled force is integrated twice over time, and a turn that comes a little early starts the next
+/// run elsewhere. Over tens of turns chi² then has a local minimum for every order in which the modelled motion turns
+/// and rests, and no fit converges to the right one. A piece turns twice, so that it holds both directions, and has a
+/// start of its own. It is cut half way between turns, where the glider is fast. What shows only over more than one
+/// piece, such as a slow drift, is lost.
 ///
-/// Motions with a recorded force that turn more than four times are cut. Of all pieces 40 at most are weighed, and of
-/// their positions 8000, both spread evenly over clips and time (notes say so). Pieces of fewer than `fewest` points
-/// go. The pieces of a clip that is the only one become clips of their own, so that each can be held out.
+/// Motions with a recorded force that turn more than four times are cut. At most 40 pieces and 8000 of their positions
+/// are used, both spread evenly over clips and time (notes say so). Pieces of fewer than `fewest` points are dropped.
+/// The pieces of a single clip become clips of their own, so that each can be held out.
 void cut_driven_motions(TrackSet& set, std::size_t fewest);
 
-/// The points at which a motion turns: where it has come back from by more than its noise or a jitter explains.
+/// The points at which a motion turns: it has come back from there by more than its noise or a jitter explains.
 std::vector<std::size_t> turns_of(const TrackedMotion& motion);
 
 }  // namespace glidelab::diagnose

@@ -1,4 +1,4 @@
-/// Motions on which no diagnosis can speak.
+/// Motions that no diagnosis can judge.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace glidelab::diagnose {
 
-/// InputError, an issue for each clip whose positions cannot be a body's on a straight incline, as the check of a
-/// recording finds it (core/check/motion_look.h): an unusable motion gets no verdict.
+/// InputError, with an issue for each clip whose positions cannot be those of a body on a straight incline, as the
+/// check of a recording finds (core/check/motion_look.h): an unusable motion gets no verdict.
 void require_usable_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups);
 
 }  // namespace glidelab::diagnose

@@ -5,13 +5,12 @@
 ///
 ///     cov / s² = [i = j]                       photons, read noise, rounding
 ///              + a² exp(-(d/l)²/2)             pixels that differ from each other (PRNU), at the marker's edges
-///              + b² cos(2 pi d) exp(-d/L)      the place between two pixels, otherwise at places some L away
+///              + b² cos(2 pi d) exp(-d/L)      the position between two pixels, new at positions some L away
 ///              + c² exp(-n/m)                  what a codec with loss, or a tracker, hands from frame to frame
 ///              + (v tau/s)² [i = j]            uneven times
 ///
-/// Of what was tracked elsewhere (no pixel is known) the unit of d is the metre, and a = b = 0.
-/// Motions are independent of each other in it, and so are stretches of 240 points: that clips pass over the same
-/// pixels is left out.
+/// Nobody knows the pixels of imported tracks: there the unit of d is the metre, and a = b = 0. Motions count as
+/// independent of each other, and so do stretches of 240 points: it is ignored that clips pass over the same pixels.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +21,7 @@
 
 namespace glidelab::diagnose {
 
-/// What the covariance of frames goes by.
+/// What the covariance of frames depends on.
 struct SeenFrames {
   std::vector<double> along_px, frame, v_px_s;
 };
@@ -39,12 +38,12 @@ SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz);
 /// Sets `wider` and `whitening` for a motion whose sd_m (now s), outliers and along_px are set.
 void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz);
 
-/// Columns over each position's own noise (zero at outliers) become such of unit white noise; and back. A motion
-/// without whitening has white noise, but for its remainder, which counts as noise.
+/// Turns columns over each position's own noise (zero at outliers) into columns of unit white noise, and back. A motion
+/// without whitening has white noise, apart from its remainder, which counts as noise.
 Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd);
 Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white);
 
-/// Whitened columns as they are by the noise alone, without the remainder.
+/// Columns whitened by the noise alone, without the remainder.
 Eigen::MatrixXd without_remainder(const TrackedMotion& motion, Eigen::MatrixXd white);
 
 /// Weights w' of sums over coloured noise as weights of the same sums over the white noise that it is made of.

@@ -50,7 +50,7 @@ std::string shutter_section(const TwinCamera& camera) {
 
 std::string mount_sections(TwinCamera& camera) {
   if (std::abs(camera.focal_factor - 1.0) > kMostFocalChange) {
-    camera.lack(camera.focal_by, "a focal length is off by a fifth at most");
+    camera.lack(camera.focal_by, "a scenario changes its focal length by at most a fifth");
     camera.focal_factor = 1.0;
   }
   const double change = camera.focal_factor - 1.0;
@@ -64,7 +64,7 @@ std::string codec_sections(const std::optional<Filming>& filming, TwinCamera& ca
   const bool stated_lossy = filming && filming->lossy.value_or(false);
   if (!camera.lossy && !stated_lossy) return depth;
   if (deep) {
-    camera.lack(ids::compression, "what has more than 8 bits is kept without loss");
+    camera.lack(ids::compression, "a scenario stores more than 8 bits only without loss");
     return depth;
   }
   const bool motion_jpeg = !filming || filming->codec == "MJPG";
@@ -169,7 +169,7 @@ std::vector<TwinLack> lacks_of_forces(const TrackSet& set, const TrackModel& mod
   if (nameless) lacks.push_back({"what is missing", "it has no name"});
   const bool forced = std::any_of(set.motions.begin(), set.motions.end(),
                                   [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); });
-  if (forced) lacks.push_back({"the recorded force", "no force of a scenario depends on the time"});
+  if (forced) lacks.push_back({"the recorded force", "no force in a scenario depends on time"});
   for (const MissingInTwin& lack : forces_of(model).lacks) lacks.push_back({std::string(lack.id), lack.why});
   if (model.k_n_s_m < 0.0) lacks.push_back({"a drag below zero", "a scenario's drag takes energy"});
   if (model.mu < 0.0) lacks.push_back({"a friction below zero", "a scenario's friction takes energy"});

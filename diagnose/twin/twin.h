@@ -18,13 +18,13 @@ struct TwinEffects {
   double exposure_s = 0.0;
   double readout_s = 0.0;          ///< from the first row to the last
   std::string sections;            ///< each begins with an empty line
-  std::vector<std::string> notes;  ///< what of the sizes is assumed
+  std::vector<std::string> notes;  ///< what is assumed about the sizes
   std::vector<TwinLack> lacks;
 };
 
-/// What each effect makes of the camera stands in its own file (diagnose/effects/effect.h). [clock], [camera] exposure,
-/// [shutter] and [light] say it exactly. A codec of unknown strength, a pan with one phase for all clips, and a focal
-/// length or a direction that was changed after the calibration are of the same kind only.
+/// What each effect does to the camera is in its own file (diagnose/effects/effect.h). [clock], [camera] exposure,
+/// [shutter] and [light] express it exactly. A codec of unknown strength, a pan with one phase for all clips, and a
+/// focal length or a direction changed after the calibration only resemble it.
 ///
 /// `reference_m` is x in the data of the world's origin.
 TwinEffects effects_of_camera(const std::vector<DiagnosedEffect>& effects, const std::optional<Filming>& filming,
@@ -44,19 +44,18 @@ struct Twin {
 /// The twin of a fit and the sizes of the effects that are named. `nameless`: something is missing that has no name.
 ///
 /// Configurations are the fitted masses on the fitted inclinations, clips the fitted starts, forces the fitted ones.
-/// Each effect says what force of a scenario it is (diagnose/effects/effect.h), or that no scenario can say it.
-/// Additional inertia is all forces, gravity with them, less by the factor m/(m + m_w), so that m dv/dt is the same.
-/// Camera and clock are those of effects_of_camera(). A scenario has no forces that depend on the place or the time,
-/// and none that was recorded. What needs one is listed, and the twin lacks it. The camera is that of the folder as far
-/// as it is known (twin_camera.h). What is assumed stands in the file's first lines. x counts from the middle of the
-/// data.
+/// Each effect says which force of a scenario it is (diagnose/effects/effect.h), or that no scenario can express it.
+/// Additional inertia becomes a factor m/(m + m_w) on all forces, gravity included, so that m dv/dt is the same. Camera
+/// and clock are those of effects_of_camera(). A scenario has no forces that depend on position or time, and no
+/// recorded ones. What needs one is listed, and the twin lacks it. The camera is that of the folder as far as it is
+/// known (twin_camera.h). What is assumed is in the file's first lines. x counts from the middle of the data.
 Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
              const std::optional<Filming>& filming);
 
-/// As a clip or a group is called in the twin's file: what is no letter, digit, "-" or "_" is "-".
+/// The name of a clip or a group in the twin's file: what is not a letter, digit, "-" or "_" becomes "-".
 std::string twin_name(const std::string& name);
 
-/// Of all clips, in order: a name that comes out as one before has a number behind it, "---" and "----2".
+/// For all clips, in order: a name that comes out like an earlier one gets a number, "---" and "----2".
 std::vector<std::string> twin_clip_names(const std::vector<std::string>& names);
 
 }  // namespace glidelab::diagnose

@@ -19,17 +19,17 @@ void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& fa
 /// All families around a fit.
 std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
 
-/// The likeliest of those that say of one clip something about another; null: none. Their columns must be there.
+/// The likeliest of those by which one clip says something about another; null: none. Their columns must be set.
 const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families);
 
-/// The likeliest of those with one size for each clip; null: none. Their columns must be there.
+/// The likeliest of those with one size for each clip; null: none. Their columns must be set.
 const UnnamedFamily* likeliest_of_clips(const std::vector<UnnamedFamily>& families);
 
 /// The fit with the family's bumps as further parameters, each N(0, tau²): at the minimum of its linear neighbourhood,
 /// for held_out_gap(), statement_pulls() and what it leaves of the positions. The family must have its columns.
 MotionFit with_unnamed(const TrackSet& set, const MotionFit& fit, const UnnamedFamily& family);
 
-/// Their joint evidence: each variable as likely beforehand as another, and of one variable each family.
+/// Their joint evidence: all variables are equally likely beforehand, and so are the families of one variable.
 double log_unnamed_evidence(const std::vector<UnnamedFamily>& families);
 
 }  // namespace glidelab::diagnose

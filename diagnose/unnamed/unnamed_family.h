@@ -34,7 +34,7 @@ struct UnnamedFamily {
   double tau = 0.0;  ///< standard deviation of their sizes
 };
 
-/// Places from low to high, as many as there are bumps.
+/// Positions from low to high, one for each bump.
 struct Grid {
   int bumps = 2;
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -43,13 +43,13 @@ struct Grid {
   double at(int i) const { return low + width() * i; }
 };
 
-/// Gauss's bump of unit height, as wide as the bumps are apart.
+/// A Gaussian bump of unit height, as wide as the distance between bumps.
 double bump(double x, double middle, double width);
 
 UnnamedFamily family_of(GapVariable variable, GapKind what, std::string unit);
 
 /// The family with the evidence of the columns' sizes, each N(0, tau²). Where the family leaves more than the noise,
-/// the sizes (their tau too) and how sure they are go by what is left.
+/// the sizes, their tau and their uncertainties are those under noise raised to what is left.
 UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
                     SpreadEvidence& evidence);
 
@@ -57,8 +57,8 @@ UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& col
 void draw_curve(const Grid& grid, const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
                 UnnamedFamily& family);
 
-/// One of many shapes that a family may have: where it gains more than those before, the family takes its gain, columns
-/// and tau.
+/// Tries one of many shapes that a family may have: where it gains more than those before, the family takes over its
+/// gain, columns and tau.
 struct Tried {
   double log_evidence = 0.0;
   bool better = false;
@@ -66,8 +66,8 @@ struct Tried {
 Tried try_one(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily& family,
               SpreadEvidence& evidence);
 
-/// The stretches of `at` in which the size is sure, each with the largest of the sizes that are at least half as sure
-/// as its surest; of members with names each by itself.
+/// The stretches of `at` in which the size is significant, each with the largest of the sizes that are at least half as
+/// significant as its most significant one; members with names each by themselves.
 void name_regions(UnnamedFamily& family);
 
 /// The three shapes that a function over a grid may have: smooth anywhere, one bump, one step.

@@ -2,8 +2,8 @@
 ///
 ///     folders ─ core's analysis ─ track_set ─ hypotheses (motion_fit, effect_scan, unnamed) ─ held_out ─ Diagnosis
 ///
-/// What the analysis took for a hand or a stop is tried as part of the motion first; where nothing of the list explains
-/// it, it is left out, and a note says so (settled_motions.h).
+/// What the analysis took for a hand or a stop is first tried as part of the motion; where no effect on the list
+/// explains it, it is left out, and a note says so (settled_motions.h).
 #pragma once
 
 #include <filesystem>
@@ -21,12 +21,12 @@ namespace glidelab::diagnose {
 struct DiagnoseOptions {
   std::vector<std::string> without;  ///< effects that are not considered
   int jobs = 1;
-  bool twin = false;  ///< a twin is wanted, with the camera as the folders tell of it; else it has a scenario's own
-  core::TrackFileOptions bare = {};  ///< for inputs that are a track's file; whether a folder may name files outside
+  bool twin = false;  ///< a twin is wanted, with the camera that the folders describe, or else a scenario's own
+  core::TrackFileOptions bare = {};  ///< for inputs that are track files, and whether a folder may name files outside
 };
 
-/// InputError for what is wrong with a folder, for data that carry no verdict (too few positions, nothing that moves
-/// freely), and for an unknown effect in `without`.
+/// InputError for a faulty folder, for data that allow no verdict (too few positions, no free motion), and for an
+/// unknown effect in `without`.
 Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
                    const base::Progress& progress = base::no_progress);
 

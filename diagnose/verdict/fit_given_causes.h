@@ -1,8 +1,8 @@
-/// The fit of all motions with causes in the model that a person names, in place of those that a diagnosis finds.
+/// The fit of all motions with user-named causes in the model, in place of those that a diagnosis finds.
 ///
 /// Tracks, noise, effects, fit and remainder are those of a diagnosis (diagnose.h, causes/recovered.h): where a
 /// diagnosis names these causes and is sure of them, its `recovered` has the same numbers. No explanation is weighed.
-/// With several causes each order of adding them is tried, and the best fit stands.
+/// With several causes every order of adding them is tried, and the best fit is kept.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ std::vector<std::string> causes_of_motion();
 void check_given_causes(const std::vector<std::string>& ids, const std::string& option);
 
 /// `setups` are all folders' clips in the results' order, `cameras` what is stated of each clip's camera. Frames that
-/// the analysis found to be lost are taken as it took them.
+/// the analysis found to be lost count as lost here too.
 ///
 /// InputError as from check_given_causes(); for clips that hold too little free motion; and for a cause that these
 /// recordings cannot show at any size, or not beside the others: it lists those that they can show.

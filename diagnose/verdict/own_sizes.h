@@ -1,5 +1,5 @@
-/// The sizes that are told of an effect whose parameters say something only together: deviations of each configuration
-/// or clip from a common mu or K, a friction along the track, a drag of each direction.
+/// The sizes that are stated for an effect whose parameters have a meaning only together: deviations of each
+/// configuration or clip from a common mu or K, a friction along the track, a drag of each direction.
 ///
 ///     direction_dependent_drag   k_plus_n_s_m, k_minus_n_s_m: K (1 + d) and K (1 - d), towards larger x and back
 ///     place_friction             sd: root mean square of s over the range of positions; s.at X m: s there
@@ -23,7 +23,7 @@ namespace glidelab::diagnose {
 /// The group's name, with its inclination where another set-up has that name.
 std::string own_name(const TrackSet& set, std::size_t group);
 
-/// Empty for an effect whose parameters speak for themselves.
+/// Empty for an effect whose parameters have a meaning by themselves.
 std::vector<DiagnosedParameter> own_sizes(const TrackSet& set, const MotionFit& fit, std::size_t effect);
 
 }  // namespace glidelab::diagnose

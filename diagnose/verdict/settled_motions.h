@@ -1,4 +1,4 @@
-/// The motions of an analysis as every fit of a diagnosis takes them, and the noise of their positions.
+/// The motions of an analysis as every fit of a diagnosis uses them, and the noise of their positions.
 ///
 /// The noise comes from neighbouring positions alone. Where the analysis took part of the motion for a hand or a stop,
 /// all of it is tried first (a push that lasts, a cable that tightens look like that); where a fit leaves too much of
@@ -27,11 +27,11 @@ TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<c
 std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& results,
                                              const std::vector<core::ClipSetup>& setups, std::size_t disputed);
 
-/// Finds the noise of every position, by what single frames tell of it and the images of a codec, and sets aside what
-/// is no noise. Frames that are missing are taken out first: a jump is no noise and no outlier.
+/// Finds the noise of every position, from what single frames and a codec's images show of it, and sets aside what is
+/// not noise. Missing frames are corrected first: a jump is neither noise nor an outlier.
 void settle_noise(const PictureEvidence& pictures, TrackSet& set);
 
-/// Whether a fit leaves so much that the motion counts as not explained: chi² above 1.5 a point.
+/// Whether a fit leaves so much that the motion counts as not explained: chi² above 1.5 per point.
 bool is_misfit(const TrackSet& set, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose

@@ -8,7 +8,8 @@
 
 namespace glidelab::diagnose {
 
-/// Where the comparison counts a remainder as noise: the same motions by the noise alone, which the gap is measured in.
+/// Where the comparison counts a remainder as noise: the same motions with the noise alone, in which the gap is
+/// measured.
 struct NoiseAlone {
   const TrackSet& set;
   const MotionFit& nominal;

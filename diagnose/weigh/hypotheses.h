@@ -7,8 +7,8 @@
 /// unless it shows weakly in a filmed experiment and is worth less than a hundredth of the effect.
 ///
 /// Prior odds: nothing 0.3, one effect 0.4 (shared by those that these data can show), two 0.1, unnamed 0.2. A drag
-/// with any power of the speed has two fifths of another effect's: those with a theory are on the list by themselves.
-/// Where what was found leaves a gap, causes/cause_odds.h has the last word.
+/// with any power of the speed has two fifths of another effect's prior odds: powers with a theory are on the list
+/// themselves. Where what was found leaves a gap, causes/cause_odds.h has the last word.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ namespace glidelab::diagnose {
 struct PictureEvidence;
 
 /// `without` are effects that are not considered; `pictures`, what the images of filmed clips show (null for tracks).
-/// `done` is told before each fit, from any thread, how much of it is done (0 to 1); what it throws ends the
+/// `done` is called before each fit, from any thread, with the fraction that is done (0 to 1); what it throws ends the
 /// comparison.
 Comparison compare_hypotheses(
     const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1,

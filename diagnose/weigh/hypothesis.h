@@ -16,12 +16,12 @@ namespace glidelab::diagnose {
 
 struct Hypothesis {
   std::vector<std::size_t> effects;  ///< none, one or two, in the order found; more where pictures show them
-  bool unnamed = false;              ///< and something besides
+  bool unnamed = false;              ///< and something unnamed as well
   double gain = 0.0;                 ///< log likelihood, against nothing
   double log_evidence = 0.0;         ///< against nothing, sizes averaged over their priors
   double probability = 0.0;
   int fit = -1;                       ///< index in Comparison::fits
-  bool converged = true;              ///< false: its fit has not come to a minimum; its gain is then a lower bound
+  bool converged = true;              ///< false: its fit did not reach a minimum; its gain is then a lower bound
   double unnamed_log_evidence = 0.0;  ///< the part of it that something unnamed has, beside effects or alone
 };
 
@@ -33,14 +33,15 @@ struct Comparison {
   MissingFrames missing;
   std::vector<UnnamedFamily> unnamed;       ///< around nothing
   int left_fit = 0;                         ///< index of the best named explanation's fit
-  std::vector<UnnamedFamily> unnamed_left;  ///< beside that named explanation with which they are likeliest
+  std::vector<UnnamedFamily> unnamed_left;  ///< beside the named explanation with which they are likeliest
   int beside_fit = 0;                       ///< index of its fit
   std::set<std::size_t> in_pictures;        ///< effects that the pictures speak for or against
   double none = 0.0, unknown = 0.0;
   std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another
 };
 
-/// How many fits run at a time, and whom to tell how far the comparison is; an exception from there ends it.
+/// How many fits run at a time, and a callback for the progress of the comparison; an exception from it ends the
+/// comparison.
 struct Work {
   int jobs = 1;
   const std::function<void(double)>& done;
@@ -58,13 +59,13 @@ struct Found {
 /// The full fit of one more effect, and its evidence.
 Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside);
 
-/// Joins those compared; of the same effects the likelier stays.
+/// Adds a hypothesis to those compared; of two with the same effects the likelier stays.
 void add(Comparison& comparison, Found found);
 
 /// Those that are worth a full fit, by falling evidence.
 std::vector<const EffectScan*> best_of(const std::vector<EffectScan>& scans, std::size_t most);
 
-/// Explanations of so many effects that were fitted, by falling evidence.
+/// Fitted explanations with this number of effects, by falling evidence.
 std::vector<Hypothesis> leaders_of(const Comparison& comparison, std::size_t size, std::size_t most);
 
 /// Full fits of the best scans around a fit.
@@ -75,7 +76,7 @@ void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<cons
 /// probability.
 void set_probabilities(Comparison& comparison);
 
-/// Odds of a power of the speed that no theory gives, against another effect.
+/// Prior odds of a drag with an arbitrary power of the speed, against another effect.
 inline constexpr double kAnyPower = 0.4;
 
 /// One explanation among those fitted; null: none.
@@ -84,8 +85,8 @@ const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>
 /// Whether an explanation is nothing but scatter of single positions or times (Search::noise), which makes no gap.
 bool is_scatter_alone(const Hypothesis& hypothesis);
 
-/// The likeliest hypothesis that names something, or null; causes that no experiment of tracks tells apart count
-/// together (first_alike()), so that two names for one cause are not beaten by a less likely one with a single name.
+/// The likeliest hypothesis that names something, or null; causes that no experiment with tracks can tell apart count
+/// together (first_alike()), so that two names for one cause are not beaten by a less likely cause with a single name.
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);
 
 }  // namespace glidelab::diagnose

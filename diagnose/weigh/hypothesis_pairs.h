@@ -14,10 +14,10 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
                Comparison& comparison);
 
 /// Looks for missing frames along the fits of the likeliest effects, alone or beside the losses that are known. What is
-/// found joins the comparison. Nothing is done where no frame is missing for all to see. `nominal` is the nominal fit.
+/// found joins the comparison. Nothing is done where no frame is obviously missing. `nominal` is the nominal fit.
 ///
 /// Next to a force or a displacement that the nominal model lacks, losses that no jump shows by itself do not count
-/// (missing_frames.h): any curve looks like a row of them. With that effect in the fit they do.
+/// (missing_frames.h): any curve looks like a series of losses. With that effect in the fit they count.
 void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std::set<std::size_t>& without,
                        const Work& work, Comparison& comparison);
 

@@ -1,9 +1,9 @@
 /// Tracks and images weighed together: a log likelihood of its own for each effect that images can speak for or
 /// against.
 ///
-/// What the images show of an effect is independent of the positions' noise, so that logarithms add up. An effect that
-/// they show joins every explanation of the tracks, named or not, without competing with it: light may flicker beside
-/// any force. A camera that sways in the tracks must be seen to sway, by about as much, in what rests in the scene; a
+/// What the images show of an effect is independent of the noise of the positions, so the logarithms add. An effect
+/// that they show joins every explanation of the tracks, named or not, without competing with it: light may flicker
+/// beside any force. A camera that sways in the tracks must be seen to sway, by about as much, in the static scene; a
 /// line time that tracks show must be the one that shears the marker.
 #pragma once
 
@@ -30,7 +30,7 @@ double agreement(const Measured& in_pictures, const Measured& in_tracks);
 struct CorrelatedNoise {
   double gain = 0.0, log_evidence = 0.0;
   double share = 0.0, frames = 0.0;  ///< of the variance; how long it lasts
-  double inflation = 1.0;            ///< variance of what is slow among such noise, over that of white noise
+  double inflation = 1.0;            ///< variance of slow quantities under such noise, over that under white noise
 };
 CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit);
 

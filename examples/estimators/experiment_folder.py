@@ -73,7 +73,7 @@ def line(v, a):
 def from_lines(up, down, gravity_m_s2):
     """What the lines of the two directions of motion give: a = g sin(alpha) -+ mu g cos(alpha) - (K/m) v for v > 0, v < 0.
 
-    Where there is one direction only, K/m (and the limit velocity of v > 0) is all that it determines.
+    Where there is one direction only, K/m (and the terminal velocity of v > 0) is all that it determines.
     """
     answer = {}
     lines = [found for found in (up, down) if found]

@@ -121,7 +121,7 @@ OutsideEstimator outside_estimator(std::string_view command, std::string name) {
   }
   if (find_estimator(estimator.name) != nullptr) {
     refuse(fmt::format("the name {}", estimator.name),
-           "another one (--estimator-name): an estimator of Glidelab has it");
+           "another one (--estimator-name): an estimator of Glidelab has this name");
   }
   return estimator;
 }

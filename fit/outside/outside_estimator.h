@@ -1,7 +1,7 @@
 /// An estimator that somebody else wrote: a program that reads an experiment folder and writes results.json.
 ///
-/// It runs in a process of its own, once for every experiment, within limits of time and memory. What goes wrong there
-/// is an outcome that is counted, not an error: every quantity is then undetermined, and `why` says how it failed.
+/// It runs in a process of its own, once for every experiment, within limits of time and memory. A failure there is
+/// counted as an outcome and is not an error: every quantity is then undetermined, and `why` says how the run failed.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@ struct OutsideEstimator {
 };
 
 /// From a command line such as "python3 mine.py {folder} {out}". Words are separated by blanks; '…' and "…" keep blanks
-/// together, and a backslash takes the next character as it is. No shell reads it: nothing else has a meaning.
+/// together, and a backslash keeps the next character as it is. No shell reads it: no other character is special.
 /// Without a name, it is that of the file before the first word with a placeholder, without its ending: "mine".
 /// InputError where a quote is not closed, {folder} or {out} is missing, there is no such program, or the name is one
 /// of fit/estimators.h.
@@ -36,9 +36,9 @@ struct OutsideOutcome {
   std::string json;  ///< results.json as it was written; empty where it failed
 };
 
-/// Runs it on an experiment folder, as it stands there: nothing else belongs in the folder that holds it. {out} is a
-/// new, empty folder. InputError if the experiment cannot be read; EnvironmentError if the program cannot be started or
-/// there is no room for its files.
+/// Runs it on an experiment folder in place; the folder that holds it should hold nothing else. {out} is a new, empty
+/// folder. InputError if the experiment cannot be read; EnvironmentError if the program cannot be started or there is
+/// no room for its files.
 OutsideOutcome run_outside(const OutsideEstimator& estimator, const std::filesystem::path& folder);
 
 /// Of runs of this estimator.

@@ -36,7 +36,7 @@ std::string_view words_of(OutsideFailure failure) {
     case OutsideFailure::no_output:
       return "no results.json";
     case OutsideFailure::bad_output:
-      return "a results.json that is not as it should be";
+      return "an invalid results.json";
     case OutsideFailure::none:
       break;
   }

@@ -7,10 +7,9 @@
 ///     dv/dt = d + F(t)/m - k v - sign(v) f,     d = g sin(alpha),  f = mu g cos(alpha)
 ///
 /// with a start (x0, v0) for every block b of free motion, and F the force that was recorded with the positions, if any
-/// (linear between its samples). Levenberg and Marquardt's method with sensitivities that
-/// carry the jump at v = 0 (sim/sensitivity/sensitivity.h), from several starts; the starts x0, v0 are eliminated block
-/// by block. Where the noise is white and Gaussian this is the maximum of the likelihood, and its covariance the
-/// Cramer-Rao bound.
+/// (linear between its samples). Levenberg and Marquardt's method with sensitivities that carry the jump at v = 0
+/// (sim/sensitivity/sensitivity.h), from several starts; the starts x0, v0 are eliminated block by block. Where the
+/// noise is white and Gaussian this is the maximum of the likelihood, and its covariance is the Cramer-Rao bound.
 ///
 /// Uncertainty: correlated noise by the sandwich H^-1 J'W Gamma W J H^-1; where the residuals are larger than the noise
 /// explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is added, with
@@ -41,7 +40,7 @@ struct TrajectoryFit {
   int direction = 0;                    ///< the only one, or 0 for both
   Eigen::MatrixXd covariance;           ///< random part
   std::vector<Eigen::VectorXd> shared;  ///< signed changes by one standard deviation of each shared error
-  double degrees = 0.0;                 ///< of freedom of the covariance; infinite where it is as good as known
+  double degrees = 0.0;                 ///< of freedom of the covariance; infinite where the covariance is known
   double scatter = 0.0;                 ///< root mean square residual over the noise
   std::size_t points = 0;
   std::size_t left_out = 0;             ///< positions left out as outliers
@@ -51,7 +50,8 @@ struct TrajectoryFit {
 
 inline constexpr double kLeastVariance = 1e-24;  // m²: positions without noise
 
-/// One block's residuals (measured - model) and their derivatives by the common parameters and by (x0, v0).
+/// One block's residuals (measured - model) and their derivatives with respect to the common parameters and to (x0,
+/// v0).
 struct Linearised {
   Eigen::VectorXd residual;
   Eigen::MatrixXd common;  ///< n x 3
@@ -69,15 +69,15 @@ struct Linearised {
 /// Variance of the noise of one position of the block.
 double variance_of(const FitBlock& fit);
 
-/// The uncertainty of a fit of the whole motion: the noise's covariance, what residuals scatter beyond it, and what
-/// errors of the camera and the scale do.
+/// The uncertainty of a fit of the whole motion: the covariance from the noise, the scatter of residuals beyond it, and
+/// the effect of errors of the camera and the scale.
 ///
 /// With P the derivatives by the common parameters without the part that a block's own start can take up, and H = sum
 /// of P'P / s^2: covariance H^-1 [sum of P' Gamma P / s^4] H^-1, widened by the scores of pieces as the head of this
 /// file says. Where there are four blocks or more they are left out one at a time (the jackknife, to first order: -(H -
-/// H_b)^-1 P_b' r_b / s^2), and that covariance, which knows of no noise model (rounded positions that move slowly err
-/// together), counts where one of its variances is above the other's by more than chance makes it (chi2_ratio_limit,
-/// with n - 1 degrees of freedom).
+/// H_b)^-1 P_b' r_b / s^2), and that covariance, which needs no noise model (rounded positions that move slowly err
+/// together), counts where one of its variances exceeds the other's by more than chance allows (chi2_ratio_limit, with
+/// n - 1 degrees of freedom).
 class TrajectoryUncertainty {
  public:
   /// At the minimum; all of it must outlive this.
@@ -98,14 +98,15 @@ class TrajectoryUncertainty {
   Eigen::MatrixXd normal_, inverse_;
 };
 
-/// Robust: from the least squares on, Huber's weights (1 up to 1.5 deviations, 1.5 over the deviations beyond; the
+/// Robust: starting from least squares, Huber's weights (1 up to 1.5 deviations, 1.5 over the deviations beyond; the
 /// scale is 1.4826 times each block's median residual) until they settle, then least squares without the positions that
-/// are off by more than 4 of these. Positions without outliers lose next to nothing by it (6 in 1e5 normal ones).
+/// are off by more than 4 of these. Without outliers almost no position is lost (6 in 1e5 normal ones).
 struct TrajectoryOptions {
   bool robust = false;
 };
 
-/// `start` holds k, d, f to begin with. Nothing where no start converges or the data do not determine the parameters.
+/// `start` holds the first guess of k, d, f. Nothing where no start converges or the data do not determine the
+/// parameters.
 std::optional<TrajectoryFit> fit_trajectories(const std::vector<FitBlock>& blocks, const Eigen::Vector3d& start,
                                               const TrajectoryOptions& options = {});
 

@@ -8,7 +8,7 @@ namespace glidelab::fit {
 
 inline constexpr const char* kTrajectory = "trajectory";  ///< the estimator's name in options and files
 
-/// The same results with K/m, mu, alpha and v_lim of every configuration by fit_trajectories() in place of the lines',
+/// The same results with K/m, mu, alpha and v_lim of every configuration from fit_trajectories() in place of the lines,
 /// and estimator = kTrajectory; the clips and their lines stay. mu = f / (g cos(alpha)), sin(alpha) = d / g.
 ///
 /// Null with the reason: mu and alpha where the motion has one direction only (the reason says which combination is

@@ -45,8 +45,9 @@ struct AnalysisChoices {
 const fit::Estimator& estimator_of(const AnalysisChoices& choices) {
   const fit::Estimator& estimator = estimator_named(choices.estimator);
   if (choices.robust && !estimator.takes_robust) {
-    throw base::InputError(base::Issue{"", 0, "robust", choices.estimator,
-                                       "the estimator trajectory (lines leave positions off the motion out anyway)"});
+    throw base::InputError(
+        base::Issue{"", 0, "robust", choices.estimator,
+                    "the estimator trajectory (the line estimators leave out outliers in any case)"});
   }
   return estimator;
 }

@@ -89,7 +89,7 @@ py::list clips_of(const Film& film) {
 void check_empty(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder) || (fs::is_directory(folder, error) && fs::is_empty(folder))) return;
-  throw base::InputError(base::Issue{folder.string(), 0, "folder", "something that is there already",
+  throw base::InputError(base::Issue{folder.string(), 0, "folder", "something that exists already",
                                      "a new folder, or an empty one; nothing was touched"});
 }
 

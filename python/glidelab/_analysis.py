@@ -1,4 +1,4 @@
-"""analyze(): from positions, or from an experiment folder, to K/m, mu, alpha and the limit velocity."""
+"""analyze(): from positions, or from an experiment folder, to K/m, mu, alpha and the terminal velocity."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class Clip:
     segments : tuple of Line
         At most one for each direction.
     v_lim_m_s : Quantity
-        Limit velocity.
+        Terminal velocity.
     motion : Motion
         Frame by frame.
     notes : tuple of str
@@ -189,7 +189,7 @@ class Analysis(Result):
     clips : tuple of Clip
         In the order in which they were given.
     configurations : tuple of Configuration
-        K/m, mu, alpha and the limit velocity of each.
+        K/m, mu, alpha and the terminal velocity of each.
     """
 
     estimator: str
@@ -237,7 +237,7 @@ class Analysis(Result):
     def _repr_html_(self) -> str:
         rows = [[one.group, f"{one.mass_kg:g}", f"{one.incline_deg:g}", *(str(getattr(one, key)) for key in QUANTITIES)]
                 for one in self.configurations]
-        return html_table(["group", "mass (kg)", "stated α (°)", "K/m", "µ", "α", "limit velocity"], rows)
+        return html_table(["group", "mass (kg)", "stated α (°)", "K/m", "µ", "α", "terminal velocity"], rows)
 
 
 def _line(found: Mapping[str, Any]) -> Line:
@@ -285,7 +285,7 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
             gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
             progress: Progress = None, smoother: str = "local-polynomial", runs: Runs = None,
             masses_kg: Optional[Sequence[float]] = None) -> Analysis:
-    """K/m, mu, alpha and the limit velocity from positions, or from an experiment folder.
+    """K/m, mu, alpha and the terminal velocity from positions, or from an experiment folder.
 
     Parameters
     ----------

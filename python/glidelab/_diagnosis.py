@@ -56,7 +56,7 @@ class Cause:
 
 @dataclass(frozen=True)
 class Recovered:
-    """K/m, mu, alpha and the limit velocity of one configuration, with the causes `with_causes` in the model."""
+    """K/m, mu, alpha and the terminal velocity of one configuration, with the causes `with_causes` in the model."""
 
     group: str
     mass_kg: float
@@ -315,7 +315,7 @@ def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[f
     source : str, path, dict, Track or sequence of Track
         A scenario, or motions that were recorded.
     noise_m : float
-        With a scenario: standard deviation of the position noise in metres, which a scenario alone does not have.
+        With a scenario: standard deviation of the position noise in metres, which a scenario does not state.
     seed : int, optional
         With a scenario: of the noise; the scenario's own.
     gravity_m_s2, name
@@ -342,7 +342,7 @@ def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[f
                                         teller(progress))
     else:
         if noise_m is None:
-            raise input_error("noise_m", "nothing", "the position noise in metres, which a scenario alone does not have")
+            raise input_error("noise_m", "nothing", "the position noise in metres, which a scenario does not state")
         if not 1e-9 <= noise_m <= 1.0:
             raise input_error("noise_m", repr(noise_m), "a number of metres from 1e-9 to 1")
         outcome = _glidelab.plan_scenario(given_scenario(source), noise_m, checked_seed(seed), job_count(jobs),  # type: ignore[arg-type]

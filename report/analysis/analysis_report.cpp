@@ -28,13 +28,13 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     const double sd = c.k_over_m_1_s.estimate->sd;
     if (rate > kBelowZero * sd) {
       text += fmt::format(
-          "the drag that grows with speed slows it at {} 1/s times v, so that it comes 63 % closer to its final speed "
-          "in {} s",
+          "drag proportional to the speed decelerates it at {} 1/s times v, so that it comes 63 % closer to its final "
+          "speed in {} s",
           base::value_and_sd_text(rate, sd), base::number_text(1.0 / rate, 3));
     } else if (rate < -kBelowZero * sd) {
       text += fmt::format("K/m comes out as {} 1/s, below zero", base::value_and_sd_text(rate, sd));
     } else {
-      text += fmt::format("drag that grows with speed cannot be distinguished from zero ({} 1/s)",
+      text += fmt::format("drag proportional to the speed cannot be distinguished from zero ({} 1/s)",
                           base::value_and_sd_text(rate, sd));
     }
   }
@@ -51,7 +51,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     }
   }
   if (c.v_lim_m_s.estimate) {
-    text += fmt::format("{}its limit velocity is {} m/s", text.empty() ? "" : "; ",
+    text += fmt::format("{}its terminal velocity is {} m/s", text.empty() ? "" : "; ",
                         base::value_and_sd_text(c.v_lim_m_s.estimate->value, c.v_lim_m_s.estimate->sd));
   }
   if (text.empty()) text = "the data determine neither drag nor friction; the table says why";
@@ -106,7 +106,7 @@ std::string meaning_of(const core::AnalysisResults& results) {
     for (std::size_t i = 0; i + 1 < doubts.size(); ++i) text += fmt::format("<li>{}</li>\n", escape(doubts[i]));
     text +=
         "</ul>\n<p>A fit of that law still gives the numbers below, which need not be properties of the track or the "
-        "glider; their ± hold only if the law did.</p>\n";
+        "glider; their ± would hold only if the law did.</p>\n";
   }
   double worst = 1.0;
   for (const core::ConfigurationResult& configuration : results.configurations) {
@@ -156,7 +156,8 @@ std::string analysis_answer(const core::AnalysisResults& results) {
     const std::string words = value_words(results, which);
     if (!words.empty()) values += (values.empty() ? "" : ", ") + words;
   }
-  if (values.empty()) return "The data determine none of K/m, µ, α and the limit velocity; why stands below the table.";
+  if (values.empty())
+    return "The data determine none of K/m, µ, α and the terminal velocity; the reasons are below the table.";
   const std::string doubted = doubts_about(results).empty() ? "" : " (but the law is in doubt: see below the table)";
   const std::size_t many = results.configurations.size();
   return fmt::format("{}{}{}.", values, many == 1 ? "" : fmt::format(" over {} configurations", many), doubted);
@@ -206,7 +207,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
 
 namespace {
 
-/// K/m, µ, α and the limit velocity with ±, of each of few configurations; of many the table has them.
+/// K/m, µ, α and the terminal velocity with ±, of each of few configurations; of many the table has them.
 std::string value_tiles(const core::AnalysisResults& results) {
   constexpr std::size_t kMostTiled = 2;
   if (results.configurations.size() > kMostTiled) return {};

@@ -1,5 +1,5 @@
 /// Whether the assumed law (drag in proportion to the speed, dry friction, gravity) fits what was analysed. Where it
-/// does not, the standard deviations of K/m, µ, α and the limit velocity say nothing of how far these are from the
+/// does not, the standard deviations of K/m, µ, α and the terminal velocity say nothing of how far these are from the
 /// glider's.
 #pragma once
 
@@ -17,6 +17,6 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 inline constexpr double kBelowZero = 2.0;  ///< standard deviations: what chance does in one of forty
 
 /// Below a table of values that are in doubt.
-inline constexpr const char* kIfItHeld = "The law does not fit these clips: ± hold only if it did.";
+inline constexpr const char* kIfItHeld = "The law does not fit these clips: the ± would hold only if it did.";
 
 }  // namespace glidelab::report

@@ -409,7 +409,7 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
   script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + detail.plot;
   plots.push_back({Drawing{script, detail.data},
                    std::string("Near v = 0: the gap between the lines is twice the Coulomb friction") +
-                       (window.has_limit ? ", their crossing of a = 0 the limit velocity" : ""),
+                       (window.has_limit ? ", their crossing of a = 0 the terminal velocity" : ""),
                    "Detail of the phase diagram near v = 0"});
   plots.push_back(residual_plot(results, group, all));
   return plots;

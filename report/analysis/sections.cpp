@@ -227,8 +227,8 @@ std::string method_section() {
          "weight (its width is the bandwidth); the cubic's coefficients are x, v and a there. For a glider under "
          "gravity, a linear viscous drag K v and Coulomb friction, a(v) is one line for v &lt; 0 and another for "
          "v &gt; 0, both of slope −K/m. Half the sum of their values at v = 0 is g sin α, half their difference is "
-         "µ g cos α, and the line for v &gt; 0 meets a = 0 at the limit velocity. Points where the kernel would reach "
-         "across a reversal or past an end of the free motion are left out.</p>\n";
+         "µ g cos α, and the line for v &gt; 0 meets a = 0 at the terminal velocity. Points where the kernel would "
+         "reach across a reversal or past an end of the free motion are left out.</p>\n";
 }
 
 /// What the lines give as they are, and what the kernel's bias adds to it; nothing if none was taken off.

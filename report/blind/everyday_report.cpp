@@ -326,10 +326,9 @@ Page everyday_page(const BlindRun& run) {
   body +=
       "<p class=\"soft\">The excess is g² - 1, g the gap of held-out clips without noise: 1.5 to 4 is moderate, "
       "more is strong. A cause's share is the part of it that is removed when the cause is added to the law after "
-      "those before it. Forward selection takes the effect with the least held-out gap, then the one that lowers it "
-      "most beside it, and claims them where they take half of the excess; it states no probability, so that each of "
-      "its names counts as "
-      "certain.</p>\n<h2>All cases</h2>\n" +
+      "those before it. Forward selection takes the effect with the smallest held-out gap, then the one that lowers "
+      "the gap most when added to it, and claims them where they take half of the excess; it states no probability, "
+      "so each of its names counts as certain.</p>\n<h2>All cases</h2>\n" +
       everyday_cases_table(run);
   return page("Everyday blind cases", body);
 }

@@ -85,8 +85,9 @@ std::vector<std::string> sentences_of(const ChallengeScore& score) {
 
 constexpr const char* kHow =
     "Two entrants are compared case by case: more answers are better, then the lower interval score (width of the 95 % "
-    "interval, plus 40 times what the truth lies outside by). A rank counts who is better by the sign test at 5 %, "
-    "corrected for all pairs (Holm): entrants that cannot be told apart share one. In brackets 95 % intervals.";
+    "interval, plus 40 times the distance of the truth outside it). A rank counts the entrants that are better by the "
+    "sign test at 5 %, corrected for all pairs (Holm): entrants that cannot be told apart share a rank. 95 % intervals "
+    "are in brackets.";
 
 std::string title_of(const ChallengeScore& score) {
   return fmt::format("Challenge {}, version {}, {} cases", word(score.challenge.level), score.challenge.version,

@@ -84,12 +84,13 @@ Plot reliability_plot(const validate::Coverage& coverage) {
                           gnuplot_quoted(estimator_name(estimators[e])));
     data.push_back(std::move(points));
   }
-  return {Drawing{script, data, {560, 480}},
-          fmt::format("How many of the intervals of each level hold the truth: a point for each quantity, the "
-                      "estimators side by side; grey: what 95 % of {} replicates do by chance where the intervals are "
-                      "right",
-                      coverage.replicates),
-          "Reliability: actual over nominal coverage"};
+  return {
+      Drawing{script, data, {560, 480}},
+      fmt::format("How many of the intervals of each level hold the truth: a point for each quantity, the "
+                  "estimators side by side; grey: the range that chance gives 95 times in 100, with {} replicates and "
+                  "intervals that are right",
+                  coverage.replicates),
+      "Reliability: actual over nominal coverage"};
 }
 
 namespace {
@@ -145,11 +146,10 @@ std::string level_table(const validate::Coverage& coverage) {
     table.row(cells);
   }
   return "<h2 id=\"levels\">Every level</h2>\n" + table.str() +
-         "<p class=\"soft\">Fraction of the intervals of each level that hold the truth, and the probability of a "
-         "count as "
-         "far from it by chance (exact binomial test, two-sided). Marked: below 1 % over the number of all intervals "
-         "and levels but the naive ones (Bonferroni). An interval of another level than 95 % is the stated one with "
-         "its arms in proportion to the quantiles of Student's t.</p>\n";
+         "<p class=\"soft\">Fraction of the intervals of each level that hold the truth, and the probability that "
+         "chance alone gives a count at least that far from the level (exact binomial test, two-sided). Marked: below "
+         "1 % divided by the number of all intervals and levels except the naive ones (Bonferroni). An interval of "
+         "another level than 95 % is the stated one, scaled by the quantiles of Student's t.</p>\n";
 }
 
 /// "20 µm", or "12 to 20 µm".
@@ -216,15 +216,14 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
   if (!any) {
     return meaning_section(
         "<p>There is nothing to count: no estimator found a value whose truth is known. K/m and µ have a true value "
-        "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the limit "
-        "velocity where the forces balance, and these motions do not determine them.</p>\n");
+        "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the "
+        "terminal velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
   std::string text;
   if (narrow.empty()) {
     text +=
         "<p>The intervals of every estimator but the naive one hold the truth as often as they say, as far as this "
-        "many "
-        "replicates can tell.</p>\n";
+        "many replicates can tell.</p>\n";
   } else {
     text += "<p>These intervals hold the truth less often than they say (how often, at each stated level):</p>\n" +
             failures_html(narrow);

@@ -86,8 +86,8 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
     }
   }
   script += fmt::format(
-      "set xrange [{}:{}]\nset yrange [{}:0.5]\nset xlabel 'excess of the squared gap  (% of that before; 0 is the "
-      "noise floor)'\nset arrow from 0, graph 0 to 0, graph 1 nohead back lw 1.5 lc rgb '{}'\n",
+      "set xrange [{}:{}]\nset yrange [{}:0.5]\nset xlabel 'excess of the squared gap  (% of the initial one; 0 is "
+      "the noise floor)'\nset arrow from 0, graph 0 to 0, graph 1 nohead back lw 1.5 lc rgb '{}'\n",
       least - kRoom, most + kRoom, 0.5 - static_cast<double>(rows.size()), kGrey);
   script += "plot $bars using 2:3 with points pt 7 ps 0 notitle";
   if (!errors.rows.empty()) {
@@ -98,13 +98,13 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<PlotData> data = {bars};
   if (!errors.rows.empty()) data.push_back(errors);
   const char* const held_out = diagnosis.lines ? "lines" : "clips";
-  return {
-      {Drawing{script, std::move(data), {kWidth, kFramePoints + kRowPoints * static_cast<int>(rows.size())}},
-       fmt::format("What each cause explains of the gap of held-out {0}, added one after the other, and what is left. "
-                   "The excess is the squared gap minus 1, its value for noise alone; bars with whiskers have their "
-                   "95 % interval over {0}",
-                   held_out),
-       "Waterfall of the gap: before, each cause, what is left"}};
+  return {{Drawing{script, std::move(data), {kWidth, kFramePoints + kRowPoints * static_cast<int>(rows.size())}},
+           fmt::format(
+               "How much of the gap of held-out {0} each cause explains, added one after the other, and what is left. "
+               "The excess is the squared gap minus 1, its value for noise alone; bars with whiskers have their "
+               "95 % interval over {0}",
+               held_out),
+           "Waterfall of the gap: before, each cause, what is left"}};
 }
 
 }  // namespace glidelab::report

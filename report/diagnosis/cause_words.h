@@ -49,12 +49,12 @@ std::string with_words(const std::vector<std::string>& ids);
 /// Header, then causes in order and what is left: name (id in `ids`), share, gap after. Empty without causes.
 std::vector<std::vector<std::string>> explained_rows(const diagnose::Diagnosis& diagnosis, bool ids);
 
-/// Configurations that have the same causes in the model, and their rows under a header: name, K/m, µ, α, limit
-/// velocity; "–" of what is undetermined, and under `why` the reasons.
+/// Configurations that have the same causes in the model, and their rows under a header: name, K/m, µ, α, terminal
+/// velocity; "–" where a value is undetermined, with the reasons under `why`.
 struct RecoveredTable {
   std::vector<std::string> with;
   std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> why;  ///< "limit velocity of 0.335 kg, 0°: the track is level"
+  std::vector<std::string> why;  ///< "terminal velocity of 0.335 kg, 0°: the track is level"
 };
 std::vector<RecoveredTable> recovered_tables(const diagnose::Diagnosis& diagnosis);
 

@@ -39,7 +39,7 @@ std::string paragraph(const std::string& words, const char* kind = "") {
 
 std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.recovered.empty()) return {};
-  std::string text = "<h2>K/m, µ, α and limit velocity</h2>\n";
+  std::string text = "<h2>K/m, µ, α and terminal velocity</h2>\n";
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
     text += paragraph(fmt::format("Of each configuration, {}.{}", with_words(table.with),
                                   diagnosis.remainder ? " The standard deviations include the remainder." : ""));
@@ -94,7 +94,7 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
 }  // namespace
 
 std::string region_table(const std::vector<diagnose::GapRegion>& regions) {
-  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where surest"}, 2);
+  HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where clearest"}, 2);
   for (const diagnose::GapRegion& region : regions) {
     const bool named = region.variable == diagnose::GapVariable::set_up;  // a set-up has a number that no reader knows
     const std::string over = named ? "one of the set-ups" : axis_of(region.variable);

@@ -1,5 +1,5 @@
-/// The open part of a diagnosis' page, below its first paragraph: the waterfall, K/m, µ, α and limit velocity with the
-/// causes in the model, where the rest lies, and what to record next. All else on the page is folded.
+/// The open part of a diagnosis' page, below its first paragraph: the waterfall, K/m, µ, α and terminal velocity with
+/// the causes in the model, where the rest lies, and what to record next. All else on the page is folded.
 #pragma once
 
 #include "diagnose/result/diagnosis.h"

@@ -71,9 +71,9 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
     }
   }
   std::string script(kFrame);
-  script += fmt::format(
-      "set offsets 0,0,0,0\nset xlabel '{}'\n",
-      of_lines ? "off the prediction by the other lines / own scatter" : "residuals of the held-out clip / noise");
+  script += fmt::format("set offsets 0,0,0,0\nset xlabel '{}'\n",
+                        of_lines ? "deviation from the prediction of the others / own scatter"
+                                 : "residuals of the held-out clip / noise");
   script += chart_labels(gap.held_out) +
             fmt::format("set yrange [{}:0.6]\n", -static_cast<double>(gap.held_out.size()) + 0.4);
   script += most > kLogAbove ? fmt::format("set logscale x\nset xrange [{}:{}]\n", least, 1.5 * most)
@@ -85,7 +85,7 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
   if (!one) script += fmt::format(", $gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'", kColors[0]);
   script += "\n";
   return {Drawing{script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}},
-          of_lines ? "How far each line lies off the prediction by the others: 1 (grey line) is the lines' own scatter"
+          of_lines ? "How far each line lies from the prediction of the others: 1 (grey line) is the lines' own scatter"
                    : "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
           one ? "Dots for each clip's gap" : "Dots for each clip's gap before and after"};
 }
@@ -302,13 +302,13 @@ std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
     if (curve.what == "lengthening") plots.push_back(lengthening_plot(curve));
     if (curve.what == "noise") plots.push_back(noise_plot(curve));
   }
-  const OverTime light = over_time(curves, "brightness", {"light", {}, {"t (s)", "brightness, change (%)"}}, 100.0);
+  const OverTime light = over_time(curves, "brightness", {"light", {}, {"t (s)", "change of brightness (%)"}}, 100.0);
   if (!light.data.rows.empty()) {
     const std::string script = std::string(kFrame) + kFromStart + key_of(light) +
-                               "set xlabel 'time t (s)'\nset ylabel 'brightness, change  (%)'\nplot " +
+                               "set xlabel 'time t (s)'\nset ylabel 'change of brightness  (%)'\nplot " +
                                lines_of(light, 1, true) + "\n";
     plots.push_back({Drawing{script, std::vector{light.data}},
-                     "Brightness of the fixed scene, relative to each clip's first frames; light that flickers makes a "
+                     "Brightness of the fixed scene, relative to each clip's first frames; flickering light gives a "
                      "regular wave",
                      "Brightness of the scene over time"});
   }

@@ -100,7 +100,7 @@ std::string parameter_table(const diagnose::Diagnosis& diagnosis) {
   const bool fits = !missing || diagnosis.recovered.empty();
   std::vector<std::string> header = {"parameter", "of", "compared with"};
   if (fits) header.insert(header.end(), {"nominal model, alone", "together"});
-  header.insert(header.end(), {"standard deviations off, before", "after"});
+  header.insert(header.end(), {"standard deviations apart, before", "after"});
   const auto fit = [&](const std::optional<diagnose::DiagnosedParameter>& of) {
     if (!of) return std::string("–");
     constexpr int kDigits = 3;
@@ -152,7 +152,7 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
       "{}{}. {} {}{}</p>\n",
       base::number_text(gap.floor, 3), base::number_text(gap.standard_error, 2),
       gap.floor < 1.0
-          ? " (below 1, as the noise that neighbouring positions show was raised by what the causes take out)"
+          ? " (below 1, because what the causes remove had raised the noise estimated from neighbouring positions)"
           : "",
       gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of the excess over the floor."
                  : std::string("It is at the floor."),

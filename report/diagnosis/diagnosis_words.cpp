@@ -341,9 +341,9 @@ std::string routine_words(diagnose::Routine routine) {
       return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
              "is not due to the law of motion.";
     case Routine::start_later:
-      return "Repeat one of the launches three times, each one second later after the start of the camera: what "
-             "belongs to the clip's time (a clock, something that warms or settles) stays at that time; what acts on "
-             "the glider shifts with it.";
+      return "Repeat one of the launches three times, each time one second later after the start of the camera: what "
+             "depends on the time in the clip (a clock, something that warms up or settles) stays at that time; what "
+             "acts on the glider shifts with it.";
     case Routine::turn_glider:
       return "Turn the glider round on the track and record the same launches each way: what belongs to the glider "
              "turns with it; what belongs to the track does not.";
@@ -358,9 +358,8 @@ std::string routine_words(diagnose::Routine routine) {
       return "Record launches at two further speeds, with one mass and at one inclination: the missing force depends "
              "on the speed, and its shape shows what it is.";
     case Routine::other_forces:
-      return "Drive it over the same places again with half and with twice the force: what depends on the speed "
-             "changes "
-             "with it, what depends on the place does not.";
+      return "Drive the glider over the same stretch again with half and with twice the force: what depends on the "
+             "speed changes with it; what depends on position does not.";
     case Routine::measure_inclination:
       return "Measure the inclination again, with a level on the track or a plumb line in the image: the motion and "
              "the stated value cannot both be right.";
@@ -411,7 +410,7 @@ struct Words {
   std::string operator()(const diagnose::SettleDoubt& of) const {
     if (!of.by) {
       return fmt::format(
-          "None of {} would decide {} (expected log likelihood {:.2g} at most): less noise (a longer lens, a larger "
+          "None of {} would decide {} (expected log likelihood at most {:.2g}): less noise (a longer lens, a larger "
           "marker) or many more clips would.",
           weighed_words(of.weighed), doubt_words(of.doubt), of.log_likelihood);
     }
@@ -435,8 +434,8 @@ struct Words {
                           base::size_text(of.sd_after, 2, named.unit));
     } else {
       text += fmt::format(
-          " None of {} would reduce its uncertainty by 5 %; n times as many clips of each kind would reduce it as "
-          "1/sqrt(n).",
+          " None of {} would reduce its uncertainty by 5 %; n times as many clips of each kind would reduce it by a "
+          "factor of sqrt(n).",
           which);
     }
     if (of.one_mass) {

@@ -105,13 +105,13 @@ std::vector<std::string> sentences_of(const core::AnalysisResults& results, cons
         before, after));
   }
   if (given.gap_after > 1.0 + diagnose::kClearGap * given.standard_error) {
-    sentences.emplace_back("What is still left counts as noise in ± and in the intervals.");
+    sentences.emplace_back("What is left counts as noise in the ± and in the intervals.");
   }
   if (law_fails(results)) {
-    sentences.emplace_back("* The law alone does not fit these clips: its ± hold only if it did.");
+    sentences.emplace_back("* The law alone does not fit these clips: its ± would hold only if it did.");
   }
   if (!given.converged) {
-    sentences.emplace_back("The fit has not come to a minimum: its numbers are those of its last step.");
+    sentences.emplace_back("The fit did not reach a minimum: its numbers are those of its last step.");
   }
   return sentences;
 }

@@ -1,4 +1,4 @@
-/// K/m, µ, α and the limit velocity with causes in the model that a person named (diagnose/result/given_causes.h),
+/// K/m, µ, α and the terminal velocity with causes in the model that a person named (diagnose/result/given_causes.h),
 /// beside what the analysis gave without them: for the page, the screen and results.json of `analyze --with`.
 #pragma once
 

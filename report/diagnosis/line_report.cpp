@@ -178,7 +178,7 @@ std::string candidate_table(const diagnose::LineComparison& lines) {
 }
 
 constexpr const char* kLineMethod =
-    "<h2>Method</h2>\n<p>By the nominal model every line has the slope K/m with one K, and the intercept "
+    "<h2>Method</h2>\n<p>In the nominal model every line has the slope −K/m with one K, and the intercept "
     "g sin α − sign(v) µ g cos α with one µ and one α for each set-up. Each effect that lines can show is added to it, "
     "alone and in pairs. A friction or drag of each mass, of each set-up, of each mass in each set-up, and of each "
     "direction competes with them, alone and alongside them, as “unknown”. A table states no errors: they are fitted "

@@ -23,7 +23,7 @@ std::string seen_text(const diagnose::PlannedEffect& effect) {
   const auto [name, unit] = name_and_unit(effect.key);
   const std::string size = size_text(effect.seen_from, 2, unit);
   if (effect.key == "v_c_m_s") return fmt::format("{} up to {}", name, size);  // the larger, the less there is
-  if (effect.key == "n" || effect.key == "s") return fmt::format("{} off 1 by {}", name, size);
+  if (effect.key == "n" || effect.key == "s") return fmt::format("{} differing from 1 by {}", name, size);
   return fmt::format("{} = {}", name, size);
 }
 
@@ -34,9 +34,8 @@ std::string lead(const diagnose::Plan& plan) {
     alone += effect.seen && effect.alike.empty() ? 1 : 0;
   }
   return fmt::format(
-      "These motions can show {} of {} effects with a single direction (a push or a displacement), and distinguish {} "
-      "of "
-      "those from every other: {} clips, {} positions, with {} µm of noise found in them.",
+      "These motions can show {} of the {} effects in the table, and distinguish {} of those from every other: "
+      "{} clips, {} positions, with {} µm of noise found in them.",
       seen, plan.effects.size(), alone, plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2));
 }
 
@@ -53,7 +52,7 @@ std::string what_follows(const diagnose::Plan& plan) {
 std::string advice(const diagnose::Plan& plan) {
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     if (!effect.alike.empty()) {
-      return "What these motions cannot tell apart, others may: another mass, launches both ways and from rest, higher "
+      return "Other motions may tell these effects apart: another mass, launches both ways and from rest, higher "
              "speeds, another inclination. Change the motions and plan again.";
     }
   }
@@ -63,8 +62,9 @@ std::string advice(const diagnose::Plan& plan) {
 constexpr const char* kPlanMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
     "adjust (K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes "
-    "that remain is below 18 degrees (cosine 0.95). Waves, late releases, missing frames, uneven frame times and "
-    "outliers have no single direction and are not in the table.";
+    "that remain is below 18 degrees (cosine 0.95). The table has the effects that change the positions in one way, "
+    "more or less strongly; waves, late releases, missing frames, uneven frame times and outliers have no one such "
+    "change and are not in it.";
 
 }  // namespace
 

@@ -156,7 +156,7 @@ std::string line_words(const diagnose::Diagnosis& diagnosis) {
                            "These {} lines do not decide whether anything is missing: \"nothing missing\" ({}) cannot "
                            "be excluded at odds of 3 to 1, so no effect is claimed.",
                            lines.lines, percent(diagnosis.none))
-                     : fmt::format("Nothing is missing that these {} lines could show ({}).", lines.lines,
+                     : fmt::format("As far as these {} lines can show, nothing is missing ({}).", lines.lines,
                                    percent(diagnosis.none))) +
            line_gap_words(diagnosis);
   }
@@ -302,7 +302,8 @@ std::string contradicted_words(const diagnose::Diagnosis& diagnosis) {
   const std::vector<diagnose::ContradictedIncline>& all = diagnosis.limits.contradicted;
   std::string text = note_words(as_told(all.front(), diagnosis));
   if (all.size() > 1) {
-    text += fmt::format(" The motion contradicts {} more set-up{}.", all.size() - 1, all.size() > 2 ? "s" : "");
+    text += fmt::format(" The motion also contradicts what is stated of {} more set-up{}.", all.size() - 1,
+                        all.size() > 2 ? "s" : "");
   }
   return text;
 }
@@ -355,8 +356,8 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   }
   if (diagnosis.verdict == diagnose::Verdict::none) {
     return fmt::format(
-               "Nothing is missing that these data could show ({}): the nominal model explains them to within their "
-               "noise.",
+               "As far as these data can show, nothing is missing ({}): the nominal model explains them to within "
+               "their noise.",
                percent(diagnosis.none)) +
            clip_gap_words(diagnosis);
   }

@@ -341,7 +341,7 @@ std::string image_of(const DrawnPlot& plot, const std::string& description) {
     return fmt::format("<img alt=\"{}\" src=\"{}\">", escape(description), data_uri("image/svg+xml", plot.svg));
   }
   return fmt::format(
-      "<p class=\"note\">This plot is left out, for its numbers leave nothing to draw (gnuplot: {}). They stand in "
+      "<p class=\"note\">This plot is left out because its numbers leave nothing to draw (gnuplot: {}). They are in "
       "<code>plots/{}.csv</code>.</p>\n",
       escape(plot.left_out), plot.name);
 }
@@ -366,9 +366,7 @@ Page page(std::string_view title, const Html& body) {
   if (!drawn.empty()) {
     text +=
         "<p class=\"soft\" data-plots>Each plot is also in the folder <code>plots</code> beside this page: SVG, PDF, "
-        "its "
-        "numbers (CSV), and the "
-        "script that draws it (<code>gnuplot NAME.gp</code>).</p>\n";
+        "its numbers (CSV), and the script that draws it (<code>gnuplot NAME.gp</code>).</p>\n";
   }
   made.html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -261,8 +261,8 @@ double largest_square_m(const Paper& paper, int columns, int rows) {
 void validate(const BoardSheet& sheet) {
   if (sheet.columns <= sheet.rows || sheet.columns % 2 == 0 || sheet.rows % 2 == 1 || sheet.rows < 2) {
     fail("--corners", fmt::format("{}x{}", sheet.columns, sheet.rows),
-         "the longer row odd, the shorter one even, as 9x6: otherwise the board's two ends look alike, and an image "
-         "does not show its orientation");
+         "the longer row odd, the shorter one even, such as 9x6: otherwise the board's two ends look alike, and an "
+         "image does not show its orientation");
   }
   const double largest = room_for_square(sheet.paper, sheet.columns, sheet.rows);
   if (!(sheet.square_m >= kFinest - kRounding) || sheet.square_m > largest + kRounding) {

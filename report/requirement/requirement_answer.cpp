@@ -116,7 +116,7 @@ std::string requirement_answer(const Requirement& requirement) {
       return candidate.verdict == Verdict::undecided;
     });
     if (undecided > 0) {
-      text += fmt::format(" {} cheaper {} may do as well: more runs would decide.", undecided,
+      text += fmt::format(" {} cheaper {} may be good enough too: more runs would decide.", undecided,
                           undecided == 1 ? "one" : "ones");
     }
     return text;
@@ -124,16 +124,16 @@ std::string requirement_answer(const Requirement& requirement) {
   const Candidate* const near = nearest(requirement);
   if (near == nullptr) return fmt::format("Nothing here can be judged for {}.", asked_words(requirement));
   if (near->verdict == Verdict::unconfirmed) {
-    return fmt::format("{} can reach {} by its bound ({}), but nothing was run.", near->name, asked_words(requirement),
+    return fmt::format("By its bound, {} can reach {} ({}), but nothing was run.", near->name, asked_words(requirement),
                        expected_words(requirement, *near));
   }
   std::string text =
       fmt::format("{} {}. {} comes nearest: expect {}{} ({}).",
-                  near->verdict == Verdict::undecided ? "Nothing here surely reaches" : "Nothing here reaches",
+                  near->verdict == Verdict::undecided ? "Nothing here is certain to reach" : "Nothing here reaches",
                   asked_words(requirement), near->name, near->judged_by == validate::Confirm::none ? "at least " : "",
                   expected_words(requirement, *near), judged_words(requirement, *near));
   if (!near->limits.empty() && near->limits.front().gain >= kLeastNamedGain) {
-    text += fmt::format(" What most limits it: {}.", near->limits.front().name);
+    text += fmt::format(" Its main limitation: {}.", near->limits.front().name);
   }
   return text;
 }

@@ -13,8 +13,9 @@ inline constexpr double kLeastNamedGain = 1.05;
 /// "µ ± 0.0001" of a 95 % error, "an rms error of µ of 0.0001", "a bias of µ of 0.0001", with their units.
 std::string error_words(const validate::Target& target, const std::string& value);
 
-/// "Buy the …, set it to …, expect µ ± … (95 % of experiments)": of the cheapest that reaches the targets. Where
-/// nothing does, what comes nearest, and what limits it. Text, one line without its end.
+/// "Buy: CAMERA, PRICE; set it to MODE; expect µ ± … (95 % of 8 rendered experiments)": the cheapest that reaches the
+/// targets; "Choose …" where no price is known. Where nothing does, what comes nearest, and what limits it. Text, one
+/// line without its end.
 std::string requirement_answer(const validate::Requirement& requirement);
 
 /// "That is 50 times better than needed: 11 frames/s would do, or …", where it is so; else empty. Text.

@@ -161,7 +161,7 @@ Plot requirement_plot(const Requirement& requirement) {
   return {Drawing{script, data, {620, 420}},
           "Error of each camera (numbered as in the tables) against its price, with one standard deviation where runs "
           "were made; the line joins those that no cheaper one beats",
-          "Reached accuracy over cost"};
+          "Accuracy reached over cost"};
 }
 
 }  // namespace glidelab::report

@@ -84,7 +84,7 @@ std::string next_step(const Requirement& requirement) {
   });
   return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not included.{}",
                      ran ? "Judged by tracks, not by images" : "Judged by the bound alone, without a run",
-                     forbidden ? "" : " With --confirm clips all that the bound allows are rendered.");
+                     forbidden ? "" : " With --confirm clips every candidate that the bound allows is rendered.");
 }
 
 std::string found_text(const validate::TargetResult& result, double scale) {
@@ -185,18 +185,17 @@ std::string limits_list(const Requirement& requirement) {
 std::string judged_by_text(const Requirement& requirement) {
   if (requirement.confirm == validate::Confirm::none) return "Nothing was run.";
   if (requirement.confirm == validate::Confirm::tracks) {
-    return fmt::format("Where it allows the target, {} runs of tracks with that noise judge, by the better estimator.",
-                       requirement.track_runs);
+    return fmt::format(
+        "Where the bound allows the target, {} runs of tracks with that noise decide, by the better estimator.",
+        requirement.track_runs);
   }
   const std::vector<std::uint64_t> looks = validate::looks(requirement.runs);
   return fmt::format(
-      "Where it allows the target, rendered runs judge, each with a calibration of its own, by the better estimator: "
-      "{} "
-      "of each camera{}, and {} of the cheapest that reaches the target. All limits at one look have a confidence of "
-      "{:.3g} %, so that the looks together err in at most 5 % of all cases. "
-      "Up to {} runs of tracks with the predicted noise are made besides: what they miss, by their clock, fewer than "
-      "{} "
-      "rendered runs cannot reach, and it is undecided.",
+      "Where the bound allows the target, rendered runs decide, each with a calibration of its own, by the better "
+      "estimator: {} of each camera{}, and {} of the cheapest that reaches the target. All limits at one look have a "
+      "confidence of {:.3g} %, so that the looks together err in at most 5 % of all cases. Up to {} runs of tracks "
+      "with the predicted noise and the clock are made as well: a camera that misses the target there and reaches it "
+      "in fewer than {} rendered runs is undecided.",
       looks.front(),
       looks.size() < 2
           ? std::string()
@@ -211,19 +210,19 @@ std::string how_judged(const Requirement& requirement) {
       "<p>Errors are those of the worst configuration; {} first. The bound is the Cramér-Rao bound for the motion at "
       "this frame rate and position noise; the noise itself is the bound on the marker's centre for the camera's light "
       "and noise. {} “What limits the others” says how many times smaller the bound of the hardest target (“by runs”: "
-      "the "
-      "error) would be without one limitation. A lens, a codec, a rolling shutter and the calibration enter in "
-      "rendered runs only.</p>\n",
+      "the error) would be without one limitation. A lens, a codec, a rolling shutter and the calibration enter only "
+      "in rendered runs.</p>\n",
       order_text(requirement), judged_by_text(requirement));
   return text +
          fmt::format(
              "<p>95 % of the runs stay within the 95 % error (of fewer than 20 runs: 1.96 times their rms error). A "
              "target is reached where the error's upper limit (“at most”) is within it, and missed "
              "where the lower limit is beyond it: with {} runs or more the limits are two of their errors, with fewer "
-             "they take the errors as normal, and few runs decide only what is far from the target. ± is one standard "
+             "they assume normal errors, and few runs decide only what is far from the target. ± is one standard "
              "deviation, from {} bootstrap resamples of the runs (of fewer than 20: that of normal errors; bias: that "
-             "of the errors over the root of their number). “Runs beyond the target” err by more than its value, of "
-             "all that were made: a few that are far off come from frames lost without a trace, not from noise.</p>\n",
+             "of the errors over the root of their number). “Runs beyond the target” are those, of all that were made, "
+             "whose error is larger: a few that are far off come from frames lost without a trace, not from "
+             "noise.</p>\n",
              validate::kRunsForQuantile, validate::kResamples);
 }
 

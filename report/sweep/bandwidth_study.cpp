@@ -320,12 +320,11 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   }
   script += error_range(data);
   if (!choice.rows.empty()) data.push_back(choice);
-  return {
-      Drawing{script + drawn, data, {480, 400}},
-      fmt::format("{}: error over the bandwidth. Total² is noise² + bias²; a dot on the line of the bias where it is "
-                  "more than two of its standard errors",
-                  symbol_of(quantity.key)),
-      fmt::format("Error of {} over the bandwidth", symbol_of(quantity.key))};
+  return {Drawing{script + drawn, data, {480, 400}},
+          fmt::format("{}: error over the bandwidth. Total² is noise² + bias²; a dot on its line marks a bias of "
+                      "more than two standard errors",
+                      symbol_of(quantity.key)),
+          fmt::format("Error of {} over the bandwidth", symbol_of(quantity.key))};
 }
 
 }  // namespace
@@ -369,11 +368,11 @@ std::string bandwidth_table(const SweepSummary& summary) {
   for (const fit::Estimator& other : fit::judged_estimators()) {
     if (!other.of_lines) add_estimator(std::string(other.title), other.name);
   }
-  return table.str() +
-         fmt::format(
-             "<p class=\"soft\">Root mean square errors, known to {:.0f} % or better (one standard error, as of normal "
-             "errors); coverage is the part of the stated 95 % intervals that hold the truth.</p>\n",
-             100.0 * known_to);
+  return table.str() + fmt::format(
+                           "<p class=\"soft\">Root mean square errors, known to {:.0f} % or better (one standard "
+                           "error, if errors are "
+                           "normal); coverage is the fraction of the stated 95 % intervals that hold the truth.</p>\n",
+                           100.0 * known_to);
 }
 
 }  // namespace glidelab::report

@@ -93,7 +93,7 @@ std::string factor_sentence(const SweepSummary& summary, const std::string& othe
     factors +=
         fmt::format("{}{} in {}", factors.empty() ? "" : ", ", base::number_text(*ours / *theirs, 3), quantity.symbol);
   }
-  return factors.empty() ? std::string() : fmt::format(" Its rms error over that of {}: {}.", words, factors);
+  return factors.empty() ? std::string() : fmt::format(" Its rms error divided by that of {}: {}.", words, factors);
 }
 
 /// Neighbouring groups of one axis in which another rule than the default wins clearly.
@@ -135,7 +135,7 @@ std::string sweep_advice(const SweepSummary& summary) {
     return series.quantity == "k_over_m_1_s" && is_rule(series.estimator);
   });
   if (rules < 2 || !overall_rms(summary, "k_over_m_1_s", default_lines())) return {};
-  std::string text = "<h2>Which rule</h2>\n<p>Over all runs, among the rules alone, the least rms error is that of";
+  std::string text = "<h2>Which rule</h2>\n<p>Over all runs, the smallest rms error among the rules is that of";
   bool any = false;
   for (const QuantityName& quantity : kQuantities) {
     const Series* const series = series_of(summary.overall, quantity.key, default_lines());
@@ -168,7 +168,7 @@ std::string sweep_advice(const SweepSummary& summary) {
   }
   text += elsewhere.empty() ? fmt::format(" No rule beats it by more than {:.0f} % anywhere along an axis.",
                                           100.0 * (kClearlyBetterFactor - 1.0))
-                            : fmt::format(" By more than {:.0f} % it is beaten by {}.",
+                            : fmt::format(" Rules that beat it by more than {:.0f} %: {}.",
                                           100.0 * (kClearlyBetterFactor - 1.0), elsewhere);
   return text + "</p>\n";
 }
@@ -252,8 +252,8 @@ std::string bandwidths_of(const SweepSummary& summary) {
       summary, [](const std::string& estimator) { return !given_bandwidth(estimator).empty(); }, given_bandwidth);
   // Two standard errors of the ratio of two rms errors, of normal errors.
   return fmt::format(
-      "<p>Of the {} given bandwidths of the lines, the least rms error is that of {}. Two whose errors differ by less "
-      "than {:.0f} % may be equivalent.</p>\n",
+      "<p>Of the {} given bandwidths of the lines, the smallest rms error is that of {}. Two whose errors differ by "
+      "less than {:.0f} % may be equivalent.</p>\n",
       given.size(), winners, 200.0 / std::sqrt(static_cast<double>(answered)));
 }
 
@@ -423,7 +423,7 @@ std::string sweep_meaning(const SweepSummary& summary) {
     text += fmt::format("{} of {} runs are done; the following covers only these. ", summary.runs, summary.planned);
   }
   if (summary.failed > 0) text += fmt::format("{} runs failed and are not included. ", summary.failed);
-  text += "The least rms error over all runs is that of " +
+  text += "The smallest rms error over all runs is that of " +
           winners_of(summary, honest, [](const std::string& estimator) { return estimator; }) + ".";
   const std::string sds = stated_sds(summary);
   return meaning_section("<p>" + text + "</p>\n" + bandwidths_of(summary) + changes_of(summary, *first) + "<p>" +

@@ -74,7 +74,7 @@ std::string mass_study_section(const validate::MassStudy& study) {
   for (const validate::MassPoint& point : study.rows.front().masses) {
     header.push_back(fmt::format("µ of {} kg", base::number_text(point.mass_kg, 4)));
   }
-  header.insert(header.end(), {"fall of µ", "least R²"});
+  header.insert(header.end(), {"fall of µ", "lowest R²"});
   HtmlTable table(header, 1);
   std::string before;
   for (const MassRow& row : study.rows) {
@@ -93,8 +93,8 @@ std::string mass_study_section(const validate::MassStudy& study) {
   return html + table.str() +
          "<p class=\"soft\">Lines through every smoothed point, kernels over ends and reversals included. The fall is "
          "µ of the lightest glider minus that of the heaviest; ± is one standard error over the runs, and missing "
-         "where the positions are exact, because then nothing is random. R² is the least of a run's lines, the mean "
-         "over its runs. Between two bandwidths that were run, the fall and the logarithm of 1 − R² are interpolated "
+         "where the positions are exact, because then nothing is random. R² is the lowest of a run's lines, averaged "
+         "over the runs. Between two bandwidths that were run, the fall and the logarithm of 1 − R² are interpolated "
          "linearly.</p>\n";
 }
 
@@ -175,9 +175,9 @@ std::string acceleration_table(const SweepSummary& summary) {
     add(of.accelerations);
   }
   return "<h2>Accelerations</h2>\n" + table.str() +
-         "<p class=\"soft\">Error of each clip's a(t) against the truth, over the points that count. " +
+         "<p class=\"soft\">Error of each clip's a(t) against the truth, over the points that are used. " +
          (compared ? "The best possible bandwidth knows the truth.</p>\n"
-                   : "A sweep with the rule best-possible also shows the best possible bandwidth.</p>\n");
+                   : "Add the rule best-possible to the sweep to compare with the best possible bandwidth.</p>\n");
 }
 
 Json statistics_json(const ErrorStatistics& of) {

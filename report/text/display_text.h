@@ -44,7 +44,7 @@ struct NamedQuantity {
   const core::Quantity* quantity = nullptr;  ///< in the configuration that was given
 };
 
-/// K/m, µ, α and the limit velocity of a configuration, in the order of kQuantities.
+/// K/m, µ, α and the terminal velocity of a configuration, in the order of kQuantities.
 std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::ConfigurationResult& configuration);
 
 /// "0.335 kg, 4°", and with the group where another of the results has the same mass and stated inclination: "0.5 kg,

@@ -253,7 +253,7 @@ std::string headline(const validate::Comparison& comparison) {
   return fmt::format(
       "{}\n\nRecovered from the images alone by the {}, ± one standard deviation, and in brackets the truth:\n\n{}\n{}",
       printable(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
-      no_constant ? "A truth \"–\": the law of friction in this scenario has no such constant.\n" : "");
+      no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
 }
 
 /// How far measured positions are off, in a line.

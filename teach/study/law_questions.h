@@ -21,7 +21,7 @@ struct LawAnswers {
   bool jumps() const;     ///< by more than rounding
 };
 
-/// The curve is the first one with a limit velocity, or the last, of those that have a part at v > 0.
+/// The curve is the first one with a terminal velocity, or the last, of those that have a part at v > 0.
 /// std::logic_error where none has.
 LawAnswers answers_of(const LawStudy& study);
 

@@ -23,7 +23,8 @@ inline core::LineFit made_line(int direction, double k_over_m, double a0) {
   return line;
 }
 
-/// A glider thrown uphill: decelerates, turns, and approaches its limit velocity. v(t) follows the two lines exactly.
+/// A glider thrown uphill: decelerates, turns, and approaches its terminal velocity. v(t) follows the two lines
+/// exactly.
 inline core::ClipResult made_clip(const std::string& name, double k_over_m, double a0_up, double a0_down,
                                   std::size_t frames = 300) {
   core::ClipResult clip;

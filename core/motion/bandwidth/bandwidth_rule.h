@@ -1,11 +1,11 @@
 /// Rules that choose the bandwidth of the local cubic from data: the table that names each once, and the scan of
 /// bandwidths that they share.
 ///
-/// Every rule stands in a rule_*.cpp of its own, which begins with what it minimises and its source. `cv`, `gcv`,
+/// Every rule has a rule_*.cpp of its own, which begins with what it minimises and its source. `cv`, `gcv`,
 /// `cv-correlated` and `rsc` judge x; their h is converted to that for a by the constants of local_polynomial.h, which
-/// holds where x'''' varies little over the kernel. All rules here judge single points and know of no line; the default
-/// of `analyze` (rule_lines.h) serves the lines. The paper took its rule from its reference [15], which is not in its
-/// text; none of these is claimed to be it.
+/// holds where x'''' varies little over the kernel. All rules here judge single points and know nothing of lines; the
+/// default of `analyze`, choose_bandwidth() of rule_lines.h, is chosen for the lines. The paper took its rule from its
+/// reference [15], which is not in its text; none of these is claimed to be it.
 ///
 /// To add a rule: rule_<name>.cpp, which defines its BandwidthRule, and one line in bandwidth_rule.cpp.
 #pragma once
@@ -53,7 +53,7 @@ struct BandwidthRule {
   std::optional<BandwidthPick> (*choose)(const BandwidthProblem& problem) = nullptr;
 };
 
-/// In the order in which people are told of them.
+/// In the order in which people see them.
 const std::vector<BandwidthRule>& bandwidth_rules();
 
 /// Null where there is no rule of the name.
@@ -65,7 +65,7 @@ inline constexpr std::string_view kLinesRule = "lines";
 /// What a person may ask for: kLinesRule, then the table's names.
 std::vector<std::string> bandwidth_choices();
 
-/// InputError for a bandwidth that is no time above 0, and for a rule's name that is neither empty nor in the table.
+/// InputError for a bandwidth that is not a time above 0, and for a rule's name that is neither empty nor in the table.
 void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string& rule);
 
 inline constexpr double kLeastBandwidthSteps = 1.2;  ///< time steps; a narrower kernel holds fewer than five points
@@ -84,8 +84,8 @@ class BandwidthScan {
 
   /// From kLeastBandwidthSteps time steps to a fifth of the longest part.
   const std::vector<double>& grid() const { return grid_; }
-  /// At most some 400 in all parts, evenly; a tenth of each part at both ends is left out, where kernels are not
-  /// complete and their variance would rule the criterion.
+  /// At most some 400 in all parts, evenly; a tenth of each part at both ends is left out, where kernels are incomplete
+  /// and their variance would dominate the criterion.
   const std::vector<Probe>& probes() const { return probes_; }
   const BandwidthProblem& problem() const { return problem_; }
 
@@ -101,10 +101,10 @@ class BandwidthScan {
   std::vector<Probe> probes_;
 };
 
-/// Where the grid's least value lies; what has no value (NaN) does not count. Nothing where none has.
+/// The place of the grid's smallest value, NaN left out. Nothing where all are NaN.
 std::optional<std::size_t> least(const std::vector<double>& criterion);
 
-/// The widest of the grid's local least values. Cross-validation often has spurious ones at narrow bandwidths, more so
+/// The widest of the grid's local minima. Cross-validation often has spurious ones at narrow bandwidths, especially
 /// with correlated noise; the widest is the better one (Hall and Marron 1991, J. R. Stat. Soc. B 53, 245).
 std::optional<std::size_t> widest_local_least(const std::vector<double>& criterion);
 

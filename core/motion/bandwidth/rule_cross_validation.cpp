@@ -94,6 +94,6 @@ extern const BandwidthRule kGeneralisedCrossValidation = {
 extern const BandwidthRule kCorrelatedCrossValidation = {
     "cv-correlated",
     "cross-validation with a kernel that gives a point and its neighbours no weight, then a factor of 1.0143",
-    "noise correlated over times short beside h", correlated_cross_validation};
+    "noise correlated over times much shorter than h", correlated_cross_validation};
 
 }  // namespace glidelab::core

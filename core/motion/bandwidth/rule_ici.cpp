@@ -119,8 +119,8 @@ std::optional<BandwidthPick> by_intersection(const BandwidthProblem& problem) {
 }  // namespace
 
 extern const BandwidthRule kEmpiricalBias = {
-    "ebbs", "empirical bias: takes the drift of a at each point, as h grows, for the bias", "the bias goes as h²",
-    by_empirical_bias};
+    "ebbs", "empirical bias: estimates the bias from the drift of a at each point as h grows",
+    "the bias is proportional to h²", by_empirical_bias};
 extern const BandwidthRule kIntersectionOfIntervals = {
     "ici",
     "widens h at each point until the confidence intervals of a no longer agree; takes the median over the points",

@@ -200,7 +200,7 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
   }
   choice.line_s = best->bandwidth_s;
   choice.bandwidth_s = taken->bandwidth_s;
-  choice.method = fmt::format("least mean squared error of the lines ({:.1f} ms)", 1e3 * choice.line_s);
+  choice.method = fmt::format("smallest mean squared error of the lines ({:.1f} ms)", 1e3 * choice.line_s);
   if (taken != best) {
     choice.method +=
         fmt::format(", raised for quieter points (the noise of a is {} % of its spread; the lines are biased by {} %)",

@@ -8,13 +8,13 @@
 ///     E(h) = sum over directions of the mean over 0 <= v <= v_max of  variance + bias^2  of the fitted line
 ///
 /// is estimated: the variance exactly from the weights and the noise (line_fit.h), the bias by smoothing the double
-/// integral of f(v(t)), f the law fitted to the points of a first smoothing; it counts as no less than at any smaller
-/// h, for v(t) is noisy and would let it vanish by chance somewhere. The h of least E is the lines' own.
+/// integral of f(v(t)), f the law fitted to the points of a first smoothing; it is taken to be no less than at any
+/// smaller h, because v(t) is noisy and would let it vanish somewhere by chance. The h of smallest E is the lines' own.
 ///
-/// At low noise that h leaves the points more ragged than need be. Then it is raised until the noise
-/// of a is 1.25 % of the standard deviation of a along every line that is not level (noise alone then leaves R^2 at
-/// 0.9998; the paper's lines have 0.9996 to 1.0000), but only while the bias of every line stays below 0.35 % of its
-/// size and the lines' variance below 1.25 times the least E's.
+/// At low noise that h leaves the points rougher than necessary. Then it is raised until the noise of a is 1.25 % of
+/// the standard deviation of a along every line that is not level (noise alone then leaves R^2 at 0.9998; the paper's
+/// lines have 0.9996 to 1.0000), but only while the bias of every line stays below 0.35 % of its size and the lines'
+/// variance below 1.25 times that at the smallest E.
 ///
 /// Assumes a law that is roughly a line within a direction, and stationary noise. The rule that the paper took from its
 /// reference [15] is not in its text; this is not claimed to be it.
@@ -37,14 +37,14 @@ struct BandwidthChoice {
 
 /// f(v(t)) at every point of the stretches (0 elsewhere): f is the line of each direction, v(t) is smoothed at
 /// `bandwidth_s`. The fit averages the noise of its points, so half the pilot's bandwidth, with a quarter of its bias,
-/// serves (law_bandwidth). A law that is no line gets the bias that its mean slope makes of the true v(t). The slope is
-/// taken without its noise, and so as 0 only where it cannot be told from 0: a glider near its limit velocity has
-/// a slope as any other, however little v changes.
+/// serves (law_bandwidth). A law that is not a line gets the bias that its mean slope gives for the true v(t). The
+/// slope is corrected for its noise, and so is 0 only where it cannot be told from 0: a glider near its terminal
+/// velocity has a slope like any other, however little v changes.
 std::vector<double> pilot_law(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s);
 
 double law_bandwidth(const Motion& motion, double pilot_bandwidth_s);
 
-/// Where no bandwidth gives a line the pilot's is taken, and the method says so.
+/// Where no bandwidth gives a line, the pilot's is used, and the method says so.
 BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                  const PositionNoise& noise, double pilot_bandwidth_s);
 

@@ -1,7 +1,7 @@
 // plug-in: h^9 = 5 R_2 s^2 dt / mean(x''''^2), R_2 = 3/(8 sqrt(pi)) (local_polynomial.h): the least mean square error
 // of a with one h for all points. x'''' comes from one polynomial of order 6 through each part (order p + 3: Fan and
 // Gijbels 1996, section 4.2; Ruppert, Sheather and Wand 1995 fit it in blocks); the noise's share of its square is
-// subtracted. Where x'''' does not stand out of the noise by two standard deviations of its mean square, the widest
+// subtracted. Where x'''' does not rise above the noise by two standard deviations of its mean square, the widest
 // bandwidth is taken, and the method says so. Correlated noise counts by its sum over all lags.
 #include <fmt/format.h>
 
@@ -84,7 +84,7 @@ std::optional<BandwidthPick> by_plug_in(const BandwidthProblem& problem) {
   const double narrowest = scan.grid().front(), widest = scan.grid().back();
   if (signal <= kCurvatureSeen * std::sqrt(all.variance)) {
     pick.bandwidth_s = widest;
-    pick.method = "plug-in: x'''' does not stand out of the noise; the widest tried";
+    pick.method = "plug-in: x'''' does not rise above the noise; the widest tried";
     return pick;
   }
   const double mean_square = signal / static_cast<double>(all.points);
@@ -101,7 +101,8 @@ std::optional<BandwidthPick> by_plug_in(const BandwidthProblem& problem) {
 }  // namespace
 
 extern const BandwidthRule kPlugIn = {
-    "plug-in", "the h of least mean square error of a, with x'''' from one polynomial of order 6 through each stretch",
+    "plug-in",
+    "the h of smallest mean square error of a, with x'''' from one polynomial of order 6 through each stretch",
     "such a polynomial has the right x''''", by_plug_in};
 
 }  // namespace glidelab::core

@@ -67,7 +67,7 @@ std::optional<BandwidthPick> by_residual_squares(const BandwidthProblem& problem
   const double found = scan.grid()[*best];
   BandwidthPick pick;
   pick.bandwidth_s = found * std::pow(kGaussianA.best_h9() / kResidualSquaresH9, 1.0 / 9.0);
-  pick.method = fmt::format("residual squares criterion: least at {:.1f} ms{}, converted for a", 1e3 * found,
+  pick.method = fmt::format("residual squares criterion: minimum at {:.1f} ms{}, converted for a", 1e3 * found,
                             at_edge(scan.grid(), *best));
   return pick;
 }

@@ -1,23 +1,23 @@
 /// The free parts of a measured motion: not in the hand, not at rest, not against a stop or a bumper, and each in one
 /// direction.
 ///
-/// A first smoothing (the pilot) takes the least bandwidth at which the noise of a is 10 % of the median |a| of the
-/// moving glider. On it:
+/// A first smoothing (the pilot) takes the smallest bandwidth at which the noise of a is 10 % of the median |a| of the
+/// moving glider. From it:
 ///  - Directions, reversals and rests are told apart (motion_events.h).
 ///  - Hand, stop: the points (v, a) of one direction of free motion lie about one line. For each direction the line is
 ///    taken on which most points agree (candidates: lines through parts of the motion that are contiguous in time). A
 ///    point is not free where its a is off that line by more than a quarter of the line's own size AND by more than the
 ///    noise and the common scatter of the points allow (five standard deviations). Before the first free stretch that
 ///    is the hand, later a stop. What deviates less is left in: it is physics, not handling.
-///  - A stretch of duration T determines its acceleration with a standard deviation that goes with T^(-5/2). What is
+///  - A stretch of duration T determines its acceleration with a standard deviation proportional to T^(-5/2). What is
 ///    four times worse than the longest of its direction (T below 0.57 of it) is left out: least squares gives all
 ///    points one weight, so its points would add noise and no information.
 ///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. A
-///    launch that nobody stated has no wrong direction.
+///    launch whose direction is not stated has no wrong direction.
 ///
 /// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter. Each
 /// stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an impact or
-/// a release; times of those need to be known only well enough to keep their far side out.
+/// a release; the times of these need to be known only well enough to keep the far side out.
 #pragma once
 
 #include <cstddef>
@@ -44,12 +44,12 @@ struct ConsensusLine {
   double size_m_s2 = 0.0;  ///< the 90 % quantile of |a0 - k v| over its points
   double scatter = 1.0;    ///< robust standard deviation of its points about it, in units of their sd; at least 1
   double at(double v_m_s) const { return a0_m_s2 - k_1_s * v_m_s; }
-  /// What a point may lie off without being counted out.
+  /// How far a point may lie from the line and still count.
   double tolerance(double sd_m_s2) const;
 };
 
-/// Candidates are the least-squares lines through parts of the points that follow each other; the one with the most
-/// points within its tolerance wins and is refitted to them. Nothing for fewer than six points.
+/// Candidates are the least-squares lines through runs of consecutive points; the one with the most points within its
+/// tolerance wins and is refitted to them. Nothing for fewer than six points.
 std::optional<ConsensusLine> find_consensus(const LawPoints& points);
 
 /// Points first … first + count - 1 of the motion, all moving freely in one direction.
@@ -72,19 +72,19 @@ struct FreeMotion {
   std::optional<AgainstLaunch> against_launch;
 };
 
-/// The setup's start_s and end_s, where given, are taken at their word: nothing after the one counts as hand, nothing
-/// before the other as stop or rest, and with both everything between is free, at rest or not.
+/// The setup's start_s and end_s, where given, are trusted: nothing after start_s counts as hand, nothing before end_s
+/// as stop or rest, and with both everything between them is free, at rest or not.
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
 
 /// Free stretches joined where the motion turns.
 ///
 /// Stretches that follow each other across a reversal make one block. Where a block borders on something that is not
 /// free (a hand, a stop, a rest), `margin_s` of it is left out: the border is known to about a bandwidth. Blocks of
-/// fewer than kFewestBlockPoints, and such of which no stretch counts, are left out.
+/// fewer than kFewestBlockPoints, and those in which no stretch counts, are left out.
 ///
-/// Where a recorded force drives the glider to and fro a block ends in the middle of its third stretch, where it is
-/// fast, and the next begins there: over more than two turns what the law lacks makes a fit end in the wrong one of
-/// many orders of turns.
+/// Where a recorded force drives the glider to and fro, a block ends in the middle of its third stretch, where it is
+/// fast, and the next begins there: over more than two turns, a law that lacks something makes the fit end in a local
+/// minimum with the wrong sequence of turns.
 std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s);
 

@@ -1,6 +1,6 @@
-/// Frames that are missing from a file of constant rate, and leave no gap in its times: found from the motion.
+/// Frames that are missing from a file of constant rate and leave no gap in its times, found from the motion.
 ///
-/// A camera that drops a frame and a file that numbers its frames through put everything behind the loss too early by
+/// When a camera drops a frame and the file numbers its frames consecutively, everything after the loss is too early by
 /// one frame's time T. The positions then jump by v T, far more than their noise wherever the glider is not slow. At
 /// each pair of neighbouring frames a cubic goes through up to four positions before and four behind, the latter at
 /// times that are later by tau = 0, T, 2T, … kMostLost T. With S(tau) the sum of the squared residuals, frames are lost
@@ -29,13 +29,13 @@ namespace glidelab::core {
 inline constexpr int kMostLost = 8;
 
 /// In the order of time; none where the frames' times are not uniform to a tenth of a step (stamps that show gaps are
-/// taken at their word). `motion` is the track's; single outliers in it are passed over.
+/// trusted). `motion` is the track's; single outliers in it are passed over.
 std::vector<LostFrames> find_lost_frames(const TrackData& track, const Motion& motion);
 
 /// The file's time with the frames counted in that were lost before it.
 double put_right(double file_s, const std::vector<LostFrames>& lost, double step_s);
 
-/// The track with all times put right.
+/// The track with all times corrected.
 TrackData put_right(TrackData track, const std::vector<LostFrames>& lost);
 
 }  // namespace glidelab::core

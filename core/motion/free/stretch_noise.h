@@ -16,12 +16,12 @@ namespace glidelab::core {
 ///
 /// from the squared residuals of the smoothing (points whose kernel is complete) by least squares, each weighted with
 /// the inverse of its variance 2 s^4, in a few passes; b is then shrunk by sd_b^2 / b (the positive part of James and
-/// Stein's rule), with the mean variance kept. A threshold in its place, the growth taken as it is where it is
-/// significant and not at all elsewhere, leaves intervals too narrow wherever a growth that matters is not significant.
-/// It matters for lines: their ends at high speed weigh most.
+/// Stein's rule), with the mean variance kept. A threshold instead (the growth as measured where it is significant,
+/// none elsewhere) leaves intervals too narrow wherever a growth that matters is not significant. It matters for lines:
+/// their ends at high speed weigh most.
 ///
 /// s(v) at every point of every piece over the root mean square of the residuals. Empty where b is not above its own
-/// standard deviation, or there are fewer than 40 residuals: the noise is then taken as one.
+/// standard deviation, or there are fewer than 40 residuals: the noise is then taken as constant.
 std::vector<std::vector<double>> speed_factors(const std::vector<NoisePiece>& pieces);
 
 /// The noise of a motion's positions, from its free stretches smoothed with one bandwidth.

@@ -1,14 +1,15 @@
 /// The line a = a0 - (K/m) v by generalised least squares: smoothed points with their known covariance, errors in both
-/// v and a, and no bias by the kernel.
+/// v and a, and no bias from the kernel.
 ///
-/// Ordinary least squares (line_fit.h) gives every smoothed point one weight, although neighbours share their noise and
-/// a sum of a over many points knows far more than its parts; it leaves out the points near ends and reversals, which
-/// know most; it keeps the kernel's bias; and noise in v draws its slope to zero. Here, for stretches smoothed with
-/// their own points alone (one-sided at ends and events), nodes about one bandwidth apart are taken, end to end, with
+/// Ordinary least squares (line_fit.h) gives every smoothed point the same weight, although neighbours share their
+/// noise and a sum of a over many points is known far better than its parts; it leaves out the points near ends and
+/// reversals, which carry most information; it keeps the kernel's bias; and noise in v pulls its slope towards zero.
+/// Here, for stretches smoothed with their own points alone (one-sided at ends and events), nodes about one bandwidth
+/// apart are taken, end to end, with
 ///
 ///     rho_j = a_j + k v_j - a0 p_j(k) - v0 q_j(k),     C(k) = (W_a + k W_v) Sigma (W_a + k W_v)',
 ///
-/// W_a, W_v the kernels' weights and Sigma the noise of the positions, and  rho' C(k)^-1 rho  is made least in k and
+/// W_a, W_v the kernels' weights and Sigma the noise of the positions, and  rho' C(k)^-1 rho  is minimised over k and
 /// a0. For normal noise that is maximum likelihood with the true v_j free: errors in both v and a, and their
 /// covariances. (Points closer than a bandwidth add nothing but an ill-conditioned C; at twice that, information is
 /// lost.)
@@ -20,9 +21,9 @@
 /// and without bias p = 1, q = 0. v0 is taken from the smoothed v. With a known force v obeys no such law: p = 1,
 /// q = 0, and the bias of `law` is stated as an uncertainty, as line_fit.h does.
 ///
-/// Covariance (A' C^-1 A)^-1, A = -d rho / d(k, a0). Where chi^2 is above its degrees of freedom by more than chance
-/// makes it (the law is no line) it grows by what blocks of whitened residuals scatter, as in line_fit.h; where there
-/// are four stretches or more, leaving them out one at a time is compared as there.
+/// Covariance (A' C^-1 A)^-1, A = -d rho / d(k, a0). Where chi^2 exceeds its degrees of freedom by more than chance
+/// allows (the law is not a line), the covariance grows by the scatter of blocks of whitened residuals, as in
+/// line_fit.h; with four stretches or more, the jackknife over stretches is compared as there.
 #pragma once
 
 #include <optional>

@@ -65,7 +65,7 @@ class LineNodes {
   /// Lower triangles of C(k) and of dC/dk.
   Eigen::SparseMatrix<double> covariance(double k) const { return aa_ + 2.0 * k * av_ + k * k * vv_; }
   Eigen::SparseMatrix<double> covariance_slope(double k) const { return 2.0 * av_ + 2.0 * k * vv_; }
-  /// Every pivot of C(k) is above 1e-9 of its diagonal; below that nodes say the same.
+  /// Every pivot of C(k) is above 1e-9 of its diagonal; below that, nodes carry the same information.
   bool well_conditioned(double k) const;
 
   NodeResidual residual(double k) const;

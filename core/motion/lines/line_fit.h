@@ -15,7 +15,7 @@
 ///
 ///     covariance += (1 - 1/X) (A'A)^-1 [ sum over blocks of s s' ] (A'A)^-1  n_b / (n_b - 2),   s = sum of A_j' e_j,
 ///
-/// with X the mean square residual over that expected of the noise, where X is above 1 by more than chance makes it
+/// with X the mean square residual over that expected of the noise, where X is above 1 by more than chance allows
 /// (chi2_ratio_limit of estimate.h).
 ///
 /// An error of the camera or the plane displaces all positions by x_k(t), and so v by dv and a by da (the same sums
@@ -23,8 +23,8 @@
 ///
 ///     d(K/m, a0) = (A'A)^-1 [A' (da + (K/m) dv) + (dA)' e],     (dA)' e = (- sum of dv_j e_j, 0).
 ///
-/// Where there are four stretches or more, leaving them out one at a time (the jackknife) gives a covariance that knows
-/// of no noise model; it counts where it is the larger one by more than chance makes it.
+/// Where there are four stretches or more, leaving them out one at a time (the jackknife) gives a covariance that needs
+/// no noise model; it counts where it is the larger one by more than chance allows.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,11 +66,11 @@ struct LineInput {
 enum class Misfit { widens, ignored };
 
 inline constexpr std::size_t kFewestLinePoints = 5;
-/// Nothing where there are fewer than kFewestLinePoints points or all v are one.
+/// Nothing where there are fewer than kFewestLinePoints points or all v are equal.
 std::optional<LineFit> fit_line(int direction, const LineInput& input, const std::vector<double>& autocovariance,
                                 double scale_sd_relative, Misfit misfit = Misfit::widens);
 
-/// Residuals of a + k v at the input's points beside what the noise of the positions makes of them.
+/// Residuals of a + k v at the input's points compared with what the noise of the positions gives.
 struct Scatter {
   double ratio = 0.0;  ///< mean square over that expected; 0 where no noise is
   double limit = 0.0;  ///< chi2_ratio_limit() of as many residuals as are independent
@@ -100,8 +100,9 @@ Quantity limit_velocity(const std::vector<LineFit>& lines);
 ///
 ///     cov = (n - 1)/n sum d_i d_i^T      d_i: change of (K/m, a0) without part i
 ///
-/// Takes the jackknife's covariance into `parts` where a variance of it is larger than chance makes it
-/// (chi2_ratio_limit); variances only grow, and n - 2 degrees of freedom are left. Whether it did. Asserts n >= 3.
+/// Puts the jackknife's covariance into `parts` where one of its variances is larger than chance allows
+/// (chi2_ratio_limit); variances only grow, and n - 2 degrees of freedom are left. Returns whether it did. Asserts n >=
+/// 3.
 bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertainty& parts);
 
 /// Every stretch is smoothed with its own points alone. Within this many bandwidths of its first or last point the
@@ -125,8 +126,8 @@ struct StretchPoint {
   std::optional<KernelRow> row;  ///< over the points of the motion
 };
 
-/// Which points a caller has a use for: where only those that may count are wanted, those at a stretch's ends are not
-/// smoothed at all (each has a kernel of its own, which is most of the work).
+/// Which points a caller needs: where only those that may count are wanted, those at a stretch's ends are not smoothed
+/// at all (each has a kernel of its own, which is most of the work).
 enum class WantedPoints { all, inner };
 
 /// Every `stride`-th point of every stretch; with `inner` without those in the margins and without whole stretches that
@@ -135,7 +136,7 @@ std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vect
                                            double bandwidth_s, std::size_t stride = 1,
                                            WantedPoints wanted = WantedPoints::all);
 
-/// What an error of a by the law's own curvature over time would be: g(t) = f(v(t)) is what a without the force should
+/// The error of a that the law's own curvature over time would give: g(t) = f(v(t)) is what a without the force should
 /// be at each point (0 where unknown), and the result is the smoothed minus the true g, by smoothing its double
 /// integral as positions are smoothed. For v' = -k v + const it is (k h)^2 / 2 of a.
 std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,

@@ -6,7 +6,7 @@
 ///     x = x_0 + v_0 phi(t) + a0 psi(t),
 ///     phi = (1 - exp(-k t)) / k,     psi = (t - phi) / k,     phi' = 1 - k phi,     psi' = phi,
 ///
-/// for any k and t, of either sign; phi and psi go over into t and t^2/2 at k = 0.
+/// for any k and t, of either sign; phi and psi become t and t^2/2 at k = 0.
 #pragma once
 
 #include <cmath>
@@ -40,16 +40,16 @@ inline LawFunctions law_functions(double k_1_s, double t_s) {
 ///
 ///     bias(k, a0) = (k' - k, a0' - a0) + bias of noise in v,      (k, a0) = line - bias(k, a0)  by fixed point.
 ///
-/// (In v a kernel leaves noise of its own, which draws the slope to zero: -(A'A)^-1 (sum of k var v_j + cov(v_j, a_j),
-/// 0).) The random covariance of what is left is G C G', G = (1 + d bias / d(k, a0))^-1.
+/// (A kernel leaves noise in v, which pulls the slope towards zero: -(A'A)^-1 (sum of k var v_j + cov(v_j, a_j), 0).)
+/// The random covariance of what is left is G C G', G = (1 + d bias / d(k, a0))^-1.
 ///
 /// It holds where the law does: the smoothed points must lie about the law's own smoothed points no further than the
 /// noise explains (chi2_ratio_limit), and the bias of k must be less than half of k, or of two of its standard
-/// deviations. Otherwise, and with a known force (v then obeys no such law), there is nothing to take off, and nothing
+/// deviations. Otherwise, and with a known force (v then obeys no such law), there is nothing to subtract, and nothing
 /// is returned.
 std::optional<LawBias> law_bias(const LineInput& input, const LineFit& line, const std::vector<double>& autocovariance);
 
-/// The line with its bias taken off (itself where there is none to take off), its uncertainty with what is left.
+/// The line with its bias subtracted (itself where there is none to subtract), its uncertainty including what is left.
 LineFit without_law_bias(LineFit line);
 
 }  // namespace glidelab::core

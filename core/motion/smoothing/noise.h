@@ -9,7 +9,7 @@
 
 namespace glidelab::core {
 
-/// A first figure for the standard deviation of one position, from how far each lies off the cubic through its four
+/// A first estimate of the standard deviation of one position, from how far each lies off the cubic through its four
 /// nearest neighbours (for uniform times the fourth difference over sqrt(70)). The smaller half of the squares counts,
 /// so that outliers and impacts do not. Never below q / sqrt(12), where all positions are whole multiples of a step q
 /// (a rounded file): between two multiples a rounded position says nothing.
@@ -25,8 +25,8 @@ struct PositionNoise {
   std::vector<double> autocovariance;  ///< at lags of 0, 1, … points; a single number where the noise is white
 };
 
-/// The sum of the autocovariance over all lags, of both signs: what white noise would have to be to act alike on
-/// everything that is wide beside the correlation.
+/// The sum of the autocovariance over all lags, of both signs: the variance of the white noise that would act alike on
+/// everything wider than the correlation.
 double sum_over_lags(const std::vector<double>& autocovariance);
 
 /// Bandwidths from an end of the points at which a kernel is complete: the variance of a is within 20 % of inside.
@@ -38,11 +38,11 @@ struct NoisePiece {
   std::span<const double> x_m;
 };
 
-/// From the residuals r = x - Sx of points whose kernel is complete. Smoothing takes part of the noise with it: with
-/// p = 1 - s the filter that leaves r, E[r_j r_(j+k)] = sum_l gamma_l P(k-l), P the autocorrelation of p. White noise
-/// is assumed unless the residuals' correlation contradicts it (chi^2 at 1e-3); then sigma_w^2, c >= 0 and rho follow
-/// by least squares. The bandwidth should be the one whose lines the noise is meant for: what is slower than the kernel
-/// is motion to it. `at_least_m` as from pilot_noise() stands where there are fewer than 20 such residuals.
+/// From the residuals r = x - Sx of points whose kernel is complete. Smoothing follows part of the noise: with p = 1 -
+/// s the filter that leaves r, E[r_j r_(j+k)] = sum_l gamma_l P(k-l), P the autocorrelation of p. White noise is
+/// assumed unless the residuals' correlation contradicts it (chi^2 at 1e-3); then sigma_w^2, c >= 0 and rho follow by
+/// least squares. The bandwidth should be that of the lines for which the noise is needed: what is slower than the
+/// kernel counts as motion. `at_least_m`, as from pilot_noise(), is used where there are fewer than 20 such residuals.
 PositionNoise estimate_noise(const std::vector<NoisePiece>& pieces, double at_least_m);
 
 }  // namespace glidelab::core

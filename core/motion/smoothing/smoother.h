@@ -1,4 +1,4 @@
-/// The smoothers: positions in, x, v and a with their standard deviations out, and how strongly was smoothed.
+/// The smoothers: positions in; x, v and a with their standard deviations out, and how strongly they were smoothed.
 ///
 ///     local-polynomial  the local cubic of the paper, whose bandwidth is given (local_polynomial.h)
 ///     kalman            the integrated Wiener process of order 4, its strength by marginal likelihood
@@ -9,7 +9,7 @@
 /// displacement on v and a follows from the rows.
 ///
 /// Standard deviations: of the local polynomial those of the noise alone; of the other two those of the posterior,
-/// which hold what smoothing may take off a(t) as well.
+/// which include what smoothing may remove from a(t).
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ struct SmoothingInput {
   bool simultaneous = false;               ///< whether the simultaneous band is wanted
 };
 
-/// Positions of one part of the motion that kalman and spline need, and before and after a break.
+/// Positions that kalman and spline need in one part of the motion, and on each side of a break.
 inline constexpr std::size_t kFewestSmoothed = 6;
 
 struct SmoothedState {

@@ -9,7 +9,7 @@
 
 namespace glidelab::core {
 
-/// In the order in which people are told of them; the first is the default.
+/// In the order in which people see them; the first is the default.
 const std::vector<const Smoother*>& smoothers();
 std::vector<std::string> smoother_names();
 /// Null where there is none of the name.
@@ -17,7 +17,7 @@ const Smoother* find_smoother(std::string_view name);
 
 inline constexpr std::string_view kLocalPolynomial = "local-polynomial";
 
-/// InputError for a name that is unknown, and for a bandwidth or a rule for one beside a smoother that has none.
+/// InputError for an unknown name, and for a bandwidth, or a rule that chooses one, with a smoother that has none.
 void check_smoother(const std::string& name, bool bandwidth_asked_for);
 
 }  // namespace glidelab::core

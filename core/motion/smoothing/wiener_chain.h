@@ -77,7 +77,7 @@ struct ChainFit {
   double minus_two_log_likelihood(double noise_variance_m2) const;
 };
 
-/// Mean and covariance (at s = 1) of the states at the chain's nodes, and how they hang together.
+/// Mean and covariance (at s = 1) of the states at the chain's nodes, and how these are correlated.
 template <int N>
 class ChainPosterior {
  public:

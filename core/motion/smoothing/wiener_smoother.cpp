@@ -374,7 +374,7 @@ double like_bandwidth(const std::vector<ChainPosterior<N>>& posteriors, double s
 
 std::string words_of(StrengthBy by, const Choice& choice) {
   std::string words =
-      by == StrengthBy::likelihood ? "the greatest marginal likelihood" : "the least generalised cross-validation";
+      by == StrengthBy::likelihood ? "maximum marginal likelihood" : "minimum generalised cross-validation";
   if (choice.smoothest) words += " (the smoothest tried)";
   if (choice.roughest) words += " (the roughest tried)";
   return words;

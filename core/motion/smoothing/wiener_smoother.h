@@ -4,8 +4,8 @@
 /// degree 7). With s the noise of a position and dt the mean step, the strength is tau = (s^2 dt / q)^(1/2N): x is
 /// followed up to the angular frequency 1/tau.
 ///
-///  kalman: tau, and the standard deviation j of the jumps of a, make the marginal likelihood greatest, with what is
-///     not known at a part's start integrated out and a flat prior of sqrt(q) (Gelman 2006, Bayesian Anal. 1, 515); s
+///  kalman: tau, and the standard deviation j of the jumps of a, maximise the marginal likelihood, with what is not
+///     known at a part's start integrated out and a flat prior of sqrt(q) (Gelman 2006, Bayesian Anal. 1, 515); s
 ///     where it is not stated as well, in closed form. Standard deviations are averaged over tau by its likelihood,
 ///     for a few effective parameters do not determine it.
 ///  spline: tau makes  n sum ((y - x)/f)^2 / (n - trace)^2  least (generalised cross-validation, Craven and Wahba 1979,

@@ -1,7 +1,7 @@
 /// A camera that sways or shakes: the fixed scene moves in the image, with its own phase in each motion.
 ///
-/// A turning camera moves what is at the sides of the image by more: A (1 + slope (x - x_mid) + bend (x - x_mid)²). Of
-/// tracks nobody knows the camera: one size everywhere.
+/// A turning camera moves what is at the sides of the image by more: A (1 + slope (x - x_mid) + bend (x - x_mid)²).
+/// Nobody knows the camera of imported tracks: there the amplitude is the same everywhere.
 #include "base/math/angles.h"
 #include "diagnose/effects/effect.h"
 
@@ -27,7 +27,7 @@ void sway_twin(const TwinSizes& sizes, TwinCamera& camera) {
   }
   const double pan = along_m ? std::atan(*along_m / camera.distance_m) : std::atan(*in_px / camera.focal_px);
   if (std::abs(pan) > kMostSway_rad) {
-    return camera.lack(ids::camera_motion, "a camera is turned by 30 degrees at most");
+    return camera.lack(ids::camera_motion, "a scenario turns its camera by at most 30 degrees");
   }
   camera.notes.emplace_back("the camera's motion is a pan, with one phase for all clips: it shows in images only");
   camera.motions += fmt::format("\n[[mount.motion]]\naxis = \"pan\"\namplitude_deg = {:.9g}\nfrequency_hz = {:.9g}\n",

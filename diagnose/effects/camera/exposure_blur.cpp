@@ -8,7 +8,7 @@ void blur_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto found = sizes.of("exposure_s");
   if (!found) return;
   if (*found > camera.stated_frame_s) {
-    return camera.lack(ids::exposure_blur, "an exposure ends before the next one begins");
+    return camera.lack(ids::exposure_blur, "a scenario's exposure ends before the next one begins");
   }
   camera.exposure_s = *found;
 }

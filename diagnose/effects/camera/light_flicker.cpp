@@ -9,7 +9,7 @@ namespace {
 void flicker_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto depth = sizes.of("depth"), f_hz = sizes.of("f_hz");
   if (!depth || !f_hz) return;
-  if (*depth > 1.0) return camera.lack(ids::light_flicker, "light flickers by its own brightness at most");
+  if (*depth > 1.0) return camera.lack(ids::light_flicker, "a scenario's light flickers by at most its own brightness");
   camera.light += fmt::format("flicker_depth = {:.6g}\nflicker_hz = {:.9g}\n", *depth, *f_hz);
 }
 

@@ -1,4 +1,4 @@
-/// Light that is brighter on one side of the marker, to which its centre is drawn.
+/// Light that is brighter on one side of the marker and pulls its centre to that side.
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ void side_light_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto gradient = sizes.of("gradient");
   if (!gradient) return;
   if (std::abs(*gradient) > kMostGradient_1_m) {
-    return camera.lack(ids::light_gradient, "light changes by a factor of exp(2) a metre at most");
+    return camera.lack(ids::light_gradient, "a scenario's light changes by at most a factor of exp(2) per metre");
   }
   camera.light += fmt::format("gradient_per_m = [{:.6g}, 0.0]\n", *gradient);
 }

@@ -1,7 +1,7 @@
 /// A calibration pattern that was not in the plane of motion: x becomes x / (1 + p x).
 ///
-/// Its twin is a camera that was turned by atan(downhill p' Z), p' = p/(1 + p x_f), x_f the place before which the
-/// camera stands, Z how far off.
+/// Its twin is a camera that was turned by atan(downhill p' Z), p' = p/(1 + p x_f), x_f the position that the camera
+/// faces, Z its distance.
 #include "base/math/angles.h"
 #include "diagnose/effects/effect.h"
 
@@ -23,14 +23,14 @@ void perspective_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const double before_m = 1.0 + *p * (camera.reference_m + camera.downhill * camera.x_m);
   const double tangent = camera.downhill * *p / before_m * camera.z_m;
   if (!(before_m > 0.0) || std::abs(std::atan(tangent)) > kMostTurn_rad) {
-    return camera.lack(ids::perspective_error, "a camera is turned by 30 degrees at most");
+    return camera.lack(ids::perspective_error, "a scenario turns its camera by at most 30 degrees");
   }
   camera.focal_factor /= before_m * before_m * (1.0 + tangent * tangent);
   if (camera.focal_by.empty()) camera.focal_by = ids::perspective_error;
   camera.motions += fmt::format("\n[[mount.motion]]\naxis = \"pan\"\noffset_deg = {:.9g}\n",
                                 std::atan(tangent) * base::kDegreesPerRad);
   camera.notes.emplace_back(
-      "the perspective is a camera that was turned after the calibration: it shows in images only");
+      "the perspective error is that of a camera turned after the calibration: it shows in images only");
 }
 
 }  // namespace

@@ -14,10 +14,10 @@ void rows_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto found = sizes.of("line_s");
   if (!found) return;
   if (!camera.filmed || std::abs(*found) * camera.height_px > camera.stated_frame_s) {
-    return camera.lack(ids::rolling_shutter, "all rows are read within the frame time");
+    return camera.lack(ids::rolling_shutter, "a scenario reads all rows within the frame time");
   }
   camera.line_s = *found;
-  camera.notes.emplace_back("render states the shutter in experiment.toml, where the data's folder states another");
+  camera.notes.emplace_back("render states the true shutter in experiment.toml; the data's own folder states another");
 }
 
 }  // namespace
@@ -26,9 +26,9 @@ EffectInfo rolling_shutter() {
   return {
       .id = ids::rolling_shutter,
       .stage = Stage::timing,
-      .words = "rows that are exposed one after the other, not as stated",
+      .words = "a rolling shutter that differs from the stated one",
       .name = "rolling shutter",
-      .meaning = "line: from the exposure of a row to the next one's",
+      .meaning = "line: the time from the exposure of one row to that of the next",
       .search = Search::rows,
       .both_signs = true,
       .parameters = {{.key = "line_s", .absent = 0.0, .low = -3e-4, .high = 3e-4, .step = 1e-7}},

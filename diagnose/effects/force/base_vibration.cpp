@@ -34,7 +34,7 @@ EffectInfo base_vibration() {
       .law = {.force_n = vibration_force, .rate_1_s = vibration_rate, .passing = true},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .twin = EffectTwin::none("no force in a scenario depends on time"),
       .next = {},
       .alike = {},
   };

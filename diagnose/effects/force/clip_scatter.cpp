@@ -42,7 +42,7 @@ EffectInfo clip_scatter() {
       .law = {.sizes = 2, .resistance = scattered_drag, .friction = scattered_friction, .passing = true},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("the clips of a configuration have the same forces in a scenario"),
+      .twin = EffectTwin::none("in a scenario all clips of a configuration have the same forces"),
       .next = {},
       .alike = {},
   };

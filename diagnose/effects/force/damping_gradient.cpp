@@ -31,7 +31,7 @@ EffectInfo damping_gradient() {
       .law = {.resistance = gradient_resistance},
       .shapes = gradient_middles,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .twin = EffectTwin::none("no force in a scenario depends on position"),
       .next = {},
       .alike = {},
   };

@@ -1,4 +1,4 @@
-/// A viscous drag K (1 + d sign(v)), as seals, lips and screws have it.
+/// A viscous drag K (1 + d sign(v)), as of seals, lips and screws.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -23,7 +23,7 @@ EffectInfo direction_dependent_drag() {
       .law = {.resistance = directed_resistance},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no drag of a scenario depends on the direction"),
+      .twin = EffectTwin::none("no drag in a scenario depends on the direction"),
       .next = {},
       .alike = {},
   };

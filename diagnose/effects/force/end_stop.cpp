@@ -52,7 +52,7 @@ EffectInfo end_stop() {
       .law = {.force_n = stop_force, .rate_1_s = stop_rate, .passing = true},
       .shapes = stop_places,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .twin = EffectTwin::none("no force in a scenario depends on position"),
       .next = {},
       .alike = {},
   };

@@ -24,7 +24,7 @@ EffectInfo late_release() {
       .law = {.size = 1, .force_n = release_force, .passing = true},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .twin = EffectTwin::none("no force in a scenario depends on time"),
       .next = {},
       .alike = {},
   };

@@ -29,7 +29,7 @@ EffectInfo load_independent_friction() {
       .stage = Stage::dynamics,
       .words = "a dry friction that does not depend on the load",
       .name = "load-independent friction",
-      .meaning = "a friction of this force at every mass",
+      .meaning = "the same friction force at every mass",
       .search = Search::amplitude,
       .both_signs = false,
       .parameters =

@@ -71,7 +71,7 @@ EffectInfo place_friction() {
       .law = {.sizes = kBumps, .friction = friction_along, .passing = true},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .twin = EffectTwin::none("no force in a scenario depends on position"),
       .next = {},
       .alike = {},
   };

@@ -26,7 +26,7 @@ EffectInfo tether() {
   return {
       .id = ids::tether,
       .stage = Stage::dynamics,
-      .words = "a cable or spring that pulls back beyond some place",
+      .words = "a cable or spring that pulls back beyond some point",
       .name = "cable that tightens",
       .meaning = "a force −k (x − x_t) beyond x_t",
       .search = Search::shape,
@@ -42,7 +42,7 @@ EffectInfo tether() {
       .law = {.force_n = tether_force, .rate_1_s = tether_rate, .passing = true},
       .shapes = tether_places,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .twin = EffectTwin::none("no force in a scenario depends on position"),
       .next = {},
       .alike = {},
   };

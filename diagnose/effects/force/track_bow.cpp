@@ -23,7 +23,7 @@ EffectInfo track_bow() {
       .law = {.resistance = bow_resistance},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .twin = EffectTwin::none("no force in a scenario depends on position"),
       .next = {},
       .alike = {},
   };

@@ -11,7 +11,7 @@ constexpr double kMostDropped = 0.9;  // that a scenario allows
 void dropped_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto fraction = sizes.of("fraction");
   if (!fraction) return;
-  if (*fraction > kMostDropped) return camera.lack(ids::dropped_frames, "nine frames in ten are lost at most");
+  if (*fraction > kMostDropped) return camera.lack(ids::dropped_frames, "a scenario loses at most nine frames in ten");
   camera.clock += fmt::format("dropped_fraction = {:.6g}\n", *fraction);
 }
 

@@ -14,7 +14,7 @@ EffectInfo force_delay() {
   return {
       .id = ids::force_delay,
       .stage = Stage::dynamics,
-      .words = "a force that acts later than it was recorded, or earlier",
+      .words = "a force that acts later or earlier than recorded",
       .name = "delay of the force",
       .meaning = "the force acts tau later than recorded",
       .search = Search::amplitude,
@@ -23,7 +23,7 @@ EffectInfo force_delay() {
       .law = {.known_late_s = delay_s},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .twin = EffectTwin::none("no force in a scenario depends on time"),
       .next = {},
       .alike = {},
   };

@@ -23,7 +23,7 @@ EffectInfo force_gain() {
       .law = {.known_factor = gain_factor},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the time"),
+      .twin = EffectTwin::none("no force in a scenario depends on time"),
       .next = {},
       .alike = {},
   };

@@ -20,7 +20,8 @@ void rate_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const double ppm = 1e6 * (1.0 / (1.0 + *e) - 1.0);
   const double step_s = camera.stated_frame_s * (1.0 + *e);
   if (std::abs(ppm) > kMostClockError_ppm || step_s < camera.exposure_s) {
-    return camera.lack(ids::frame_rate_error, "a clock is off by a tenth at most, and exposures do not overlap");
+    return camera.lack(ids::frame_rate_error,
+                       "a scenario's clock is off by at most a tenth, and its exposures do not overlap");
   }
   camera.clock += fmt::format("rate_error_ppm = {:.9g}\n", ppm);
   camera.frame_s = step_s;
@@ -34,7 +35,7 @@ EffectInfo frame_rate_error() {
       .stage = Stage::timing,
       .words = "a frame rate that differs from the stated one",
       .name = "wrong frame rate",
-      .meaning = "the time from frame to frame is (1 + e) times what is stated",
+      .meaning = "the time from frame to frame is (1 + e) times the stated one",
       .search = Search::amplitude,
       .both_signs = true,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},

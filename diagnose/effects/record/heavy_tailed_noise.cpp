@@ -6,7 +6,7 @@ EffectInfo heavy_tailed_noise() {
   return {
       .id = ids::heavy_tailed_noise,
       .stage = Stage::tracking,
-      .words = "single positions that lie far off",
+      .words = "single positions that lie far off the motion",
       .name = "outliers",
       .meaning = "this fraction of the positions are outliers",
       .search = Search::noise,

@@ -1,5 +1,5 @@
-/// An inertia (1 + e) m where a recorded force drives, m the stated mass: without such a force nothing tells it from K
-/// and mu.
+/// An inertia (1 + e) m where a recorded force drives the glider, m the stated mass: without such a force it cannot be
+/// told from K and mu.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -24,7 +24,7 @@ EffectInfo mass_error() {
       .law = {.inertia_kg = wrong_mass_kg},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("a scenario has no recorded force, and without one a mass that is off does not show"),
+      .twin = EffectTwin::none("a scenario has no recorded force, and without one a wrong mass does not show"),
       .next = {},
       .alike = {.id = ids::frame_rate_error, .filmed = true},
   };

@@ -14,7 +14,7 @@ void scale_twin(const TwinSizes& sizes, TwinCamera& camera) {
   camera.focal_factor *= 1.0 + *e;
   camera.focal_by = ids::scale_error;
   camera.notes.emplace_back(
-      "the wrong scale is a focal length that was changed after the calibration: it shows in images only");
+      "the wrong scale is that of a focal length changed after the calibration: it shows in images only");
 }
 
 }  // namespace

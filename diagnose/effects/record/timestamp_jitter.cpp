@@ -1,4 +1,4 @@
-/// Frames that are not taken at even times: each time is off at random.
+/// Frames that are not evenly spaced in time: each time has a random error.
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>
@@ -15,7 +15,8 @@ void jitter_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const double room_s = camera.frame_s - kJitterReach * *sd_s;
   if (!camera.exposure_known && room_s > 0.0) camera.exposure_s = std::min(camera.exposure_s, 0.999 * room_s);
   if (camera.exposure_s > room_s) {
-    return camera.lack(ids::timestamp_jitter, "exposures do not overlap, with 5.9 standard deviations of each");
+    return camera.lack(ids::timestamp_jitter,
+                       "a scenario's exposures do not overlap, even 5.9 standard deviations early or late");
   }
   camera.clock += fmt::format("jitter_s = {:.6g}\n", *sd_s);
 }
@@ -28,7 +29,7 @@ EffectInfo timestamp_jitter() {
       .stage = Stage::timing,
       .words = "frames taken at uneven times",
       .name = "uneven frame times",
-      .meaning = "sd: of a frame's time",
+      .meaning = "sd: standard deviation of a frame's time",
       .search = Search::noise,
       .both_signs = false,
       .parameters = {},

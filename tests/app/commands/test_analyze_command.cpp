@@ -62,7 +62,7 @@ TEST_CASE("analyze takes the bandwidth from the rule that is named, and says so"
   CHECK(clip_of("plug-in").at("bandwidth_method").get<std::string>().starts_with("plug-in"));
   CHECK(clip_of("ebbs").at("bandwidth_method").get<std::string>().starts_with("empirical bias"));
   CHECK(clip_of("0.05").at("bandwidth_s") == 0.05);
-  CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("least mean squared error"));
+  CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("smallest mean squared error"));
 }
 
 TEST_CASE("analyze smooths as it is asked to, says how strongly, and refuses what does not go together") {

@@ -116,7 +116,7 @@ TEST_CASE("a command that cannot be an estimator's is a wrong command line, befo
        {Wrong{{"--estimator-command", "./mine {folder} {out}"}, "a program that can be run"},
         Wrong{{"--estimator-command", "sh {folder}"}, "a command with {out} in it"},
         Wrong{{"--estimator-command", "sh {folder} {out}", "--estimator-name", "trajectory"},
-              "an estimator of Glidelab has it"},
+              "an estimator of Glidelab has this name"},
         Wrong{{"--estimator-seconds", "3"}, "--estimator-command"},
         Wrong{{"--estimator-command", "sh {folder} {out}", "--estimator-seconds", "0"}, "--estimator-seconds"}}) {
     std::vector<std::string> arguments = {"validate", "small.toml", "--out", "out"};

@@ -196,7 +196,7 @@ TEST_CASE("clips of another mass, inclination or group make another configuratio
   CHECK(results[3].group == "other");
 }
 
-TEST_CASE("an error of the scale moves the inclination and the limit velocity in proportion, K/m not") {
+TEST_CASE("an error of the scale moves the inclination and the terminal velocity in proportion, K/m not") {
   ClipResult clip = clip_on({{-1, 2.0, 0.8, 0.0, 0.0}, {1, 2.0, 0.7, 0.0, 0.0}});
   for (LineFit& line : clip.segments) {
     line.parts.scale_relative = 0.01;

@@ -256,7 +256,7 @@ TEST_CASE("light from one side is told with how far it draws the centroid of the
     clip.record = record;
   }
   const std::string words = finding(diagnose::picture_evidence(drawn), "light_gradient").words;
-  CHECK(words.find("lies 0.6 px off the centre of its outline") != std::string::npos);
+  CHECK(words.find("lies 0.6 px from the centre of its outline") != std::string::npos);
   CHECK(words.find("changes by ±0.2 px") != std::string::npos);
 }
 

@@ -31,7 +31,7 @@ EffectInfo toy_effect() {
       .law = {.force_n = spring_force, .rate_1_s = spring_rate},
       .shapes = nullptr,
       .lines = {},
-      .twin = EffectTwin::none("no force of a scenario depends on the place"),
+      .twin = EffectTwin::none("no force in a scenario depends on position"),
       .next = {},
       .alike = {},
   };

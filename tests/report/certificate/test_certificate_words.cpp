@@ -48,9 +48,9 @@ TEST_CASE("a certificate of intervals that do not hold begins with do not trust 
   validate::Certificate made = certificate();
   made.quantities[2].wide_coverage = {20, 40, 0.5, 0.3, 0.7};
   CHECK_FALSE(made.holds());
-  CHECK(
-      report::certificate_answer(made).starts_with("Do not trust the intervals of limit velocity: those of K/m, µ hold "
-                                                   "in 94 % (90 to 97 %)"));
+  CHECK(report::certificate_answer(made).starts_with(
+      "Do not trust the intervals of terminal velocity: those of K/m, µ hold "
+      "in 94 % (90 to 97 %)"));
   made = certificate();
   made.together.high = 0.94;
   CHECK(report::certificate_answer(made).starts_with("Do not trust the intervals: "));

@@ -169,7 +169,8 @@ TEST_CASE("recovered quantities stand under the causes that are in their model, 
   CHECK(tables[0].rows[1][0] == "0.335 kg, 4°");
   CHECK(tables[0].rows[1][1] == "2.7463 ± 0.0060");  // 0.92/0.335
   CHECK(tables[0].rows[2][4] == "–");
-  CHECK(tables[0].why == std::vector<std::string>{"limit velocity of 0.435 kg, 4°: the clips hold no motion downhill"});
+  CHECK(tables[0].why ==
+        std::vector<std::string>{"terminal velocity of 0.435 kg, 4°: the clips hold no motion downhill"});
   of.recovered.back().group = "other";
   of.recovered.back().with.clear();
   tables = report::recovered_tables(of);
@@ -192,7 +193,7 @@ TEST_CASE("a reason that several configurations share is told once") {
   const auto tables = report::recovered_tables(of);
   REQUIRE(tables.size() == 1);
   CHECK(tables[0].why == std::vector<std::string>{"µ of all: a fall has no normal force",
-                                                  "limit velocity of 0.001 kg, 90°; 0.002 kg, 90°: too short"});
+                                                  "terminal velocity of 0.001 kg, 90°; 0.002 kg, 90°: too short"});
 }
 
 TEST_CASE("a terminal has the answer, the causes, what is left, the quantities and the next step before the ranking") {

@@ -30,7 +30,7 @@ TEST_CASE(
   const std::string open = page.substr(0, folds);
   std::size_t at = 0;
   for (const char* part :
-       {"<b>Quadratic drag", "What explains the gap", "Waterfall of the gap", "K/m, µ, α and limit velocity",
+       {"<b>Quadratic drag", "What explains the gap", "Waterfall of the gap", "K/m, µ, α and terminal velocity",
         "with quadratic drag and inertia without weight in the model", "Where the rest lies", "random acceleration",
         "What to record next"}) {
     INFO(part);
@@ -62,7 +62,8 @@ TEST_CASE("without a sequence of causes the page keeps its tiles open and has no
   of.recovered.clear();
   const std::string page = page_of(of);
   CHECK(page.find("class=\"tiles\"") < page.find("<details"));
-  for (const char* part : {"What explains the gap", "K/m, µ, α and limit velocity", "Where the rest lies", "Notes ("}) {
+  for (const char* part :
+       {"What explains the gap", "K/m, µ, α and terminal velocity", "Where the rest lies", "Notes ("}) {
     INFO(part);
     CHECK_FALSE(shows(page, part));
   }

@@ -51,7 +51,7 @@ TEST_CASE("the chart of what was held out speaks of lines where lines were held 
   CHECK(has(clips.caption, "left out of the fit"));
   of.lines.emplace();
   const report::Plot lines = report::verdict_plots(of).at(1);
-  CHECK(has(lines.drawing.script, "off the prediction by the other lines / own scatter"));
+  CHECK(has(lines.drawing.script, "deviation from the prediction of the others / own scatter"));
   CHECK(has(lines.caption, "the lines' own scatter"));
 }
 

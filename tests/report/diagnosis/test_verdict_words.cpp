@@ -38,10 +38,10 @@ TEST_CASE("what is not ruled out is neither claimed nor called explained") {
   CHECK(contains(words, "It is uncertain whether anything is missing"));
   CHECK(contains(words, "\"nothing missing\" (30 %) cannot be excluded"));
   CHECK(contains(words, "late_release (46 %)"));
-  CHECK_FALSE(contains(words, "Nothing is missing"));
+  CHECK_FALSE(contains(words, "nothing is missing"));
   open.none = 0.9;
   open.ranking.front().probability = 0.05;
-  CHECK(contains(report::verdict_words(open), "Nothing is missing"));
+  CHECK(contains(report::verdict_words(open), "nothing is missing"));
 }
 
 TEST_CASE("effects that look the same are named as one set, an effect that stands alone by itself") {
@@ -75,7 +75,7 @@ TEST_CASE("an angle of the nominal model has no standard deviation where somethi
   of.limits.contradicted.push_back(of.limits.contradicted.front());
   of.limits.contradicted.back().group = "second";
   of.notes = {of.limits.contradicted.front(), of.limits.contradicted.back()};
-  CHECK(contains(report::verdict_words(of), "The motion contradicts 1 more set-up."));
+  CHECK(contains(report::verdict_words(of), "The motion also contradicts what is stated of 1 more set-up."));
   CHECK_FALSE(contains(report::verdict_words(of), "second"));
   for (const std::string& note : report::notes_words(of)) CHECK_FALSE(contains(note, "4.001"));
   of.verdict = diagnose::Verdict::none;
@@ -97,7 +97,7 @@ TEST_CASE("where a fifth of the motion is set aside, the summary begins with it"
   of.none = 0.9;
   of.limits.set_aside = diagnose::SetAside{1000, 0.21};
   CHECK(report::verdict_words(of).starts_with("Of the 1000 positions of the motion, 21 % are excluded"));
-  CHECK(contains(report::verdict_words(of), "Nothing is missing"));
+  CHECK(contains(report::verdict_words(of), "nothing is missing"));
 }
 
 TEST_CASE("a size far beyond what the accelerations lack is not stated as one") {

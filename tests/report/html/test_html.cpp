@@ -125,7 +125,7 @@ TEST_CASE("results without any usable point still make a page that says so") {
   CHECK(page.find("no free motion was found") != std::string::npos);
 }
 
-TEST_CASE("the detail near v = 0 promises the limit velocity only where it shows a line that crosses a = 0") {
+TEST_CASE("the detail near v = 0 promises the terminal velocity only where it shows a line that crosses a = 0") {
   core::AnalysisResults results = tests::made_results();
   // The clips' largest speed is 1.2 m/s, and the detail shows 15 % of it, 0.18 m/s.
   for (const double v_lim_m_s : {0.1, 0.3}) {
@@ -135,7 +135,7 @@ TEST_CASE("the detail near v = 0 promises the limit velocity only where it shows
     }
     const std::string page = report::analysis_report("detail", results, {}).html;
     REQUIRE(page.find("Near v = 0: the gap between the lines") != std::string::npos);
-    CHECK((page.find("their crossing of a = 0 the limit velocity") != std::string::npos) == (v_lim_m_s < 0.18));
+    CHECK((page.find("their crossing of a = 0 the terminal velocity") != std::string::npos) == (v_lim_m_s < 0.18));
   }
 }
 
@@ -143,7 +143,7 @@ TEST_CASE("a page says in words where a plot has nothing to show, and keeps its 
   const report::Plot seen = {{"plot $a using 1:2", {{"a", {{0.0, 1.0}, {1.0, 2.0}}}}}, "seen", "a plot"};
   const report::Plot nothing = {{"plot $a using 1:2", {{"a", {{0.0, HUGE_VAL}}}}}, "not <seen>", "an empty plot"};
   const report::Page page = report::page("two", report::figures({nothing, seen}));
-  CHECK(page.html.find("This plot is left out, for its numbers leave nothing to draw") != std::string::npos);
+  CHECK(page.html.find("This plot is left out because its numbers leave nothing to draw") != std::string::npos);
   CHECK(page.html.find("<code>plots/01-an-empty-plot.csv</code>") != std::string::npos);
   CHECK(page.html.find("not &lt;seen&gt;") != std::string::npos);
   CHECK(page.html.find("<img alt=\"a plot\" src=\"data:image/svg+xml") != std::string::npos);

@@ -63,7 +63,8 @@ TEST_CASE("what is much better than needed is said to be so, with what would do"
 TEST_CASE("a cheaper camera that is undecided is named beside the one to buy") {
   validate::Requirement requirement = cameras();
   requirement.candidates[0].verdict = validate::Verdict::undecided;
-  CHECK_THAT(report::requirement_answer(requirement), Contains("1 cheaper one may do as well: more runs would decide"));
+  CHECK_THAT(report::requirement_answer(requirement),
+             Contains("1 cheaper one may be good enough too: more runs would decide"));
 }
 
 TEST_CASE("where nothing reaches the target the nearest is named, with what limits it") {
@@ -74,7 +75,7 @@ TEST_CASE("where nothing reaches the target the nearest is named, with what limi
   requirement.candidates[2].limits = {{"light (no shot noise)", 3.0}};
   CHECK_THAT(report::requirement_answer(requirement),
              Contains("Nothing here reaches µ ± 0.0001. phone comes nearest: expect µ ± 0.0002") &&
-                 Contains("What most limits it: light (no shot noise)"));
+                 Contains("Its main limitation: light (no shot noise)"));
   const std::string html = report::requirement_report(requirement).html;
   CHECK_THAT(html, Contains("What limits the others") && Contains("<li><b>phone</b>: light (no shot noise) 3.0x</li>"));
   requirement.candidates[2].verdict = validate::Verdict::reached;

@@ -41,7 +41,7 @@ TEST_CASE("The advice names the best rule that answers, and how much the default
   const std::string text = report::sweep_advice(made_summary());
   // ebbs answers half of the runs only; h = 0.02 s is no rule; the best possible bandwidth is none either.
   // The fit of the whole motion has less: the sentence must not be of all estimators.
-  CHECK_THAT(text, Contains("among the rules alone, the least rms error is that of phase-diagram in K/m (0.4"));
+  CHECK_THAT(text, Contains("the smallest rms error among the rules is that of phase-diagram in K/m (0.4"));
   CHECK_THAT(text, Contains("best possible bandwidth: 2"));
   CHECK_THAT(text, Contains("whole motion: 4"));
 }

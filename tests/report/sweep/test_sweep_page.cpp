@@ -53,7 +53,7 @@ validate::SweepSummary summary() {
 TEST_CASE("every sweep's page says first who errs least, along which key it changes, and whose intervals fail") {
   validate::SweepSummary of = summary();
   const std::string meaning = report::sweep_meaning(of);
-  CHECK(has(meaning, "least rms error over all runs is that of trajectory in µ (0.0001)"));
+  CHECK(has(meaning, "smallest rms error over all runs is that of trajectory in µ (0.0001)"));
   CHECK(has(meaning, "<li>along rate_hz: 0.0001 at 200 Hz and 0.0002 at 50 Hz, 2 times as much</li>"));
   CHECK(has(meaning, "turning: 0.00008; straight: 0.00016"));
   CHECK(has(meaning, "as often as they say"));
@@ -75,7 +75,7 @@ TEST_CASE("a sweep's page names the best of several given bandwidths, for each q
   add("alpha_deg", "phase-diagram h=0.04 s", 0.003);
   add("mu", "phase-diagram h=0.04 s", 4e-4);
   CHECK(has(report::sweep_meaning(of),
-            "Of the 2 given bandwidths of the lines, the least rms error is that of h=0.04 s in K/m (0.001 1/s), µ "
+            "Of the 2 given bandwidths of the lines, the smallest rms error is that of h=0.04 s in K/m (0.001 1/s), µ "
             "(0.0004), α (0.003°). Two whose errors differ by less than 10 % may be equivalent."));  // 2 / sqrt(400)
   of.overall.back().groups.front().statistics.rms = 6e-4;
   CHECK(has(report::sweep_meaning(of), "h=0.04 s in K/m (0.001 1/s); h=0.02 s in µ (0.0005); h=0.04 s in α"));

@@ -59,7 +59,7 @@ TEST_CASE("without a fit of the whole motion the lines' numbers come first, and 
   INFO(first);
   CHECK(first.find("lines of the phase diagram") != std::string::npos);
   CHECK(first.find("2.7800 ± 0.0040 (–)") != std::string::npos);
-  CHECK(first.find("A truth \"–\"") != std::string::npos);
+  CHECK(first.find("A truth of \"–\"") != std::string::npos);
   CHECK(first.find("No recovered value could be compared with a true one.") != std::string::npos);
 }
 

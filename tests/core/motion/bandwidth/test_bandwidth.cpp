@@ -81,7 +81,7 @@ TEST_CASE("more noise and fewer frames make the bandwidth wider, a faster law ma
 
 namespace {
 
-/// A glider that is launched near its limit velocity: v changes by a tenth.
+/// A glider that is launched near its terminal velocity: v changes by a tenth.
 core::ClipResult analyze_slow(const Law& law, double v0_m_s, unsigned seed) {
   const auto track = tests::film(tests::launch(law, v0_m_s, 1.7), {200.0, 1.7, 2.6e-6, seed});
   return core::analyze_motion(tests::clip_setup(core::Launched::down, law.alpha_deg), track, core::MotionOptions{});
@@ -90,7 +90,7 @@ core::ClipResult analyze_slow(const Law& law, double v0_m_s, unsigned seed) {
 }  // namespace
 
 TEST_CASE(
-    "a glider launched near its limit velocity gets a bandwidth whose bias its law allows, and lies on its line") {
+    "a glider launched near its terminal velocity gets a bandwidth whose bias its law allows, and lies on its line") {
   const Law slow{4.3, 0.004, 1.73};  // v_lim = 0.402 m/s
   for (const double ratio : {0.94, 1.04, 1.12}) {
     for (unsigned seed = 1; seed <= 8; ++seed) {

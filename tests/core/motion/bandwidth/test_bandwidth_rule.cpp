@@ -248,7 +248,7 @@ TEST_CASE("where x'''' drowns in the noise the plug-in rule says so and takes th
   for (double& x : of.x) x = 0.0;
   const auto pick = find_bandwidth_rule("plug-in")->choose(problem_of(of, noisy(of, 2)));
   REQUIRE(pick);
-  CHECK(pick->method.find("does not stand out") != std::string::npos);
+  CHECK(pick->method.find("does not rise above") != std::string::npos);
 }
 
 TEST_CASE("every rule states what it does and assumes, is found by its name, and has its row in the guide") {

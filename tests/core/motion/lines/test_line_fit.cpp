@@ -298,7 +298,7 @@ TEST_CASE("a displacement of all positions changes the line as a fit of the disp
   CHECK(std::abs(line->parts.calibration[1].k) < 1e-9);
 }
 
-TEST_CASE("the limit velocity is a0 over K/m, and null where the data do not determine it") {
+TEST_CASE("the terminal velocity is a0 over K/m, and null where the data do not determine it") {
   LineFit line;
   line.direction = 1;
   line.k_over_m_1_s.value = 2.0;
