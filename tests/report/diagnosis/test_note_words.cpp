@@ -113,7 +113,7 @@ TEST_CASE("a doubt is told as what each explanation has and the other lacks, eac
   CHECK(report::next_step_words(step).starts_with(
       "None of the 62 changes considered (launches, a plumb view) would decide whether it is " + name("scale_error") +
       " or " + name("direction_asymmetry") + " or " + name("frame_rate_error") + ", and whether “" + name("stribeck") +
-      "” acts (expected log likelihood 1.2 at most)"));
+      "” acts (expected log likelihood at most 1.2)"));
   CHECK(report::next_step_words(diagnose::RecordForEffect{"Film it again.", step.doubt.back()}) ==
         "It is uncertain whether “" + name("stribeck") + "” acts. Film it again.");
   CHECK(report::next_step_words(diagnose::RecordForEffect{"Film it again.", {}}) == "Film it again.");

@@ -48,7 +48,7 @@ TEST_CASE("The advice names the best rule that answers, and how much the default
 
 TEST_CASE("The advice names the part of an axis in which another rule is clearly better") {
   const std::string text = report::sweep_advice(made_summary());
-  CHECK_THAT(text, Contains("beaten by phase-diagram gcv in K/m at rate = 30 to 60."));
+  CHECK_THAT(text, Contains(" by more than 10 %: phase-diagram gcv in K/m at rate = 30 to 60."));
   // 1.5 and 2 times; 1.1 (1 + 2 / sqrt(n)) is 1.32 with 100 runs and 2.2 with four.
   validate::SweepSummary few = made_summary();
   for (validate::Series& series : few.axes[0].series) {
