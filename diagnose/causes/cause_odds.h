@@ -15,6 +15,13 @@
 /// excess, a wrong cause seldom leaves so little as the right one, and a large excess is seldom dirt alone. The
 /// constants make the true causes of made experiments likeliest (blind --everyday); docs/evidence/blind-everyday.md
 /// tells how, and how far they hold on others.
+///
+/// Scatter of single positions makes no gap. Explanations that differ in it alone are one explanation of the gap, with
+/// the odds of that without any, however strong the evidence of the scatter; they share its probability by theirs.
+///
+/// No data can tell a cause off the list from one of the list that has the same law in them. With prior odds of 0.2 for
+/// what has no name to 0.5 for what has one or two (hypotheses.cpp), and a fifth of it imitated, 0.08 of the
+/// probability of every named cause is that of something without a name.
 #pragma once
 
 #include <vector>
@@ -30,7 +37,8 @@ inline constexpr double kLargestExcess = 1e6;
 /// Sets probabilities, `none`, `unknown` and those of the effects; hypotheses then stand by falling probability.
 /// `excess` is of each of the comparison's fits, g² - 1, the nominal one first; NaN where it was not measured;
 /// `unnamed_excess` is that of the likeliest function without a name beside nothing. A function without a name beside
-/// named causes counts for their name, scatter of single positions alone for nothing, as it makes no gap.
+/// named causes counts for their name, scatter of single positions alone for nothing, as it makes no gap. Sets what
+/// each leaves of the excess (`left`).
 void weigh_by_share_left(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

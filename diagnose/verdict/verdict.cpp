@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood within which effects are alike: twenty times is no difference
 constexpr double kSameEvidence = 4.6;  // log evidence within which they are: what follows anything is no equal
+constexpr double kSameLeft = 0.25;     // part of the gap, the same: by cause_odds.h it makes odds of twenty
 constexpr double kNoChance = 5e-4;     // probability below which explanations are ranked by their evidence
 
 Explanation explanation_of(const Hypothesis& hypothesis) {
@@ -39,13 +40,20 @@ bool same_but(const std::vector<std::size_t>& a, const std::vector<std::size_t>&
   return expected == other;
 }
 
+/// Beside a remainder much looks alike that would not take the same part of the gap.
+bool leaves_as_little(const Hypothesis& other, const Hypothesis& best) {
+  return other.left.value_or(0.0) < best.left.value_or(0.0) + kSameLeft;
+}
+
 std::vector<std::string> equivalents(const Comparison& comparison, const Hypothesis& best, std::size_t effect) {
   std::vector<std::string> ids;
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
     if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
     for (const Hypothesis& other : comparison.all) {
       if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
-      const bool as_likely = other.log_evidence > best.log_evidence - kSameEvidence;
+      // Scatter of single positions is no other name for what moves them all.
+      const bool as_likely = other.log_evidence > best.log_evidence - kSameEvidence && leaves_as_little(other, best) &&
+                             is_scatter(e) == is_scatter(effect);
       if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain)
         ids.emplace_back(effect_list()[e].id);
       break;
