@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood within which effects are alike: twenty times is no difference
 constexpr double kSameEvidence = 4.6;  // log evidence within which they are: what follows anything is no equal
-constexpr double kSameLeft = 0.25;     // part of the gap, the same: by cause_odds.h it makes odds of twenty
+constexpr double kSameLeft = 0.24;     // part of the gap, the same: by cause_odds.h it makes odds of twenty
 constexpr double kNoChance = 5e-4;     // probability below which explanations are ranked by their evidence
 
 Explanation explanation_of(const Hypothesis& hypothesis) {
@@ -115,37 +115,6 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
   return count;
 }
 
-void add_ranking(const TrackSet& set, const Comparison& comparison, const NoiseAlone* noise_alone,
-                 Diagnosis& diagnosis) {
-  std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
-    RankedExplanation ranked{explanation_of(hypothesis),
-                             hypothesis.probability,
-                             hypothesis.log_evidence,
-                             hypothesis.gain,
-                             parameters_added(set, comparison, hypothesis),
-                             {}};
-    if (hypothesis.fit >= 0 && set.clips.size() > 1) {
-      const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
-      if (is_new) {
-        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
-        gap->second = noise_alone != nullptr
-                          ? held_out_gap(noise_alone->set, linearise_again(noise_alone->set, fit)).value
-                          : held_out_gap(set, fit).value;
-      }
-      ranked.gap_after = gap->second;
-    }
-    ranked.converged = hypothesis.converged;
-    diagnosis.ranking.push_back(std::move(ranked));
-  }
-  // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
-  const auto rest = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
-                                 [](const auto& ranked) { return ranked.probability < kNoChance; });
-  std::stable_sort(rest, diagnosis.ranking.end(),
-                   [](const auto& a, const auto& b) { return a.log_evidence_gain > b.log_evidence_gain; });
-}
-
 std::string stage_of(const std::vector<UnnamedFamily>& families) {
   const auto best = std::max_element(families.begin(), families.end(),
                                      [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
@@ -221,6 +190,39 @@ std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone*
 
 }  // namespace
 
+std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison& comparison,
+                                          const NoiseAlone* noise_alone) {
+  std::vector<RankedExplanation> ranking;
+  std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
+    RankedExplanation ranked{explanation_of(hypothesis),
+                             hypothesis.probability,
+                             hypothesis.log_evidence,
+                             hypothesis.gain,
+                             parameters_added(set, comparison, hypothesis),
+                             {}};
+    if (hypothesis.fit >= 0 && set.clips.size() > 1) {
+      const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
+      if (is_new) {
+        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+        gap->second = noise_alone != nullptr
+                          ? held_out_gap(noise_alone->set, linearise_again(noise_alone->set, fit)).value
+                          : held_out_gap(set, fit).value;
+      }
+      ranked.gap_after = gap->second;
+    }
+    ranked.converged = hypothesis.converged;
+    ranking.push_back(std::move(ranked));
+  }
+  // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
+  const auto rest =
+      std::find_if(ranking.begin(), ranking.end(), [](const auto& ranked) { return ranked.probability < kNoChance; });
+  std::stable_sort(rest, ranking.end(),
+                   [](const auto& a, const auto& b) { return a.log_evidence_gain > b.log_evidence_gain; });
+  return ranking;
+}
+
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures,
                      const NoiseAlone* noise_alone) {
   Diagnosis diagnosis;
@@ -255,7 +257,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     diagnosis.stage = diagnosis.effects.front().stage;
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
-  add_ranking(set, comparison, noise_alone, diagnosis);
+  diagnosis.ranking = ranking_of(set, comparison, noise_alone);
   // Beside sizes of each clip's own little of anything is left, and not where it lies.
   const std::vector<std::size_t>& leading = comparison.all.front().effects;
   const bool beside_named =

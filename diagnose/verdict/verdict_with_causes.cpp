@@ -147,6 +147,25 @@ void order_by_share(Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
+/// Where not all of several causes take their part, the one that is likeliest is to keep its name, and not the one that
+/// takes most in the place of both: its explanation by itself. Null where the sequence names it, or no fit has it
+/// alone.
+const Hypothesis* without_the_lesser(const Comparison& comparison, const Hypothesis& best,
+                                     const CauseSequence& sequence) {
+  if (!sequence.is_gap || best.effects.size() < 2) return nullptr;
+  const std::size_t likeliest =
+      *std::max_element(best.effects.begin(), best.effects.end(), [&](std::size_t a, std::size_t b) {
+        return comparison.effect_probability[a] < comparison.effect_probability[b];
+      });
+  const std::vector<std::size_t>& named = sequence.named.effects;
+  if (!shows_in_motion(effect_list()[likeliest].search) ||
+      std::find(named.begin(), named.end(), likeliest) != named.end()) {
+    return nullptr;
+  }
+  const Hypothesis* alone = find(comparison, {likeliest});
+  return alone != nullptr && alone->fit > 0 ? alone : nullptr;
+}
+
 constexpr double kLikely = 0.02;  // probability from which on an explanation widens what is recovered
 constexpr std::size_t kMostLikely = 6;
 
@@ -204,9 +223,17 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   const bool claims = verdict_by(by.none, by.unknown) == Verdict::effect;
   const Hypothesis* found = claims || !helps ? best_named(with, by) : &*helps;
   const bool names = found != nullptr && found->fit > 0 && (weighed || claims);
-  const Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
-  const MotionFit& fit = names ? by.fits[static_cast<std::size_t>(best.fit)] : nominal;
-  const CauseSequence sequence = sequence_of(set, nominal, with, fit, without, weighed ? kLeastNamed : kLeastShare);
+  Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
+  const auto fit_of = [&](const Hypothesis& one) -> const MotionFit& {
+    return names ? by.fits[static_cast<std::size_t>(one.fit)] : nominal;
+  };
+  const double least_named = weighed ? kLeastNamed : kLeastShare;
+  CauseSequence sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
+  if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, best, sequence) : nullptr) {
+    best = *alone;
+    sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
+  }
+  const MotionFit& fit = fit_of(best);
   const bool in_images = found != nullptr && shows_in_images(*found);
   // Of a verdict by the noise alone: scatter has no fit of its own.
   const bool scatter = found != nullptr && is_scatter_alone(*found) && claims;
@@ -246,6 +273,10 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
       }
     }
     diagnosis = verdict_of(set, first, std::move(pictures));
+    if (weighed && sequence.is_gap && !in_images) {
+      const NoiseAlone noise_alone{set, nominal, nominal};
+      diagnosis.ranking = ranking_of(with, by, &noise_alone);
+    }
   }
   if (noise_is_rounding(set)) traces.emplace_back(ids::position_rounding);
   diagnosis.traces = std::move(traces);
