@@ -75,6 +75,7 @@ void weigh_by_share_left(const std::vector<double>& excess, double unnamed_exces
   const std::vector<SameCauses> groups = by_causes(all);
   double best = -std::numeric_limits<double>::infinity();
   for (const SameCauses& group : groups) best = std::max(best, all[group.plain].log_evidence);
+  const bool no_noise = excess.front() > kLargestExcess;
   const double named = kNamed + kLarger * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
   for (Hypothesis& one : all) {
     one.left = part_left(one.fit > 0 ? excess[static_cast<std::size_t>(one.fit)] : excess.front(), excess.front());
@@ -84,7 +85,7 @@ void weigh_by_share_left(const std::vector<double>& excess, double unnamed_exces
     const Hypothesis& one = all[group.plain];
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = tempered(best - evidence);
-    if (excess.front() > kLargestExcess) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
+    if (no_noise) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
     if (makes_a_gap(one)) log += named - kLeft * *one.left;
     if (one.unnamed && one.effects.empty()) {
       log += std::max(0.0, named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
@@ -99,12 +100,15 @@ void weigh_by_share_left(const std::vector<double>& excess, double unnamed_exces
   double sum = 0.0;
   for (double& log : logs) sum += log = std::exp(log - most);
   for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::vector<std::size_t>& of = groups[g].all;
     double likeliest = -std::numeric_limits<double>::infinity(), parts = 0.0;
-    for (const std::size_t h : groups[g].all) likeliest = std::max(likeliest, all[h].log_evidence);
-    for (const std::size_t h : groups[g].all) {
-      parts += all[h].probability = std::exp(tempered(likeliest - all[h].log_evidence));
+    for (const std::size_t h : of) likeliest = std::max(likeliest, all[h].log_evidence);
+    for (const std::size_t h : of) {
+      const auto further = static_cast<double>(all[h].effects.size() - all[groups[g].plain].effects.size());
+      const double log = no_noise ? -kFurther * further : tempered(likeliest - all[h].log_evidence);
+      parts += all[h].probability = std::exp(log);
     }
-    for (const std::size_t h : groups[g].all) all[h].probability *= logs[g] / sum / parts;
+    for (const std::size_t h : of) all[h].probability *= logs[g] / sum / parts;
   }
   // What is beside a cause counts for the cause, and scatter of single positions alone for nothing: it makes no gap.
   for (Hypothesis& from : all) {

@@ -220,7 +220,9 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     set_unknown_of_half(weighed->comparison);
   }
   const Comparison& by = weighed ? weighed->comparison : first;
-  const bool claims = verdict_by(by.none, by.unknown) == Verdict::effect;
+  // Beside a remainder nothing counts as unknown: there is a gap.
+  const bool claims =
+      verdict_by(weighed ? 0.0 : by.none, weighed ? by.none + by.unknown : by.unknown) == Verdict::effect;
   const Hypothesis* found = claims || !helps ? best_named(with, by) : &*helps;
   const bool names = found != nullptr && found->fit > 0 && (weighed || claims);
   Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below

@@ -139,6 +139,10 @@ TEST_CASE("scatter of single positions is no other explanation of a gap, however
   CHECK(comparison.unknown == Approx(pure.unknown).epsilon(1e-9));
   // The second effect has its outliers.
   CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) > 0.9 * probability_of(pure, "track_bow"));
+  // Next to a gap of an encoder there is no noise, and no evidence of its tails.
+  diagnose::weigh_by_share_left({1e8, 5e6, 2e7}, kNotMeasured, comparison);
+  CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) <
+        0.2 * probability_of(comparison, diagnose::ids::track_bow));
 }
 
 TEST_CASE("a cause of the list may be imitated by one that is not: no name is certain") {
