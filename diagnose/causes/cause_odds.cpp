@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "diagnose/effects/effect_library.h"
 
@@ -13,6 +17,7 @@ constexpr double kTail = 5.0, kPower = 2.45;                   // s and n
 constexpr double kNamed = 1.1, kLeft = 12.5, kLarger = 0.8;    // a, b and c
 constexpr double kLate = 3.2, kScatter = 1.8, kUnnamed = 1.4;  // log odds against
 constexpr double kAnything = 1.0;                         // log odds against a function without a name, of anything
+constexpr double kImitated = 0.08;                        // of a cause's probability: one off the list that it imitates
 constexpr double kFurther = 2.0;                          // log odds against a further cause, without noise
 constexpr double kNotMeasured = -1.0;                     // a gap of nothing: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // between which a larger excess speaks for a cause
@@ -36,21 +41,52 @@ double part_left(double left, double before) {
   return std::clamp(left / before, 0.0, 1.0);
 }
 
+/// Explanations that differ in the scatter of single positions alone, which makes no gap: they are one explanation of
+/// it, and the one without any stands for them.
+struct SameCauses {
+  std::size_t plain = 0;
+  std::vector<std::size_t> all;
+};
+
+std::vector<SameCauses> by_causes(const std::vector<Hypothesis>& all) {
+  std::map<std::pair<bool, std::vector<std::size_t>>, SameCauses> groups;
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    std::vector<std::size_t> causes = all[h].effects;
+    std::erase_if(causes, is_scatter);
+    std::sort(causes.begin(), causes.end());
+    SameCauses& group = groups[{all[h].unnamed, causes}];
+    const bool first = group.all.empty();
+    if (first || all[h].effects.size() < all[group.plain].effects.size()) group.plain = h;
+    group.all.push_back(h);
+  }
+  std::vector<SameCauses> list;
+  for (auto& [causes, group] : groups) list.push_back(std::move(group));
+  return list;
+}
+
+double tempered(double behind) {
+  return -kPower * std::log1p(behind / kTail);
+}
+
 }  // namespace
 
 void weigh_by_share_left(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison) {
-  double best = comparison.all.front().log_evidence;
-  for (const Hypothesis& one : comparison.all) best = std::max(best, one.log_evidence);
+  std::vector<Hypothesis>& all = comparison.all;
+  const std::vector<SameCauses> groups = by_causes(all);
+  double best = -std::numeric_limits<double>::infinity();
+  for (const SameCauses& group : groups) best = std::max(best, all[group.plain].log_evidence);
+  const bool no_noise = excess.front() > kLargestExcess;
   const double named = kNamed + kLarger * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
+  for (Hypothesis& one : all) {
+    one.left = part_left(one.fit > 0 ? excess[static_cast<std::size_t>(one.fit)] : excess.front(), excess.front());
+  }
   std::vector<double> logs;
-  for (const Hypothesis& one : comparison.all) {
+  for (const SameCauses& group : groups) {
+    const Hypothesis& one = all[group.plain];
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
-    double log = -kPower * std::log1p((best - evidence) / kTail);
-    if (excess.front() > kLargestExcess) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
-    if (makes_a_gap(one)) {
-      const double left = one.fit > 0 ? excess[static_cast<std::size_t>(one.fit)] : excess.front();
-      log += named - kLeft * part_left(left, excess.front());
-    }
+    double log = tempered(best - evidence);
+    if (no_noise) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
+    if (makes_a_gap(one)) log += named - kLeft * *one.left;
     if (one.unnamed && one.effects.empty()) {
       log += std::max(0.0, named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
     }
@@ -63,15 +99,37 @@ void weigh_by_share_left(const std::vector<double>& excess, double unnamed_exces
   const double most = *std::max_element(logs.begin(), logs.end());
   double sum = 0.0;
   for (double& log : logs) sum += log = std::exp(log - most);
-  for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::vector<std::size_t>& of = groups[g].all;
+    double likeliest = -std::numeric_limits<double>::infinity(), parts = 0.0;
+    for (const std::size_t h : of) likeliest = std::max(likeliest, all[h].log_evidence);
+    for (const std::size_t h : of) {
+      const auto further = static_cast<double>(all[h].effects.size() - all[groups[g].plain].effects.size());
+      const double log = no_noise ? -kFurther * further : tempered(likeliest - all[h].log_evidence);
+      parts += all[h].probability = std::exp(log);
+    }
+    for (const std::size_t h : of) all[h].probability *= logs[g] / sum / parts;
+  }
   // What is beside a cause counts for the cause, and scatter of single positions alone for nothing: it makes no gap.
-  for (Hypothesis& from : comparison.all) {
+  for (Hypothesis& from : all) {
     const bool scatter_alone = is_scatter_alone(from);
     if (!scatter_alone && (!from.unnamed || from.effects.empty())) continue;
-    for (Hypothesis& pure : comparison.all) {
+    for (Hypothesis& pure : all) {
       if (pure.unnamed || (scatter_alone ? !pure.effects.empty() : pure.effects != from.effects)) continue;
       pure.probability += std::exchange(from.probability, 0.0);
     }
+  }
+  // Some causes off the list look like one of it.
+  auto unknown =
+      std::find_if(all.begin(), all.end(), [](const Hypothesis& one) { return one.unnamed && one.effects.empty(); });
+  if (unknown == all.end()) {
+    all.emplace_back().unnamed = true;
+    unknown = std::prev(all.end());
+  }
+  for (Hypothesis& one : all) {
+    if (one.unnamed || !makes_a_gap(one)) continue;
+    unknown->probability += kImitated * one.probability;
+    one.probability *= 1.0 - kImitated;
   }
   set_probabilities(comparison);
 }

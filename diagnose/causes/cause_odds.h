@@ -16,6 +16,13 @@
 /// little as the right one, and a large excess seldom comes from small imperfections alone. The constants make the true
 /// causes of made experiments likeliest (blind --everyday); docs/evidence/blind-everyday.md says how, and how well they
 /// hold on others.
+///
+/// Scatter of single positions makes no gap. Explanations that differ in it alone are one explanation of the gap, with
+/// the odds of that without any, however strong the evidence of the scatter; they share its probability by theirs.
+///
+/// No data can tell a cause off the list from one of the list that has the same law in them. With prior odds of 0.2 for
+/// what has no name to 0.5 for what has one or two (hypotheses.cpp), and a fifth of it imitated, 0.08 of the
+/// probability of every named cause is that of something without a name.
 #pragma once
 
 #include <vector>
@@ -32,7 +39,7 @@ inline constexpr double kLargestExcess = 1e6;
 /// falling probability. `excess` is of each of the comparison's fits, g² - 1, the nominal one first; NaN where it was
 /// not measured; `unnamed_excess` is that of the likeliest function without a name beside nothing. A function without a
 /// name beside named causes counts towards their names, scatter of single positions alone towards nothing, because it
-/// makes no gap.
+/// makes no gap. Sets what each leaves of the excess (`left`).
 void weigh_by_share_left(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

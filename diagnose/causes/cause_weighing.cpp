@@ -241,10 +241,17 @@ std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) 
 }
 
 /// Nothing, the two likeliest single effects and the likeliest pair: beside these a function without a name is weighed.
+/// Beside scatter of single positions, which makes no gap, it would be the one beside nothing once more.
 std::vector<Hypothesis> beside(const Comparison& comparison) {
   std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
-  for (const Hypothesis& one : leaders_of(comparison, 1, 2)) result.push_back(one);
-  for (const Hypothesis& one : leaders_of(comparison, 2, 1)) result.push_back(one);
+  for (const std::size_t many : {2, 1}) {
+    std::size_t left = many;
+    for (const Hypothesis& one : leaders_of(comparison, 3 - many, comparison.all.size())) {
+      if (left == 0 || std::any_of(one.effects.begin(), one.effects.end(), is_scatter)) continue;
+      result.push_back(one);
+      --left;
+    }
+  }
   return result;
 }
 

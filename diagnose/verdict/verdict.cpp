@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood within which effects are alike: twenty times is no difference
 constexpr double kSameEvidence = 4.6;  // log evidence within which they are: what follows anything is no equal
+constexpr double kSameLeft = 0.24;     // part of the gap, the same: by cause_odds.h it makes odds of twenty
 constexpr double kNoChance = 5e-4;     // probability below which explanations are ranked by their evidence
 
 Explanation explanation_of(const Hypothesis& hypothesis) {
@@ -39,13 +40,20 @@ bool same_but(const std::vector<std::size_t>& a, const std::vector<std::size_t>&
   return expected == other;
 }
 
+/// Beside a remainder much looks alike that would not take the same part of the gap.
+bool leaves_as_little(const Hypothesis& other, const Hypothesis& best) {
+  return other.left.value_or(0.0) < best.left.value_or(0.0) + kSameLeft;
+}
+
 std::vector<std::string> equivalents(const Comparison& comparison, const Hypothesis& best, std::size_t effect) {
   std::vector<std::string> ids;
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
     if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
     for (const Hypothesis& other : comparison.all) {
       if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
-      const bool as_likely = other.log_evidence > best.log_evidence - kSameEvidence;
+      // Scatter of single positions is no other name for what moves them all.
+      const bool as_likely = other.log_evidence > best.log_evidence - kSameEvidence && leaves_as_little(other, best) &&
+                             is_scatter(e) == is_scatter(effect);
       if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain)
         ids.emplace_back(effect_list()[e].id);
       break;
@@ -105,37 +113,6 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
     if (info.search == Search::noise) count += info.id == ids::heavy_tailed_noise ? 2 : 1;
   }
   return count;
-}
-
-void add_ranking(const TrackSet& set, const Comparison& comparison, const NoiseAlone* noise_alone,
-                 Diagnosis& diagnosis) {
-  std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
-    RankedExplanation ranked{explanation_of(hypothesis),
-                             hypothesis.probability,
-                             hypothesis.log_evidence,
-                             hypothesis.gain,
-                             parameters_added(set, comparison, hypothesis),
-                             {}};
-    if (hypothesis.fit >= 0 && set.clips.size() > 1) {
-      const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
-      if (is_new) {
-        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
-        gap->second = noise_alone != nullptr
-                          ? held_out_gap(noise_alone->set, linearise_again(noise_alone->set, fit)).value
-                          : held_out_gap(set, fit).value;
-      }
-      ranked.gap_after = gap->second;
-    }
-    ranked.converged = hypothesis.converged;
-    diagnosis.ranking.push_back(std::move(ranked));
-  }
-  // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
-  const auto rest = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
-                                 [](const auto& ranked) { return ranked.probability < kNoChance; });
-  std::stable_sort(rest, diagnosis.ranking.end(),
-                   [](const auto& a, const auto& b) { return a.log_evidence_gain > b.log_evidence_gain; });
 }
 
 std::optional<Stage> stage_of(const std::vector<UnnamedFamily>& families) {
@@ -213,6 +190,39 @@ std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone*
 
 }  // namespace
 
+std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison& comparison,
+                                          const NoiseAlone* noise_alone) {
+  std::vector<RankedExplanation> ranking;
+  std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
+    RankedExplanation ranked{explanation_of(hypothesis),
+                             hypothesis.probability,
+                             hypothesis.log_evidence,
+                             hypothesis.gain,
+                             parameters_added(set, comparison, hypothesis),
+                             {}};
+    if (hypothesis.fit >= 0 && set.clips.size() > 1) {
+      const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
+      if (is_new) {
+        const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
+        gap->second = noise_alone != nullptr
+                          ? held_out_gap(noise_alone->set, linearise_again(noise_alone->set, fit)).value
+                          : held_out_gap(set, fit).value;
+      }
+      ranked.gap_after = gap->second;
+    }
+    ranked.converged = hypothesis.converged;
+    ranking.push_back(std::move(ranked));
+  }
+  // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
+  const auto rest =
+      std::find_if(ranking.begin(), ranking.end(), [](const auto& ranked) { return ranked.probability < kNoChance; });
+  std::stable_sort(rest, ranking.end(),
+                   [](const auto& a, const auto& b) { return a.log_evidence_gain > b.log_evidence_gain; });
+  return ranking;
+}
+
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures,
                      const NoiseAlone* noise_alone) {
   Diagnosis diagnosis;
@@ -247,7 +257,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     diagnosis.stage = diagnosis.effects.front().stage;
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
-  add_ranking(set, comparison, noise_alone, diagnosis);
+  diagnosis.ranking = ranking_of(set, comparison, noise_alone);
   // Beside sizes of each clip's own little of anything is left, and not where it lies.
   const std::vector<std::size_t>& leading = comparison.all.front().effects;
   const bool beside_named =

@@ -2,6 +2,8 @@
 /// large it is.
 #pragma once
 
+#include <vector>
+
 #include "diagnose/pictures/picture_evidence.h"
 #include "diagnose/result/diagnosis.h"
 #include "diagnose/weigh/hypothesis.h"
@@ -18,5 +20,9 @@ struct NoiseAlone {
 
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {},
                      const NoiseAlone* noise_alone = nullptr);
+
+/// Explanations that name something, by falling probability; those without a chance by falling evidence.
+std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison& comparison,
+                                          const NoiseAlone* noise_alone);
 
 }  // namespace glidelab::diagnose

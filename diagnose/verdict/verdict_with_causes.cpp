@@ -27,6 +27,8 @@ constexpr double kDoubt = 0.05;  // of names by the noise alone
 constexpr double kHalf = 0.5;    // of the excess: what a verdict's causes take at least
 constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 
+constexpr double kJustUnknown = 0.5 + 1e-9;  // the least probability of an unknown cause with such a verdict
+
 constexpr double kLeastNamed = 0.1;   // of the excess: beside a remainder less is part of it
 constexpr double kMost = 0.75;        // of the excess: what a law takes that has its name by its share alone
 constexpr double kTrusted = 0.8;      // the probability of a name by its share alone
@@ -72,13 +74,25 @@ void set_unknown(double unknown, Comparison& comparison) {
   comparison.unknown = unknown;
 }
 
-/// Probabilities of a comparison as a verdict on a gap above its floor. What the remainder makes is unknown, and so is
-/// all of it where the named causes take less than half.
+/// Explanations that leave more than half of the gap have no name to give: what acts is unknown if they are all there
+/// is.
+void set_unknown_of_half(Comparison& comparison) {
+  for (Hypothesis& one : comparison.all) {
+    if (one.unnamed || !shows_in_gap(one) || one.left.value_or(0.0) <= 1.0 - kHalf) continue;
+    for (const std::size_t e : one.effects) comparison.effect_probability[e] -= one.probability;
+    comparison.unknown += std::exchange(one.probability, 0.0);
+  }
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
+/// Probabilities of a comparison as a verdict on a gap above its floor. What the remainder makes is unknown; so is the
+/// cause where those that would be named take less than half after all.
 void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& comparison) {
   const bool half = sequence.named_share >= kHalf || !shows_in_gap(best);
   const bool most = sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id));
   comparison.unknown += std::exchange(comparison.none, 0.0);
-  if (!half) set_unknown(1.0, comparison);
+  if (!half) set_unknown(std::max(comparison.unknown + best.probability, kJustUnknown), comparison);
   // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
   if (!most || sequence.gap_before * sequence.gap_before - 1.0 < kLargestExcess || comparison.unknown < 1.0 - kTrusted)
     return;
@@ -133,6 +147,25 @@ void order_by_share(Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
+/// Where not all of several causes take their part, the one that is likeliest is to keep its name, and not the one that
+/// takes most in the place of both: its explanation by itself. Null where the sequence names it, or no fit has it
+/// alone.
+const Hypothesis* without_the_lesser(const Comparison& comparison, const Hypothesis& best,
+                                     const CauseSequence& sequence) {
+  if (!sequence.is_gap || best.effects.size() < 2) return nullptr;
+  const std::size_t likeliest =
+      *std::max_element(best.effects.begin(), best.effects.end(), [&](std::size_t a, std::size_t b) {
+        return comparison.effect_probability[a] < comparison.effect_probability[b];
+      });
+  const std::vector<std::size_t>& named = sequence.named.effects;
+  if (!shows_in_motion(effect_list()[likeliest].search) ||
+      std::find(named.begin(), named.end(), likeliest) != named.end()) {
+    return nullptr;
+  }
+  const Hypothesis* alone = find(comparison, {likeliest});
+  return alone != nullptr && alone->fit > 0 ? alone : nullptr;
+}
+
 constexpr double kLikely = 0.02;  // probability from which on an explanation widens what is recovered
 constexpr std::size_t kMostLikely = 6;
 
@@ -178,23 +211,37 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
                            [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
   }
   progress("measuring the gap", 0.9);
-  const Comparison& by = weighed ? weighed->comparison : first;
+  const std::vector<Hypothesis> weighed_all = weighed ? weighed->comparison.all : std::vector<Hypothesis>();
+  const double unknown = weighed ? weighed->comparison.none + weighed->comparison.unknown : first.none + first.unknown;
   const TrackSet& with = weighed ? weighed->set : set;
-  const Hypothesis* found = best_named(with, by);
-  const bool names =
-      found != nullptr && found->fit > 0 && (weighed || verdict_by(by.none, by.unknown) == Verdict::effect);
-  const Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
-  const MotionFit& fit = names ? by.fits[static_cast<std::size_t>(best.fit)] : nominal;
-  const CauseSequence sequence = sequence_of(set, nominal, with, fit, without, weighed ? kLeastNamed : kLeastShare);
+  std::optional<Hypothesis> helps;  // what explains most, enough for its name or not
+  if (weighed) {
+    if (const Hypothesis* best = best_named(with, weighed->comparison)) helps = *best;
+    set_unknown_of_half(weighed->comparison);
+  }
+  const Comparison& by = weighed ? weighed->comparison : first;
+  // Beside a remainder nothing counts as unknown: there is a gap.
+  const bool claims =
+      verdict_by(weighed ? 0.0 : by.none, weighed ? by.none + by.unknown : by.unknown) == Verdict::effect;
+  const Hypothesis* found = claims || !helps ? best_named(with, by) : &*helps;
+  const bool names = found != nullptr && found->fit > 0 && (weighed || claims);
+  Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
+  const auto fit_of = [&](const Hypothesis& one) -> const MotionFit& {
+    return names ? by.fits[static_cast<std::size_t>(one.fit)] : nominal;
+  };
+  const double least_named = weighed ? kLeastNamed : kLeastShare;
+  CauseSequence sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
+  if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, best, sequence) : nullptr) {
+    best = *alone;
+    sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
+  }
+  const MotionFit& fit = fit_of(best);
   const bool in_images = found != nullptr && shows_in_images(*found);
   // Of a verdict by the noise alone: scatter has no fit of its own.
-  const bool scatter =
-      found != nullptr && is_scatter_alone(*found) && verdict_by(by.none, by.unknown) == Verdict::effect;
+  const bool scatter = found != nullptr && is_scatter_alone(*found) && claims;
   const std::vector<std::size_t> named = names || scatter ? found->effects : std::vector<std::size_t>();
   Diagnosis diagnosis;
   std::vector<std::string> traces;
-  const std::vector<Hypothesis> weighed_all = weighed ? by.all : std::vector<Hypothesis>();  // before the share counts
-  const double unknown = by.none + by.unknown;
   // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
   const bool settled = weighed && sequence.is_gap && names;
   if (settled) settle(sequence, best, weighed->comparison);
@@ -216,7 +263,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     if (weighed && sequence.is_gap && !in_images) {
       // Nothing that moves the glider explains the gap.
       first.unknown += std::exchange(first.none, 0.0);
-      set_unknown(names ? std::max(first.unknown, by.none + by.unknown) : 1.0, first);
+      set_unknown(std::max(by.none + by.unknown, kJustUnknown), first);
     }
     // Without a gap a name must do more than small imperfections would. Scatter of single positions shifts no
     // parameter either: unless it is all but certain, it is a trace.
@@ -228,6 +275,10 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
       }
     }
     diagnosis = verdict_of(set, first, std::move(pictures));
+    if (weighed && sequence.is_gap && !in_images) {
+      const NoiseAlone noise_alone{set, nominal, nominal};
+      diagnosis.ranking = ranking_of(with, by, &noise_alone);
+    }
   }
   if (noise_is_rounding(set)) traces.emplace_back(ids::position_rounding);
   diagnosis.traces = std::move(traces);

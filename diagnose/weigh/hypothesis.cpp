@@ -97,28 +97,44 @@ void set_probabilities(Comparison& comparison) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
+bool is_scatter(std::size_t effect) {
+  return effect_list()[effect].search == Search::noise;
+}
+
 bool is_scatter_alone(const Hypothesis& hypothesis) {
   return !hypothesis.unnamed && !hypothesis.effects.empty() &&
-         std::all_of(hypothesis.effects.begin(), hypothesis.effects.end(),
-                     [](std::size_t e) { return effect_list()[e].search == Search::noise; });
+         std::all_of(hypothesis.effects.begin(), hypothesis.effects.end(), is_scatter);
 }
 
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
-  std::map<std::multiset<std::size_t>, double> sums;
+  using Causes = std::multiset<std::size_t>;
+  std::map<Causes, double> sums;
+  std::map<std::size_t, double> of_cause;
   const auto causes = [&](const Hypothesis& hypothesis) {
-    std::multiset<std::size_t> same;
+    Causes same;
     for (const std::size_t e : hypothesis.effects) same.insert(first_alike(e, set.pictures));
     return same;
   };
   const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };
   for (const Hypothesis& hypothesis : comparison.all) {
-    if (names(hypothesis)) sums[causes(hypothesis)] += hypothesis.probability;
+    if (!names(hypothesis)) continue;
+    const Causes of = causes(hypothesis);
+    sums[of] += hypothesis.probability;
+    for (const std::size_t cause : std::set<std::size_t>(of.begin(), of.end())) {
+      if (!is_scatter(cause) || is_scatter_alone(hypothesis)) of_cause[cause] += hypothesis.probability;
+    }
   }
-  const Hypothesis* best = nullptr;  // of the likeliest cause the likeliest name: they come by falling probability
+  if (of_cause.empty()) return nullptr;
+  const std::size_t leading = std::max_element(of_cause.begin(), of_cause.end(), [](const auto& a, const auto& b) {
+                                return a.second < b.second;
+                              })->first;
+  const Hypothesis* best = nullptr;  // of the likeliest causes the likeliest name: they come by falling probability
   double most = -1.0;
   for (const Hypothesis& hypothesis : comparison.all) {
-    if (!names(hypothesis) || sums[causes(hypothesis)] <= most) continue;
-    most = sums[causes(hypothesis)];
+    if (!names(hypothesis)) continue;
+    const Causes of = causes(hypothesis);
+    if (!of.contains(leading) || sums[of] <= most) continue;
+    most = sums[of];
     best = &hypothesis;
   }
   return best;

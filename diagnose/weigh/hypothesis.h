@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Hypothesis {
   int fit = -1;                       ///< index in Comparison::fits
   bool converged = true;              ///< false: its fit did not reach a minimum; its gain is then a lower bound
   double unnamed_log_evidence = 0.0;  ///< the part of it that something unnamed has, beside effects or alone
+  std::optional<double> left = {};    ///< the part of the gap's excess that it leaves, where a remainder was weighed
 };
 
 struct Comparison {
@@ -82,11 +84,18 @@ inline constexpr double kAnyPower = 0.4;
 /// One explanation among those fitted; null: none.
 const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects);
 
-/// Whether an explanation is nothing but scatter of single positions or times (Search::noise), which makes no gap.
+/// Whether an effect is scatter of single positions or times (Search::noise), which makes no gap.
+bool is_scatter(std::size_t effect);
+
+/// Whether an explanation is nothing but such scatter.
 bool is_scatter_alone(const Hypothesis& hypothesis);
 
-/// The likeliest hypothesis that names something, or null; causes that no experiment with tracks can tell apart count
-/// together (first_alike()), so that two names for one cause are not beaten by a less likely cause with a single name.
+/// The hypothesis that a verdict would name, or null: of those with the likeliest cause the likeliest. A cause may be
+/// the likeliest by far and have its probability shared out among many second ones; a pair that has neither of the
+/// likely causes is then no answer, even where no other pair is as likely (the median probability model of Barbieri and
+/// Berger, Annals of Statistics 32, 870, 2004). Causes that no experiment of tracks tells apart count together
+/// (first_alike()), so that two names for one cause are not beaten by a less likely one with a single name. Scatter of
+/// single positions is a cause only by itself.
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);
 
 }  // namespace glidelab::diagnose

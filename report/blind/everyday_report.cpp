@@ -57,6 +57,12 @@ std::string words_of_class(const std::string& kind) {
   return "all";
 }
 
+std::string calibration_text(const validate::EverydayCalibration& of) {
+  return fmt::format("{} (by chance {}; stated {}, right {}, of {})", base::number_text(of.error, 2),
+                     base::number_text(of.by_chance, 2), base::number_text(of.stated, 2),
+                     base::number_text(of.right, 2), of.of);
+}
+
 /// Every share of a table by class and strength, one a row.
 void add_rows(const std::string& what, const SharesByCase& shares, const std::string& method, TextRows& rows) {
   for (const auto& [kind, by_strength] : shares) {
@@ -103,9 +109,10 @@ TextRows number_rows(const EverydayScore& score) {
     }
   }
   for (const auto& [kind, of] : score.calibration) {
-    rows.push_back({"expected calibration error", words_of_class(kind),
-                    fmt::format("{} (stated {}, right {}, of {})", base::number_text(of.error, 2),
-                                base::number_text(of.stated, 2), base::number_text(of.right, 2), of.of)});
+    rows.push_back({"expected calibration error", words_of_class(kind), calibration_text(of)});
+  }
+  for (const auto& [verdict, of] : score.by_verdict) {
+    rows.push_back({"expected calibration error", "where the verdict is " + verdict, calibration_text(of)});
   }
   for (const auto& [kind, many] : score.cases) {
     const auto failed = score.failed.find(kind);
@@ -141,6 +148,10 @@ Json error_json(const validate::ErrorSum& error) {
   return object;
 }
 
+Json calibration_json(const validate::EverydayCalibration& of) {
+  return {{"of", of.of}, {"stated", of.stated}, {"right", of.right}, {"error", of.error}, {"by_chance", of.by_chance}};
+}
+
 Json score_json(const EverydayScore& score) {
   Json everyday = Json::object();
   everyday["methods"] = Json::array();
@@ -163,9 +174,9 @@ Json score_json(const EverydayScore& score) {
     for (const auto& [key, share] : by_quantity) everyday["covered"][kind][key] = interval_json(share);
   }
   everyday["calibration"] = Json::object();
-  for (const auto& [kind, of] : score.calibration) {
-    everyday["calibration"][kind] = {{"of", of.of}, {"stated", of.stated}, {"right", of.right}, {"error", of.error}};
-  }
+  for (const auto& [kind, of] : score.calibration) everyday["calibration"][kind] = calibration_json(of);
+  everyday["calibration_by_verdict"] = Json::object();
+  for (const auto& [verdict, of] : score.by_verdict) everyday["calibration_by_verdict"][verdict] = calibration_json(of);
   everyday["cases"] = score.cases;
   everyday["failed"] = score.failed;
   if (score.timed > 0) everyday["seconds"] = {{"of", score.timed}, {"mean", score.mean_s}, {"most", score.most_s}};

@@ -121,19 +121,36 @@ std::pair<double, bool> stated_and_right(const BlindOutcome& outcome) {
   return {unknown ? verdict.unknown : verdict.none, unknown && kind == EverydayClass::outside};
 }
 
+/// The mean of |sum of p - how many are right| where each is right with its p: over the distribution of that number.
+double error_by_chance(const std::vector<double>& stated) {
+  std::vector<double> right{1.0};  // the probability of 0, 1, ... right ones
+  double sum = 0.0;
+  for (const double p : stated) {
+    right.push_back(0.0);
+    for (std::size_t k = right.size(); k-- > 0;) right[k] = right[k] * (1.0 - p) + (k > 0 ? right[k - 1] * p : 0.0);
+    sum += p;
+  }
+  double error = 0.0;
+  for (std::size_t k = 0; k < right.size(); ++k) error += right[k] * std::abs(sum - static_cast<double>(k));
+  return error;
+}
+
 EverydayCalibration calibration_of(const std::vector<std::pair<double, bool>>& stated) {
   EverydayCalibration of;
   of.of = stated.size();
   std::array<double, kCalibrationBins> gap{};
+  std::array<std::vector<double>, kCalibrationBins> of_bin;
   for (const auto& [p, right] : stated) {
     const auto bin = std::min(kCalibrationBins - 1, static_cast<std::size_t>(p * kCalibrationBins));
     gap[bin] += p - (right ? 1.0 : 0.0);
+    of_bin[bin].push_back(p);
     of.stated += p;
     of.right += right ? 1.0 : 0.0;
   }
   if (stated.empty()) return of;
   const auto many = static_cast<double>(stated.size());
   for (const double one : gap) of.error += std::abs(one) / many;
+  for (const std::vector<double>& one : of_bin) of.by_chance += error_by_chance(one) / many;
   of.stated /= many;
   of.right /= many;
   return of;
@@ -233,7 +250,7 @@ EverydayScore score_everyday(const std::vector<BlindOutcome>& outcomes) {
   score.methods.resize(2);
   score.methods[0].name = "glidelab diagnose";
   score.methods[1].name = "forward selection by held-out residuals";
-  std::map<std::string, std::vector<std::pair<double, bool>>> stated;
+  std::map<std::string, std::vector<std::pair<double, bool>>> stated, by_verdict;
   double seconds = 0.0;
   for (const BlindOutcome& outcome : outcomes) {
     if (!outcome.everyday) throw std::logic_error("a case that is no everyday one");
@@ -263,9 +280,11 @@ EverydayScore score_everyday(const std::vector<BlindOutcome>& outcomes) {
     }
     stated[of].push_back(stated_and_right(outcome));
     stated["all"].push_back(stated[of].back());
+    by_verdict[outcome.verdict.verdict].push_back(stated[of].back());
     add_coverage(outcome, score);
   }
   for (const auto& [kind, list] : stated) score.calibration[kind] = calibration_of(list);
+  for (const auto& [word, list] : by_verdict) score.by_verdict[word] = calibration_of(list);
   if (score.timed > 0) score.mean_s = seconds / static_cast<double>(score.timed);
   return score;
 }

@@ -9,6 +9,11 @@
 /// Of a diagnosis that claims, the probability of its first name counts, together with what it cannot be told from; of
 /// dirt alone `none` and `unknown` are both right, and their sum counts; a cause off the list is rightly `unknown`.
 ///
+/// A probability is that of a verdict, before anybody knows the truth. So honest probabilities are right as often as
+/// they say over all cases, and over those of one verdict (`by_verdict`), and in no class of truths: a name that is
+/// wrong because the cause is off the list counts with its whole probability in that class, and the right ones of the
+/// others are then too many. Of few cases even honest probabilities have an error, `by_chance`.
+///
 /// Beside it stands plain forward selection by held-out residuals, from the same `ranking`: the effect with the least
 /// gap of held-out clips, then the one that lowers it most beside the first, if by more than two standard errors; it
 /// claims where the excess g² - 1 falls to a half or less. It states no probability: every name of it counts as sure.
@@ -71,6 +76,7 @@ struct EverydayCalibration {
   std::size_t of = 0;
   double stated = 0.0, right = 0.0;  ///< means
   double error = 0.0;                ///< expected, over ten bins of the probability
+  double by_chance = 0.0;            ///< its mean, if each verdict were right with the probability that it states
 };
 
 struct EverydayScore {
@@ -80,6 +86,7 @@ struct EverydayScore {
   BlindShare fair_claim;  ///< of the false claims of dirt: a fair name of what makes half of the dirt's excess or more
   std::map<std::string, std::map<std::string, BlindShare>> covered;  ///< by class and quantity, of those that are told
   std::map<std::string, EverydayCalibration> calibration;            ///< by class, and "all"
+  std::map<std::string, EverydayCalibration> by_verdict;             ///< the same by the verdict's word
   ErrorSum remainder_error;                                          ///< one, two, where the diagnosis has one
   std::map<std::string, std::size_t> cases, failed;                  ///< by class
   std::size_t timed = 0;

@@ -115,3 +115,54 @@ TEST_CASE("a hand that lets go late has the odds against it, since it follows ea
   CHECK(with_second(diagnose::ids::track_bow) == Approx(1.0).epsilon(1e-9));
   CHECK(with_second(diagnose::ids::late_release) < 0.2);
 }
+
+TEST_CASE("scatter of single positions is no other explanation of a gap, however strong its evidence") {
+  const diagnose::Comparison pure = [] {
+    diagnose::Comparison comparison = comparison_of(0.0, 20.0, 15.0);
+    diagnose::weigh_by_share_left({10.0, 0.5, 2.0}, kNotMeasured, comparison);
+    return comparison;
+  }();
+  // Outliers beyond doubt were looked for beside nothing and beside the second effect alone.
+  diagnose::Comparison comparison = comparison_of(0.0, 20.0, 15.0);
+  const std::size_t tails = diagnose::effect_index(diagnose::ids::heavy_tailed_noise);
+  for (const std::size_t of : {0u, 3u}) {
+    diagnose::Hypothesis with = comparison.all[of];
+    with.effects.push_back(tails);
+    with.log_evidence += 140.0;
+    comparison.all.push_back(with);
+  }
+  diagnose::weigh_by_share_left({10.0, 0.5, 2.0}, kNotMeasured, comparison);
+  for (const char* id : {diagnose::ids::quadratic_drag, diagnose::ids::track_bow}) {
+    CHECK(probability_of(comparison, id) == Approx(probability_of(pure, id)).epsilon(1e-9));
+  }
+  CHECK(comparison.none == Approx(pure.none).epsilon(1e-9));
+  CHECK(comparison.unknown == Approx(pure.unknown).epsilon(1e-9));
+  // The second effect has its outliers.
+  CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) > 0.9 * probability_of(pure, "track_bow"));
+  // Next to a gap of an encoder there is no noise, and no evidence of its tails.
+  diagnose::weigh_by_share_left({1e8, 5e6, 2e7}, kNotMeasured, comparison);
+  CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) <
+        0.2 * probability_of(comparison, diagnose::ids::track_bow));
+}
+
+TEST_CASE("a cause of the list may be imitated by one that is not: no name is certain") {
+  diagnose::Comparison comparison = comparison_of(0.0, 1e6, 0.0);
+  diagnose::weigh_by_share_left({100.0, 0.0, 90.0}, kNotMeasured, comparison);
+  // Prior odds of 0.2 to 0.5, a fifth imitated.
+  CHECK(probability_of(comparison, diagnose::ids::quadratic_drag) == Approx(1.0 - 0.2 * 0.2 / 0.5).margin(1e-4));
+  CHECK(comparison.unknown == Approx(0.2 * 0.2 / 0.5).margin(1e-4));
+  // The same where no function without a name was weighed.
+  diagnose::Comparison without = comparison_of(0.0, 1e6, 0.0);
+  without.all.erase(without.all.begin() + 1);
+  diagnose::weigh_by_share_left({100.0, 0.0, 90.0}, kNotMeasured, without);
+  CHECK(without.unknown == Approx(0.2 * 0.2 / 0.5).margin(1e-4));
+}
+
+TEST_CASE("each explanation says which part of the excess it leaves") {
+  diagnose::Comparison comparison = comparison_of(0.0, 20.0, 20.0);
+  diagnose::weigh_by_share_left({10.0, 2.5, 40.0}, kNotMeasured, comparison);
+  for (const diagnose::Hypothesis& one : comparison.all) {
+    REQUIRE(one.left);
+    CHECK(*one.left == Approx(one.fit == 1 ? 0.25 : 1.0));
+  }
+}

@@ -41,3 +41,17 @@ TEST_CASE("two names for one cause count together against one name for another")
   CHECK(first(films, shaken) == "stribeck");
   CHECK(first(tracks, {of({}, 1.0)}).empty());
 }
+
+TEST_CASE("the likeliest cause leads, where its probability is shared out among many second ones") {
+  const diagnose::TrackSet tracks;
+  // The bow is in 0.6 of all, the likeliest pair has it not.
+  CHECK(first(tracks, {of({"stribeck", "perspective_error"}, 0.3), of({"tether", "track_bow"}, 0.22),
+                       of({"end_stop", "track_bow"}, 0.2), of({"stribeck", "track_bow"}, 0.18)}) == "track_bow");
+  CHECK(first(tracks, {of({"stribeck", "perspective_error"}, 0.62), of({"tether", "track_bow"}, 0.22),
+                       of({"end_stop", "track_bow"}, 0.16)}) == "perspective_error");
+  // Scatter beside causes leads nowhere; by itself it is a cause.
+  CHECK(first(tracks, {of({"heavy_tailed_noise", "stribeck"}, 0.4), of({"heavy_tailed_noise", "track_bow"}, 0.35),
+                       of({"heavy_tailed_noise"}, 0.25)}) == "stribeck");
+  CHECK(first(tracks, {of({"heavy_tailed_noise"}, 0.7), of({"heavy_tailed_noise", "stribeck"}, 0.3)}) ==
+        "heavy_tailed_noise");
+}

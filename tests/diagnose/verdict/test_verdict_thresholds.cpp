@@ -60,6 +60,19 @@ TEST_CASE("effects are alike up to twenty times less likelihood and a hundred ti
   CHECK_FALSE(alike(0.0, 1.1 * std::log(20.0)));
 }
 
+TEST_CASE("effects are alike only if they take the same part of the gap, and scatter is like no law") {
+  const auto alike = [](std::string_view id, double left) {
+    diagnose::Hypothesis tether = only(diagnose::ids::tether, 0.9, 50.0, 60.0), other = only(id, 0.1, 50.0, 60.0);
+    tether.left = 0.1;
+    other.left = left;
+    return !verdict_on({tether, other}).effects.front().equivalent_to.empty();
+  };
+  // Odds of twenty for what is left, 12.5 of a whole excess (cause_odds.h): 0.24.
+  CHECK(alike(diagnose::ids::quadratic_drag, 0.1 + 0.9 * std::log(20.0) / 12.5));
+  CHECK_FALSE(alike(diagnose::ids::quadratic_drag, 0.1 + 1.1 * std::log(20.0) / 12.5));
+  CHECK_FALSE(alike(diagnose::ids::heavy_tailed_noise, 0.1));
+}
+
 TEST_CASE("explanations that a page gives no chance stand by their evidence, all others by their probability") {
   // A page says "< 0.001" of what is rounded to 0.000: half of that.
   const auto order = [](double second, double third) {

@@ -134,12 +134,37 @@ TEST_CASE("calibration is that of each class: what is stated against what is rig
   CHECK(score.calibration.at("outside").error == Approx(0.85));
   // Bins of all: 0.9 to 1 holds the four (0.8 too much in sum), 0.7 the dirt (0.3 too little), 0.8 the last (0.85).
   CHECK(score.calibration.at("all").error == Approx((0.8 + 0.3 + 0.85) / 6.0));
+  CHECK(score.by_verdict.at("effect").of == 4);
+  CHECK(score.by_verdict.at("effect").error == Approx(0.2));
+  CHECK(score.by_verdict.at("none").right == 0.0);
+  CHECK(score.by_verdict.at("unknown").right == 1.0);
+  CHECK(score.by_verdict.count("failed") == 0);
   CHECK(score.failed.at("one") == 1);
   CHECK(score.cases.at("one") == 5);
   CHECK(score.timed == 2);
   CHECK(score.mean_s == Approx(2.0));
   CHECK(score.most_s == Approx(3.0));
   CHECK(score.methods.front().main_first.at("one").at("strong").of == 5);
+}
+
+TEST_CASE("the error of a few honest probabilities is what chance makes of it") {
+  const auto by_chance = [](const std::vector<double>& stated) {
+    std::vector<BlindOutcome> outcomes;
+    for (const double p : stated) {
+      outcomes.push_back(made(EverydayClass::one, true, {{"stribeck", 0.9}}));
+      name(outcomes.back(), {{"stribeck", 0.9}}, p);
+    }
+    return validate::score_everyday(outcomes).calibration.at("one").by_chance;
+  };
+  // Of one: right, 1 - p off, with p; wrong, p off, with 1 - p.
+  CHECK(by_chance({0.9}) == Approx(2.0 * 0.9 * 0.1));
+  CHECK(by_chance({0.9, 0.7}) == Approx((2.0 * 0.9 * 0.1 + 2.0 * 0.7 * 0.3) / 2.0));  // in bins of their own
+  // Of two in one bin the sum is 1.7: both right, 0.3 off; one, 0.7; none, 1.7.
+  CHECK(by_chance({0.86, 0.84}) ==
+        Approx((0.86 * 0.84 * 0.3 + (0.86 * 0.16 + 0.14 * 0.84) * 0.7 + 0.14 * 0.16 * 1.7) / 2.0));
+  // Of many a normal deviate: sqrt(2 p (1 - p) / (pi n)), to a part of 1/(10 n p (1 - p)).
+  CHECK(by_chance(std::vector<double>(400, 0.75)) ==
+        Approx(std::sqrt(2.0 * 0.75 * 0.25 / (std::acos(-1.0) * 400.0))).epsilon(0.01));
 }
 
 TEST_CASE("recovered intervals are compared with what is true of that configuration") {
