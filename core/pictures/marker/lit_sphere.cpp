@@ -29,14 +29,10 @@ constexpr double kFlatPrior = 1e3;   // the same where there is none
 constexpr int kMostIterations = 25;
 constexpr int kToneNodes = 4096;
 
-double exact_code(double light) {
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
-}
-
 const std::array<double, kToneNodes + 2> kCodes = [] {
   std::array<double, kToneNodes + 2> codes{};
   for (int i = 0; i < kToneNodes + 2; ++i)
-    codes[static_cast<std::size_t>(i)] = exact_code(std::min(i / double{kToneNodes}, 1.0));
+    codes[static_cast<std::size_t>(i)] = code_of_light(ToneCurve::srgb, i / double{kToneNodes});
   return codes;
 }();
 
@@ -220,17 +216,6 @@ SphereLight light_inside(const std::vector<SpherePixel>& pixels, const SphereGue
 }
 
 }  // namespace
-
-double light_of_code(ToneCurve tone, double code) {
-  const double share = std::clamp(code, 0.0, 1.0);
-  if (tone == ToneCurve::linear) return share;
-  return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
-}
-
-double code_of_light(ToneCurve tone, double light) {
-  const double share = std::clamp(light, 0.0, 1.0);
-  return tone == ToneCurve::linear ? share : exact_code(share);
-}
 
 std::optional<SphereFit> fit_lit_sphere(const std::vector<SpherePixel>& pixels, const SphereGuess& guess) {
   if (pixels.size() < 3 * kSphereParameters) return std::nullopt;

@@ -24,13 +24,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/pictures/image/code_tone.h"
+
 namespace glidelab::core {
-
-enum class ToneCurve { linear, srgb };
-
-/// Light of a code and back, both as shares of the largest; beyond 0 and 1 clipped, as a camera does.
-double light_of_code(ToneCurve tone, double code);
-double code_of_light(ToneCurve tone, double light);
 
 /// One pixel of a window.
 struct SpherePixel {

@@ -145,7 +145,8 @@ Eigen::Matrix<double, N, 1> steps_of(const MarkerGuess& guess, double amplitude)
 }
 
 template <int N>
-LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const Contrast& contrast) {
+LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const Contrast& contrast,
+                         const Eigen::Matrix<double, N, 1>& start) {
   const double amplitude = contrast.amplitude;
   const Prior prior{guess.radius_px, guess.blur_px, amplitude};
   const auto model = [&](const Eigen::Matrix<double, N, 1>& p) { return evaluate<N>(pixels, prior, p); };
@@ -155,8 +156,7 @@ LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const
     return here.cost > here.weight * kHopelessResidual * kHopelessResidual * bright * bright;
   };
   const Eigen::Matrix<double, N, 1> step = steps_of<N>(guess, amplitude);
-  LeastSquaresFit<N> found =
-      fit_least_squares<N>(model, start_of<N>(guess, contrast), step, kMaxIterations, is_hopeless);
+  LeastSquaresFit<N> found = fit_least_squares<N>(model, start, step, kMaxIterations, is_hopeless);
   const bool unsettled = found.stop == base::FitStop::iterations || found.stop == base::FitStop::no_descent;
   if (unsettled && found.parameters[kLogBlur] < std::log(kSharpEdge_px) && found.rms < kLargestResidual * amplitude) {
     found = fit_least_squares<N>(model, found.parameters, step, kMoreIterations);
@@ -233,13 +233,19 @@ bool is_plausible(const MarkerFit& marker, const MarkerGuess& guess) {
 }
 
 template <int N>
-std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& guess) {
+std::optional<LeastSquaresFit<N>> settled_fit(const MarkerPixels& window, MarkerModel<N>& pixels,
+                                              const MarkerGuess& guess) {
   if (window.size() < 2 * static_cast<std::size_t>(N)) return std::nullopt;
   const std::optional<Contrast> contrast = contrast_of(window, guess);
   if (!contrast) return std::nullopt;
-  MarkerModel<N> pixels(window);
-  const LeastSquaresFit<N> found = solve<N>(pixels, guess, *contrast);
+  const LeastSquaresFit<N> found = solve<N>(pixels, guess, *contrast, start_of<N>(guess, *contrast));
   if (!base::is_settled(found.stop)) return std::nullopt;
+  return found;
+}
+
+template <int N>
+std::optional<MarkerFit> plausible_marker(const MarkerPixels& window, const MarkerGuess& guess, MarkerModel<N>& pixels,
+                                          const LeastSquaresFit<N>& found) {
   double total_weight = 0.0;
   for (const double w : window.weight()) total_weight += w;
   if (!(total_weight > N) || !(found.rms > 0.0)) return std::nullopt;
@@ -248,12 +254,111 @@ std::optional<MarkerFit> fit(const MarkerPixels& window, const MarkerGuess& gues
   return marker;
 }
 
+std::optional<MarkerPixels> cut_around(const Signal& signal, const MarkerGuess& guess) {
+  return cut_window(signal, guess.centre, 1.25 * guess.radius_px + 2.5);
+}
+
+template <int N>
+std::optional<MarkerFit> fit(const Signal& signal, const MarkerGuess& guess) {
+  const std::optional<MarkerPixels> window = cut_around(signal, guess);
+  if (!window) return std::nullopt;
+  MarkerModel<N> pixels(*window);
+  const std::optional<LeastSquaresFit<N>> found = settled_fit<N>(*window, pixels, guess);
+  if (!found) return std::nullopt;
+  return plausible_marker<N>(*window, guess, pixels, *found);
+}
+
+/// A window that is fitted to the light by a tone, again and again without what a response adds.
+template <int N>
+class Refit {
+ public:
+  Refit(const MarkerWindow& of, ToneCurve tone)
+      : of_(of), window_(*cut_around(Signal{light_of(of.signal.values, tone)}, of.guess)), pixels_(window_) {
+    seen_.light = Eigen::Map<const Eigen::VectorXd>(window_.value().data(), size());
+    seen_.weight = Eigen::Map<const Eigen::VectorXd>(window_.weight().data(), size());
+    for (std::size_t i = 0; i < window_.size(); ++i) {
+      seen_.pixels.push_back(of.corner + cv::Point(static_cast<int>(window_.u()[i]), static_cast<int>(window_.v()[i])));
+    }
+  }
+
+  /// Whether the fit settles; `response` null: as the light is.
+  bool settles(const EdgeResponse* response) {
+    constexpr int kRefits = 2;  // what is taken off changes by a tenth of what it changes the fit
+    found_ = settled_fit<N>(window_, pixels_, of_.guess);
+    const std::optional<Contrast> contrast = contrast_of(window_, of_.guess);
+    for (int refit = 0; found_ && response != nullptr && refit < kRefits; ++refit) {
+      look();
+      const Eigen::VectorXd added = added_by(*response, seen_);
+      for (Eigen::Index i = 0; i < size(); ++i)
+        window_.set_value(static_cast<std::size_t>(i), seen_.light[i] - added[i]);
+      pixels_.forget();
+      found_ = solve<N>(pixels_, of_.guess, *contrast, found_->parameters);
+      if (!base::is_settled(found_->stop)) found_.reset();
+    }
+    return found_.has_value();
+  }
+  FittedWindow fitted() {
+    look();
+    seen_.jacobian = pixels_.jacobian(found_->parameters);
+    return seen_;
+  }
+  std::optional<MarkerFit> marker() { return plausible_marker<N>(window_, of_.guess, pixels_, *found_); }
+
+ private:
+  Eigen::Index size() const { return static_cast<Eigen::Index>(window_.size()); }
+  void look() {
+    const Eigen::VectorXd p = found_->parameters;
+    seen_.model = pixels_.image(p);
+    seen_.contrast = p[kBright] - p[kLevel];
+    const double blur = std::exp(p[kLogBlur]);
+    constexpr double kSharpest_px = 0.05;  // nothing changes below, at a pixel's width
+    seen_.at = [p, blur, corner = of_.corner](cv::Point pixel, double narrower_px2) {
+      const double sharp = std::sqrt(std::max(blur * blur - narrower_px2, kSharpest_px * kSharpest_px));
+      return marker_at(p, sharp, cv::Point2d(pixel - corner));
+    };
+  }
+
+  const MarkerWindow& of_;
+  MarkerPixels window_;
+  MarkerModel<N> pixels_;
+  std::optional<LeastSquaresFit<N>> found_;
+  FittedWindow seen_;
+};
+
+template <int N>
+std::optional<EdgeResponse> response_of(const std::vector<MarkerWindow>& windows, bool may_be_curved) {
+  return edge_response_of(windows.size(), may_be_curved,
+                          [&](std::size_t i, ToneCurve tone, const EdgeResponse* known) -> std::optional<FittedWindow> {
+                            if (!cut_around(windows[i].signal, windows[i].guess)) return std::nullopt;
+                            Refit<N> refit(windows[i], tone);
+                            if (!refit.settles(known)) return std::nullopt;
+                            return refit.fitted();
+                          });
+}
+
+template <int N>
+std::optional<MarkerFit> fit_again(const MarkerWindow& window, const EdgeResponse& response) {
+  if (!cut_around(window.signal, window.guess)) return std::nullopt;
+  Refit<N> refit(window, response.tone);
+  if (!refit.settles(&response)) return std::nullopt;
+  return refit.marker();
+}
+
 }  // namespace
 
 std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& guess, Surface surface) {
-  const auto window = cut_window(signal, guess.centre, 1.25 * guess.radius_px + 2.5);
-  if (!window) return std::nullopt;
-  return surface == Surface::uniform ? fit<kUniformParameters>(*window, guess) : fit<kShadedParameters>(*window, guess);
+  return surface == Surface::uniform ? fit<kUniformParameters>(signal, guess) : fit<kShadedParameters>(signal, guess);
+}
+
+std::optional<EdgeResponse> marker_response(const std::vector<MarkerWindow>& windows, Surface surface,
+                                            bool may_be_curved) {
+  return surface == Surface::uniform ? response_of<kUniformParameters>(windows, may_be_curved)
+                                     : response_of<kShadedParameters>(windows, may_be_curved);
+}
+
+std::optional<MarkerFit> fit_marker(const MarkerWindow& window, Surface surface, const EdgeResponse& response) {
+  return surface == Surface::uniform ? fit_again<kUniformParameters>(window, response)
+                                     : fit_again<kShadedParameters>(window, response);
 }
 
 namespace {

@@ -16,8 +16,10 @@
 #include <opencv2/core.hpp>
 
 #include <optional>
+#include <vector>
 
 #include "core/pictures/frames/frame_source.h"
+#include "core/pictures/image/edge_response.h"
 
 namespace glidelab::core {
 
@@ -78,6 +80,20 @@ inline bool has_expected_size(const MarkerFit& marker, const MarkerGuess& guess)
 /// converge, moves by more than a radius, or ends with a shape that is not the marker's (size off by more than a factor
 /// of 2, darker than its surroundings, residuals above a third of the amplitude).
 std::optional<MarkerFit> fit_marker(const Signal& signal, const MarkerGuess& guess, Surface surface);
+
+/// A window of an image around the marker, kept to be fitted again.
+struct MarkerWindow {
+  Signal signal;      ///< of the window
+  cv::Point corner;   ///< its first pixel in the image
+  MarkerGuess guess;  ///< in the window
+};
+
+/// What the pixels of these windows of one clip add to the model (core/pictures/image/edge_response.h).
+std::optional<EdgeResponse> marker_response(const std::vector<MarkerWindow>& windows, Surface surface,
+                                            bool may_be_curved);
+
+/// The fit of a window to the light of its codes, without what the response adds; amplitudes in units of that light.
+std::optional<MarkerFit> fit_marker(const MarkerWindow& window, Surface surface, const EdgeResponse& response);
 
 struct DiscImage {
   double u = 0.0, v = 0.0;  ///< centre; only the part below a pixel matters

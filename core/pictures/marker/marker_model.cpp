@@ -294,6 +294,44 @@ Eigen::Matrix<double, N, N> MarkerModel<N>::gradient_variance(const Vector& p, c
   return equations.jtj;
 }
 
+template <int N>
+Eigen::MatrixXd MarkerModel<N>::jacobian(const Vector& p) {
+  if (!(known_ && *known_ == p) && !equations(p)) throw std::logic_error("the slopes of no marker");
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(pixels_.size()), N);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    for (int k = 0; k < N; ++k) rows(i, k) = slopes_[at / kBatch].jacobian[static_cast<std::size_t>(k)][at % kBatch];
+  }
+  return rows;
+}
+
+template <int N>
+Eigen::VectorXd MarkerModel<N>::image(const Vector& p) {
+  if (!(known_ && *known_ == p) && !equations(p)) throw std::logic_error("the image of no marker");
+  Eigen::VectorXd values(static_cast<Eigen::Index>(pixels_.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    values[i] = slopes_[at / kBatch].residual[at % kBatch] + pixels_.value()[at];
+  }
+  return values;
+}
+
+ModelPixel marker_at(const Eigen::VectorXd& p, double blur_px, cv::Point2d pixel) {
+  const double a = p[kMuu], b = p[kMuv], c = p[kMvv];
+  const double du = pixel.x - p[kU], dv = pixel.y - p[kV];
+  const double mu = a * du + b * dv, mv = b * du + c * dv;
+  const double nu = a * mu + b * mv, nv = b * mu + c * mv;
+  const double rho = std::hypot(mu, mv), steep = std::hypot(nu, nv);
+  double covered = 1.0;
+  if (rho > 1e-9) covered = pixel_edge(rho * (1.0 - rho) / steep, nu / steep, nv / steep, blur_px).value;
+  double surface = p[kBright];
+  if (p.size() == kShadedParameters) {
+    surface += (p[kShadeU] * du + p[kShadeV] * dv) * std::sqrt(a * c - b * b) + p[kShadeR] * (1.0 - rho * rho);
+  }
+  const double behind = p[kLevel] + p[kSlopeU] * du + p[kSlopeV] * dv;
+  return {behind + (surface - behind) * covered, covered};
+}
+
 template class MarkerModel<kUniformParameters>;
 template class MarkerModel<kShadedParameters>;
 

@@ -13,6 +13,7 @@
 
 #include "base/math/simd.h"
 #include "core/math/least_squares.h"
+#include "core/pictures/image/edge_response.h"
 
 namespace glidelab::core {
 
@@ -53,6 +54,7 @@ class MarkerPixels {
   const std::vector<double>& v() const { return v_; }
   const std::vector<double>& value() const { return value_; }
   const std::vector<double>& weight() const { return weight_; }
+  void set_value(std::size_t pixel, double value) { value_[pixel] = value; }
 
  private:
   std::size_t size_ = 0;
@@ -85,12 +87,24 @@ class MarkerModel {
   /// equations() was asked for it last, else taken anew; r is that at p + step, to first order. p must be a marker's.
   Eigen::Matrix<double, N, N> gradient_variance(const Vector& p, const Vector& step);
 
+  /// The model's derivatives at p by its parameters, a row for each pixel, and what it gives each pixel. p must be a
+  /// marker's.
+  Eigen::MatrixXd jacobian(const Vector& p);
+  Eigen::VectorXd image(const Vector& p);
+
+  /// The pixels' values have changed.
+  void forget() { known_.reset(); }
+
  private:
   const MarkerPixels& pixels_;
   Vectors vectors_;
   std::unique_ptr<MarkerSlopes<N>[]> slopes_;  ///< of each batch
   std::optional<Vector> known_;                ///< where they were taken
 };
+
+/// The model at one pixel, but for the remainder of a slope beyond the edge, with an edge of another blur. N
+/// parameters.
+ModelPixel marker_at(const Eigen::VectorXd& p, double blur_px, cv::Point2d pixel);
 
 extern template class MarkerModel<kUniformParameters>;
 extern template class MarkerModel<kShadedParameters>;

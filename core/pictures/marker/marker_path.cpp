@@ -345,6 +345,7 @@ TrackedMarker Choice::marker() const {
   std::vector<std::string> notes;
   const MarkerPath& path = paths_[choose_path(notes)];
   TrackedMarker tracked = undisturbed(path);
+  tracked.method = path.method;
   tracked.notes.insert(tracked.notes.begin(), notes.begin(), notes.end());
   if (path.method == MarkerMethod::centroid) {
     Places places;

@@ -91,6 +91,7 @@ struct TrackedMarker {
   std::vector<MarkerSighting> sightings;  ///< frames rise
   std::vector<MarkerFit> fits;            ///< of each sighting
   std::vector<std::string> notes;
+  MarkerMethod method = MarkerMethod::undecided;  ///< by which it was measured
 };
 
 /// What was followed through a clip.

@@ -22,6 +22,9 @@ constexpr std::size_t kRestFrames = 12;             // after which a path that h
 constexpr std::size_t kMovingFrames = 10;           // in which five radii are a motion
 constexpr std::size_t kFewestSightings = 5;         // fewer in a row are noise
 constexpr double kSmallestRadiusPx = 1.2;
+constexpr std::size_t kMostWindowBytes = 1 << 26;   // of windows around sightings
+constexpr std::size_t kFewestResponseWindows = 16;  // that say how the pixels answer,
+constexpr std::size_t kResponsePixels = 8000;       // and about so many pixels
 
 bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
   return std::any_of(places.begin(), places.end(),
@@ -90,8 +93,76 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
   return std::nullopt;
 }
 
-void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const {
+void MarkerTracker::keep(const Signal& signal, std::size_t frame, const Found& found) {
+  const bool is_centroid = !(found.fit.blur_px > 0.0);
+  if (is_centroid || kind_ == SignalKind::colored || kind_ == SignalKind::any_shape) return;
+  const int reach = static_cast<int>(std::ceil(1.25 * found.guess.radius_px + 2.5)) + 1;
+  const cv::Point middle(cvRound(found.fit.centre.x), cvRound(found.fit.centre.y));
+  const cv::Rect box = cv::Rect(middle.x - reach, middle.y - reach, 2 * reach + 1, 2 * reach + 1) &
+                       cv::Rect(0, 0, signal.values.cols, signal.values.rows);
+  if (kept_bytes_ + box.area() * signal.values.elemSize() > kMostWindowBytes) return;
+  kept_bytes_ += box.area() * signal.values.elemSize();
+  signal.see(box);
+  MarkerGuess guess = found.guess;
+  guess.centre = found.fit.centre - cv::Point2d(box.tl());
+  guess.blur_px = found.fit.blur_px;
+  guess.shape = found.fit.shape;
+  kept_.push_back({frame, found.fit.centre, {Signal{signal.values(box).clone()}, box.tl(), guess}});
+}
+
+/// Null where none was kept.
+const MarkerWindow* MarkerTracker::window_of(const MarkerSighting& sighting) const {
+  const cv::Point2d centre(sighting.u_px, sighting.v_px);
+  const Kept* nearest = nullptr;
+  const auto first = std::lower_bound(kept_.begin(), kept_.end(), sighting.frame,
+                                      [](const Kept& kept, std::size_t frame) { return kept.frame < frame; });
+  for (auto kept = first; kept != kept_.end() && kept->frame == sighting.frame; ++kept) {
+    if (cv::norm(kept->centre - centre) > 0.5 * sighting.radius_px) continue;
+    if (nearest == nullptr || cv::norm(kept->centre - centre) < cv::norm(nearest->centre - centre)) nearest = &*kept;
+  }
+  return nearest != nullptr ? &nearest->window : nullptr;
+}
+
+/// Centres without what a colour mosaic or a curved tone does to them; all else stays what the codes gave.
+void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
+  if (tracked.method != MarkerMethod::uniform && tracked.method != MarkerMethod::shaded) return;
+  const Surface surface = tracked.method == MarkerMethod::uniform ? Surface::uniform : Surface::shaded;
+  std::vector<const MarkerWindow*> windows;
+  std::size_t pixels = 0, kept = 0;
+  for (const MarkerSighting& sighting : tracked.sightings) {
+    windows.push_back(window_of(sighting));
+    if (windows.back() == nullptr) continue;
+    pixels += windows.back()->signal.values.total();
+    ++kept;
+  }
+  if (kept < kFewestResponseWindows) return;
+  const std::size_t wanted = std::max(kFewestResponseWindows, kResponsePixels * kept / pixels);
+  const std::size_t step = std::max<std::size_t>(1, windows.size() / wanted);
+  std::vector<MarkerWindow> sampled;
+  for (std::size_t i = 0; i < windows.size(); i += step) {
+    if (windows[i] != nullptr) sampled.push_back(*windows[i]);
+  }
+  const std::optional<EdgeResponse> response = marker_response(sampled, surface, kind_ == SignalKind::bright);
+  if (!response) return;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    if (windows[i] == nullptr) continue;
+    const std::optional<MarkerFit> found = fit_marker(*windows[i], surface, *response);
+    if (!found) continue;
+    const cv::Point2d centre = found->centre + cv::Point2d(windows[i]->corner);
+    MarkerFit& fit = tracked.fits[i];
+    fit.light_px += fit.centre - centre;
+    fit.centre = centre;
+    fit.sd_px = found->sd_px;
+    MarkerSighting& sighting = tracked.sightings[i];
+    sighting.u_px = centre.x;
+    sighting.v_px = centre.y;
+    sighting.sd_px = found->sd_px;
+  }
+}
+
+void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) {
   path.push({frame, found.fit, radius_at_(found.fit.centre)});
+  keep(signal, frame, found);
   if (path.method != MarkerMethod::undecided) return;
   const int reach = static_cast<int>(std::ceil(2.2 * found.guess.radius_px + 6.0));
   const cv::Rect box =
@@ -146,13 +217,14 @@ void MarkerTracker::follow(const Signal& signal, std::size_t frame) {
 }
 
 /// A path that was just begun, followed back through the frames since the last search.
-void MarkerTracker::follow_back(Path& path) const {
+void MarkerTracker::follow_back(Path& path) {
   Path back = path;
   std::size_t missed = 0;
   for (auto past = past_.rbegin(); past != past_.rend() && missed < 3; ++past) {
     const auto found = find_again(past->signal, past->frame, back, places_at(past->frame));
     if (found) {
       back.push({past->frame, found->fit, radius_at_(found->fit.centre)});
+      keep(past->signal, past->frame, *found);
       missed = 0;
     } else {
       ++missed;
@@ -299,7 +371,11 @@ TrackedMarker MarkerTracker::finish() {
   for (Path& path : paths_) {
     if (path.method == MarkerMethod::undecided) choose_method(path, kind_, radius_at_);
   }
-  return choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_, start_frame_}, marker_, clip_);
+  TrackedMarker tracked =
+      choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_, start_frame_}, marker_, clip_);
+  std::stable_sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.frame < b.frame; });
+  fit_without_response(tracked);
+  return tracked;
 }
 
 }  // namespace glidelab::core

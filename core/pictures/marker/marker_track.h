@@ -52,12 +52,22 @@ class MarkerTracker {
     Signal signal;
   };
 
+  /// A window around a sighting of some path.
+  struct Kept {
+    std::size_t frame;
+    cv::Point2d centre;
+    MarkerWindow window;
+  };
+
+  void keep(const Signal& signal, std::size_t frame, const Found& found);
+  const MarkerWindow* window_of(const MarkerSighting& sighting) const;
+  void fit_without_response(TrackedMarker& tracked) const;
   std::optional<Found> find_again(const Signal& signal, std::size_t frame, const Path& path,
                                   const std::vector<cv::Point2d>& taken) const;
-  void accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) const;
+  void accept(Path& path, const Signal& signal, std::size_t frame, const Found& found);
   void follow(const Signal& signal, std::size_t frame);
   void search_whole(const Signal& signal, std::size_t frame);
-  void follow_back(Path& path) const;
+  void follow_back(Path& path);
   const Path* mover(std::size_t frame) const;
   void put_to_sleep(std::size_t frame);
   void tidy(std::size_t frame);
@@ -72,6 +82,8 @@ class MarkerTracker {
   double radius_px_ = 0.0;  ///< in the middle of the image
   std::vector<Path> paths_;
   std::deque<Past> past_;  ///< since the last search of the whole image
+  std::vector<Kept> kept_;
+  std::size_t kept_bytes_ = 0;
   std::size_t searched_ = 0;
   double searched_s_ = 0.0;
   std::size_t frames_ = 0;

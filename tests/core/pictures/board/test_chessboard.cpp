@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "tests/catch.h"
+#include "tests/core/mosaic.h"
 #include "tests/core/painter.h"
 
 using namespace glidelab;
@@ -205,4 +206,22 @@ TEST_CASE("a board is found in noise of a third of its contrast, and none in noi
   }
   const cv::Mat grey = tests::expose(cv::Mat_<double>(480, 640, 0.5), 40.0, 6);
   CHECK_FALSE(core::find_board(grey, {9, 6}));
+}
+
+TEST_CASE("a colour mosaic and a tone curve do not move a board's corners") {
+  // Rows that lie nearly along those of the pixels, where the errors of neighbours add up. Without the pixels' answer
+  // taken off, corners are off by 0.047 and 0.050 px (rms).
+  for (const int interpolation : {cv::COLOR_BayerRG2BGR, cv::COLOR_BayerRG2BGR_EA}) {
+    const cv::Matx33d pose = board_pose(9, 6, {100.3, 80.2}, 14.9, 0.05);
+    cv::Mat light = paint_board({200, 160}, pose, 9, 6, true, 12, 0.0);
+    const cv::Mat grey = tests::through_mosaic(light, interpolation, true, 1.0, 9);
+    const auto board = core::find_board(grey, {9, 6});
+    REQUIRE(board);
+    double squares = 0.0;
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 9; ++i) squares += std::pow(distance(board->at(i, j), tests::map(pose, i, j)), 2);
+    }
+    INFO("interpolation " << interpolation);
+    CHECK(std::sqrt(squares / (2.0 * 54.0)) < 0.02);
+  }
 }

@@ -1,0 +1,179 @@
+#include "core/pictures/image/edge_response.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::array kNarrower_px2{0.0, 0.15, 0.3};
+constexpr int kLearningRounds = 3;       // the terms settle to a hundredth
+constexpr double kFewestPixels = 300.0;  // beyond the windows' own parameters
+constexpr double kMostLeft = 0.93;       // of the residuals' squares: noise alone leaves 1 - 13 / pixels
+constexpr double kFarLess = 0.7;         // left by the curve's light: the noise of bright pixels weighs other there
+constexpr double kCurved = 0.2;          // t of codes that follow a curve: 0.3 to 0.5 for BT.709
+constexpr double kStraight = 0.5;        // of that, left by the curve's light
+constexpr double kHeld = 1e-4;           // of the best seen term: what no window shows stays out
+
+/// What a window's light is compared with.
+struct Columns {
+  Eigen::VectorXd sharp;                                              // I
+  Eigen::Matrix<double, Eigen::Dynamic, EdgeResponse::kTerms> terms;  // by which each term is multiplied
+};
+
+Columns columns_of(const FittedWindow& window, double narrower_px2) {
+  cv::Point first = window.pixels.front(), last = first;
+  for (const cv::Point& pixel : window.pixels) {
+    first = {std::min(first.x, pixel.x), std::min(first.y, pixel.y)};
+    last = {std::max(last.x, pixel.x), std::max(last.y, pixel.y)};
+  }
+  first -= cv::Point(1, 1);
+  const int width = last.x - first.x + 2, height = last.y - first.y + 2;
+  std::vector<ModelPixel> seen(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                               {std::numeric_limits<double>::quiet_NaN(), 0.0});
+  const auto at = [&](cv::Point pixel) -> const ModelPixel& {
+    ModelPixel& known = seen[static_cast<std::size_t>(pixel.y - first.y) * static_cast<std::size_t>(width) +
+                             static_cast<std::size_t>(pixel.x - first.x)];
+    if (std::isnan(known.light)) known = window.at(pixel, narrower_px2);
+    return known;
+  };
+  const auto count = static_cast<Eigen::Index>(window.pixels.size());
+  Columns columns;
+  columns.sharp.resize(count);
+  columns.terms.setZero(count, EdgeResponse::kTerms);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const cv::Point here = window.pixels[static_cast<std::size_t>(i)];
+    const auto light = [&](int u, int v) { return at(here + cv::Point(u, v)).light; };
+    const ModelPixel middle = at(here);
+    const int place = 2 * (here.y & 1) + (here.x & 1);
+    auto mask = columns.terms.row(i).segment<EdgeResponse::kMaskTerms>(EdgeResponse::kMaskTerms * place);
+    mask[0] = 0.5 * (light(-1, 0) + light(1, 0)) - middle.light;
+    mask[1] = 0.5 * (light(0, -1) + light(0, 1)) - middle.light;
+    mask[2] = 0.25 * (light(-1, -1) + light(1, -1) + light(-1, 1) + light(1, 1)) - middle.light;
+    columns.terms(i, EdgeResponse::kTerms - 1) = window.contrast * middle.bright * (1.0 - middle.bright);
+    columns.sharp[i] = middle.light;
+  }
+  return columns;
+}
+
+/// Sums over windows from which the terms follow: each window's own parameters are fitted with them.
+class Sums {
+ public:
+  void add(const FittedWindow& window, const Columns& columns) {
+    const Eigen::Index own = window.jacobian.cols();
+    Eigen::MatrixXd all(window.jacobian.rows(), own + kAll);
+    all << window.jacobian, columns.terms, window.light - columns.sharp;
+    all = (window.weight.cwiseSqrt() / window.contrast).asDiagonal() * all;
+    weight_ += window.weight.sum() - static_cast<double>(own);
+    const Eigen::VectorXd size = all.leftCols(own).colwise().norm().transpose().cwiseMax(1e-300);
+    all.leftCols(own) *= size.cwiseInverse().asDiagonal();
+    // What the window's own parameters do not take up: Schur's complement.
+    const Eigen::MatrixXd products = all.transpose() * all;
+    const Eigen::MatrixXd across = products.topRightCorner(own, kAll);
+    products_ += products.bottomRightCorner(kAll, kAll) -
+                 across.transpose() * products.topLeftCorner(own, own).ldlt().solve(across);
+  }
+  EdgeResponse::Terms terms() const {
+    Eigen::MatrixXd held = products_.topLeftCorner(kTerms, kTerms);
+    held.diagonal().array() += kHeld * held.diagonal().maxCoeff();
+    return held.ldlt().solve(products_.topRightCorner(kTerms, 1));
+  }
+  /// The sum of squares with the terms.
+  double left() const {
+    Eigen::VectorXd with(kAll);
+    with << -terms(), 1.0;
+    return with.dot(products_ * with);
+  }
+  double weight() const { return weight_; }
+
+ private:
+  static constexpr Eigen::Index kTerms = EdgeResponse::kTerms, kAll = kTerms + 1;
+  Eigen::MatrixXd products_ = Eigen::MatrixXd::Zero(kAll, kAll);
+  double weight_ = 0.0;
+};
+
+struct Learnt {
+  EdgeResponse response;
+  double left = 0.0;   // of the residuals' squares, over the contrast's
+  double plain = 0.0;  // the same of the fits as they are
+};
+
+std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeResponse* known, const FitWindow& fit) {
+  std::array<Sums, kNarrower_px2.size()> sums;
+  Learnt learnt;
+  for (std::size_t i = 0; i < windows; ++i) {
+    const std::optional<FittedWindow> window = fit(i, tone, known);
+    if (!window) continue;
+    const Eigen::VectorXd rest = (window->light - window->model) / window->contrast;
+    learnt.plain += rest.cwiseAbs2().dot(window->weight);
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(*window, columns_of(*window, kNarrower_px2[k]));
+  }
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < sums.size(); ++k) {
+    if (sums[k].left() < sums[best].left()) best = k;
+  }
+  if (!(sums[best].weight() > kFewestPixels)) return std::nullopt;
+  learnt.response = {sums[best].terms(), kNarrower_px2[best], tone};
+  learnt.left = sums[best].left();
+  return learnt;
+}
+
+/// Whether a curve's light is the better description.
+bool is_straighter(const Learnt& light, const Learnt& codes) {
+  const double curved = std::abs(codes.response.curvature());
+  return light.left < kFarLess * codes.left ||
+         (curved > kCurved && std::abs(light.response.curvature()) < kStraight * curved);
+}
+
+}  // namespace
+
+Eigen::VectorXd added_by(const EdgeResponse& response, const FittedWindow& window) {
+  const Columns columns = columns_of(window, response.narrower_px2);
+  return columns.sharp + columns.terms * response.terms - window.model;
+}
+
+std::optional<EdgeResponse> edge_response_of(std::size_t windows, bool may_be_curved, const FitWindow& fit) {
+  std::optional<Learnt> best = learn(windows, ToneCurve::linear, nullptr, fit);
+  if (!best || !(best->left < kMostLeft * best->plain)) return std::nullopt;
+  if (may_be_curved) {
+    std::optional<Learnt> light = learn(windows, ToneCurve::srgb, nullptr, fit);
+    if (light && is_straighter(*light, *best)) best = std::move(light);
+  }
+  for (int round = 1; round < kLearningRounds; ++round) {
+    const EdgeResponse known = best->response;
+    best = learn(windows, known.tone, &known, fit);
+    if (!best) return std::nullopt;
+  }
+  return best->response;
+}
+
+cv::Mat light_of(const cv::Mat& codes, ToneCurve tone) {
+  if (tone == ToneCurve::linear) return codes;
+  const auto of_share = [&](double code) {
+    constexpr double kFullLight = 65535.0;
+    return cv::saturate_cast<unsigned short>(kFullLight * light_of_code(tone, code));
+  };
+  cv::Mat light(codes.size(), CV_16U);
+  if (codes.depth() == CV_8U) {
+    std::array<unsigned short, 256> table{};
+    for (std::size_t code = 0; code < table.size(); ++code) table[code] = of_share(static_cast<double>(code) / 255.0);
+    for (int v = 0; v < light.rows; ++v) {
+      const auto* const from = codes.ptr<unsigned char>(v);
+      std::transform(from, from + light.cols, light.ptr<unsigned short>(v),
+                     [&](unsigned char code) { return table[code]; });
+    }
+    return light;
+  }
+  for (int v = 0; v < light.rows; ++v) {
+    const auto* const from = codes.ptr<unsigned short>(v);
+    std::transform(from, from + light.cols, light.ptr<unsigned short>(v),
+                   [&](unsigned short code) { return of_share(code / 65535.0); });
+  }
+  return light;
+}
+
+}  // namespace glidelab::core

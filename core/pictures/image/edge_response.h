@@ -1,0 +1,76 @@
+/// How an image's pixels answer to an edge beyond what a fit's model says: as a colour mosaic, and by a curved tone.
+///
+/// A colour camera interpolates the colours that a pixel lacks from its neighbours, so that each of the four places of
+/// the 2 x 2 mosaic blurs the image in its own way; a tone curve makes a pixel on an edge brighter or darker than the
+/// light that it received. Both are sampled after the lens, so that what they do to a sharp edge depends on where it
+/// lies among the pixels, and no filter takes it out again: a small marker's centre is off by 0.02 px, a chessboard's
+/// corner by 0.04 px, in a pattern that repeats with the pixels and that a motion, or the rows of a board, turn into
+/// slow waves. With I the model's image before all that (its edges sharper), and for place q of the mosaic
+///
+///     light = I + s_q D_side I + u_q D_upright I + c_q D_corner I + t C E (1 - E)
+///
+/// D_side I is the mean of the left and right neighbours minus the pixel, and so on: any symmetric mask of 3 x 3
+/// pixels. C is the contrast and E how much of the pixel the bright side covers. `light` is the code, or its light by
+/// the sRGB curve (which differs from ITU-R BT.709 by less than the term t takes up). The thirteen terms are the same
+/// in all windows and follow from them by least squares, together with the windows' own parameters. Nothing is assumed
+/// of the camera: not which mosaic or interpolation, nor that there is one.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/pictures/image/code_tone.h"
+
+namespace glidelab::core {
+
+struct EdgeResponse {
+  static constexpr int kMaskTerms = 3, kPlaces = 4;
+  static constexpr int kTerms = kMaskTerms * kPlaces + 1;
+  using Terms = Eigen::Matrix<double, kTerms, 1>;
+
+  Terms terms = Terms::Zero();
+  double narrower_px2 = 0.0;           ///< by how much the square of the edges' blur is smaller in I than in the model
+  ToneCurve tone = ToneCurve::linear;  ///< the fits are those of the light by it
+
+  double curvature() const { return terms[kTerms - 1]; }  ///< t
+};
+
+/// What a model gives a pixel.
+struct ModelPixel {
+  double light = 0.0;
+  double bright = 0.0;  ///< E
+};
+
+/// A window of an image that was fitted.
+struct FittedWindow {
+  std::vector<cv::Point> pixels;  ///< in the image
+  Eigen::VectorXd weight;
+  Eigen::VectorXd light;     ///< as it is seen
+  Eigen::VectorXd model;     ///< as the fit has it
+  Eigen::MatrixXd jacobian;  ///< of the model by the fit's own parameters; a row for each pixel. Empty where not needed
+  double contrast = 0.0;     ///< C
+  /// The model at a pixel of the image, the square of its edges' blur being smaller by this (px²).
+  std::function<ModelPixel(cv::Point pixel, double narrower_px2)> at;
+};
+
+/// What the response adds to the fit's model, pixel by pixel: to be taken off the light before the next fit.
+Eigen::VectorXd added_by(const EdgeResponse& response, const FittedWindow& window);
+
+/// Fits a window, of those numbered from 0 on, to the light by a tone: as it is (null), or without what a known
+/// response adds. Nothing where it cannot be fitted.
+using FitWindow = std::function<std::optional<FittedWindow>(std::size_t window, ToneCurve tone, const EdgeResponse*)>;
+
+/// The response that the windows show, in three rounds, each with the windows fitted without what the last one adds.
+/// The light by the sRGB curve counts where it leaves far less, or far less curvature, than the codes do. Nothing where
+/// too few pixels are fitted, or the response explains less than 7 % of the residuals' squares.
+std::optional<EdgeResponse> edge_response_of(std::size_t windows, bool may_be_curved, const FitWindow& fit);
+
+/// The light of a part of an image's codes (8 or 16 bits), as 16 bits; linear: the codes themselves.
+cv::Mat light_of(const cv::Mat& codes, ToneCurve tone);
+
+}  // namespace glidelab::core
