@@ -18,6 +18,8 @@ enum class RandomUse : std::uint32_t {
   everyday_case = 0x65767279,  ///< "evry" (everyday_case.h)
   filmed_case = 0x66696C6D,    ///< "film" (blind_filmed_case.h)
   challenge = 0x63686C67,      ///< "chlg" (challenge_case.h)
+  twin_remainder = 0x74777265,    ///< "twre" (recording_twin.h)
+  twin_explanation = 0x74776578,  ///< "twex": no number (recording_twin.h)
 };
 
 /// {seed low, seed high, number}, and the use's word behind it where it has one.

@@ -50,7 +50,6 @@ const core::ConfigurationResult* result_of(const core::AnalysisResults& results,
 /// The twins, and what all of them share.
 struct Twins {
   const RecordingTwin& twin;
-  Truth truth;
   const CertifyOptions& options;
   TwinStudios& studios;
   base::Progress progress;
@@ -73,7 +72,7 @@ TwinOutcome outcome_of(const Twins& twins, const TwinChange& change, std::uint64
   } catch (const base::NumericalError& error) {
     why = error.what();
   }
-  for (const TrueConfiguration& truth : twins.truth.configurations) {
+  for (const TrueConfiguration& truth : truth_of(twins.twin, seed).configurations) {
     auto& of = outcome.configurations.emplace_back();
     const core::ConfigurationResult* result = result_of(results, truth);
     for (std::size_t q = 0; q < kQuantityCount; ++q) {
@@ -324,7 +323,7 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
     tell();
   };
   TwinStudios studios(runs_of_change);
-  const Twins twins{twin, truth_of(twin), options, studios, [&](std::string_view, double) { tell(); }};
+  const Twins twins{twin, options, studios, [&](std::string_view, double) { tell(); }};
   const Outcomes outcomes = record_all(twins, {}, options.runs, done);
   certificate.together = share_of(counts_of(outcomes, 0, kHeadline, std::nullopt), kConfidence);
   const std::vector<std::string> names = configuration_names(twin.scenario);
@@ -357,7 +356,7 @@ namespace {
 void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
   constexpr double kAlike = 1.1, kFarthest = 4.0;
   TwinStudios studios(0);
-  const Twins twins{twin, truth_of(twin), options, studios, progress};
+  const Twins twins{twin, options, studios, progress};
   const TwinOutcome pilot = outcome_of(twins, {}, derived_seed(options.seed, kMostTwins));
   if (!(pilot.noise_m > 0.0)) return;  // none of its clips could be used: the certificate says so
   const double factor = twin.noise_m / pilot.noise_m;

@@ -1,6 +1,12 @@
 /// Twins of a recording: its fitted motions, with the causes that its diagnosis named, recorded anew as often as
 /// wanted.
 ///
+/// The truth of a twin is drawn: it follows one of the explanations that the diagnosis weighed, as often as that one is
+/// probable, so a drag that is likely and not named is in some of the twins. And each clip has what that explanation
+/// leaves (diagnose/causes/remainder.h): inclination, friction and drag that scatter from clip to clip, and a white
+/// acceleration, each with the size that the recording has most likely. What they change in x is added to the recorded
+/// positions.
+///
 /// A recording whose clips were all filmed is filmed again (film_studio.h): its camera as the folder, calibration and
 /// images tell it, each twin with the noise of its own clips and of its own calibration stills (as many views as were
 /// used), the pixels' noise scaled so that positions scatter as they do in the recording. Where the clips have one
@@ -21,6 +27,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -43,8 +50,18 @@ struct ClipNoise {
   double rounding_m = 0.0;      ///< step of the file's positions; 0: none
 };
 
+/// What one explanation makes of the motions, and what it leaves.
+struct TwinExplanation {
+  std::vector<sim::ConfigurationSetup> configurations;  ///< as the scenario's, with other forces and starts
+  double probability = 1.0;                             ///< beside the others
+  double q_m2_s3 = 0.0;                                 ///< spectral density of a white acceleration
+  double force_m_s2 = 0.0;  ///< sd from clip to clip of the acceleration by friction, and of that by the inclination
+  double drag = 0.0;        ///< relative sd from clip to clip of K
+};
+
 struct RecordingTwin {
-  render::Scenario scenario;
+  render::Scenario scenario;  ///< of the explanation that the diagnosis reports
+  std::vector<TwinExplanation> explanations;  ///< empty: the scenario, and it leaves nothing
   bool filmed = false;
   std::vector<ClipNoise> clips;    ///< of tracks: one for each clip of the scenario, in its order
   double scale_sd_relative = 0.0;  ///< of one px_per_m
@@ -72,10 +89,12 @@ struct TwinChange {
   bool twice = false;         ///< every clip is recorded once more
   bool double_rate = false;   ///< of tracks: twice as many frames a second
   bool nominal = false;       ///< no force but the viscous and the Coulomb friction of the law
+  bool alike = false;         ///< every clip follows the law without a remainder
 };
 
-/// The configurations' true values: of one whose law has further forces, K/m and mu of its viscous and Coulomb terms.
-Truth truth_of(const RecordingTwin& twin);
+/// The configurations' true values in the twin of this seed: of one whose law has further forces, K/m and mu of its
+/// viscous and Coulomb terms.
+Truth truth_of(const RecordingTwin& twin, std::uint64_t seed);
 
 /// What stands still in filmed twins is drawn once, and the calibrations of the first seeds are kept for changes that
 /// leave camera, light and pattern as they are. Shared by threads that record different seeds.
@@ -89,7 +108,8 @@ class TwinStudios {
   std::mutex mutex_;
   std::size_t most_;
   std::map<std::uint64_t, std::shared_ptr<FilmStudio>> of_seed_;
-  std::map<std::pair<double, double>, std::shared_ptr<const render::Stage>> stages_;  ///< by noise and marker
+  /// By explanation, noise and marker.
+  std::map<std::tuple<std::size_t, double, double>, std::shared_ptr<const render::Stage>> stages_;
 };
 
 /// One recording of the twin, with its truth. Of one seed and another change the motions, and as far as may be the
