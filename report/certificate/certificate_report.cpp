@@ -127,14 +127,45 @@ std::string twin_words(const Certificate& certificate) {
   std::string text = fmt::format(
       "{} twins of this recording ({} clip{}), {}, were analysed by the {}. Their motions are those that were fitted",
       certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
-      certificate.filmed ? "filmed by its camera and tracked, each with a calibration of its own"
+      certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
                          : "simulated at its frame times with its noise and rounding",
       estimator_name(certificate.estimator));
   std::string causes;
   for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
   text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
+  if (certificate.explanations.size() > 1)
+    text += " Other explanations that are likely, too, have as many of the twins as their probability says.";
+  text += " What an explanation leaves of each clip is in the twins as well, drawn anew for each.";
   text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
                       micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
+  return text;
+}
+
+std::string lack_text(const validate::NotInTwins& lack) {
+  return fmt::format("{} ({})", effect_name(lack.what), lack.why);
+}
+
+/// "quadratic drag and friction by configuration".
+std::string explanation_name(const validate::CertifiedExplanation& one) {
+  std::string text;
+  for (const std::string& id : one.ids) text += (text.empty() ? "" : " and ") + effect_name(id);
+  return text.empty() ? "the nominal law alone" : text;
+}
+
+/// Which explanations break the intervals, where others do not; empty where that makes no difference.
+std::string explanation_words(const Certificate& certificate) {
+  double failing = 0.0;
+  const validate::CertifiedExplanation* worst = nullptr;
+  for (const validate::CertifiedExplanation& one : certificate.explanations) {
+    if (!one.fails()) continue;
+    failing += one.probability;
+    if (worst == nullptr || one.probability > worst->probability) worst = &one;
+  }
+  if (worst == nullptr || certificate.explanations.size() < 2) return {};
+  std::string text = fmt::format(
+      "The diagnosis leaves a probability of {} % for explanations in whose twins the intervals hold less "
+      "often than 95 %, most of it for {} ({} % hold).",
+      percent(failing), explanation_name(*worst), percent(worst->coverage.share));
   return text;
 }
 
@@ -142,7 +173,7 @@ std::string twin_words(const Certificate& certificate) {
 std::string lack_words(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;
-  for (const std::string& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack;
+  for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_text(lack);
   return fmt::format("The recording has what its twins have not: {}. The answer holds as far as that does not matter.",
                      lacks);
 }
@@ -263,10 +294,18 @@ std::string certificate_json(const Certificate& certificate) {
   document["configurations"] = Json::array();
   for (const CertifiedQuantity& one : certificate.configurations)
     document["configurations"].push_back(quantity_json(one));
+  document["explanations"] = Json::array();
+  for (const validate::CertifiedExplanation& one : certificate.explanations) {
+    document["explanations"].push_back({{"causes", one.ids},
+                                        {"probability", one.probability},
+                                        {"twins", one.twins},
+                                        {"coverage", share_json(one.coverage)}});
+  }
   document["changes"] = Json::array();
   for (const ChangedTwin& change : certificate.changes) document["changes"].push_back(change_json(change));
   document["causes"] = certificate.causes;
-  document["not_in_the_twins"] = certificate.without;
+  document["not_in_the_twins"] = Json::array();
+  for (const validate::NotInTwins& lack : certificate.without) document["not_in_the_twins"].push_back(lack_text(lack));
   put(document, "recorded_noise_m", certificate.recorded_noise_m);
   put(document, "twin_noise_m", certificate.twin_noise_m);
   return json_text(document);
@@ -274,6 +313,7 @@ std::string certificate_json(const Certificate& certificate) {
 
 std::string certificate_text(const Certificate& certificate) {
   std::string text = certificate_answer(certificate) + "\n";
+  if (const std::string which = explanation_words(certificate); !which.empty()) text += printable(which) + "\n";
   if (const std::string lacks = lack_words(certificate); !lacks.empty()) text += printable(lacks) + "\n";
   text += "\n";
   std::vector<std::vector<std::string>> rows = {kHeader};
@@ -336,6 +376,18 @@ std::string configurations_table(const Certificate& certificate) {
   return table.str();
 }
 
+std::string explanations_table(const Certificate& certificate) {
+  HtmlTable table({"explanation", "probability", "twins", "intervals that hold"});
+  for (const validate::CertifiedExplanation& one : certificate.explanations) {
+    table.row({escape(explanation_name(one)), percent(one.probability) + " %", fmt::format("{}", one.twins),
+               share_text(one.coverage)});
+  }
+  return table.str() +
+         "<p class=\"soft\">Explanations that the diagnosis weighed, with their probabilities among these; K/m, µ and "
+         "α "
+         "together.</p>\n";
+}
+
 std::string how_judged(const Certificate& certificate) {
   return fmt::format(
       "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the limit velocity of the fitted motions (beside a named "
@@ -350,9 +402,10 @@ std::string how_judged(const Certificate& certificate) {
 Page certificate_page(const std::string& name, const Certificate& certificate) {
   Html body = fmt::format("<h1>Can I trust the intervals of {}?</h1>\n<p><b>{}</b></p>\n", escape(name),
                           escape(certificate_answer(certificate)));
+  if (const std::string which = explanation_words(certificate); !which.empty())
+    body += fmt::format("<p>{}</p>\n", escape(which));
   if (const std::string lacks = lack_words(certificate); !lacks.empty())
     body += fmt::format("<p class=\"note\">{}</p>\n", escape(lacks));
-  if (!certificate.empty()) body += figures({certificate_plot(certificate)});
   HtmlTable table(kHeader);
   for (const CertifiedQuantity& quantity : certificate.quantities) {
     std::vector<std::string> cells = cells_of(quantity);
@@ -360,8 +413,10 @@ Page certificate_page(const std::string& name, const Certificate& certificate) {
     table.row(cells);
   }
   if (!table.empty()) body += table.str();
+  if (!certificate.empty()) body += figures({certificate_plot(certificate)});
   body += changes_html(certificate);
   if (!certificate.changes.empty()) body += folded("What limits it", limits_table(certificate));
+  if (certificate.explanations.size() > 1) body += folded("Each explanation", explanations_table(certificate));
   body += folded("Each configuration", configurations_table(certificate));
   body += folded("How this was judged", how_judged(certificate));
   return page("Certificate: " + name, body);

@@ -91,8 +91,8 @@ std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diag
 std::vector<TwinExplanation> explanations_of(const diagnose::Diagnosis& diagnosis, const render::Scenario& scenario) {
   std::vector<TwinExplanation> explanations;
   for (const diagnose::LikelyTwin& likely : diagnosis.likely_twins) {
-    TwinExplanation one{scenario.motion.configurations, likely.probability, likely.q_m2_s3, likely.force_m_s2,
-                        likely.drag};
+    TwinExplanation one{
+        scenario.motion.configurations, likely.probability, likely.ids, likely.q_m2_s3, likely.force_m_s2, likely.drag};
     if (!explanations.empty()) {
       std::vector<sim::ConfigurationSetup> own;
       try {
@@ -140,13 +140,13 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
     } catch (const base::InputError& error) {  // what a camera of a scenario cannot see
       std::string why = error.what();
       std::replace(why.begin(), why.end(), '\n', ' ');
-      twin.without.push_back(fmt::format("images and calibration ({})", why));
+      twin.without.push_back({"images and calibration", why});
     }
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) twin.causes.push_back(effect.id);
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     std::erase(twin.causes, lack.what);
-    twin.without.push_back(fmt::format("{} ({})", lack.what, lack.why));
+    twin.without.push_back({lack.what, lack.why});
   }
   twin.explanations = explanations_of(diagnosis, twin.scenario);
   twin.noise_m = median_noise(results);
@@ -165,6 +165,14 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
     twin.scenario.pattern.views = static_cast<int>(std::clamp(results.calibrations.front().views_used, kFewest, kMost));
   }
   return twin;
+}
+
+std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed) {
+  std::vector<double> probabilities;
+  for (const TwinExplanation& one : twin.explanations) probabilities.push_back(std::max(0.0, one.probability));
+  if (probabilities.size() < 2) return 0;
+  std::mt19937_64 engine = random_engine(RandomUse::twin_explanation, seed);
+  return std::discrete_distribution<std::size_t>(probabilities.begin(), probabilities.end())(engine);
 }
 
 namespace {
@@ -193,25 +201,15 @@ void add_own_law(const render::Scenario& scenario, Truth& truth) {
   }
 }
 
-/// Which explanation the twin of a seed follows; 0 where there is none to choose.
-std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed) {
-  std::vector<double> probabilities;
-  for (const TwinExplanation& one : twin.explanations) probabilities.push_back(std::max(0.0, one.probability));
-  if (probabilities.size() < 2) return 0;
-  std::mt19937_64 engine = random_engine(RandomUse::twin_explanation, seed);
-  return std::discrete_distribution<std::size_t>(probabilities.begin(), probabilities.end())(engine);
-}
-
-/// The scenario with the motions of this seed's explanation.
-render::Scenario explained(const RecordingTwin& twin, std::uint64_t seed) {
+/// The scenario with the motions of an explanation.
+render::Scenario explained(const RecordingTwin& twin, std::size_t explanation) {
   render::Scenario scenario = twin.scenario;
-  if (!twin.explanations.empty())
-    scenario.motion.configurations = twin.explanations[explanation_of(twin, seed)].configurations;
+  if (!twin.explanations.empty()) scenario.motion.configurations = twin.explanations[explanation].configurations;
   return scenario;
 }
 
 render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed, double clock_ppm) {
-  render::Scenario scenario = explained(twin, seed);
+  render::Scenario scenario = explained(twin, explanation_of(twin, seed));
   scenario.recording.clock.rate_error_ppm += clock_ppm;
   scenario.marker.diameter_m *= change.marker;
   if (change.lossless) scenario.codec = render::Codec::ffv1;
@@ -360,7 +358,7 @@ double drag_1_s(const sim::Body& body) {
 /// Adds to the positions what the remainder changes in x.
 void add_remainder(const TwinExplanation& explanation, const render::Scenario& scenario, std::uint64_t seed,
                    MadeTracks& made) {
-  if (explanation.q_m2_s3 <= 0.0 && explanation.force_m_s2 <= 0.0 && explanation.drag <= 0.0) return;
+  if (explanation.leaves_nothing()) return;
   std::size_t c = 0;
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {
@@ -405,7 +403,7 @@ class TwinFilm {
 
  private:
   std::tuple<std::size_t, double, double> scene() const { return {explanation_, change_.noise, change_.marker}; }
-  bool as_recorded() const { return change_.noise == 1.0 && change_.marker == 1.0 && !change_.nominal; }
+  bool as_recorded() const { return change_.noise == 1.0 && change_.marker == 1.0; }
 
   std::shared_ptr<FilmStudio> studio_of(const render::Scenario& scenario, const base::Progress& progress) {
     std::shared_ptr<const render::Stage> stage;
@@ -456,8 +454,8 @@ MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std:
   return made;
 }
 
-Truth truth_of(const RecordingTwin& twin, std::uint64_t seed) {
-  const render::Scenario scenario = explained(twin, seed);
+Truth truth_of(const RecordingTwin& twin, std::size_t explanation) {
+  const render::Scenario scenario = explained(twin, explanation);
   Truth truth = make_tracks(scenario, 1).truth;
   add_own_law(scenario, truth);
   return truth;

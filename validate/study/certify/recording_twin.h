@@ -37,6 +37,7 @@
 #include "diagnose/result/diagnosis.h"
 #include "render/scenario/scenario.h"
 #include "validate/film/film_studio.h"
+#include "validate/study/certify/certificate.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
@@ -54,23 +55,26 @@ struct ClipNoise {
 struct TwinExplanation {
   std::vector<sim::ConfigurationSetup> configurations;  ///< as the scenario's, with other forces and starts
   double probability = 1.0;                             ///< beside the others
+  std::vector<std::string> ids = {};                    ///< effects that it holds
   double q_m2_s3 = 0.0;                                 ///< spectral density of a white acceleration
   double force_m_s2 = 0.0;  ///< sd from clip to clip of the acceleration by friction, and of that by the inclination
   double drag = 0.0;        ///< relative sd from clip to clip of K
+
+  bool leaves_nothing() const { return q_m2_s3 <= 0.0 && force_m_s2 <= 0.0 && drag <= 0.0; }
 };
 
 struct RecordingTwin {
-  render::Scenario scenario;  ///< of the explanation that the diagnosis reports
+  render::Scenario scenario;                  ///< of the explanation that the diagnosis reports
   std::vector<TwinExplanation> explanations;  ///< empty: the scenario, and it leaves nothing
   bool filmed = false;
   std::vector<ClipNoise> clips;    ///< of tracks: one for each clip of the scenario, in its order
   double scale_sd_relative = 0.0;  ///< of one px_per_m
   double scale_error = 0.0;        ///< as diagnosed: x is seen as (1 + e) x / (1 + p x)
   double perspective_1_m = 0.0;
-  double from_m = 0.0;               ///< x of the recording where the twin's is 0
-  double noise_m = 0.0;              ///< of the recording's positions: median over clips
-  std::vector<std::string> causes;   ///< ids of the effects that the diagnosis named and the twin has
-  std::vector<std::string> without;  ///< sentences: what the recording has and the twin has not
+  double from_m = 0.0;              ///< x of the recording where the twin's is 0
+  double noise_m = 0.0;             ///< of the recording's positions: median over clips
+  std::vector<std::string> causes;  ///< ids of the effects that the diagnosis named and the twin has
+  std::vector<NotInTwins> without;
 };
 
 /// `results` as diagnose::diagnose_results() had them, with their pictures, and the folders (or files) they are of, in
@@ -92,9 +96,12 @@ struct TwinChange {
   bool alike = false;         ///< every clip follows the law without a remainder
 };
 
-/// The configurations' true values in the twin of this seed: of one whose law has further forces, K/m and mu of its
-/// viscous and Coulomb terms.
-Truth truth_of(const RecordingTwin& twin, std::uint64_t seed);
+/// Which explanation the twin of a seed follows; 0 where there is none to choose.
+std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed);
+
+/// The configurations' true values in the twins that follow this explanation: of one whose law has further forces, K/m
+/// and mu of its viscous and Coulomb terms.
+Truth truth_of(const RecordingTwin& twin, std::size_t explanation);
 
 /// What stands still in filmed twins is drawn once, and the calibrations of the first seeds are kept for changes that
 /// leave camera, light and pattern as they are. Shared by threads that record different seeds.

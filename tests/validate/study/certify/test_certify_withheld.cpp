@@ -111,10 +111,8 @@ std::vector<Withheld> all_withheld() {
                  .least = 0.01,
                  .most = 0.3});
   all.push_back({.name = "inclination that differs from clip to clip by 0.001 to 0.02°",
-                 .body =
-                     [](sim::Body& body, double size, Engine& engine) {
-                       body.incline_rad += size * base::kRadPerDegree * normal(engine);
-                     },
+                 .body = [](sim::Body& body, double size,
+                            Engine& engine) { body.incline_rad += size * base::kRadPerDegree * normal(engine); },
                  .least = 0.001,
                  .most = 0.02});
   all.push_back({.name = "drag of the air, 0.001 to 0.02 kg/m",
@@ -216,7 +214,8 @@ Recording certified_and_repeated(const Withheld& withheld, const fit::Estimator&
   write_track_folder(made, temp / "made");
   if (const char* keep = std::getenv("GLIDELAB_KEEP")) {  // XXX
     write_track_folder(made, fmt::format("{}/{}", keep, seed));
-    std::fprintf(stderr, "\nkept %zu %s size %g noise %g\n", static_cast<std::size_t>(seed), withheld.name.c_str(), recording.size, noise_m);
+    std::fprintf(stderr, "\nkept %zu %s size %g noise %g\n", static_cast<std::size_t>(seed), withheld.name.c_str(),
+                 recording.size, noise_m);
   }
   const Certificate certificate =
       certify({temp / "made"}, {.runs = kTwins, .estimator = estimator, .seed = engine() % 100000, .changes = false});
@@ -245,10 +244,11 @@ std::string row_of(const std::string& name, const std::vector<Recording>& record
   }
   const RunShare of_own = share_of(own, 0.95), of_again = share_of(again, 0.95);
   const RunMean mean = mean_of(predicted, ones), difference = mean_of(differences, ones);
-  return fmt::format("| {} | {} | {:.1f} % | {:.1f} % ({:.1f} to {:.1f}) | {:.1f} % ({:.1f} to {:.1f}) | {:+.1f} ± {:.1f} |",
-                     name, recordings.size(), 100.0 * mean.value, 100.0 * of_own.share, 100.0 * of_own.low,
-                     100.0 * of_own.high, 100.0 * of_again.share, 100.0 * of_again.low, 100.0 * of_again.high,
-                     100.0 * difference.value, 100.0 * difference.sd);
+  return fmt::format(
+      "| {} | {} | {:.1f} % | {:.1f} % ({:.1f} to {:.1f}) | {:.1f} % ({:.1f} to {:.1f}) | {:+.1f} ± {:.1f} |", name,
+      recordings.size(), 100.0 * mean.value, 100.0 * of_own.share, 100.0 * of_own.low, 100.0 * of_own.high,
+      100.0 * of_again.share, 100.0 * of_again.low, 100.0 * of_again.high, 100.0 * difference.value,
+      100.0 * difference.sd);
 }
 
 std::size_t recordings_of_a_kind() {
@@ -267,9 +267,10 @@ TEST_CASE("over two hundred recordings of tracks with withheld differences certi
     found[i % kinds.size()][i / kinds.size()] =
         certified_and_repeated(kinds[i % kinds.size()], fit::default_estimator(), 1000 + i);
     const Recording& one = found[i % kinds.size()][i / kinds.size()];
-    std::fprintf(stderr, "%zu size %.4g predicted %.3f again %.3f own %zu/%zu causes %s | %s\n", i, one.size, one.predicted,
-                 static_cast<double>(one.again.holds) / static_cast<double>(one.again.of), one.own.holds, one.own.of,
-                 fmt::format("{}", fmt::join(one.causes, "+")).c_str(), kinds[i % kinds.size()].name.c_str());
+    std::fprintf(stderr, "%zu size %.4g predicted %.3f again %.3f own %zu/%zu causes %s | %s\n", i, one.size,
+                 one.predicted, static_cast<double>(one.again.holds) / static_cast<double>(one.again.of), one.own.holds,
+                 one.own.of, fmt::format("{}", fmt::join(one.causes, "+")).c_str(),
+                 kinds[i % kinds.size()].name.c_str());
   });
   std::vector<Recording> all;
   std::puts("\n| withheld | recordings | predicted | held in the recordings | held when made again | difference |");
@@ -281,7 +282,8 @@ TEST_CASE("over two hundred recordings of tracks with withheld differences certi
     for (const Recording& one : found[k]) {
       for (const std::string& cause : one.causes) ++causes[cause];
     }
-    for (const auto& [cause, times] : causes) std::fprintf(stderr, "   %s: %s %d\n", kinds[k].name.c_str(), cause.c_str(), times);
+    for (const auto& [cause, times] : causes)
+      std::fprintf(stderr, "   %s: %s %d\n", kinds[k].name.c_str(), cause.c_str(), times);
   }
   std::puts(row_of("all", all).c_str());
   const auto predicted_in = [&](double from, double to) {
@@ -291,9 +293,11 @@ TEST_CASE("over two hundred recordings of tracks with withheld differences certi
     }
     return some;
   };
-  for (const auto& [from, to] : std::vector<std::pair<double, double>>{{0.0, 0.85}, {0.85, 0.93}, {0.93, 0.96}, {0.96, 1.01}}) {
+  for (const auto& [from, to] :
+       std::vector<std::pair<double, double>>{{0.0, 0.85}, {0.85, 0.93}, {0.93, 0.96}, {0.96, 1.01}}) {
     const std::vector<Recording> some = predicted_in(from, to);
-    if (some.size() > 1) std::puts(row_of(fmt::format("predicted {:.0f} to {:.0f} %", 100 * from, 100 * std::min(to, 1.0)), some).c_str());
+    if (some.size() > 1)
+      std::puts(row_of(fmt::format("predicted {:.0f} to {:.0f} %", 100 * from, 100 * std::min(to, 1.0)), some).c_str());
   }
   double predicted = 0.0, actual = 0.0;
   for (const Recording& one : all) {
