@@ -23,7 +23,7 @@ constexpr double kSure = 2.5;  // standard deviations of a mean, the largest of 
 constexpr std::size_t kMostChanges = 3;
 
 std::string percent(double share) {
-  return fmt::format("{:.0f}", 100.0 * share);
+  return fmt::format("{:.0f}", std::round(100.0 * share) + 0.0);  // + 0.0: no "-0"
 }
 
 /// "94 % (90 to 97 %)".
@@ -56,14 +56,18 @@ double sureness(const CertifiedQuantity& quantity) {
   return std::abs(quantity.bias_sds.value) / quantity.bias_sds.sd;
 }
 
-/// "µ is off by 0.3 of its standard deviation on average".
+/// The largest that is more than chance: "µ is off by 0.3 of its standard deviation on average".
 std::string bias_words(const Certificate& certificate) {
   const CertifiedQuantity* worst = nullptr;
+  bool any = false;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
-    if (is_headline(quantity) && (worst == nullptr || sureness(quantity) > sureness(*worst))) worst = &quantity;
+    if (!is_headline(quantity)) continue;
+    any = true;
+    if (sureness(quantity) < kSure) continue;
+    if (worst == nullptr || std::abs(quantity.bias_sds.value) > std::abs(worst->bias_sds.value)) worst = &quantity;
   }
-  if (worst == nullptr) return {};
-  if (sureness(*worst) < kSure) return "none of them is off on average by more than chance";
+  if (!any) return {};
+  if (worst == nullptr) return "none of them is off on average by more than chance";
   return fmt::format("{} is off by {:.1f} of its standard deviation on average", symbol_of(worst->quantity),
                      std::abs(worst->bias_sds.value));
 }
@@ -162,11 +166,9 @@ std::string explanation_words(const Certificate& certificate) {
     if (worst == nullptr || one.probability > worst->probability) worst = &one;
   }
   if (worst == nullptr || certificate.explanations.size() < 2) return {};
-  std::string text = fmt::format(
-      "The diagnosis leaves a probability of {} % for explanations in whose twins the intervals hold less "
-      "often than 95 %, most of it for {} ({} % hold).",
+  return fmt::format(
+      "They fail with explanations that the diagnosis finds {} % probable together, most of all with {} ({} % hold).",
       percent(failing), explanation_name(*worst), percent(worst->coverage.share));
-  return text;
 }
 
 /// "The twins are without …: read the answer with that in mind."; empty where they have all of it.
@@ -334,11 +336,20 @@ std::string certificate_text(const Certificate& certificate) {
 
 namespace {
 
+/// A command in brackets as code.
+std::string with_command(std::string text) {
+  const std::size_t from = text.find("(glidelab "), to = text.find(')', from);
+  if (from == std::string::npos || to == std::string::npos) return text;
+  text.insert(to, "</code>");
+  text.insert(from + 1, "<code>");
+  return text;
+}
+
 std::string changes_html(const Certificate& certificate) {
   const std::vector<std::string> best = best_changes(certificate);
   if (best.empty()) return fmt::format("<p>{}</p>\n", kNothingStandsOut);
   std::string list;
-  for (const std::string& one : best) list += fmt::format("<li>{}</li>\n", escape(one));
+  for (const std::string& one : best) list += fmt::format("<li>{}</li>\n", with_command(escape(one)));
   return fmt::format("<h2 id=\"changes\">What would help most</h2>\n<ol>\n{}</ol>\n", list);
 }
 

@@ -35,12 +35,16 @@ validate::ChangedTwin change(const std::string& limit, bool stands_out) {
 
 }  // namespace
 
-TEST_CASE("a certificate's first line is the share of intervals that hold and the surest bias of K/m, mu and alpha") {
+TEST_CASE(
+    "a certificate's first line is the share of intervals that hold and the largest sure bias of K/m, mu and alpha") {
   validate::Certificate made = certificate();
   CHECK(report::certificate_answer(made) ==
         "Intervals of K/m, µ hold in 94 % (90 to 97 %) of recordings like yours; µ is off by 0.3 of its standard "
         "deviation on average.");
   CHECK(report::certificate_text(made).starts_with(report::certificate_answer(made) + "\n"));
+  made.quantities[0].bias_sds = {1.2, 0.4};  // larger, and as sure
+  CHECK(report::certificate_answer(made).ends_with("; K/m is off by 1.2 of its standard deviation on average."));
+  made.quantities[0].bias_sds = {0.1, 0.1};
   made.quantities[1].bias_sds.value = 0.1;
   CHECK(report::certificate_answer(made).ends_with("none of them is off on average by more than chance."));
 }
@@ -66,6 +70,11 @@ TEST_CASE("only changes that stand out are given as advice, three at most, and n
   REQUIRE(report::best_changes(made).size() == 1);
   CHECK(report::best_changes(made).front() == "more light. With half of it, K/m, µ err 42 % (30 to 50 %) less.");
   CHECK(report::certificate_text(made).find("What limits it, most first: noise.") != std::string::npos);
+  made.changes.front().advice = "Take it out (glidelab analyze --with quadratic_drag)";
+  made.changes.back().together = validate::RunFall{-0.002, -0.1, 0.1};
+  CHECK(report::certificate_page("a", made).html.find("(<code>glidelab analyze --with quadratic_drag</code>)") !=
+        std::string::npos);
+  CHECK(report::certificate_page("a", made).html.find(">0 % (-10 to 10 %)<") != std::string::npos);
   made.changes.assign(5, change("noise", true));
   CHECK(report::best_changes(made).size() == 3);
   made.changes.assign(2, change("noise", false));
@@ -89,8 +98,8 @@ TEST_CASE("a certificate says which explanation breaks the intervals where anoth
   const std::string text = report::certificate_text(made);
   CHECK(
       text.substr(text.find('\n') + 1)
-          .starts_with("The diagnosis leaves a probability of 30 % for explanations in whose twins the intervals hold "
-                       "less often than 95 %, most of it for quadratic drag (33 % hold)."));
+          .starts_with("They fail with explanations that the diagnosis finds 30 % probable together, most of all with "
+                       "quadratic drag (33 % hold).\n"));
   const std::string page = report::certificate_page("a", made).html;
   CHECK(page.find("the nominal law alone") != std::string::npos);
   CHECK(page.find("Each explanation") != std::string::npos);

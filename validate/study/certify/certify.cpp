@@ -48,10 +48,10 @@ const core::ConfigurationResult* result_of(const core::AnalysisResults& results,
   return nullptr;
 }
 
-std::vector<Truth> truths_of(const RecordingTwin& twin) {
+std::vector<Truth> truths_of(const RecordingTwin& twin, bool nominal = false) {
   std::vector<Truth> truths;
   for (std::size_t k = 0; k < std::max<std::size_t>(1, twin.explanations.size()); ++k) {
-    truths.push_back(truth_of(twin, k));
+    truths.push_back(truth_of(twin, k, nominal));
   }
   return truths;
 }
@@ -399,7 +399,9 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);  // 0 of one that failed
   certificate.twin_noise_m = core::median_of(std::move(noise_m));
   for (const WantedChange& change : wanted) {
-    const Outcomes after = record_all(twins, change.change, runs_of_change, done);
+    Twins with_change = twins;
+    if (change.change.nominal) with_change.truths = truths_of(twin, true);
+    const Outcomes after = record_all(with_change, change.change, runs_of_change, done);
     certificate.changes.push_back(changed_twin(change, outcomes, after, wanted.size()));
   }
   std::stable_sort(certificate.changes.begin(), certificate.changes.end(),

@@ -208,15 +208,20 @@ render::Scenario explained(const RecordingTwin& twin, std::size_t explanation) {
   return scenario;
 }
 
+/// Leaves the viscous and the Coulomb friction alone.
+void take_out_causes(render::Scenario& scenario) {
+  for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    std::erase_if(configuration.body.forces, [](const auto& term) { return !term->linear(); });
+  }
+}
+
 render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed, double clock_ppm) {
   render::Scenario scenario = explained(twin, explanation_of(twin, seed));
   scenario.recording.clock.rate_error_ppm += clock_ppm;
   scenario.marker.diameter_m *= change.marker;
   if (change.lossless) scenario.codec = render::Codec::ffv1;
   if (change.noise != 1.0) scale_noise(scenario.sensor, change.noise);
-  for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
-    if (change.nominal) std::erase_if(configuration.body.forces, [](const auto& term) { return !term->linear(); });
-  }
+  if (change.nominal) take_out_causes(scenario);
   if (change.twice) {
     for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
       const std::vector<sim::MotionSetup> once = configuration.motions;
@@ -454,8 +459,9 @@ MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std:
   return made;
 }
 
-Truth truth_of(const RecordingTwin& twin, std::size_t explanation) {
-  const render::Scenario scenario = explained(twin, explanation);
+Truth truth_of(const RecordingTwin& twin, std::size_t explanation, bool nominal) {
+  render::Scenario scenario = explained(twin, explanation);
+  if (nominal) take_out_causes(scenario);
   Truth truth = make_tracks(scenario, 1).truth;
   add_own_law(scenario, truth);
   return truth;

@@ -100,8 +100,8 @@ struct TwinChange {
 std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed);
 
 /// The configurations' true values in the twins that follow this explanation: of one whose law has further forces, K/m
-/// and mu of its viscous and Coulomb terms.
-Truth truth_of(const RecordingTwin& twin, std::size_t explanation);
+/// and mu of its viscous and Coulomb terms. `nominal` as in TwinChange.
+Truth truth_of(const RecordingTwin& twin, std::size_t explanation, bool nominal = false);
 
 /// What stands still in filmed twins is drawn once, and the calibrations of the first seeds are kept for changes that
 /// leave camera, light and pattern as they are. Shared by threads that record different seeds.

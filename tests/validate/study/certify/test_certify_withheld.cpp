@@ -1,18 +1,17 @@
 /// Do certificates predict what then happens? Recordings differ from their twins by what no certificate is told.
 ///
-///     build/release/tests/test_validate '[.evidence]'
+///     GLIDELAB_RECORDINGS=25 build/release/tests/test_validate 'over two hundred recordings*'
 ///
 /// Each recording is analysed, certified, and then truly made again, with the same withheld difference drawn anew.
 /// Coverage is of the stated 95 % intervals of K/m, mu and alpha, whose truth is that of the viscous and Coulomb terms.
-/// GLIDELAB_RECORDINGS says how many recordings there are of each kind.
+/// GLIDELAB_RECORDINGS says how many recordings there are of each of the eight kinds. A line on the error output says
+/// what came of each, the table comes last.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -198,7 +197,6 @@ RunCount held_by(const MadeTracks& made, const fit::Estimator& estimator) {
 
 struct Recording {
   double predicted = 0.0, size = 0.0;
-  std::vector<std::string> causes;
   RunCount own, again;
 };
 
@@ -212,15 +210,9 @@ Recording certified_and_repeated(const Withheld& withheld, const fit::Estimator&
   const tests::TempDir temp;
   const MadeTracks made = truly(scenario, withheld, recording.size, noise_m, engine());
   write_track_folder(made, temp / "made");
-  if (const char* keep = std::getenv("GLIDELAB_KEEP")) {  // XXX
-    write_track_folder(made, fmt::format("{}/{}", keep, seed));
-    std::fprintf(stderr, "\nkept %zu %s size %g noise %g\n", static_cast<std::size_t>(seed), withheld.name.c_str(),
-                 recording.size, noise_m);
-  }
   const Certificate certificate =
       certify({temp / "made"}, {.runs = kTwins, .estimator = estimator, .seed = engine() % 100000, .changes = false});
   recording.predicted = certificate.together.share;
-  recording.causes = certificate.causes;
   recording.own = held_by(made, estimator);
   for (std::size_t k = 0; k < kAgain; ++k) {
     const RunCount count = held_by(truly(scenario, withheld, recording.size, noise_m, engine()), estimator);
@@ -267,9 +259,8 @@ TEST_CASE("over two hundred recordings of tracks with withheld differences certi
     found[i % kinds.size()][i / kinds.size()] =
         certified_and_repeated(kinds[i % kinds.size()], fit::default_estimator(), 1000 + i);
     const Recording& one = found[i % kinds.size()][i / kinds.size()];
-    std::fprintf(stderr, "%zu size %.4g predicted %.3f again %.3f own %zu/%zu causes %s | %s\n", i, one.size,
-                 one.predicted, static_cast<double>(one.again.holds) / static_cast<double>(one.again.of), one.own.holds,
-                 one.own.of, fmt::format("{}", fmt::join(one.causes, "+")).c_str(),
+    std::fprintf(stderr, "%zu size %.4g predicted %.3f again %.3f own %zu/%zu | %s\n", i, one.size, one.predicted,
+                 static_cast<double>(one.again.holds) / static_cast<double>(one.again.of), one.own.holds, one.own.of,
                  kinds[i % kinds.size()].name.c_str());
   });
   std::vector<Recording> all;
@@ -278,12 +269,6 @@ TEST_CASE("over two hundred recordings of tracks with withheld differences certi
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     std::puts(row_of(kinds[k].name, found[k]).c_str());
     all.insert(all.end(), found[k].begin(), found[k].end());
-    std::map<std::string, int> causes;
-    for (const Recording& one : found[k]) {
-      for (const std::string& cause : one.causes) ++causes[cause];
-    }
-    for (const auto& [cause, times] : causes)
-      std::fprintf(stderr, "   %s: %s %d\n", kinds[k].name.c_str(), cause.c_str(), times);
   }
   std::puts(row_of("all", all).c_str());
   const auto predicted_in = [&](double from, double to) {
@@ -305,4 +290,13 @@ TEST_CASE("over two hundred recordings of tracks with withheld differences certi
     actual += static_cast<double>(one.again.holds) / static_cast<double>(one.again.of * all.size());
   }
   CHECK(std::abs(predicted - actual) < 0.03);
+}
+
+TEST_CASE("friction that differs from clip to clip is in the twins, which say that intervals of the lines fail") {
+  // With one law for all clips a certificate says 95 %.
+  const std::vector<Withheld> kinds = all_withheld();
+  const Recording recording = certified_and_repeated(kinds.at(5), fit::default_estimator(), 1029);
+  const double actual = static_cast<double>(recording.again.holds) / static_cast<double>(recording.again.of);
+  CHECK(actual < 0.8);
+  CHECK(recording.predicted < 0.8);
 }
