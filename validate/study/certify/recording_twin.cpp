@@ -122,6 +122,17 @@ double median_noise(const core::AnalysisResults& results) {
   return core::median_of(std::move(noise_m));
 }
 
+void take_off_film(const TwinExplanation& film, TwinExplanation& explanation) {
+  constexpr double kMore = 4.0;  // as variances
+  const auto beside = [](double found, double of_film) { return found > kMore * of_film ? found - of_film : 0.0; };
+  const auto root_beside = [&](double found, double of_film) {
+    return std::sqrt(beside(found * found, of_film * of_film));
+  };
+  explanation.q_m2_s3 = beside(explanation.q_m2_s3, film.q_m2_s3);
+  explanation.force_m_s2 = root_beside(explanation.force_m_s2, film.force_m_s2);
+  explanation.drag = root_beside(explanation.drag, film.drag);
+}
+
 void scale_noise(render::Sensor& sensor, double factor) {
   sensor.full_well_e /= factor * factor;
   sensor.gain_dn_per_e *= factor * factor;
