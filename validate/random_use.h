@@ -12,12 +12,14 @@
 namespace glidelab::validate {
 
 enum class RandomUse : std::uint32_t {
-  by_number = 0,               ///< no word: the noise of a track (made_tracks.h) and a clean blind case (blind_case.h)
-  clock_rate = 0xC10C,         ///< no number: the clock of one replicate (interval_coverage.h)
-  bootstrap = 0xB007,          ///< no seed of a user's: resampled errors of a requirement (target.h)
-  everyday_case = 0x65767279,  ///< "evry" (everyday_case.h)
-  filmed_case = 0x66696C6D,    ///< "film" (blind_filmed_case.h)
-  challenge = 0x63686C67,      ///< "chlg" (challenge_case.h)
+  by_number = 0,                ///< no word: the noise of a track (made_tracks.h) and a clean blind case (blind_case.h)
+  clock_rate = 0xC10C,          ///< no number: the clock of one replicate (interval_coverage.h)
+  bootstrap = 0xB007,           ///< no seed of a user's: resampled errors of a requirement (target.h)
+  everyday_case = 0x65767279,   ///< "evry" (everyday_case.h)
+  filmed_case = 0x66696C6D,     ///< "film" (blind_filmed_case.h)
+  challenge = 0x63686C67,       ///< "chlg" (challenge_case.h)
+  twin_remainder = 0x74777265,  ///< "twre" (recording_twin.h)
+  twin_explanation = 0x74776578,  ///< "twex": no number (recording_twin.h)
 };
 
 /// {seed low, seed high, number}, and the use's word behind it where it has one.

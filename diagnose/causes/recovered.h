@@ -25,6 +25,7 @@ struct LikelyFit {
   const MotionFit* fit = nullptr;
   RemainderSizes sizes;
   double probability = 1.0;
+  std::vector<std::size_t> effects = {};  ///< that it holds
 };
 
 /// The reported one first.

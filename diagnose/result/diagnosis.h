@@ -187,6 +187,17 @@ struct TwinLack {
   std::string why;
 };
 
+/// One explanation of the motions, as a scenario file: its forces and starts. The camera is that of Diagnosis::twin.
+struct LikelyTwin {
+  std::string toml;
+  std::vector<std::string> ids;  ///< effects that it holds; none: the nominal model
+  double probability = 1.0;      ///< beside the others of the list
+  // What it leaves, as a random acceleration (causes/remainder.h).
+  double q_m2_s3 = 0.0;     ///< spectral density of the white part
+  double force_m_s2 = 0.0;  ///< sd from clip to clip of friction, and of inclination
+  double drag = 0.0;        ///< relative sd from clip to clip of K
+};
+
 /// Positions of one clip as the analysis has them, for the comparison with a twin.
 struct MeasuredMotion {
   std::string clip;
@@ -269,6 +280,7 @@ struct Diagnosis {
   std::vector<Note> notes;
   std::string twin;  ///< the fitted motions as a scenario file; empty for a table of lines
   std::vector<TwinLack> twin_lacks;
+  std::vector<LikelyTwin> likely_twins;  ///< the reported explanation first; empty for a table of lines
   double twin_from_m = 0.0;              ///< x of the data where the twin's x is 0
   std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
 };

@@ -15,6 +15,7 @@
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/tracks/rounded_positions.h"
+#include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/verdict/verdict.h"
 #include "diagnose/verdict/verdict_details.h"
@@ -172,19 +173,48 @@ constexpr std::size_t kMostLikely = 6;
 /// Explanations beside the reported one, whose probability is added to it; the nominal model for all that is unknown.
 void add_others(const WeighedCauses& weighed, const std::vector<Hypothesis>& all, double unknown,
                 const std::vector<std::size_t>& reported, Explanations& explanations) {
-  const auto add = [&](std::size_t fit, double probability) {
+  const auto add = [&](std::size_t fit, double probability, const std::vector<std::size_t>& effects) {
     if (probability < kLikely || explanations.size() > kMostLikely || !weighed.fits[fit]) return;
-    explanations.push_back({&weighed.fits[fit]->noise_alone, weighed.fits[fit]->sizes, probability});
+    explanations.push_back({&weighed.fits[fit]->noise_alone, weighed.fits[fit]->sizes, probability, effects});
   };
-  if (!reported.empty()) add(0, unknown);
+  if (!reported.empty()) add(0, unknown, {});
   for (const Hypothesis& one : all) {
     if (one.unnamed || one.effects.empty()) continue;
     if (one.effects == reported) {
       explanations.front().probability += one.probability;
     } else if (one.fit > 0) {
-      add(static_cast<std::size_t>(one.fit), one.probability);
+      add(static_cast<std::size_t>(one.fit), one.probability, one.effects);
     }
   }
+}
+
+/// The same by the noise alone, where nothing was weighed with a remainder.
+void add_others(const Comparison& by_noise, const std::vector<Hypothesis>& all, Explanations& explanations) {
+  for (const Hypothesis& one : all) {
+    const bool fitted = !one.unnamed && !one.effects.empty() && one.fit > 0;
+    const bool reported = fitted && one.effects == explanations.front().effects;
+    if (!fitted || reported || one.probability < kLikely || explanations.size() > kMostLikely) continue;
+    explanations.push_back({&by_noise.fits[static_cast<std::size_t>(one.fit)], {}, one.probability, one.effects});
+    explanations.front().probability -= one.probability;
+  }
+}
+
+/// Each explanation's motions, for studies that record them again. Of effects of the camera they have those that are
+/// reported.
+std::vector<LikelyTwin> likely_twins(const TrackSet& set, const Explanations& explanations,
+                                     const std::vector<DiagnosedEffect>& reported) {
+  std::vector<LikelyTwin> twins;
+  for (const LikelyFit& one : explanations) {
+    LikelyTwin twin;
+    twin.toml = twin_of(set, *one.fit, reported, false, std::nullopt).toml;
+    for (const std::size_t e : one.effects) twin.ids.emplace_back(effect_list()[e].id);
+    twin.probability = one.probability;
+    twin.q_m2_s3 = one.sizes.q_m2_s3;
+    twin.force_m_s2 = one.sizes.force_m_s2;
+    twin.drag = one.sizes.drag;
+    twins.push_back(std::move(twin));
+  }
+  return twins;
 }
 
 /// Whether the nominal model has a gap, and the likeliest explanation by the noise alone leaves one, or a doubt where
@@ -211,7 +241,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
                            [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
   }
   progress("measuring the gap", 0.9);
-  const std::vector<Hypothesis> weighed_all = weighed ? weighed->comparison.all : std::vector<Hypothesis>();
+  const std::vector<Hypothesis> all_before = weighed ? weighed->comparison.all : first.all;  // before the share counts
   const double unknown = weighed ? weighed->comparison.none + weighed->comparison.unknown : first.none + first.unknown;
   const TrackSet& with = weighed ? weighed->set : set;
   std::optional<Hypothesis> helps;  // what explains most, enough for its name or not
@@ -299,10 +329,13 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   if (weighed) {
     const bool with_names = diagnosis.verdict == Verdict::effect;
     explanations.front().probability = with_names ? 0.0 : unknown;
-    add_others(*weighed, weighed_all, unknown, with_names ? best.effects : std::vector<std::size_t>(), explanations);
+    add_others(*weighed, all_before, unknown, with_names ? best.effects : std::vector<std::size_t>(), explanations);
     explanations.front().probability = std::max(explanations.front().probability, kLikely);
   }
   diagnosis.recovered = recovered_of(set, explanations);
+  if (diagnosis.verdict == Verdict::effect) explanations.front().effects = best.effects;
+  if (!weighed) add_others(first, all_before, explanations);
+  diagnosis.likely_twins = likely_twins(set, explanations, diagnosis.effects);
   if (set.clips.size() < 2) {
     for (DiagnosedEffect& effect : diagnosis.effects) {
       effect.probability = std::min(effect.probability, kMostOfOneClip);

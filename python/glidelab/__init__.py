@@ -14,7 +14,7 @@ from __future__ import annotations
 from . import _glidelab
 from ._analysis import Analysis, Clip, Configuration, Line, Motion, analyze
 from ._camera import Camera, Marker, calibrate, fit_marker
-from ._certificate import Certificate, CertifiedQuantity, ChangedTwin, certify
+from ._certificate import Certificate, CertifiedExplanation, CertifiedQuantity, ChangedTwin, certify
 from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Recovered, Residuals, diagnose, plan
 from ._estimator import Judged, Judgement, estimator, judge
 from ._errors import Error, InputError, Issue, NotMet, NumericalError, SystemFailure
@@ -38,7 +38,8 @@ def explain(result: Result) -> str:
 
 __all__ = [
     "Analysis", "Bandwidth", "BandwidthRule", "Camera", "Candidate", "Cause", "Certificate",
-    "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage", "CoverageRow", "Diagnosis", "Effect",
+    "CertifiedExplanation", "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage", "CoverageRow",
+    "Diagnosis", "Effect",
     "Error", "FilmedClip", "Finding", "Frame", "InputError", "Issue", "Judged", "Judgement", "Line",
     "Marker", "ModeChange", "Motion", "NotMet", "NumericalError", "Plan", "PlannedEffect", "Quantity",
     "RecordingCheck", "Recovered", "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip",

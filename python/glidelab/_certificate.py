@@ -74,6 +74,31 @@ class ChangedTwin:
     stands_out: bool
 
 
+@dataclass(frozen=True)
+class CertifiedExplanation:
+    """The twins that follow one of the explanations that the diagnosis weighed.
+
+    Attributes
+    ----------
+    causes : tuple of str
+        Ids of its effects; none: the nominal law.
+    probability : float
+        Among those that twins follow.
+    twins : int
+        How many follow it.
+    coverage : float
+        Share of the stated 95 % intervals of K/m, mu and alpha that hold the truth in them.
+    coverage_interval95 : (float, float)
+        What as many twins leave open of it.
+    """
+
+    causes: tuple[str, ...]
+    probability: float
+    twins: int
+    coverage: float
+    coverage_interval95: tuple[float, float]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Certificate(Result):
     """Whether the intervals of an analysis hold in recordings like this one.
@@ -93,6 +118,8 @@ class Certificate(Result):
         The most helpful first.
     causes : tuple of str
         Ids of the effects that were diagnosed, and act in the twins.
+    explanations : tuple of CertifiedExplanation
+        Those that twins follow, the reported one first.
     """
 
     answer: str
@@ -103,6 +130,7 @@ class Certificate(Result):
     quantities: tuple[CertifiedQuantity, ...]
     changes: tuple[ChangedTwin, ...]
     causes: tuple[str, ...]
+    explanations: tuple[CertifiedExplanation, ...]
 
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a quantity."""
@@ -124,6 +152,12 @@ def _quantity(found: Mapping[str, Any]) -> CertifiedQuantity:
     return CertifiedQuantity(found["quantity"], found["asked"], found["failed"], coverage.get("share"),
                              _pair(coverage.get("interval95")), found.get("bias_sds"), found.get("rms"),
                              found.get("stated_sd"), bool(found.get("too_narrow")))
+
+
+def _explanation(found: Mapping[str, Any]) -> CertifiedExplanation:
+    coverage: Mapping[str, Any] = found["coverage"]
+    low, high = coverage["interval95"]
+    return CertifiedExplanation(tuple(found["causes"]), found["probability"], found["twins"], coverage["share"], (low, high))
 
 
 def _change(found: Mapping[str, Any]) -> ChangedTwin:
@@ -177,4 +211,5 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
     found = Result(made).to_dict()
     return Certificate(made, found["answer"], found["holds"], found["twins"], found["estimator"], found["by"],
                        tuple(_quantity(one) for one in found["quantities"]),
-                       tuple(_change(one) for one in found["changes"]), tuple(found["causes"]))
+                       tuple(_change(one) for one in found["changes"]), tuple(found["causes"]),
+                       tuple(_explanation(one) for one in found["explanations"]))

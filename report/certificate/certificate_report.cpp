@@ -23,7 +23,7 @@ constexpr double kSure = 2.5;  // standard deviations of a mean, the largest of 
 constexpr std::size_t kMostChanges = 3;
 
 std::string percent(double share) {
-  return fmt::format("{:.0f}", 100.0 * share);
+  return fmt::format("{:.0f}", std::round(100.0 * share) + 0.0);  // + 0.0: no "-0"
 }
 
 /// "94 % (90 to 97 %)".
@@ -56,14 +56,18 @@ double sureness(const CertifiedQuantity& quantity) {
   return std::abs(quantity.bias_sds.value) / quantity.bias_sds.sd;
 }
 
-/// "µ is off by 0.3 of its standard deviation on average".
+/// The largest that is more than chance: "µ is off by 0.3 of its standard deviation on average".
 std::string bias_words(const Certificate& certificate) {
   const CertifiedQuantity* worst = nullptr;
+  bool any = false;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
-    if (is_headline(quantity) && (worst == nullptr || sureness(quantity) > sureness(*worst))) worst = &quantity;
+    if (!is_headline(quantity)) continue;
+    any = true;
+    if (sureness(quantity) < kSure) continue;
+    if (worst == nullptr || std::abs(quantity.bias_sds.value) > std::abs(worst->bias_sds.value)) worst = &quantity;
   }
-  if (worst == nullptr) return {};
-  if (sureness(*worst) < kSure) return "none of them is off on average by more than chance";
+  if (!any) return {};
+  if (worst == nullptr) return "none of them is off on average by more than chance";
   return fmt::format("{} is off by {:.1f} of its standard deviation on average", symbol_of(worst->quantity),
                      std::abs(worst->bias_sds.value));
 }
@@ -127,22 +131,51 @@ std::string twin_words(const Certificate& certificate) {
   std::string text = fmt::format(
       "{} twins of this recording ({} clip{}), {}, were analysed by the {}. Their motions are those that were fitted",
       certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
-      certificate.filmed ? "filmed by its camera and tracked, each with a calibration of its own"
+      certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
                          : "simulated at its frame times with its noise and rounding",
       estimator_name(certificate.estimator));
   std::string causes;
   for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
   text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
+  if (certificate.explanations.size() > 1)
+    text += " Other explanations that are likely, too, have as many of the twins as their probability says.";
+  text += " What an explanation leaves of each clip is in the twins as well, drawn anew for each.";
   text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
                       micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
   return text;
+}
+
+std::string lack_text(const validate::NotInTwins& lack) {
+  return fmt::format("{} ({})", effect_name(lack.what), lack.why);
+}
+
+/// "quadratic drag and friction by configuration".
+std::string explanation_name(const validate::CertifiedExplanation& one) {
+  std::string text;
+  for (const std::string& id : one.ids) text += (text.empty() ? "" : " and ") + effect_name(id);
+  return text.empty() ? "the nominal law alone" : text;
+}
+
+/// Which explanations break the intervals, where others do not; empty where that makes no difference.
+std::string explanation_words(const Certificate& certificate) {
+  double failing = 0.0;
+  const validate::CertifiedExplanation* worst = nullptr;
+  for (const validate::CertifiedExplanation& one : certificate.explanations) {
+    if (!one.fails()) continue;
+    failing += one.probability;
+    if (worst == nullptr || one.probability > worst->probability) worst = &one;
+  }
+  if (worst == nullptr || certificate.explanations.size() < 2) return {};
+  return fmt::format(
+      "They fail with explanations that the diagnosis finds {} % probable together, most of all with {} ({} % hold).",
+      percent(failing), explanation_name(*worst), percent(worst->coverage.share));
 }
 
 /// "The twins are without …: read the answer with that in mind."; empty where they have all of it.
 std::string lack_words(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;
-  for (const std::string& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack;
+  for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_text(lack);
   return fmt::format("The recording has what its twins have not: {}. The answer holds as far as that does not matter.",
                      lacks);
 }
@@ -263,10 +296,18 @@ std::string certificate_json(const Certificate& certificate) {
   document["configurations"] = Json::array();
   for (const CertifiedQuantity& one : certificate.configurations)
     document["configurations"].push_back(quantity_json(one));
+  document["explanations"] = Json::array();
+  for (const validate::CertifiedExplanation& one : certificate.explanations) {
+    document["explanations"].push_back({{"causes", one.ids},
+                                        {"probability", one.probability},
+                                        {"twins", one.twins},
+                                        {"coverage", share_json(one.coverage)}});
+  }
   document["changes"] = Json::array();
   for (const ChangedTwin& change : certificate.changes) document["changes"].push_back(change_json(change));
   document["causes"] = certificate.causes;
-  document["not_in_the_twins"] = certificate.without;
+  document["not_in_the_twins"] = Json::array();
+  for (const validate::NotInTwins& lack : certificate.without) document["not_in_the_twins"].push_back(lack_text(lack));
   put(document, "recorded_noise_m", certificate.recorded_noise_m);
   put(document, "twin_noise_m", certificate.twin_noise_m);
   return json_text(document);
@@ -274,6 +315,7 @@ std::string certificate_json(const Certificate& certificate) {
 
 std::string certificate_text(const Certificate& certificate) {
   std::string text = certificate_answer(certificate) + "\n";
+  if (const std::string which = explanation_words(certificate); !which.empty()) text += printable(which) + "\n";
   if (const std::string lacks = lack_words(certificate); !lacks.empty()) text += printable(lacks) + "\n";
   text += "\n";
   std::vector<std::vector<std::string>> rows = {kHeader};
@@ -294,11 +336,20 @@ std::string certificate_text(const Certificate& certificate) {
 
 namespace {
 
+/// A command in brackets as code.
+std::string with_command(std::string text) {
+  const std::size_t from = text.find("(glidelab "), to = text.find(')', from);
+  if (from == std::string::npos || to == std::string::npos) return text;
+  text.insert(to, "</code>");
+  text.insert(from + 1, "<code>");
+  return text;
+}
+
 std::string changes_html(const Certificate& certificate) {
   const std::vector<std::string> best = best_changes(certificate);
   if (best.empty()) return fmt::format("<p>{}</p>\n", kNothingStandsOut);
   std::string list;
-  for (const std::string& one : best) list += fmt::format("<li>{}</li>\n", escape(one));
+  for (const std::string& one : best) list += fmt::format("<li>{}</li>\n", with_command(escape(one)));
   return fmt::format("<h2 id=\"changes\">What would help most</h2>\n<ol>\n{}</ol>\n", list);
 }
 
@@ -336,6 +387,18 @@ std::string configurations_table(const Certificate& certificate) {
   return table.str();
 }
 
+std::string explanations_table(const Certificate& certificate) {
+  HtmlTable table({"explanation", "probability", "twins", "intervals that hold"});
+  for (const validate::CertifiedExplanation& one : certificate.explanations) {
+    table.row({escape(explanation_name(one)), percent(one.probability) + " %", fmt::format("{}", one.twins),
+               share_text(one.coverage)});
+  }
+  return table.str() +
+         "<p class=\"soft\">Explanations that the diagnosis weighed, with their probabilities among these; K/m, µ and "
+         "α "
+         "together.</p>\n";
+}
+
 std::string how_judged(const Certificate& certificate) {
   return fmt::format(
       "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the limit velocity of the fitted motions (beside a named "
@@ -350,9 +413,10 @@ std::string how_judged(const Certificate& certificate) {
 Page certificate_page(const std::string& name, const Certificate& certificate) {
   Html body = fmt::format("<h1>Can I trust the intervals of {}?</h1>\n<p><b>{}</b></p>\n", escape(name),
                           escape(certificate_answer(certificate)));
+  if (const std::string which = explanation_words(certificate); !which.empty())
+    body += fmt::format("<p>{}</p>\n", escape(which));
   if (const std::string lacks = lack_words(certificate); !lacks.empty())
     body += fmt::format("<p class=\"note\">{}</p>\n", escape(lacks));
-  if (!certificate.empty()) body += figures({certificate_plot(certificate)});
   HtmlTable table(kHeader);
   for (const CertifiedQuantity& quantity : certificate.quantities) {
     std::vector<std::string> cells = cells_of(quantity);
@@ -360,8 +424,10 @@ Page certificate_page(const std::string& name, const Certificate& certificate) {
     table.row(cells);
   }
   if (!table.empty()) body += table.str();
+  if (!certificate.empty()) body += figures({certificate_plot(certificate)});
   body += changes_html(certificate);
   if (!certificate.changes.empty()) body += folded("What limits it", limits_table(certificate));
+  if (certificate.explanations.size() > 1) body += folded("Each explanation", explanations_table(certificate));
   body += folded("Each configuration", configurations_table(certificate));
   body += folded("How this was judged", how_judged(certificate));
   return page("Certificate: " + name, body);

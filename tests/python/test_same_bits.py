@@ -75,6 +75,7 @@ class SameBits(InFolder):
         self.assertEqual([one.quantity for one in certificate.quantities],
                          ["k_over_m_1_s", "mu", "alpha_deg", "v_lim_m_s"])
         self.assertTrue(certificate.holds)
+        self.assertEqual(sum(one.twins for one in certificate.explanations), 20)
 
     def test_files_with_several_runs(self):
         tracks = made_tracks()[:2]

@@ -236,7 +236,9 @@ TEST_CASE("the page of a certificate has every name from a file as text") {
   certificate.quantities = {quantity};
   quantity.configuration = kEvil;
   certificate.configurations = {quantity};
-  certificate.causes = certificate.without = {kEvil};
+  certificate.causes = {kEvil};
+  certificate.without = {{kEvil, kEvil}};
+  certificate.explanations = {{{kEvil}, 0.5, 20, {}}, {{}, 0.5, 20, {}}};
   certificate.changes = {
       {kEvil, kEvil, kEvil, 40, {{"mu", {0.5, 0.4, 0.6}, true}}, validate::RunFall{0.5, 0.4, 0.6}, true}};
   check_is_text(report::certificate_page(kEvil, certificate));

@@ -47,17 +47,36 @@ struct ChangedTwin {
   bool stands_out = false;          ///< together, above 0 at 95 % over all changes (Bonferroni)
 };
 
+/// The twins that follow one of the explanations that the diagnosis weighed.
+struct CertifiedExplanation {
+  std::vector<std::string> ids;  ///< effects that it holds; none: the nominal model
+  double probability = 1.0;      ///< of all that are recorded
+  std::size_t twins = 0;
+  RunShare coverage;  ///< of K/m, mu and alpha
+
+  /// Fewer hold than 95 %, by more than chance makes.
+  bool fails() const { return coverage.of > 0 && coverage.high < 0.95; }
+};
+
+/// What the recording has and its twins have not.
+struct NotInTwins {
+  std::string what;  ///< an effect's id, or words
+  std::string why;
+};
+
 struct Certificate {
   std::size_t runs = 0;
   std::string estimator;
   bool filmed = false;  ///< clips were filmed and tracked; else positions simulated
   std::size_t clips = 0;
   RunShare together;                                  ///< coverage of K/m, mu and alpha, in all configurations
+  RunShare wide_together;                             ///< the same with the interval of CertifiedQuantity
+  std::vector<CertifiedExplanation> explanations;     ///< those that twins follow, the reported one first
   std::vector<CertifiedQuantity> quantities;          ///< all configurations together: those with a truth
   std::vector<CertifiedQuantity> configurations;      ///< each by itself, where there are several
   std::vector<ChangedTwin> changes;                   ///< the largest fall together first
   std::vector<std::string> causes;                    ///< ids: named by the diagnosis, and in the twin
-  std::vector<std::string> without;                   ///< sentences: of the recording, and not in the twin
+  std::vector<NotInTwins> without;                    ///< of the recording, and not in its twins
   double recorded_noise_m = 0.0, twin_noise_m = 0.0;  ///< of positions: medians over clips
 
   /// Of all K/m, mu, alpha together, and of each by itself.

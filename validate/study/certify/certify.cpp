@@ -27,6 +27,7 @@ constexpr std::size_t kQuantityCount = core::kQuantities.size();
 constexpr std::size_t kHeadline = 3;        // K/m, mu and alpha: the first of kQuantities
 constexpr std::size_t kFilmedChanges = 10;  // twins filmed of each change
 constexpr double kConfidence = 0.95;
+constexpr double kWideConfidence = 1.0 - 0.01 / static_cast<double>(kQuantityCount);  // Bonferroni
 
 /// One quantity of one configuration in one twin.
 struct Outcome {
@@ -47,10 +48,18 @@ const core::ConfigurationResult* result_of(const core::AnalysisResults& results,
   return nullptr;
 }
 
+std::vector<Truth> truths_of(const RecordingTwin& twin, bool nominal = false) {
+  std::vector<Truth> truths;
+  for (std::size_t k = 0; k < std::max<std::size_t>(1, twin.explanations.size()); ++k) {
+    truths.push_back(truth_of(twin, k, nominal));
+  }
+  return truths;
+}
+
 /// The twins, and what all of them share.
 struct Twins {
   const RecordingTwin& twin;
-  Truth truth;
+  std::vector<Truth> truths;  ///< by explanation
   const CertifyOptions& options;
   TwinStudios& studios;
   base::Progress progress;
@@ -73,7 +82,7 @@ TwinOutcome outcome_of(const Twins& twins, const TwinChange& change, std::uint64
   } catch (const base::NumericalError& error) {
     why = error.what();
   }
-  for (const TrueConfiguration& truth : twins.truth.configurations) {
+  for (const TrueConfiguration& truth : twins.truths[explanation_of(twins.twin, seed)].configurations) {
     auto& of = outcome.configurations.emplace_back();
     const core::ConfigurationResult* result = result_of(results, truth);
     for (std::size_t q = 0; q < kQuantityCount; ++q) {
@@ -143,8 +152,7 @@ CertifiedQuantity certified(const Outcomes& outcomes, std::size_t quantity,
   if (result.answered() == 0) return result;
   const std::vector<RunCount> held = counts_of(outcomes, quantity, 1, configuration);
   result.coverage = share_of(held, kConfidence);
-  constexpr double kLevel = 0.01 / static_cast<double>(kQuantityCount);  // Bonferroni
-  result.wide_coverage = share_of(held, 1.0 - kLevel);
+  result.wide_coverage = share_of(held, kWideConfidence);
   result.bias_sds = mean_of(sds, counts);
   result.rms = std::sqrt(square / static_cast<double>(result.answered()));
   result.stated_sd = std::sqrt(stated / static_cast<double>(result.answered()));
@@ -195,6 +203,30 @@ struct WantedChange {
   std::string limit, words, advice;
 };
 
+bool is_linear(const std::vector<sim::ConfigurationSetup>& configurations) {
+  return std::all_of(configurations.begin(), configurations.end(),
+                     [](const sim::ConfigurationSetup& setup) { return sim::linear_law(setup.body).has_value(); });
+}
+
+/// Effects of the likeliest explanation that has forces beside the law, less those of one that has none; nothing where
+/// there is no such force.
+std::optional<std::vector<std::string>> causes_beside_law(const RecordingTwin& twin) {
+  const TwinExplanation *likeliest = nullptr, *linear = nullptr;
+  for (const TwinExplanation& one : twin.explanations) {
+    const TwinExplanation*& best = is_linear(one.configurations) ? linear : likeliest;
+    if (best == nullptr || one.probability > best->probability) best = &one;
+  }
+  if (likeliest == nullptr) {
+    if (is_linear(twin.scenario.motion.configurations)) return std::nullopt;
+    return twin.causes;
+  }
+  std::vector<std::string> causes = likeliest->ids;
+  if (linear != nullptr) {
+    for (const std::string& id : linear->ids) std::erase(causes, id);
+  }
+  return causes;
+}
+
 std::vector<WantedChange> wanted_changes(const RecordingTwin& twin) {
   std::vector<WantedChange> wanted;
   if (twin.filmed) {
@@ -232,17 +264,40 @@ std::vector<WantedChange> wanted_changes(const RecordingTwin& twin) {
   if (std::any_of(twin.clips.begin(), twin.clips.end(), [](const ClipNoise& clip) { return clip.rounding_m > 0.0; })) {
     wanted.push_back({{.unrounded = true}, "rounding", "positions with all their digits", "Export more digits"});
   }
-  if (std::any_of(twin.scenario.motion.configurations.begin(), twin.scenario.motion.configurations.end(),
-                  [](const sim::ConfigurationSetup& setup) { return !sim::linear_law(setup.body); })) {
-    wanted.push_back({{.nominal = true},
-                      "a cause beside the law",
-                      "the nominal law alone",
-                      fmt::format("Take the cause out of the experiment, or put it into the model (glidelab analyze "
-                                  "--with {})",
-                                  fmt::join(twin.causes, " --with "))});
+  if (const auto causes = causes_beside_law(twin)) {
+    std::string advice = "Take the cause out of the experiment";
+    if (!causes->empty())
+      advice += fmt::format(", or put it into the model (glidelab analyze --with {})", fmt::join(*causes, " --with "));
+    wanted.push_back(
+        {{.nominal = true}, "a cause beside the law", "the viscous and the Coulomb friction alone", advice});
+  }
+  if (std::any_of(twin.explanations.begin(), twin.explanations.end(),
+                  [](const TwinExplanation& one) { return one.probability > 0.1 && !one.leaves_nothing(); })) {
+    wanted.push_back({{.alike = true},
+                      "what differs from clip to clip",
+                      "every clip by one law",
+                      "Make the clips alike: the track clean and level, the air still, nothing that touches the "
+                      "glider"});
   }
   wanted.push_back({{.twice = true}, "few clips", "every clip recorded twice", "Record a second clip of each kind"});
   return wanted;
+}
+
+std::vector<CertifiedExplanation> explanations_of(const RecordingTwin& twin, const std::vector<RunCount>& held,
+                                                  std::uint64_t seed) {
+  std::vector<std::vector<RunCount>> by(twin.explanations.size());
+  double sum = 0.0;
+  for (const TwinExplanation& one : twin.explanations) sum += std::max(0.0, one.probability);
+  for (std::size_t r = 0; r < held.size() && !by.empty(); ++r) {
+    by[explanation_of(twin, derived_seed(seed, r))].push_back(held[r]);
+  }
+  std::vector<CertifiedExplanation> explanations;
+  for (std::size_t k = 0; k < by.size(); ++k) {
+    const TwinExplanation& one = twin.explanations[k];
+    if (by[k].empty()) continue;
+    explanations.push_back({one.ids, one.probability / sum, by[k].size(), share_of(by[k], kConfidence)});
+  }
+  return explanations;
 }
 
 /// The falls of one change; the tests count what all changes and quantities make together.
@@ -297,7 +352,7 @@ void check_runs(std::size_t runs) {
 }  // namespace
 
 bool Certificate::holds() const {
-  return !(together.of > 0 && together.high < kConfidence) &&
+  return !(together.of > 0 && wide_together.high < kConfidence) &&
          std::none_of(quantities.begin(), quantities.end(),
                       [](const CertifiedQuantity& quantity) { return quantity.too_narrow(); });
 }
@@ -324,9 +379,12 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
     tell();
   };
   TwinStudios studios(runs_of_change);
-  const Twins twins{twin, truth_of(twin), options, studios, [&](std::string_view, double) { tell(); }};
+  const Twins twins{twin, truths_of(twin), options, studios, [&](std::string_view, double) { tell(); }};
   const Outcomes outcomes = record_all(twins, {}, options.runs, done);
-  certificate.together = share_of(counts_of(outcomes, 0, kHeadline, std::nullopt), kConfidence);
+  const std::vector<RunCount> held = counts_of(outcomes, 0, kHeadline, std::nullopt);
+  certificate.together = share_of(held, kConfidence);
+  certificate.wide_together = share_of(held, kWideConfidence);
+  certificate.explanations = explanations_of(twin, held, options.seed);
   const std::vector<std::string> names = configuration_names(twin.scenario);
   for (std::size_t q = 0; q < kQuantityCount; ++q) {
     CertifiedQuantity quantity = certified(outcomes, q, std::nullopt, "");
@@ -341,7 +399,9 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);  // 0 of one that failed
   certificate.twin_noise_m = core::median_of(std::move(noise_m));
   for (const WantedChange& change : wanted) {
-    const Outcomes after = record_all(twins, change.change, runs_of_change, done);
+    Twins with_change = twins;
+    if (change.change.nominal) with_change.truths = truths_of(twin, true);
+    const Outcomes after = record_all(with_change, change.change, runs_of_change, done);
     certificate.changes.push_back(changed_twin(change, outcomes, after, wanted.size()));
   }
   std::stable_sort(certificate.changes.begin(), certificate.changes.end(),
@@ -357,19 +417,50 @@ namespace {
 void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
   constexpr double kAlike = 1.1, kFarthest = 4.0;
   TwinStudios studios(0);
-  const Twins twins{twin, truth_of(twin), options, studios, progress};
+  const Twins twins{twin, truths_of(twin), options, studios, progress};
   const TwinOutcome pilot = outcome_of(twins, {}, derived_seed(options.seed, kMostTwins));
   if (!(pilot.noise_m > 0.0)) return;  // none of its clips could be used: the certificate says so
   const double factor = twin.noise_m / pilot.noise_m;
   if (factor > 1.0 / kAlike && factor < kAlike) return;
   if (factor < 1.0 / kFarthest || factor > kFarthest) {
     twin.without.push_back(
-        fmt::format("noise as in the recording (its positions scatter by {:.3g} m, the twin's by "
-                    "{:.3g} m: another cause than the pixels' noise)",
-                    twin.noise_m, pilot.noise_m));
+        {"noise as in the recording", fmt::format("its positions scatter by {:.3g} m, the twin's by {:.3g} m: another "
+                                                  "cause than the pixels' noise",
+                                                  twin.noise_m, pilot.noise_m)});
     return;
   }
   scale_noise(twin.scenario.sensor, factor);
+}
+
+/// What a diagnosis finds to be left of a filmed twin whose clips follow one law: it comes from filming alone, and
+/// every twin has it by itself.
+void take_off_film(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
+  if (std::all_of(twin.explanations.begin(), twin.explanations.end(),
+                  [](const TwinExplanation& one) { return one.leaves_nothing(); }))
+    return;
+  TwinStudios studios(0);
+  TwinExplanation film;
+  try {
+    const MadeTracks made =
+        record_twin(twin, {.alike = true}, derived_seed(options.seed, kMostTwins), studios, progress);
+    const diagnose::Diagnosis found = diagnose::diagnose_results(
+        analyze_tracks(made, std::nullopt, options.jobs), made.setups, {.without = {}, .jobs = options.jobs}, progress);
+    double sum = 0.0, force = 0.0, drag = 0.0;
+    for (const diagnose::LikelyTwin& one : found.likely_twins) {
+      sum += one.probability;
+      film.q_m2_s3 += one.probability * one.q_m2_s3;
+      force += one.probability * one.force_m_s2 * one.force_m_s2;
+      drag += one.probability * one.drag * one.drag;
+    }
+    film.q_m2_s3 /= sum;
+    film.force_m_s2 = std::sqrt(force / sum);
+    film.drag = std::sqrt(drag / sum);
+  } catch (const base::InputError&) {  // a twin that tells nothing of it
+    return;
+  } catch (const base::NumericalError&) {
+    return;
+  }
+  for (TwinExplanation& one : twin.explanations) take_off_film(film, one);
 }
 
 }  // namespace
@@ -397,7 +488,11 @@ Certificate certify(const std::vector<std::filesystem::path>& folders, const Cer
       diagnose::diagnose_results(results, setups, how, progress, cameras, experiments);
   RecordingTwin twin = twin_of_recording(results, diagnosis, experiments);
   progress("twins", 0.0);
-  if (twin.filmed) match_noise(twin, options, [&](std::string_view, double) { progress("twins", 0.0); });
+  if (twin.filmed) {
+    const auto pilot = [&](std::string_view, double) { progress("twins", 0.0); };
+    match_noise(twin, options, pilot);
+    take_off_film(twin, options, pilot);
+  }
   return certify_twin(twin, options, progress);
 }
 

@@ -13,6 +13,7 @@
 #include "core/motion/lines/line_fit.h"
 #include "diagnose/effects/effect_list.h"
 #include "diagnose/twin/twin.h"
+#include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 #include "validate/random_use.h"
 
@@ -86,12 +87,50 @@ std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diag
   return clips;
 }
 
+/// Bodies and starts of the explanations that can be told as a scenario; its cameras and durations are the first one's.
+std::vector<TwinExplanation> explanations_of(const diagnose::Diagnosis& diagnosis, const render::Scenario& scenario) {
+  std::vector<TwinExplanation> explanations;
+  for (const diagnose::LikelyTwin& likely : diagnosis.likely_twins) {
+    TwinExplanation one{
+        scenario.motion.configurations, likely.probability, likely.ids, likely.q_m2_s3, likely.force_m_s2, likely.drag};
+    if (!explanations.empty()) {
+      std::vector<sim::ConfigurationSetup> own;
+      try {
+        own = render::read_scenario(likely.toml, "another explanation", render::ScenarioChecks::values)
+                  .motion.configurations;
+      } catch (const base::InputError&) {  // a drag below zero, for instance
+        continue;
+      }
+      for (std::size_t c = 0; c < own.size(); ++c) {
+        one.configurations[c].body = own[c].body;
+        for (std::size_t m = 0; m < own[c].motions.size(); ++m) {
+          one.configurations[c].motions[m].x0_m = own[c].motions[m].x0_m;
+          one.configurations[c].motions[m].v0_m_s = own[c].motions[m].v0_m_s;
+        }
+      }
+    }
+    explanations.push_back(std::move(one));
+  }
+  return explanations;
+}
+
 }  // namespace
 
 double median_noise(const core::AnalysisResults& results) {
   std::vector<double> noise_m;
   for (const core::ClipResult& clip : results.clips) noise_m.push_back(clip.position_noise_m);
   return core::median_of(std::move(noise_m));
+}
+
+void take_off_film(const TwinExplanation& film, TwinExplanation& explanation) {
+  constexpr double kMore = 4.0;  // as variances
+  const auto beside = [](double found, double of_film) { return found > kMore * of_film ? found - of_film : 0.0; };
+  const auto root_beside = [&](double found, double of_film) {
+    return std::sqrt(beside(found * found, of_film * of_film));
+  };
+  explanation.q_m2_s3 = beside(explanation.q_m2_s3, film.q_m2_s3);
+  explanation.force_m_s2 = root_beside(explanation.force_m_s2, film.force_m_s2);
+  explanation.drag = root_beside(explanation.drag, film.drag);
 }
 
 void scale_noise(render::Sensor& sensor, double factor) {
@@ -112,14 +151,15 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
     } catch (const base::InputError& error) {  // what a camera of a scenario cannot see
       std::string why = error.what();
       std::replace(why.begin(), why.end(), '\n', ' ');
-      twin.without.push_back(fmt::format("images and calibration ({})", why));
+      twin.without.push_back({"images and calibration", why});
     }
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) twin.causes.push_back(effect.id);
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     std::erase(twin.causes, lack.what);
-    twin.without.push_back(fmt::format("{} ({})", lack.what, lack.why));
+    twin.without.push_back({lack.what, lack.why});
   }
+  twin.explanations = explanations_of(diagnosis, twin.scenario);
   twin.noise_m = median_noise(results);
   for (const core::ClipResult& clip : results.clips) {
     twin.scale_sd_relative = std::max(twin.scale_sd_relative, clip.scale_sd_relative);
@@ -136,6 +176,14 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
     twin.scenario.pattern.views = static_cast<int>(std::clamp(results.calibrations.front().views_used, kFewest, kMost));
   }
   return twin;
+}
+
+std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed) {
+  std::vector<double> probabilities;
+  for (const TwinExplanation& one : twin.explanations) probabilities.push_back(std::max(0.0, one.probability));
+  if (probabilities.size() < 2) return 0;
+  std::mt19937_64 engine = random_engine(RandomUse::twin_explanation, seed);
+  return std::discrete_distribution<std::size_t>(probabilities.begin(), probabilities.end())(engine);
 }
 
 namespace {
@@ -164,15 +212,27 @@ void add_own_law(const render::Scenario& scenario, Truth& truth) {
   }
 }
 
-render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, double clock_ppm) {
+/// The scenario with the motions of an explanation.
+render::Scenario explained(const RecordingTwin& twin, std::size_t explanation) {
   render::Scenario scenario = twin.scenario;
+  if (!twin.explanations.empty()) scenario.motion.configurations = twin.explanations[explanation].configurations;
+  return scenario;
+}
+
+/// Leaves the viscous and the Coulomb friction alone.
+void take_out_causes(render::Scenario& scenario) {
+  for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    std::erase_if(configuration.body.forces, [](const auto& term) { return !term->linear(); });
+  }
+}
+
+render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed, double clock_ppm) {
+  render::Scenario scenario = explained(twin, explanation_of(twin, seed));
   scenario.recording.clock.rate_error_ppm += clock_ppm;
   scenario.marker.diameter_m *= change.marker;
   if (change.lossless) scenario.codec = render::Codec::ffv1;
   if (change.noise != 1.0) scale_noise(scenario.sensor, change.noise);
-  for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
-    if (change.nominal) std::erase_if(configuration.body.forces, [](const auto& term) { return !term->linear(); });
-  }
+  if (change.nominal) take_out_causes(scenario);
   if (change.twice) {
     for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
       const std::vector<sim::MotionSetup> once = configuration.motions;
@@ -268,11 +328,84 @@ MadeTracks simulated(const RecordingTwin& twin, const TwinChange& change, const 
 
 }  // namespace
 
+namespace {
+
+/// The body of one clip, whose inclination, friction and drag are off by these accelerations and this part.
+sim::Body scattered(sim::Body body, double incline_m_s2, double friction_m_s2, double drag) {
+  const double normal_m_s2 = body.gravity_m_s2 * std::cos(body.incline_rad);
+  for (auto& term : body.forces) {
+    const std::optional<sim::LinearShare> share = term->linear();
+    if (!share) continue;
+    if (share->mu > 0.0) {
+      term = sim::laws::coulomb().with({std::max(0.0, share->mu - friction_m_s2 / normal_m_s2)});
+      friction_m_s2 = 0.0;
+    } else if (share->k_n_s_m > 0.0) {
+      term = sim::laws::viscous().with({share->k_n_s_m * std::max(0.0, 1.0 - drag)});
+    }
+  }
+  body.incline_rad += incline_m_s2 / normal_m_s2;
+  return body;
+}
+
+/// Displacements at these times by a white acceleration of the spectral density q, of a motion with the drag k (1/s).
+std::vector<double> wander(const std::vector<double>& t_s, double q_m2_s3, double k_1_s, std::mt19937_64& engine) {
+  std::normal_distribution<double> deviate(0.0, 1.0);
+  std::vector<double> x_m;
+  double x = 0.0, v = 0.0;
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    // A step of white acceleration gives v the variance q h, x the variance q h³/3, and both the covariance q h²/2.
+    const double h = i > 0 ? t_s[i] - t_s[i - 1] : 0.0, root = std::sqrt(q_m2_s3 * h);
+    const double a = deviate(engine), b = deviate(engine);
+    x += v * h + root * h * (0.5 * a + b / std::sqrt(12.0));
+    v = v * std::exp(-k_1_s * h) + root * a;
+    x_m.push_back(x);
+  }
+  return x_m;
+}
+
+double drag_1_s(const sim::Body& body) {
+  double k_n_s_m = 0.0;
+  for (const auto& term : body.forces) {
+    if (const auto share = term->linear()) k_n_s_m += share->k_n_s_m;
+  }
+  return k_n_s_m / body.mass_kg;
+}
+
+/// Adds to the positions what the remainder changes in x.
+void add_remainder(const TwinExplanation& explanation, const render::Scenario& scenario, std::uint64_t seed,
+                   MadeTracks& made) {
+  if (explanation.leaves_nothing()) return;
+  std::size_t c = 0;
+  for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
+    for (const sim::MotionSetup& motion : configuration.motions) {
+      std::mt19937_64 engine = random_engine(RandomUse::twin_remainder, seed, c);
+      std::normal_distribution<double> deviate(0.0, 1.0);
+      const double incline = explanation.force_m_s2 * deviate(engine);
+      const double friction = explanation.force_m_s2 * deviate(engine), drag = explanation.drag * deviate(engine);
+      const TrueClip& truth = made.truth.clips[c];
+      std::vector<double> instants = truth.t_s;  // a frame that is there twice has one
+      instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
+      const sim::Body body = scattered(configuration.body, incline, friction, drag);
+      const sim::Trajectory trajectory = sim::simulate(body, motion.x0_m, motion.v0_m_s, instants);
+      std::vector<double> by_m = wander(instants, explanation.q_m2_s3, drag_1_s(configuration.body), engine);
+      core::TrackData& track = made.tracks[c++];
+      for (std::size_t i = 0; i < track.x_m.size(); ++i) {
+        const auto frame = static_cast<std::size_t>(track.frame[i]);
+        const auto at = static_cast<std::size_t>(
+            std::lower_bound(instants.begin(), instants.end(), truth.t_s.at(frame)) - instants.begin());
+        track.x_m[i] += trajectory.states[at].x_m - truth.x_m[frame] + by_m[at];
+      }
+    }
+  }
+}
+
+}  // namespace
+
 /// A seed's calibration, and the stage of a change.
 class TwinFilm {
  public:
-  TwinFilm(TwinStudios& studios, const TwinChange& change, std::uint64_t seed)
-      : studios_(studios), change_(change), seed_(seed) {}
+  TwinFilm(TwinStudios& studios, const TwinChange& change, std::size_t explanation, std::uint64_t seed)
+      : studios_(studios), change_(change), explanation_(explanation), seed_(seed) {}
 
   MadeTracks film(const render::Scenario& scenario, const std::optional<core::CameraModel>& lens,
                   const base::Progress& progress) {
@@ -285,8 +418,8 @@ class TwinFilm {
   }
 
  private:
-  std::pair<double, double> scene() const { return {change_.noise, change_.marker}; }
-  bool as_recorded() const { return scene() == std::pair(1.0, 1.0); }
+  std::tuple<std::size_t, double, double> scene() const { return {explanation_, change_.noise, change_.marker}; }
+  bool as_recorded() const { return change_.noise == 1.0 && change_.marker == 1.0; }
 
   std::shared_ptr<FilmStudio> studio_of(const render::Scenario& scenario, const base::Progress& progress) {
     std::shared_ptr<const render::Stage> stage;
@@ -301,6 +434,7 @@ class TwinFilm {
 
   TwinStudios& studios_;
   const TwinChange& change_;
+  std::size_t explanation_;
   std::uint64_t seed_;
 };
 
@@ -310,7 +444,7 @@ MadeTracks filmed(const RecordingTwin& twin, const TwinChange& change, const ren
                   std::uint64_t seed, TwinStudios& studios, const base::Progress& progress) {
   const bool by_scale = twin.scale_sd_relative > 0.0;
   const auto lens = by_scale || change.camera_known ? true_camera(scenario.camera) : std::nullopt;
-  MadeTracks made = TwinFilm(studios, change, seed).film(scenario, lens, progress);
+  MadeTracks made = TwinFilm(studios, change, explanation_of(twin, seed), seed).film(scenario, lens, progress);
   if (!by_scale) return made;
   for (core::TrackData& track : made.tracks) {
     track.shared_m.clear();
@@ -328,15 +462,19 @@ MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std:
   std::normal_distribution<double> deviate(0.0, 1.0);
   const double clock_ppm = 1e6 * core::kClockSdRelative * deviate(engine);
   const double scale = 1.0 + (change.camera_known ? 0.0 : twin.scale_sd_relative * deviate(engine));
-  const render::Scenario scenario = changed(twin, change, clock_ppm);
+  const render::Scenario scenario = changed(twin, change, seed, clock_ppm);
   MadeTracks made = twin.filmed ? filmed(twin, change, scenario, scale, seed, studios, progress)
                                 : simulated(twin, change, scenario, scale, seed);
+  if (!twin.explanations.empty() && !change.alike)
+    add_remainder(twin.explanations[explanation_of(twin, seed)], scenario, seed, made);
   return made;
 }
 
-Truth truth_of(const RecordingTwin& twin) {
-  Truth truth = make_tracks(twin.scenario, 1).truth;
-  add_own_law(twin.scenario, truth);
+Truth truth_of(const RecordingTwin& twin, std::size_t explanation, bool nominal) {
+  render::Scenario scenario = explained(twin, explanation);
+  if (nominal) take_out_causes(scenario);
+  Truth truth = make_tracks(scenario, 1).truth;
+  add_own_law(scenario, truth);
   return truth;
 }
 

@@ -1,6 +1,13 @@
 /// Twins of a recording: its fitted motions, with the causes that its diagnosis named, recorded anew as often as
 /// wanted.
 ///
+/// The truth of a twin is drawn: it follows one of the explanations that the diagnosis weighed, as often as that one is
+/// probable, so a drag that is likely and not named is in some of the twins. And each clip has what that explanation
+/// leaves (diagnose/causes/remainder.h): inclination, friction and drag that scatter from clip to clip, and a white
+/// acceleration, each with the size that the recording has most likely. What they change in x is added to the recorded
+/// positions. Of a filmed recording that part is taken off which a twin without any has by its calibration and
+/// tracking.
+///
 /// A recording whose clips were all filmed is filmed again (film_studio.h): its camera as the folder, calibration and
 /// images tell it, each twin with the noise of its own clips and of its own calibration stills (as many views as were
 /// used), the pixels' noise scaled so that positions scatter as they do in the recording. Where the clips have one
@@ -21,6 +28,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -30,6 +38,7 @@
 #include "diagnose/result/diagnosis.h"
 #include "render/scenario/scenario.h"
 #include "validate/film/film_studio.h"
+#include "validate/study/certify/certificate.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
@@ -43,17 +52,34 @@ struct ClipNoise {
   double rounding_m = 0.0;      ///< step of the file's positions; 0: none
 };
 
+/// What one explanation makes of the motions, and what it leaves.
+struct TwinExplanation {
+  std::vector<sim::ConfigurationSetup> configurations;  ///< as the scenario's, with other forces and starts
+  double probability = 1.0;                             ///< beside the others
+  std::vector<std::string> ids = {};                    ///< effects that it holds
+  double q_m2_s3 = 0.0;                                 ///< spectral density of a white acceleration
+  double force_m_s2 = 0.0;  ///< sd from clip to clip of the acceleration by friction, and of that by the inclination
+  double drag = 0.0;        ///< relative sd from clip to clip of K
+
+  bool leaves_nothing() const { return q_m2_s3 <= 0.0 && force_m_s2 <= 0.0 && drag <= 0.0; }
+};
+
+/// What is left beside that which filming alone makes of clips that follow one law: the difference of the variances
+/// where a size is more than twice that of the film, which is known from one twin alone; else none of it.
+void take_off_film(const TwinExplanation& film, TwinExplanation& explanation);
+
 struct RecordingTwin {
-  render::Scenario scenario;
+  render::Scenario scenario;                  ///< of the explanation that the diagnosis reports
+  std::vector<TwinExplanation> explanations;  ///< empty: the scenario, and it leaves nothing
   bool filmed = false;
   std::vector<ClipNoise> clips;    ///< of tracks: one for each clip of the scenario, in its order
   double scale_sd_relative = 0.0;  ///< of one px_per_m
   double scale_error = 0.0;        ///< as diagnosed: x is seen as (1 + e) x / (1 + p x)
   double perspective_1_m = 0.0;
-  double from_m = 0.0;               ///< x of the recording where the twin's is 0
-  double noise_m = 0.0;              ///< of the recording's positions: median over clips
-  std::vector<std::string> causes;   ///< ids of the effects that the diagnosis named and the twin has
-  std::vector<std::string> without;  ///< sentences: what the recording has and the twin has not
+  double from_m = 0.0;              ///< x of the recording where the twin's is 0
+  double noise_m = 0.0;             ///< of the recording's positions: median over clips
+  std::vector<std::string> causes;  ///< ids of the effects that the diagnosis named and the twin has
+  std::vector<NotInTwins> without;
 };
 
 /// `results` as diagnose::diagnose_results() had them, with their pictures, and the folders (or files) they are of, in
@@ -72,10 +98,15 @@ struct TwinChange {
   bool twice = false;         ///< every clip is recorded once more
   bool double_rate = false;   ///< of tracks: twice as many frames a second
   bool nominal = false;       ///< no force but the viscous and the Coulomb friction of the law
+  bool alike = false;         ///< every clip follows the law without a remainder
 };
 
-/// The configurations' true values: of one whose law has further forces, K/m and mu of its viscous and Coulomb terms.
-Truth truth_of(const RecordingTwin& twin);
+/// Which explanation the twin of a seed follows; 0 where there is none to choose.
+std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed);
+
+/// The configurations' true values in the twins that follow this explanation: of one whose law has further forces, K/m
+/// and mu of its viscous and Coulomb terms. `nominal` as in TwinChange.
+Truth truth_of(const RecordingTwin& twin, std::size_t explanation, bool nominal = false);
 
 /// What stands still in filmed twins is drawn once, and the calibrations of the first seeds are kept for changes that
 /// leave camera, light and pattern as they are. Shared by threads that record different seeds.
@@ -89,7 +120,8 @@ class TwinStudios {
   std::mutex mutex_;
   std::size_t most_;
   std::map<std::uint64_t, std::shared_ptr<FilmStudio>> of_seed_;
-  std::map<std::pair<double, double>, std::shared_ptr<const render::Stage>> stages_;  ///< by noise and marker
+  /// By explanation, noise and marker.
+  std::map<std::tuple<std::size_t, double, double>, std::shared_ptr<const render::Stage>> stages_;
 };
 
 /// One recording of the twin, with its truth. Of one seed and another change the motions, and as far as may be the

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/force/law_list.h"
 #include "test_paths.h"
 #include "tests/app/tiny_scenario.h"
 #include "tests/catch.h"
@@ -98,6 +99,70 @@ TEST_CASE("every clip twice are clips of the same configuration with noise of th
   CHECK(made.tracks[0].x_m != made.tracks[1].x_m);
   CHECK(made.truth.configurations.size() == 1);
   CHECK(made.truth.configurations[0].clips.size() == 2);
+}
+
+TEST_CASE("twins follow each explanation as often as it is probable, and their truth is that explanation's") {
+  RecordingTwin twin = tracks();
+  twin.clips[0].frame_s.resize(200);
+  TwinExplanation nominal{twin.scenario.motion.configurations, 0.75, {}}, other = nominal;
+  other.probability = 0.25;
+  other.configurations[0].body.forces.push_back(sim::laws::quadratic().with({0.3}));
+  twin.explanations = {nominal, other};
+  int others = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) others += explanation_of(twin, seed) == 1 ? 1 : 0;
+  CHECK(std::abs(others - 100) < 4 * 9);  // four times sqrt(400 * 0.25 * 0.75)
+  CHECK(truth_of(twin, 0).configurations[0].v_lim_m_s != truth_of(twin, 1).configurations[0].v_lim_m_s);
+  CHECK(truth_of(twin, 0).configurations[0].k_over_m_1_s == truth_of(twin, 1).configurations[0].k_over_m_1_s);
+  CHECK(truth_of(twin, 0).configurations[0].v_lim_m_s == truth_of(twin, 1, true).configurations[0].v_lim_m_s);
+  std::uint64_t first = 0, second = 0;
+  while (explanation_of(twin, first) != 0) ++first;
+  while (explanation_of(twin, second) != 1) ++second;
+  RecordingTwin plain = twin;
+  plain.explanations.clear();
+  CHECK(record(twin, {}, first).tracks[0].x_m == record(plain, {}, first).tracks[0].x_m);
+  CHECK(record(twin, {}, second).tracks[0].x_m != record(plain, {}, second).tracks[0].x_m);
+  CHECK(record(twin, {.nominal = true}, second).tracks[0].x_m == record(plain, {}, second).tracks[0].x_m);
+}
+
+TEST_CASE("what an explanation leaves displaces a clip by as much as its accelerations make") {
+  RecordingTwin twin = tracks();
+  twin.clips[0].frame_s.resize(101);  // 0.1 s, in which the drag takes little
+  const RecordingTwin plain = twin;
+  const TwinExplanation leaves{twin.scenario.motion.configurations, 1.0, {}};
+  double scattered = 0.0, wandered = 0.0;
+  constexpr int kTwins = 300;
+  for (int r = 0; r < kTwins; ++r) {
+    const auto seed = static_cast<std::uint64_t>(r);
+    const double straight = record(plain, {}, seed).tracks[0].x_m.back();
+    twin.explanations = {leaves};
+    twin.explanations[0].force_m_s2 = 1e-3;
+    CHECK(record(twin, {.alike = true}, seed).tracks[0].x_m.back() == straight);
+    scattered += std::pow(record(twin, {}, seed).tracks[0].x_m.back() - straight, 2) / kTwins;
+    twin.explanations[0].force_m_s2 = 0.0;
+    twin.explanations[0].q_m2_s3 = 1e-6;
+    wandered += std::pow(record(twin, {}, seed).tracks[0].x_m.back() - straight, 2) / kTwins;
+  }
+  // Inclination and friction, each of 1e-3 m/s²: sqrt(2) * 1e-3 * t² / 2. White acceleration: sqrt(q t³ / 3). Drag of
+  // K/m below 3/s takes up to K/m t / 3 = 10 %; a root mean square of 300 normal numbers is known to 4 %, four of
+  // those.
+  CHECK(std::abs(std::sqrt(scattered) / (std::sqrt(2.0) * 1e-3 * 0.005) - 1.0) < 0.26);
+  CHECK(std::abs(std::sqrt(wandered) / std::sqrt(1e-6 * 1e-3 / 3.0) - 1.0) < 0.26);
+}
+
+TEST_CASE("what filming alone makes is no remainder, and what is more than twice as large is one but for that part") {
+  TwinExplanation found, film;
+  found.q_m2_s3 = 3.0;
+  found.force_m_s2 = 5.0;
+  found.drag = 0.019;
+  film.q_m2_s3 = 1.0;
+  film.force_m_s2 = 2.0;
+  film.drag = 0.01;
+  take_off_film(film, found);
+  CHECK(found.q_m2_s3 == 0.0);
+  CHECK(std::abs(found.force_m_s2 - std::sqrt(21.0)) < 1e-12);
+  CHECK(found.drag == 0.0);
+  take_off_film({}, found);
+  CHECK(std::abs(found.force_m_s2 - std::sqrt(21.0)) < 1e-12);
 }
 
 TEST_CASE("half the noise of a sensor leaves its codes as they are") {
