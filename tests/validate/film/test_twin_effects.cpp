@@ -45,7 +45,7 @@ Written written(const std::string& id, const std::vector<diagnose::DiagnosedPara
                 const std::optional<diagnose::Filming>& filming = filmed(), double incline_rad = 0.0) {
   Written result;
   std::vector<diagnose::DiagnosedEffect> effects;
-  if (!id.empty()) effects.push_back({id, "", "", 1.0, {}, sizes, 1.0, {}});
+  if (!id.empty()) effects.push_back({id, {}, "", 1.0, {}, sizes, 1.0, {}});
   result.view = diagnose::view_of(filming, kReference_m, 1.0, incline_rad);
   result.effects = diagnose::effects_of_camera(effects, filming, result.view, kRate_hz, kReference_m);
   const std::string text =
