@@ -109,7 +109,9 @@ std::vector<std::string> cells_of(const ErrorStatistics& of) {
           of.answered == 0 ? "–" : base::digits_text(of.rms, 3),
           of.answered == 0 ? "–" : base::digits_text(of.sd, 3),
           of.least_sd ? base::digits_text(*of.least_sd, 3) : "–",
-          of.answered == 0 ? "–" : fmt::format("{:.1f} %", 100.0 * of.coverage)};
+          of.answered == 0 ? "–" : fmt::format("{:.1f} %", 100.0 * of.coverage),
+          of.answered == 0 ? "–" : fmt::format("{:.2f} ± {:.2f}", of.mean_in_sds, of.mean_in_sds_sd),
+          of.answered == 0 ? "–" : fmt::format("{:.2f} ± {:.2f}", of.rms_in_sds, of.rms_in_sds_sd)};
 }
 
 /// Quantity, estimator and numbers, as text: the quantities in the order in which every page has them, which is not
@@ -131,8 +133,8 @@ void add_rows(HtmlTable& table, const std::vector<validate::Series>& overall) {
   }
 }
 
-const std::vector<std::string> kHeader = {"quantity",  "estimator", "results",  "mean error",
-                                          "rms error", "stated sd", "least sd", "coverage"};
+const std::vector<std::string> kHeader = {"quantity",  "estimator", "results",  "mean error",       "rms error",
+                                          "stated sd", "least sd",  "coverage", "mean error in sd", "rms error in sd"};
 
 std::string overall_table(const SweepSummary& summary) {
   HtmlTable table(kHeader, 2);
@@ -191,6 +193,10 @@ Json statistics_json(const ErrorStatistics& of) {
   put(object, "stated_sd", of.sd);
   put(object, "least_sd", of.least_sd, "known for tracks only, whose noise is known");
   put(object, "coverage", of.coverage);
+  put(object, "mean_error_in_stated_sd", of.mean_in_sds);
+  put(object, "mean_error_in_stated_sd_sd", of.mean_in_sds_sd);
+  put(object, "rms_error_in_stated_sd", of.rms_in_sds);
+  put(object, "rms_error_in_stated_sd_sd", of.rms_in_sds_sd);
   return object;
 }
 

@@ -22,7 +22,8 @@ constexpr int kBins = 12;
 constexpr const char* kStatistics =
     "count(*), count(s.value), avg(s.value - s.truth), avg((s.value - s.truth) * (s.value - s.truth)), "
     "avg(s.sd * s.sd), avg(s.least_sd * s.least_sd), "
-    "avg(CASE WHEN s.low95 IS NULL THEN NULL ELSE s.truth >= s.low95 AND s.truth <= s.high95 END) "
+    "avg(CASE WHEN s.low95 IS NULL THEN NULL ELSE s.truth >= s.low95 AND s.truth <= s.high95 END), "
+    "avg((s.value - s.truth) / s.sd), avg((s.value - s.truth) * (s.value - s.truth) / (s.sd * s.sd)) "
     "FROM result s JOIN run r ON r.run = s.run WHERE s.truth IS NOT NULL AND (?1 = '' OR s.configuration = ?1)";
 
 /// Means over rows.
@@ -30,6 +31,7 @@ struct Moments {
   std::uint64_t runs = 0, answered = 0;
   double error = 0.0, square = 0.0, variance = 0.0, coverage = 0.0;
   std::optional<double> least_variance;
+  double in_sds = 0.0, square_in_sds = 0.0;  // the error over its stated standard deviation
 };
 
 /// The columns of kStatistics, from the given one.
@@ -40,7 +42,9 @@ Moments moments_at(const SqlStatement& row, int column) {
           row.number(column + 3),
           row.number(column + 4),
           row.number(column + 6),
-          row.maybe_number(column + 5)};
+          row.maybe_number(column + 5),
+          row.number(column + 7),
+          row.number(column + 8)};
 }
 
 ErrorStatistics statistics_of(const Moments& of) {
@@ -49,9 +53,13 @@ ErrorStatistics statistics_of(const Moments& of) {
   statistics.answered = of.answered;
   statistics.bias = of.error;
   statistics.rms = std::sqrt(of.square);
+  statistics.mean_in_sds = of.in_sds;
+  statistics.rms_in_sds = std::sqrt(of.square_in_sds);
   if (of.answered > 1) {
-    statistics.bias_sd =
-        std::sqrt(std::max(0.0, of.square - of.error * of.error) / (static_cast<double>(of.answered) - 1.0));
+    const auto count = static_cast<double>(of.answered);
+    statistics.bias_sd = std::sqrt(std::max(0.0, of.square - of.error * of.error) / (count - 1.0));
+    statistics.mean_in_sds_sd = std::sqrt(std::max(0.0, of.square_in_sds - of.in_sds * of.in_sds) / (count - 1.0));
+    statistics.rms_in_sds_sd = statistics.rms_in_sds / std::sqrt(2.0 * count);
   }
   statistics.sd = std::sqrt(of.variance);
   if (of.least_variance) statistics.least_sd = std::sqrt(*of.least_variance);
@@ -131,6 +139,8 @@ struct Sum {
     total.square += of.square;
     total.variance += of.variance;
     total.coverage += of.coverage;
+    total.in_sds += of.in_sds;
+    total.square_in_sds += of.square_in_sds;
     if (!of.least_variance) return;
     ++with_least;
     total.least_variance = total.least_variance.value_or(0.0) + *of.least_variance;
@@ -138,7 +148,9 @@ struct Sum {
   Moments mean() const {
     Moments mean = total;
     const auto count = static_cast<double>(combinations);
-    for (double* const part : {&mean.error, &mean.square, &mean.variance, &mean.coverage}) *part /= count;
+    for (double* const part :
+         {&mean.error, &mean.square, &mean.variance, &mean.coverage, &mean.in_sds, &mean.square_in_sds})
+      *part /= count;
     if (mean.least_variance) *mean.least_variance /= static_cast<double>(with_least);
     return mean;
   }

@@ -57,7 +57,10 @@ struct Made {
         const Outcome outcome = fate(configuration, rate, noise, record.replicate);
         record.failed = record.failed || outcome == Outcome::failed;
         validate::QuantityRow row{configuration, "trajectory", "mu", 7.0, {}, {}, {}, {}, {}, ""};
-        if (outcome == Outcome::answer) row.value = 7.0 + error_of(configuration, rate, noise, record.replicate);
+        if (outcome == Outcome::answer) {
+          row.value = 7.0 + error_of(configuration, rate, noise, record.replicate);
+          row.sd = 2.0;
+        }
         record.quantities.push_back(row);
       }
       if (record.failed) record.quantities.clear();
@@ -219,4 +222,17 @@ TEST_CASE("The error of a(t) beside the best possible one is given of each confi
     CHECK(*of.regret == Approx(c == 0 ? 2.0 : 5.0).epsilon(1e-12));
   }
   CHECK(summary.accelerations.front().clips == 4);
+}
+
+TEST_CASE("Errors are also given over their stated standard deviations, with the standard errors of normal ones") {
+  // Of either sign in turn, so that their mean is 0; every stated standard deviation is 2.
+  Made made([](const std::string&, double, double, std::uint64_t) { return Outcome::answer; });
+  const validate::SweepSummary summary = made.summary();
+  REQUIRE(summary.overall.size() == 1);
+  const validate::ErrorStatistics& of = summary.overall.front().groups.front().statistics;
+  const auto count = static_cast<double>(of.answered);
+  CHECK(std::abs(of.mean_in_sds) < 1e-12);
+  CHECK(std::abs(of.rms_in_sds - of.rms / 2.0) < 1e-12);
+  CHECK(std::abs(of.mean_in_sds_sd - of.rms / 2.0 / std::sqrt(count - 1.0)) < 1e-12);
+  CHECK(std::abs(of.rms_in_sds_sd - of.rms / 2.0 / std::sqrt(2.0 * count)) < 1e-12);
 }
