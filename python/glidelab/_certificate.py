@@ -157,7 +157,8 @@ def _quantity(found: Mapping[str, Any]) -> CertifiedQuantity:
 def _explanation(found: Mapping[str, Any]) -> CertifiedExplanation:
     coverage: Mapping[str, Any] = found["coverage"]
     low, high = coverage["interval95"]
-    return CertifiedExplanation(tuple(found["causes"]), found["probability"], found["twins"], coverage["share"], (low, high))
+    return CertifiedExplanation(tuple(found["causes"]), found["probability"], found["twins"], coverage["share"],
+                                (low, high))
 
 
 def _change(found: Mapping[str, Any]) -> ChangedTwin:

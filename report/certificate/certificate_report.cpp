@@ -139,7 +139,8 @@ std::string twin_words(const Certificate& certificate) {
   text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
   if (certificate.explanations.size() > 1)
     text += " Other explanations that are likely, too, have as many of the twins as their probability says.";
-  text += " What an explanation leaves of each clip is in the twins as well, drawn anew for each.";
+  if (!certificate.filmed)
+    text += " What an explanation leaves of each clip is in the twins as well, drawn anew for each.";
   text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
                       micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
   return text;

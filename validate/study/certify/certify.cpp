@@ -432,37 +432,6 @@ void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base:
   scale_noise(twin.scenario.sensor, factor);
 }
 
-/// What a diagnosis finds to be left of a filmed twin whose clips follow one law: it comes from filming alone, and
-/// every twin has it by itself.
-void take_off_film(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
-  if (std::all_of(twin.explanations.begin(), twin.explanations.end(),
-                  [](const TwinExplanation& one) { return one.leaves_nothing(); }))
-    return;
-  TwinStudios studios(0);
-  TwinExplanation film;
-  try {
-    const MadeTracks made =
-        record_twin(twin, {.alike = true}, derived_seed(options.seed, kMostTwins), studios, progress);
-    const diagnose::Diagnosis found = diagnose::diagnose_results(
-        analyze_tracks(made, std::nullopt, options.jobs), made.setups, {.without = {}, .jobs = options.jobs}, progress);
-    double sum = 0.0, force = 0.0, drag = 0.0;
-    for (const diagnose::LikelyTwin& one : found.likely_twins) {
-      sum += one.probability;
-      film.q_m2_s3 += one.probability * one.q_m2_s3;
-      force += one.probability * one.force_m_s2 * one.force_m_s2;
-      drag += one.probability * one.drag * one.drag;
-    }
-    film.q_m2_s3 /= sum;
-    film.force_m_s2 = std::sqrt(force / sum);
-    film.drag = std::sqrt(drag / sum);
-  } catch (const base::InputError&) {  // a twin that tells nothing of it
-    return;
-  } catch (const base::NumericalError&) {
-    return;
-  }
-  for (TwinExplanation& one : twin.explanations) take_off_film(film, one);
-}
-
 }  // namespace
 
 Certificate certify(const std::vector<std::filesystem::path>& folders, const CertifyOptions& options,
@@ -491,7 +460,6 @@ Certificate certify(const std::vector<std::filesystem::path>& folders, const Cer
   if (twin.filmed) {
     const auto pilot = [&](std::string_view, double) { progress("twins", 0.0); };
     match_noise(twin, options, pilot);
-    take_off_film(twin, options, pilot);
   }
   return certify_twin(twin, options, progress);
 }

@@ -122,22 +122,25 @@ double median_noise(const core::AnalysisResults& results) {
   return core::median_of(std::move(noise_m));
 }
 
-void take_off_film(const TwinExplanation& film, TwinExplanation& explanation) {
-  constexpr double kMore = 4.0;  // as variances
-  const auto beside = [](double found, double of_film) { return found > kMore * of_film ? found - of_film : 0.0; };
-  const auto root_beside = [&](double found, double of_film) {
-    return std::sqrt(beside(found * found, of_film * of_film));
-  };
-  explanation.q_m2_s3 = beside(explanation.q_m2_s3, film.q_m2_s3);
-  explanation.force_m_s2 = root_beside(explanation.force_m_s2, film.force_m_s2);
-  explanation.drag = root_beside(explanation.drag, film.drag);
-}
-
 void scale_noise(render::Sensor& sensor, double factor) {
   sensor.full_well_e /= factor * factor;
   sensor.gain_dn_per_e *= factor * factor;
   sensor.read_noise_e /= factor;
 }
+
+namespace {
+
+/// Of a filmed recording: whether what is left comes from the clips or from filming is not known.
+void drop_remainders(RecordingTwin& twin) {
+  bool any = false;
+  for (TwinExplanation& one : twin.explanations) {
+    any = any || !one.leaves_nothing();
+    one.q_m2_s3 = one.force_m_s2 = one.drag = 0.0;
+  }
+  if (any) twin.without.push_back({"what differs from clip to clip", "filming leaves as much"});
+}
+
+}  // namespace
 
 RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,
                                 const std::vector<core::Experiment>& folders) {
@@ -171,6 +174,7 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
     twin.clips = clips_of(results, diagnosis, twin.scenario);
     return twin;
   }
+  drop_remainders(twin);
   if (!results.calibrations.empty()) {
     constexpr std::size_t kFewest = 3, kMost = 99;  // that a scenario takes
     twin.scenario.pattern.views = static_cast<int>(std::clamp(results.calibrations.front().views_used, kFewest, kMost));

@@ -5,8 +5,7 @@
 /// probable, so a drag that is likely and not named is in some of the twins. And each clip has what that explanation
 /// leaves (diagnose/causes/remainder.h): inclination, friction and drag that scatter from clip to clip, and a white
 /// acceleration, each with the size that the recording has most likely. What they change in x is added to the recorded
-/// positions. Of a filmed recording that part is taken off which a twin without any has by its calibration and
-/// tracking.
+/// positions. Filmed twins are without it: of a nominal film it made certificates that are far too bad.
 ///
 /// A recording whose clips were all filmed is filmed again (film_studio.h): its camera as the folder, calibration and
 /// images tell it, each twin with the noise of its own clips and of its own calibration stills (as many views as were
@@ -63,10 +62,6 @@ struct TwinExplanation {
 
   bool leaves_nothing() const { return q_m2_s3 <= 0.0 && force_m_s2 <= 0.0 && drag <= 0.0; }
 };
-
-/// What is left beside that which filming alone makes of clips that follow one law: the difference of the variances
-/// where a size is more than twice that of the film, which is known from one twin alone; else none of it.
-void take_off_film(const TwinExplanation& film, TwinExplanation& explanation);
 
 struct RecordingTwin {
   render::Scenario scenario;                  ///< of the explanation that the diagnosis reports

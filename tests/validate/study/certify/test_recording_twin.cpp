@@ -149,22 +149,6 @@ TEST_CASE("what an explanation leaves displaces a clip by as much as its acceler
   CHECK(std::abs(std::sqrt(wandered) / std::sqrt(1e-6 * 1e-3 / 3.0) - 1.0) < 0.26);
 }
 
-TEST_CASE("what filming alone makes is no remainder, and what is more than twice as large is one but for that part") {
-  TwinExplanation found, film;
-  found.q_m2_s3 = 3.0;
-  found.force_m_s2 = 5.0;
-  found.drag = 0.019;
-  film.q_m2_s3 = 1.0;
-  film.force_m_s2 = 2.0;
-  film.drag = 0.01;
-  take_off_film(film, found);
-  CHECK(found.q_m2_s3 == 0.0);
-  CHECK(std::abs(found.force_m_s2 - std::sqrt(21.0)) < 1e-12);
-  CHECK(found.drag == 0.0);
-  take_off_film({}, found);
-  CHECK(std::abs(found.force_m_s2 - std::sqrt(21.0)) < 1e-12);
-}
-
 TEST_CASE("half the noise of a sensor leaves its codes as they are") {
   render::Sensor sensor;
   const render::Sensor before = sensor;
