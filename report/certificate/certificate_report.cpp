@@ -72,7 +72,7 @@ std::string bias_words(const Certificate& certificate) {
                      std::abs(worst->bias_sds.value));
 }
 
-/// Quantities whose intervals hold too rarely: "µ, limit velocity".
+/// Quantities whose intervals hold too rarely: "µ, terminal velocity".
 std::string narrow_names(const Certificate& certificate) {
   std::string names;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
@@ -402,7 +402,8 @@ std::string explanations_table(const Certificate& certificate) {
 
 std::string how_judged(const Certificate& certificate) {
   return fmt::format(
-      "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the limit velocity of the fitted motions (beside a named "
+      "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the terminal velocity of the fitted motions (beside a "
+      "named "
       "cause K/m and µ of the viscous and Coulomb friction in the law). Intervals that hold are those of 95 % that "
       "contain it; their share has the interval of Clopper and Pearson, for as many independent intervals as the "
       "shares of single twins scatter like. Bias is the mean error over the stated standard deviation.</p>\n",
@@ -412,8 +413,8 @@ std::string how_judged(const Certificate& certificate) {
 }  // namespace
 
 Page certificate_page(const std::string& name, const Certificate& certificate) {
-  Html body = fmt::format("<h1>Can I trust the intervals of {}?</h1>\n<p><b>{}</b></p>\n", escape(name),
-                          escape(certificate_answer(certificate)));
+  Html body = question_heading(name, "Can I trust the stated intervals?") +
+              fmt::format("<p><b>{}</b></p>\n", escape(certificate_answer(certificate)));
   if (const std::string which = explanation_words(certificate); !which.empty())
     body += fmt::format("<p>{}</p>\n", escape(which));
   if (const std::string lacks = lack_words(certificate); !lacks.empty())
