@@ -155,7 +155,7 @@ TEST_CASE("a table of lines and too few twins are refused, each with one error")
   CHECK_THROWS_WITH(certify({temp / "made"}, {.runs = 5}), Catch::Contains("20 to 200"));
 }
 
-TEST_CASE("over thirty recordings of tracks the predicted coverage is what it then is", "[.evidence]") {
+TEST_CASE("over thirty recordings of tracks the predicted coverage is what it then is", "[slow]") {
   // One mass of the paper's inclined track each, launched at 0.8 to 1.2 of its speeds, with
   // noise of 10 to 200 µm and, in every third recording, a second clip each way.
   constexpr std::size_t kRecordings = 30, kRuns = 40;
