@@ -187,8 +187,8 @@ TEST_CASE("the recipe of a bandwidth rule: all its steps make one, and each step
 }
 
 TEST_CASE("the recipe of an effect: all its steps make one, and each step that is left out is named", "[slow]") {
-  Copy copy({"diagnose/effects", "diagnose/model", "tests/diagnose/effects/test_effect_library.cpp",
-             "docs/reference/effects.md"},
+  Copy copy({"diagnose/effects", "diagnose/model", "diagnose/result/gap_place.h", "diagnose/result/gap_place.cpp",
+             "tests/diagnose/effects/test_effect_library.cpp", "docs/reference/effects.md"},
             "glidelab_room(effects FOLDERS diagnose LINK glidelab::base)", "effects",
             "diagnose/effects/force/toy_effect.cpp");
   const std::string effect = "diagnose/effects/force/toy_effect.cpp", list = "diagnose/effects/effect_list.h";

@@ -93,9 +93,8 @@ def files_of(folder):
 class Trial:
     """One command in a folder of its own."""
 
-    def __init__(self, program, library, place, command):
-        self.program, self.library, self.place, self.command = program, library, place, command
-        self.before = set(os.listdir(place))
+    def __init__(self, program, library, place, command, before):
+        self.program, self.library, self.place, self.command, self.before = program, library, place, command, before
         self.makes = []
 
     def run(self, **environment):
@@ -180,8 +179,9 @@ def main():
         (place / "scenario.toml").write_text(SCENARIO)
         (place / "sweep.toml").write_text(SWEEP)
         subprocess.run([program, "render", "scenario.toml", "-q", "-o", "film"], cwd=place, check=True)
+        before = set(os.listdir(place))
         for command in options.commands:
-            trial = Trial(program, library, place, command)
+            trial = Trial(program, library, place, command, before)
             counts = trial.counts()
             whole = trial.result()
             for name, count in sorted(counts.items()):
