@@ -447,13 +447,18 @@ BoardCorners refine_board(const cv::Mat& grey, BoardCorners board) {
   for (int j = 0; j < board.grid.height; ++j) {
     for (int i = 0; i < board.grid.width; ++i) {
       const auto index = static_cast<std::size_t>(j * board.grid.width + i);
-      CornerFit fit(fitted, start.points[index], surroundings_of(start, i, j));
-      if (!fit.settles(response ? &*response : nullptr)) {
+      const CornerSurroundings around = surroundings_of(start, i, j);
+      CornerFit with_response(fitted, start.points[index], around);
+      // Where what the response adds lets a fit not settle, the corner as the image is errs far less than the detector.
+      const std::optional<FittedCorner> corner = response && with_response.settles(&*response)
+                                                     ? std::optional(with_response.corner())
+                                                     : fit_corner(grey, start.points[index], around);
+      if (!corner) {
         ++board.unrefined;
         continue;
       }
-      board.points[index] = fit.corner().point;
-      board.sd_px[index] = fit.corner().sd_px;
+      board.points[index] = corner->point;
+      board.sd_px[index] = corner->sd_px;
     }
   }
   return board;
