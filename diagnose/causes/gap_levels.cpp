@@ -9,11 +9,11 @@
 #include "base/errors.h"
 #include "base/long_work.h"
 #include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/gap/gap_sizes.h"
 
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWithin = 0.15;  // of the excess: the law holds within configurations where they have less
 constexpr double kSeen_se = 4.0;  // standard errors of a gap at the floor: less is no gap
 
 struct Squares {
@@ -92,8 +92,7 @@ GapLevels levels_of(const TrackSet& set, const MotionFit& nominal, int jobs) {
   levels.clip = gap_of_parts(set, nominal, parts_by(set, [](const TrackedMotion& m) { return m.clip; }), jobs);
   const double error = std::sqrt(1.82 / all.freedom);  // of a gap at the floor (held_out.cpp)
   if (levels.configuration && levels.all > 1.0 + kSeen_se * error) {
-    const double excess = levels.all * levels.all - 1.0, within = *levels.configuration * *levels.configuration - 1.0;
-    levels.holds_within = within < kWithin * excess;
+    levels.holds_within = holds_within(*levels.configuration, levels.all);
   }
   return levels;
 }

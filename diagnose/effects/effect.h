@@ -255,11 +255,15 @@ struct LineChange {
   double of_log_k, of_a0_m_s2;
 };
 
-/// What an effect does to a table of lines; a null function: nothing that lines could show by itself.
+/// What each configuration of a table of lines has of its own.
+enum class OwnOfLines { nothing, mu, drag };
+
+/// What an effect does to a table of lines; a null function and nothing of its own: nothing that lines could show.
 struct OnLines {
   LineChange (*change)(const LineQuantities& line) = nullptr;
   std::string_view key = {};
-  double largest = 0.0;           ///< in the unit of the key
+  double largest = 0.0;  ///< in the unit of the key
+  OwnOfLines own = OwnOfLines::nothing;
   std::string_view same_as = {};  ///< the effect whose lines these are to first order
 };
 

@@ -69,4 +69,8 @@ std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<Pictur
 /// Some 250 residuals of every motion, of either fit to all clips, in metres.
 std::vector<ResidualCurve> residuals_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best);
 
+/// Whether the law holds within configurations and not across them: these leave less than 15 % of the excess, of the
+/// squared gap over its floor 1, that all together leave.
+bool holds_within(double gap_within, double gap_of_all);
+
 }  // namespace glidelab::diagnose

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_findings.h"
@@ -25,19 +28,42 @@ void check_names(const std::vector<std::string>& without) {
   }
 }
 
-Explanation explanation_of(const LineExplanation& lines, const std::vector<LineTerm>& terms) {
+Explanation explanation_of(const LineExplanation& lines, const std::vector<LineCause>& causes) {
   Explanation explanation;
-  for (const std::size_t t : lines.named) explanation.effects.push_back(terms[t].id);
-  explanation.unnamed = lines.family.has_value();
+  for (const std::size_t c : lines.causes) explanation.effects.push_back(causes[c].id);
   return explanation;
 }
 
-LineCandidate candidate_of(const LineExplanation& explanation, const std::vector<LineTerm>& terms,
-                           const std::vector<LineFamily>& families, const LineSolution& nominal,
+/// The place of an explanation's cause's terms among all of them.
+std::size_t first_term(const LineExplanation& explanation, const std::vector<LineCause>& causes, std::size_t cause) {
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < cause; ++k) first += causes[explanation.causes[k]].terms.size();
+  return first;
+}
+
+/// Of one size, or of the sizes of every cell and their spread.
+std::vector<DiagnosedParameter> parameters_of(const LineExplanation& explanation, const LineData& data,
+                                              const std::vector<LineCause>& causes, std::size_t k) {
+  const LineCause& cause = causes[explanation.causes[k]];
+  const std::size_t first = first_term(explanation, causes, k);
+  if (cause.over) return own_of_cells(data, cause, explanation.solution, first);
+  const auto at = static_cast<Eigen::Index>(first);
+  std::vector<DiagnosedParameter> parameters = {
+      {cause.terms.front().key, explanation.solution.size[at], explanation.solution.sd[at]}};
+  if (cause.id == ids::smoothing_bias) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    parameters.push_back({"bandwidth_s", kNan, kNan,
+                          "a table says neither how wide the kernel was nor which stretch each line was fitted to"});
+  }
+  return parameters;
+}
+
+LineCandidate candidate_of(const LineExplanation& explanation, const LineData& data,
+                           const std::vector<LineCause>& causes, const LineSolution& nominal,
                            const OwnScatter& scatter) {
   const LineSolution& solution = explanation.solution;
-  LineCandidate candidate{explanation_of(explanation, terms),
-                          explanation.family ? std::optional(families[*explanation.family].of) : std::nullopt,
+  LineCandidate candidate{explanation_of(explanation, causes),
+                          {},
                           explanation.probability,
                           explanation.log_evidence,
                           log_likelihood_gain_of(solution, nominal),
@@ -46,9 +72,11 @@ LineCandidate candidate_of(const LineExplanation& explanation, const std::vector
                           {},
                           {},
                           solution.left_out};
-  for (std::size_t t = 0; t < explanation.named.size(); ++t) {
-    const auto at = static_cast<Eigen::Index>(t);
-    candidate.sizes.push_back({terms[explanation.named[t]].key, solution.size[at], solution.sd[at]});
+  for (std::size_t k = 0; k < explanation.causes.size(); ++k) {
+    const LineCause& cause = causes[explanation.causes[k]];
+    const DiagnosedParameter size = parameters_of(explanation, data, causes, k).front();
+    candidate.sizes.push_back({size.key, size.value, size.sd});
+    if (cause.over) candidate.forms.push_back({cause.id, *cause.over});
   }
   if (scatter.known()) {
     candidate.chi2 = chi_square_of(solution, scatter);
@@ -58,53 +86,63 @@ LineCandidate candidate_of(const LineExplanation& explanation, const std::vector
 }
 
 /// Everything that was weighed, in the order of the explanations.
-LineComparison comparison_of(const std::vector<LineExplanation>& all, const std::vector<LineTerm>& terms,
-                             const std::vector<LineFamily>& families, const OwnScatter& scatter) {
+LineComparison comparison_of(const std::vector<LineExplanation>& all, const LineData& data,
+                             const std::vector<LineCause>& causes, const OwnScatter& scatter) {
   LineComparison lines;
   lines.intercept_sd_m_s2 = scatter.intercept_m_s2;
   lines.slope_sd = scatter.slope;
   lines.scatter_freedom = scatter.freedom;
   for (const LineExplanation& e : all) {
-    lines.candidates.push_back(candidate_of(e, terms, families, all.front().solution, scatter));
+    lines.candidates.push_back(candidate_of(e, data, causes, all.front().solution, scatter));
   }
   return lines;
 }
 
-/// Single effects whose evidence is that of the best explanation with a name, which comes first; empty where it is a
-/// pair.
-std::vector<std::size_t> equals_of(const LineExplanation& best, const std::vector<LineExplanation>& all) {
-  if (best.named.size() != 1) return {};
-  std::vector<std::size_t> equals = best.named;
+/// The part of the gap's excess that an explanation leaves; nothing where the lines' scatter is not known.
+std::optional<double> left_by(const LineExplanation& e, const LineSolution& nominal, const OwnScatter& scatter) {
+  if (!scatter.known()) return {};
+  const double gap = gap_of_lines(e.solution, scatter), before = gap_of_lines(nominal, scatter);
+  return (gap * gap - 1.0) / (before * before - 1.0);
+}
+
+/// Causes, each alone, whose evidence is that of the best explanation and which leave as much, the best first; empty
+/// where the best is a pair. Of an effect with several forms the likeliest counts.
+std::vector<std::size_t> equals_of(const LineExplanation& best, const std::vector<LineExplanation>& all,
+                                   const std::vector<LineCause>& causes, const OwnScatter& scatter) {
+  if (best.causes.size() != 1) return {};
+  const LineSolution& nominal = all.front().solution;
+  std::map<std::string, const LineExplanation*> likeliest;
   for (const LineExplanation& e : all) {
-    if (e.family || e.named.size() != 1 || e.named == best.named || e.solution.left_out) continue;
-    if (e.log_evidence > best.log_evidence - kSameLineEvidence) equals.push_back(e.named.front());
+    if (e.causes.size() != 1 || e.solution.left_out) continue;
+    const LineExplanation*& of = likeliest[causes[e.causes.front()].id];
+    if (of == nullptr || e.probability > of->probability) of = &e;
+  }
+  std::vector<std::size_t> equals = best.causes;
+  for (const LineExplanation& e : all) {
+    if (e.causes.size() != 1 || e.solution.left_out || likeliest.at(causes[e.causes.front()].id) != &e) continue;
+    if (causes[e.causes.front()].id == causes[best.causes.front()].id) continue;
+    const std::optional<double> left = left_by(e, nominal, scatter), least = left_by(best, nominal, scatter);
+    const bool as_much = !left || std::abs(*left - *least) <= kSameLeft;
+    if (as_much && e.log_evidence > best.log_evidence - kSameLineEvidence) equals.push_back(e.causes.front());
   }
   return equals;
 }
 
 std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::vector<LineExplanation>& all,
-                                        const std::vector<LineTerm>& terms, const std::vector<std::size_t>& equals,
+                                        const LineData& data, const std::vector<LineCause>& causes,
+                                        const std::vector<std::size_t>& equals,
                                         const std::vector<std::string>& without) {
   std::vector<DiagnosedEffect> effects;
-  for (std::size_t k = 0; k < best.named.size(); ++k) {
-    const LineTerm& term = terms[best.named[k]];
-    const auto at = static_cast<Eigen::Index>(k);
-    DiagnosedEffect effect{term.id, term.stage, term.words,
-                           0.0,     {},         {{term.key, best.solution.size[at], best.solution.sd[at]}}};
-    if (term.id == ids::smoothing_bias) {
-      constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-      effect.parameters.push_back(
-          {"bandwidth_s", kNan, kNan,
-           "a table says neither how wide the kernel was nor which stretch each line was fitted to"});
-    }
+  for (std::size_t k = 0; k < best.causes.size(); ++k) {
+    const LineCause& cause = causes[best.causes[k]];
+    DiagnosedEffect effect{cause.id, cause.stage, cause.words, 0.0, {}, parameters_of(best, data, causes, k)};
     for (const LineExplanation& e : all) {
-      const bool holds = std::find(e.named.begin(), e.named.end(), best.named[k]) != e.named.end();
-      if (holds && !e.family) effect.probability += e.probability;
+      if (explanation_of(e, causes).holds(cause.id)) effect.probability += e.probability;
     }
-    bool force = term.id == ids::load_independent_friction;
+    bool force = cause.id == ids::load_independent_friction;
     for (std::size_t t = 1; t < equals.size(); ++t) {
-      effect.equivalent_to.push_back(terms[equals[t]].id);
-      force = force || terms[equals[t]].id == ids::load_independent_friction;
+      effect.equivalent_to.push_back(causes[equals[t]].id);
+      force = force || causes[equals[t]].id == ids::load_independent_friction;
     }
     if (force) {
       for (const std::string& id : alike_friction_force(without)) effect.equivalent_to.push_back(id);
@@ -114,105 +152,98 @@ std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::
   return effects;
 }
 
-void join_sets(const std::vector<LineTerm>& terms, const std::vector<LineExplanation>& all, Diagnosis& diagnosis) {
-  std::vector<NamedExplanation> named;
+/// Each set of effects once, with the probability of all its forms.
+std::vector<NamedExplanation> sets_of(const std::vector<LineExplanation>& all, const std::vector<LineCause>& causes) {
+  std::vector<NamedExplanation> sets;
   for (const LineExplanation& e : all) {
-    if (e.family) continue;
-    named.push_back({explanation_of(e, terms).effects, e.probability});
+    const std::vector<std::string> effects = explanation_of(e, causes).effects;
+    const auto found =
+        std::find_if(sets.begin(), sets.end(), [&](const NamedExplanation& set) { return set.ids == effects; });
+    if (found == sets.end()) {
+      sets.push_back({effects, e.probability});
+    } else {
+      found->probability += e.probability;
+    }
   }
+  return sets;
+}
+
+void join_sets(const std::vector<LineCause>& causes, const std::vector<LineExplanation>& all, Diagnosis& diagnosis) {
   const auto words = [&](const std::string& id) {
-    const auto term = std::find_if(terms.begin(), terms.end(), [&](const LineTerm& t) { return t.id == id; });
-    return term != terms.end() ? term->words : std::string(effect_list()[effect_index(id)].words);
+    const auto cause = std::find_if(causes.begin(), causes.end(), [&](const LineCause& c) { return c.id == id; });
+    return cause != causes.end() ? cause->words : std::string(effect_list()[effect_index(id)].words);
   };
-  join_alike(named, words, diagnosis);
+  join_alike(sets_of(all, causes), words, diagnosis);
 }
 
 /// The term's size where nothing else is added, or its standard deviation where that is more: what may be there.
-double size_by_itself(const LineData& data, const std::vector<LineTerm>& terms, const std::string& id) {
-  for (const LineTerm& term : terms) {
-    if (term.id != id) continue;
-    const LineSolution alone = solve_lines(data, {term});
+double size_by_itself(const LineData& data, const std::vector<LineCause>& causes, const std::string& id) {
+  for (const LineCause& cause : causes) {
+    if (cause.id != id) continue;
+    const LineSolution alone = solve_lines(data, cause.terms);
     return std::max(std::abs(alone.size[0]), alone.sd[0]);
   }
   return 0.0;
 }
 
-/// The likeliest explanation with a name and the likeliest without; nothing where there is none.
-struct Leaders {
-  const LineExplanation* named = nullptr;
-  const LineExplanation* unnamed = nullptr;
-};
-
-Leaders leaders_of(const std::vector<LineExplanation>& all) {
-  Leaders leaders;
+/// The likeliest set of effects, in its likeliest forms; nothing where no effect was weighed.
+const LineExplanation* leader_of(const std::vector<LineExplanation>& all, const std::vector<LineCause>& causes) {
+  const std::vector<NamedExplanation> sets = sets_of(all, causes);
+  const auto probability_of = [&](const LineExplanation& e) {
+    const std::vector<std::string> effects = explanation_of(e, causes).effects;
+    return std::find_if(sets.begin(), sets.end(), [&](const NamedExplanation& set) { return set.ids == effects; })
+        ->probability;
+  };
+  const LineExplanation* leader = nullptr;
   for (const LineExplanation& e : all) {
-    if (!e.family && e.named.empty()) continue;
-    const LineExplanation*& leader = e.family ? leaders.unnamed : leaders.named;
-    if (leader == nullptr || e.probability > leader->probability) leader = &e;
+    if (e.causes.empty() || !(e.probability > 0.0)) continue;
+    const auto rank = [&](const LineExplanation& of) { return std::pair(probability_of(of), of.probability); };
+    if (leader == nullptr || rank(e) > rank(*leader)) leader = &e;
   }
-  return leaders;
+  return leader;
 }
 
-constexpr double kHalf = 0.5;         // of the gap
-constexpr double kLeastShare = 0.02;  // of it: less is no cause that a person would look for
-
-/// The share of each cause that the likeliest name has; where the cause is unknown, of those that help, less than half
-/// together.
-std::vector<ExplainedCause> shares_of(const LineExplanation& named, const LineData& data,
-                                      const std::vector<LineTerm>& terms, const LineSolution& nominal,
-                                      const OwnScatter& scatter, const Diagnosis& diagnosis) {
-  std::vector<LineTerm> causes;
-  for (const std::size_t t : named.named) causes.push_back(terms[t]);
-  std::vector<ExplainedCause> explained = explained_by(data, causes, nominal, scatter, diagnosis.gap->standard_error);
-  if (diagnosis.verdict == Verdict::effect) return explained;
-  double sum = 0.0;
-  const auto no_help = std::find_if(explained.begin(), explained.end(), [&](const ExplainedCause& cause) {
-    return !(cause.share > kLeastShare) || (sum += cause.share) >= kHalf;
-  });
-  explained.erase(no_help, explained.end());
-  return explained;
-}
-
-/// The probabilities of nothing and of what has no name, the verdict that they give, and the ranking of the rest.
+/// The probability of nothing, the verdict that it gives, and the ranking of the rest, each set of effects once.
 void weigh_up(const std::vector<LineExplanation>& all, LineComparison& table, Diagnosis& diagnosis) {
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    if (all[e].family) {
-      diagnosis.unknown += all[e].probability;
-    } else if (all[e].named.empty()) {
-      diagnosis.none += all[e].probability;
-    } else {
-      const LineCandidate& c = table.candidates[e];
-      diagnosis.ranking.push_back(
-          {c.explanation, c.probability, c.log_evidence_gain, c.log_likelihood_gain, c.terms, c.gap, c.left_out});
-    }
-  }
   const auto likelier = [](const auto& a, const auto& b) {
     return a.left_out.has_value() != b.left_out.has_value() ? !a.left_out : a.probability > b.probability;
   };
-  std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), likelier);
+  diagnosis.none = all.front().probability;
   std::stable_sort(table.candidates.begin(), table.candidates.end(), likelier);
+  for (const LineCandidate& c : table.candidates) {
+    if (c.explanation.is_nothing()) continue;
+    const auto same = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                                   [&](const RankedExplanation& of) { return of.explanation == c.explanation; });
+    if (same != diagnosis.ranking.end()) {
+      same->probability += c.probability;
+      continue;
+    }
+    diagnosis.ranking.push_back(
+        {c.explanation, c.probability, c.log_evidence_gain, c.log_likelihood_gain, c.terms, c.gap, c.left_out});
+  }
+  std::stable_sort(diagnosis.ranking.begin(), diagnosis.ranking.end(), likelier);
   diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
 }
 
 /// Which effects a table does not tell apart, and the probability that it is one or several of them.
-void tell_either(const std::vector<LineExplanation>& all, const std::vector<LineTerm>& terms,
+void tell_either(const std::vector<LineExplanation>& all, const std::vector<LineCause>& causes,
                  const std::vector<std::size_t>& equals, LineComparison& table) {
   if (equals.size() < 2) return;
-  for (const std::size_t t : equals) table.either_of.push_back(terms[t].id);
+  for (const std::size_t c : equals) table.either_of.push_back(causes[c].id);
   for (const LineExplanation& e : all) {
-    const bool only = !e.named.empty() && std::all_of(e.named.begin(), e.named.end(), [&](std::size_t t) {
-      return std::find(equals.begin(), equals.end(), t) != equals.end();
+    const bool only = !e.causes.empty() && std::all_of(e.causes.begin(), e.causes.end(), [&](std::size_t c) {
+      return std::find(table.either_of.begin(), table.either_of.end(), causes[c].id) != table.either_of.end();
     });
-    if (only && !e.family) table.either_probability += e.probability;
+    if (only) table.either_probability += e.probability;
   }
 }
 
 std::vector<LineCurve> curves_of(const std::vector<TableLine>& lines, const LineData& data,
-                                 const std::vector<LineTerm>& terms, const std::vector<LineExplanation>& all) {
+                                 const std::vector<LineCause>& causes, const std::vector<LineExplanation>& all) {
   std::vector<LineCurve> curves;
   for (const LineExplanation& e : all) {
-    if (e.named.size() != 1 || e.family || e.solution.left_out) continue;
-    LineCurve curve = line_curve(lines, data, terms[e.named.front()], e.solution);
+    if (e.causes.size() != 1 || e.solution.left_out) continue;
+    LineCurve curve = line_curve(lines, data, causes[e.causes.front()], e.solution);
     if (!curve.mass_kg.empty()) curves.push_back(std::move(curve));
   }
   return curves;
@@ -222,7 +253,7 @@ std::vector<LineCurve> curves_of(const std::vector<TableLine>& lines, const Line
 NextStep next_of(const std::vector<TableLine>& lines, const LineData& data) {
   const std::vector<double> masses = different(lines, &TableLine::mass_kg);
   if (masses.size() < 2) return Routine::second_mass;
-  const std::vector<LineTerm> every = named_terms(lines, {});
+  const std::vector<LineCause> every = line_causes(lines, data, {});
   const double force_n = size_by_itself(data, every, ids::load_independent_friction);
   const double bias_s2_m_s2 = size_by_itself(data, every, ids::smoothing_bias);
   double drag = 0.0;
@@ -237,40 +268,40 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
   check_names(without);
   if (lines.size() < kFewestLines) throw base::InputError(too_few_lines("", lines.size()));
   const LineData data = line_data(lines, g);
-  const std::vector<LineTerm> terms = named_terms(lines, without);
-  const std::vector<LineFamily> families = unnamed_line_families(lines);
-  const std::vector<LineExplanation> all = weigh_lines(data, terms, families);
+  const std::vector<LineCause> causes = line_causes(lines, data, without);
+  const std::vector<LineExplanation> all = weigh_lines(data, causes);
   const LineSolution& nominal = all.front().solution;
   const OwnScatter scatter = own_scatter(lines);
-  const Leaders leaders = leaders_of(all);
+  const LineExplanation* leader = leader_of(all, causes);
 
   Diagnosis diagnosis;
-  LineComparison table = comparison_of(all, terms, families, scatter);
+  LineComparison table = comparison_of(all, data, causes, scatter);
   table.lines = lines.size();
   table.chi2_before = table.candidates.front().chi2;
   weigh_up(all, table, diagnosis);
-  const bool is_effect = diagnosis.verdict == Verdict::effect, is_unknown = diagnosis.verdict == Verdict::unknown;
-  if (leaders.named != nullptr && leaders.named->probability > 0.0 && diagnosis.verdict != Verdict::none) {
-    const std::vector<std::size_t> equals = equals_of(*leaders.named, all);
-    tell_either(all, terms, equals, table);
-    if (is_effect) diagnosis.effects = effects_of(*leaders.named, all, terms, equals, without);
+  const bool is_effect = diagnosis.verdict == Verdict::effect;
+  if (is_effect) {
+    const std::vector<std::size_t> equals = equals_of(*leader, all, causes, scatter);
+    tell_either(all, causes, equals, table);
+    diagnosis.effects = effects_of(*leader, all, data, causes, equals, without);
+    diagnosis.stage = diagnosis.effects.front().stage;
+    diagnosis.regions = line_regions(lines, data, nominal, scatter);
   }
-  join_sets(terms, all, diagnosis);
-  if (is_effect) diagnosis.stage = diagnosis.effects.front().stage;
-  if (is_unknown) diagnosis.stage = Stage::dynamics;
-  if (is_effect || is_unknown) diagnosis.regions = line_regions(lines, data, nominal, scatter);
+  join_sets(causes, all, diagnosis);
   if (scatter.known()) {
-    const LineSolution& after = is_effect ? leaders.named->solution : is_unknown ? leaders.unnamed->solution : nominal;
-    LineGap gap = line_gap(lines, g, nominal, after, scatter);
+    LineGap gap = line_gap(lines, g, nominal, is_effect ? leader->solution : nominal, scatter);
     diagnosis.gap = std::move(gap.sizes);
     diagnosis.notes = std::move(gap.notes);
-    diagnosis.isolability = line_isolability(data, terms, scatter.slope, scatter.intercept_m_s2);
-    if (leaders.named != nullptr && (is_effect || is_unknown)) {
-      diagnosis.explained = shares_of(*leaders.named, data, terms, nominal, scatter, diagnosis);
+    diagnosis.isolability = line_isolability(data, causes, scatter.slope, scatter.intercept_m_s2);
+    diagnosis.levels = line_levels(lines, data, nominal, scatter, diagnosis.gap->standard_error);
+    if (is_effect) {
+      std::vector<LineCause> named;
+      for (const std::size_t c : leader->causes) named.push_back(causes[c]);
+      diagnosis.explained = explained_by(data, named, nominal, scatter, diagnosis.gap->standard_error);
     }
   }
   table.off = lines_off(lines, nominal);
-  table.curves = curves_of(lines, data, terms, all);
+  table.curves = curves_of(lines, data, causes, all);
   diagnosis.next = next_of(lines, data);
   diagnosis.notes.emplace_back(TableOfLines{lines.size()});
   diagnosis.lines = std::move(table);

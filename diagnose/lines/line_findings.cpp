@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/math/dense.h"
@@ -16,7 +18,6 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1;
-constexpr double kUnnamedBeside = 0.25;  // odds of something without a name: 0.2 to 0.8
 
 Eigen::VectorXd column(const LineTerm& term, double sd_log_k, double sd_a0) {
   Eigen::VectorXd both(2 * term.of_a0.size());
@@ -40,13 +41,15 @@ Eigen::VectorXd beside(const LineData& data, const std::vector<LineTerm>& terms,
 
 }  // namespace
 
-Isolability line_isolability(const LineData& data, const std::vector<LineTerm>& terms, double sd_log_k, double sd_a0) {
+Isolability line_isolability(const LineData& data, const std::vector<LineCause>& causes, double sd_log_k,
+                             double sd_a0) {
   Isolability alike;
   std::vector<Eigen::VectorXd> columns;
-  for (const LineTerm& term : terms) {
-    const Eigen::VectorXd seen = beside(data, {}, column(term, sd_log_k, sd_a0), sd_log_k, sd_a0);
+  for (const LineCause& cause : causes) {
+    if (cause.over) continue;
+    const Eigen::VectorXd seen = beside(data, {}, column(cause.terms.front(), sd_log_k, sd_a0), sd_log_k, sd_a0);
     if (!(seen.norm() > 0.0)) continue;
-    alike.ids.push_back(term.id);
+    alike.ids.push_back(cause.id);
     alike.least_seen.push_back(1.0 / seen.norm());
     columns.push_back(seen.normalized());
   }
@@ -65,33 +68,49 @@ bool taken_up(const LineData& data, const LineTerm& term, const std::vector<Line
   return rest.squaredNorm() <= (1.0 - kAlike * kAlike) * whole.squaredNorm();
 }
 
-std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineTerm>& named,
-                                         const std::vector<LineFamily>& families) {
+std::vector<LineTerm> terms_of(const std::vector<LineCause>& causes, const std::vector<std::size_t>& which) {
+  std::vector<LineTerm> terms;
+  for (const std::size_t c : which) terms.insert(terms.end(), causes[c].terms.begin(), causes[c].terms.end());
+  return terms;
+}
+
+namespace {
+
+/// Whether one of two causes says nothing beside the other.
+bool one_takes_up(const LineData& data, const LineCause& a, const LineCause& b, const LineSolution& nominal) {
+  const auto takes_up = [&](const LineCause& by, const LineCause& of) {
+    return std::all_of(of.terms.begin(), of.terms.end(), [&](const LineTerm& term) {
+      return taken_up(data, term, by.terms, nominal.sd_k, nominal.sd_a);
+    });
+  };
+  return takes_up(a, b) || takes_up(b, a);
+}
+
+}  // namespace
+
+std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineCause>& causes) {
   std::vector<LineExplanation> all;
-  const auto add = [&](const std::vector<std::size_t>& ids, std::optional<std::size_t> family, double prior) {
-    std::vector<LineTerm> terms;
-    for (const std::size_t t : ids) terms.push_back(named[t]);
-    if (family) terms.insert(terms.end(), families[*family].terms.begin(), families[*family].terms.end());
-    LineExplanation explanation{ids, family, solve_lines(data, terms), 0.0, prior};
+  const auto add = [&](const std::vector<std::size_t>& which, double prior) {
+    const std::vector<LineTerm> terms = terms_of(causes, which);
+    LineExplanation explanation{which, solve_lines(data, terms), 0.0, prior};
     if (!all.empty()) {
       explanation.log_evidence = log_line_evidence(data, terms, explanation.solution, all.front().solution);
     }
     all.push_back(std::move(explanation));
   };
-  const auto many = static_cast<double>(named.size());
-  std::vector<std::pair<std::vector<std::size_t>, double>> together = {{{}, kPriorNone}};
-  for (std::size_t t = 0; t < named.size(); ++t) {
-    together.push_back({{t}, kPriorOne / many});
-    for (std::size_t u = 0; u < t; ++u) together.push_back({{u, t}, kPriorTwo / (0.5 * many * (many - 1.0))});
-  }
-  for (const auto& [ids, prior] : together) add(ids, {}, prior);
+  std::set<std::string> effects;
+  for (const LineCause& cause : causes) effects.insert(cause.id);
+  const auto many = static_cast<double>(effects.size());
+  add({}, kPriorNone);
   const LineSolution nominal = all.front().solution;
-  for (const auto& [ids, prior] : together) {
-    for (std::size_t f = 0; f < families.size(); ++f) {
-      const bool says = std::none_of(ids.begin(), ids.end(), [&](std::size_t t) {
-        return taken_up(data, named[t], families[f].terms, nominal.sd_k, nominal.sd_a);
-      });
-      if (says) add(ids, f, prior * kUnnamedBeside * families[f].share);
+  for (std::size_t c = 0; c < causes.size(); ++c) add({c}, kPriorOne / many * causes[c].share);
+  for (std::size_t c = 0; c < causes.size(); ++c) {
+    for (std::size_t b = 0; b < c; ++b) {
+      if (causes[b].id == causes[c].id) continue;
+      // Two effects of one size are weighed however alike they are: their evidence says so.
+      const bool forms = causes[b].over || causes[c].over;
+      if (forms && one_takes_up(data, causes[b], causes[c], nominal)) continue;
+      add({b, c}, kPriorTwo / (0.5 * many * (many - 1.0)) * causes[b].share * causes[c].share);
     }
   }
   double most = 0.0, sum = 0.0;
@@ -207,35 +226,97 @@ constexpr double kClear = 3.0;  // standard errors of a gap
 
 }  // namespace
 
-std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineTerm>& terms,
+std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineCause>& causes,
                                          const LineSolution& nominal, const OwnScatter& scatter,
                                          double standard_error) {
   const double first = gap_of_lines(nominal, scatter);
   if (!(first > 1.0 + kClear * standard_error)) return {};
-  std::vector<ExplainedCause> causes;
-  std::vector<LineTerm> beside, left = terms;
+  std::vector<ExplainedCause> explained;
+  std::vector<std::size_t> beside, left(causes.size());
+  std::iota(left.begin(), left.end(), std::size_t{0});
   LineSolution before = nominal;
   while (!left.empty()) {
     // Of those that are left, the one that leaves least.
     std::optional<LineSolution> best;
     std::size_t which = 0;
     for (std::size_t t = 0; t < left.size(); ++t) {
-      std::vector<LineTerm> with = beside;
+      std::vector<std::size_t> with = beside;
       with.push_back(left[t]);
-      LineSolution solution = solve_lines(data, with);
+      LineSolution solution = solve_lines(data, terms_of(causes, with));
       if (best && !(gap_of_lines(solution, scatter) < gap_of_lines(*best, scatter))) continue;
       best = std::move(solution);
       which = t;
     }
     const double gap_before = gap_of_lines(before, scatter), gap = gap_of_lines(*best, scatter);
-    causes.push_back(
-        {left[which].id, (gap_before * gap_before - gap * gap) / (first * first - 1.0),
+    explained.push_back(
+        {causes[left[which]].id, (gap_before * gap_before - gap * gap) / (first * first - 1.0),
          share_interval(squares_of(nominal, scatter), squares_of(before, scatter), squares_of(*best, scatter)), gap});
     beside.push_back(left[which]);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
     before = std::move(*best);
   }
-  return causes;
+  return explained;
+}
+
+GapLevels line_levels(const std::vector<TableLine>& lines, const LineData& data, const LineSolution& nominal,
+                      const OwnScatter& scatter, double standard_error) {
+  GapLevels levels;
+  levels.all = gap_of_lines(nominal, scatter);
+  const std::vector<LineCause> own = own_of_each_configuration(lines, data);
+  if (own.empty()) return levels;
+  levels.configuration = gap_of_lines(solve_lines(data, terms_of(own, {0, 1})), scatter);
+  levels.holds_within = levels.all > 1.0 + kClear * standard_error && holds_within(*levels.configuration, levels.all);
+  return levels;
+}
+
+namespace {
+
+/// A value and its derivatives by all that is fitted.
+struct Derived {
+  double value = 0.0;
+  Eigen::VectorXd by;
+};
+
+}  // namespace
+
+std::vector<DiagnosedParameter> own_of_cells(const LineData& data, const LineCause& cause, const LineSolution& with,
+                                             std::size_t first) {
+  const Eigen::Index common = cause.drag ? 0 : data.base_log_k.cols() + data.base_a0.cols() - 1;
+  const Eigen::Index own = data.base_log_k.cols() + data.base_a0.cols() + static_cast<Eigen::Index>(first);
+  const auto as = [&](std::string key, const Derived& of) {
+    const double variance = of.by.dot(base::product(with.covariance, of.by).col(0));
+    return DiagnosedParameter{std::move(key), of.value, std::sqrt(std::max(0.0, variance))};
+  };
+  std::vector<Derived> values;
+  Derived spread{0.0, Eigen::VectorXd::Zero(with.all.size())};
+  double mean = 0.0;
+  for (std::size_t c = 0; c < cause.cells.size(); ++c) {
+    Derived one{with.all[common], Eigen::VectorXd::Unit(with.all.size(), common)};
+    if (c > 0) {
+      const Eigen::Index at = own + static_cast<Eigen::Index>(c) - 1;
+      one.value += with.all[at];
+      one.by[at] = 1.0;
+    }
+    if (cause.drag) {
+      one.value = std::exp(one.value);
+      one.by *= one.value;
+    }
+    mean += one.value / static_cast<double>(cause.cells.size());
+    values.push_back(std::move(one));
+  }
+  const double freedom = static_cast<double>(values.size()) - 1.0;
+  double square = 0.0;
+  for (const Derived& one : values) {
+    square += (one.value - mean) * (one.value - mean) / freedom;
+    spread.by += (one.value - mean) / freedom * one.by;
+  }
+  spread.value = std::sqrt(square);
+  if (spread.value > 0.0) spread.by /= spread.value;
+  std::vector<DiagnosedParameter> told = {as(cause.drag ? "sd_n_s_m" : "sd", spread)};
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    told.push_back(as((cause.drag ? "k_n_s_m." : "mu.") + cause.cells[c].name, values[c]));
+  }
+  return told;
 }
 
 std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const LineData& data,
@@ -291,13 +372,13 @@ std::vector<LineOff> lines_off(const std::vector<TableLine>& lines, const LineSo
   return off;
 }
 
-LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineTerm& term,
+LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineCause& cause,
                      const LineSolution& with) {
-  LineCurve curve{term.id, {}, {}, {}};
-  const bool force = term.id == ids::load_independent_friction;
-  if (!force && term.id != ids::smoothing_bias) return curve;
+  LineCurve curve{cause.id, {}, {}, {}};
+  const bool force = cause.id == ids::load_independent_friction;
+  if (!force && cause.id != ids::smoothing_bias) return curve;
   // What the term takes from mu goes with it: the part of its column that the nominal model would have fitted.
-  const Eigen::VectorXd fitted = base::least_squares(data.base_a0, term.of_a0).col(0);
+  const Eigen::VectorXd fitted = base::least_squares(data.base_a0, cause.terms.front().of_a0).col(0);
   const double taken = fitted[fitted.size() - 1] * -data.base_a0.col(data.base_a0.cols() - 1).cwiseAbs().mean();
   const std::vector<double> masses = different(lines, &TableLine::mass_kg);
   const double drag = drag_of(lines), from = 1.0 / masses.back(), to = 1.0 / masses.front();

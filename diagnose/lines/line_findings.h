@@ -11,8 +11,7 @@
 namespace glidelab::diagnose {
 
 struct LineExplanation {
-  std::vector<std::size_t> named;     ///< indices of the named terms; two at most
-  std::optional<std::size_t> family;  ///< index of the family without a name
+  std::vector<std::size_t> causes;  ///< indices, of two effects at most
   LineSolution solution;
   double log_evidence = 0.0;
   double probability = 0.0;  ///< 0 where a size is impossible
@@ -20,19 +19,20 @@ struct LineExplanation {
 
 /// How probable each explanation of a table of lines is, the nominal model first.
 ///
-/// The odds are those of tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. Each is four times as likely alone as
-/// with something without a name beside it. Of what has no name each variable (mass, set-up, both together, direction)
-/// is as likely as another.
-std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineTerm>& named,
-                                         const std::vector<LineFamily>& families);
+/// The odds are those of tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. A second cause of which the first takes
+/// up nearly all is not weighed beside it.
+std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineCause>& causes);
 
-/// How similar every two of the terms are in a table of lines. They are as alike as the angle between their columns is
-/// small (ln K/m and a0 of all lines, each over its scatter), the nominal model projected out. Measured sizes do not
-/// enter. `least_seen` is the size that makes one standard deviation. The scatters are above 0.
-Isolability line_isolability(const LineData& data, const std::vector<LineTerm>& terms, double sd_log_k, double sd_a0);
+/// The terms of these causes, one after another.
+std::vector<LineTerm> terms_of(const std::vector<LineCause>& causes, const std::vector<std::size_t>& which);
 
-/// Whether terms without a name take up nearly all (a cosine of kAlike) of what this one does: beside it they say
-/// nothing that they do not say alone.
+/// How similar every two effects of one size are in a table of lines. They are as alike as the angle between their
+/// columns is small (ln K/m and a0 of all lines, each over its scatter), the nominal model projected out. Measured
+/// sizes do not enter. `least_seen` is the size that makes one standard deviation. The scatters are above 0.
+Isolability line_isolability(const LineData& data, const std::vector<LineCause>& causes, double sd_log_k, double sd_a0);
+
+/// Whether other terms take up nearly all (a cosine of kAlike) of what this one does: beside it they say nothing that
+/// they do not say alone.
 bool taken_up(const LineData& data, const LineTerm& term, const std::vector<LineTerm>& by, double sd_log_k,
               double sd_a0);
 
@@ -47,14 +47,25 @@ struct LineGap {
 LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
                  const OwnScatter& scatter);
 
-/// How much of the gap each of the terms takes, beside those before it: first the one that takes more by itself.
+/// How much of the gap each of the causes takes, beside those before it: first the one that takes more by itself.
 ///
 ///     share_i = (g²_{i-1} - g²_i) / (g²_0 - 1),        g the gap of held-out lines, g_0 of the nominal model
 ///
 /// Intervals are over lines, each left out in turn (gap/gap_sizes.h). Empty where the gap before is not above its floor
 /// by three standard errors. The lines' own scatter is known.
-std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineTerm>& terms,
+std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineCause>& causes,
                                          const LineSolution& nominal, const OwnScatter& scatter, double standard_error);
+
+/// The gap of held-out lines with mu and K common to all, and with those of each mass on each set-up (none where there
+/// is one alone).
+GapLevels line_levels(const std::vector<TableLine>& lines, const LineData& data, const LineSolution& nominal,
+                      const OwnScatter& scatter, double standard_error);
+
+/// The mu or K of every cell of a cause with a form, and their spread (its sample standard deviation), to first order:
+/// `sd` and `mu.NAME`, or `sd_n_s_m` and `k_n_s_m.NAME`. `first` is the place of its terms among all of the
+/// explanation.
+std::vector<DiagnosedParameter> own_of_cells(const LineData& data, const LineCause& cause, const LineSolution& with,
+                                             std::size_t first);
 
 /// Where lines depart from the nominal model: by the intercepts (m/s²) of each mass, and of each set-up, in one
 /// direction, and by the drag K (N s/m) of each mass and of each set-up. None where the lines' own scatter is not
@@ -71,7 +82,7 @@ std::vector<LineOff> lines_off(const std::vector<TableLine>& lines, const LineSo
 
 /// The friction that a single effect on intercepts (a friction force, a smoothing bias) adds to the nominal model's, as
 /// the lines were fitted with it. Nothing for another term.
-LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineTerm& term,
+LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineCause& cause,
                      const LineSolution& with);
 
 }  // namespace glidelab::diagnose

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
@@ -106,77 +107,111 @@ bool contains(const std::vector<std::string>& ids, const std::string& id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-/// Mass and inclination by which lines are put together; a member that does not matter is 0.
-using Cell = std::pair<double, double>;
-
-/// A friction, or a drag, of each cell by itself but for the first, which is mu or K.
-std::vector<LineTerm> of_each(const std::vector<TableLine>& lines, const std::vector<Cell>& cells, bool friction) {
-  std::map<Cell, std::size_t> seen;
-  std::vector<LineTerm> terms;
+/// Lines of one mass, of one set-up, or of one mass on one set-up.
+std::vector<LineCell> cells_of(const std::vector<TableLine>& lines, LinesOver over) {
+  std::map<std::pair<double, double>, LineCell> cells;
   for (Eigen::Index i = 0; i < count(lines); ++i) {
-    const auto [found, first] = seen.emplace(cells[static_cast<std::size_t>(i)], terms.size());
-    if (first) {
-      terms.push_back({"", friction ? "friction" : "drag", Stage::dynamics, "", Eigen::VectorXd::Zero(count(lines)),
-                       Eigen::VectorXd::Zero(count(lines)), true, kUnlimited});
-    }
-    LineTerm& term = terms[found->second];
-    if (friction) term.of_a0[i] = -at(lines, i).direction;
-    if (!friction) term.of_log_k[i] = 1.0;
+    const TableLine& line = at(lines, i);
+    const std::string mass = fmt::format("{:.6g} g", 1e3 * line.mass_kg),
+                      set_up = fmt::format("{:.6g}°", line.incline_deg);
+    const auto key =
+        std::pair(over == LinesOver::set_up ? 0.0 : line.mass_kg, over == LinesOver::mass ? 0.0 : line.incline_deg);
+    LineCell& cell = cells[key];
+    cell.name = over == LinesOver::mass ? mass : over == LinesOver::set_up ? set_up : mass + ", " + set_up;
+    cell.lines.push_back(i);
   }
-  terms.erase(terms.begin());
+  std::vector<LineCell> list;
+  for (auto& [key, cell] : cells) list.push_back(std::move(cell));
+  return list;
+}
+
+/// A mu, or ln K, of each cell but the first, less the nominal one.
+std::vector<LineTerm> own_terms(const LineData& data, const std::vector<LineCell>& cells, bool drag) {
+  std::vector<LineTerm> terms;
+  for (std::size_t c = 1; c < cells.size(); ++c) {
+    LineTerm term{drag ? "log_k" : "mu", Eigen::VectorXd::Zero(data.a0.size()), Eigen::VectorXd::Zero(data.a0.size()),
+                  true, kUnlimited};
+    for (const Eigen::Index i : cells[c].lines) {
+      if (drag) term.of_log_k[i] = 1.0;
+      if (!drag) term.of_a0[i] = data.base_a0(i, data.base_a0.cols() - 1);
+    }
+    terms.push_back(std::move(term));
+  }
   return terms;
+}
+
+/// Whether the nominal model makes all that the term does but for a trifle, as it does with a single mass.
+bool is_nominal(const LineData& data, const LineTerm& term) {
+  const auto beside = [](const Eigen::MatrixXd& columns, const Eigen::VectorXd& of) {
+    return (of - base::product(columns, base::least_squares(columns, of)).col(0)).squaredNorm();
+  };
+  constexpr double kOwn = 3e-3;  // of the term's square: what cos(alpha) of two set-ups, or the scatter of K/m, makes
+  return beside(data.base_log_k, term.of_log_k) <= kOwn * term.of_log_k.squaredNorm() &&
+         beside(data.base_a0, term.of_a0) <= kOwn * term.of_a0.squaredNorm();
+}
+
+LineCause cause_of_one_size(const std::vector<TableLine>& lines, const EffectInfo& effect) {
+  LineTerm term{std::string(effect.lines.key), Eigen::VectorXd(count(lines)), Eigen::VectorXd(count(lines)),
+                effect.both_signs, effect.lines.largest};
+  for (Eigen::Index i = 0; i < count(lines); ++i) {
+    const TableLine& line = at(lines, i);
+    const LineChange change =
+        effect.lines.change({line.mass_kg, static_cast<double>(line.direction), line.a0_m_s2, line.k_over_m_1_s});
+    term.of_log_k[i] = change.of_log_k;
+    term.of_a0[i] = change.of_a0_m_s2;
+  }
+  return {std::string(effect.id), effect.stage, std::string(effect.words), {std::move(term)}};
+}
+
+/// In every form in which these lines differ, the finest last.
+std::vector<LineCause> causes_of_own_sizes(const std::vector<TableLine>& lines, const LineData& data,
+                                           const EffectInfo& effect) {
+  const bool drag = effect.lines.own == OwnOfLines::drag;
+  std::vector<LinesOver> forms;
+  const bool masses = different(lines, &TableLine::mass_kg).size() > 1;
+  const bool setups = different(lines, &TableLine::incline_deg).size() > 1;
+  if (masses) forms.push_back(LinesOver::mass);
+  if (setups) forms.push_back(LinesOver::set_up);
+  if (masses && setups) forms.push_back(LinesOver::mass_and_set_up);
+  std::vector<LineCause> causes;
+  for (const LinesOver over : forms) {
+    std::vector<LineCell> cells = cells_of(lines, over);
+    std::vector<LineTerm> terms = own_terms(data, cells, drag);
+    causes.push_back({std::string(effect.id), effect.stage, std::string(effect.words), std::move(terms),
+                      1.0 / static_cast<double>(forms.size()), over, std::move(cells), drag});
+  }
+  return causes;
 }
 
 }  // namespace
 
-std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std::vector<std::string>& without) {
-  if (different(lines, &TableLine::mass_kg).size() < 2) return {};
-  std::vector<LineTerm> terms;
+std::vector<LineCause> line_causes(const std::vector<TableLine>& lines, const LineData& data,
+                                   const std::vector<std::string>& without) {
+  std::vector<LineCause> causes, own;
   for (const EffectInfo& effect : all_effects()) {
-    if (effect.lines.change == nullptr || contains(without, std::string(effect.id))) continue;
-    LineTerm term{std::string(effect.id),    std::string(effect.lines.key), effect.stage,
-                  std::string(effect.words), Eigen::VectorXd(count(lines)), Eigen::VectorXd(count(lines)),
-                  effect.both_signs,         effect.lines.largest};
-    for (Eigen::Index i = 0; i < count(lines); ++i) {
-      const TableLine& line = at(lines, i);
-      const LineChange change =
-          effect.lines.change({line.mass_kg, static_cast<double>(line.direction), line.a0_m_s2, line.k_over_m_1_s});
-      term.of_log_k[i] = change.of_log_k;
-      term.of_a0[i] = change.of_a0_m_s2;
+    if (contains(without, std::string(effect.id))) continue;
+    if (effect.lines.change != nullptr) {
+      LineCause cause = cause_of_one_size(lines, effect);
+      if (!is_nominal(data, cause.terms.front())) causes.push_back(std::move(cause));
     }
-    terms.push_back(std::move(term));
+    if (effect.lines.own == OwnOfLines::nothing) continue;
+    for (LineCause& cause : causes_of_own_sizes(lines, data, effect)) own.push_back(std::move(cause));
   }
-  // What moves intercepts alone comes first.
-  std::stable_partition(terms.begin(), terms.end(), [](const LineTerm& term) { return term.of_log_k.isZero(0.0); });
-  return terms;
+  // What moves intercepts alone comes first, and what each configuration has of its own last.
+  std::stable_partition(causes.begin(), causes.end(),
+                        [](const LineCause& cause) { return cause.terms.front().of_log_k.isZero(0.0); });
+  std::move(own.begin(), own.end(), std::back_inserter(causes));
+  return causes;
 }
 
-std::vector<LineFamily> unnamed_line_families(const std::vector<TableLine>& lines) {
-  std::vector<LineFamily> families;
-  const auto add = [&](UnnamedInLines::Over over, const auto& cell_of) {
-    std::vector<Cell> cells;
-    for (const TableLine& line : lines) cells.push_back(cell_of(line));
-    for (const bool friction : {true, false}) {
-      const auto what = friction ? UnnamedInLines::What::friction : UnnamedInLines::What::drag;
-      families.push_back({{what, over}, 0.5, of_each(lines, cells, friction)});
-    }
-  };
-  const bool masses = different(lines, &TableLine::mass_kg).size() > 1;
-  const bool setups = different(lines, &TableLine::incline_deg).size() > 1;
-  if (masses) add(UnnamedInLines::Over::mass, [](const TableLine& l) { return Cell{l.mass_kg, 0.0}; });
-  if (setups) add(UnnamedInLines::Over::set_up, [](const TableLine& l) { return Cell{0.0, l.incline_deg}; });
-  if (masses && setups) {
-    add(UnnamedInLines::Over::mass_and_set_up, [](const TableLine& l) { return Cell{l.mass_kg, l.incline_deg}; });
+std::vector<LineCause> own_of_each_configuration(const std::vector<TableLine>& lines, const LineData& data) {
+  std::vector<LineCause> causes;
+  for (const EffectInfo& effect : all_effects()) {
+    if (effect.lines.own == OwnOfLines::nothing) continue;
+    std::vector<LineCause> forms = causes_of_own_sizes(lines, data, effect);
+    if (!forms.empty()) causes.push_back(std::move(forms.back()));
   }
-  LineTerm ways{
-      "",   "drag",    Stage::dynamics, "", Eigen::VectorXd::Zero(count(lines)), Eigen::VectorXd::Zero(count(lines)),
-      true, kUnlimited};
-  for (Eigen::Index i = 0; i < count(lines); ++i) ways.of_log_k[i] = at(lines, i).direction;
-  families.push_back({{UnnamedInLines::What::drag, UnnamedInLines::Over::direction}, 1.0, {ways}});
-  std::set<UnnamedInLines::Over> variables;
-  for (const LineFamily& family : families) variables.insert(family.of.over);
-  for (LineFamily& family : families) family.share /= static_cast<double>(variables.size());
-  return families;
+  return causes;
 }
 
 std::vector<std::string> alike_friction_force(const std::vector<std::string>& without) {
@@ -226,6 +261,21 @@ double squares_about_mean(const std::vector<double>& values) {
   return sum;
 }
 
+/// How many terms each kind of data has; one that acts on both is half a one of each.
+struct TermCounts {
+  double log_k = 0.0, a0 = 0.0;
+};
+
+TermCounts term_counts(const std::vector<LineTerm>& terms) {
+  TermCounts counts;
+  for (const LineTerm& term : terms) {
+    const double k = term.of_log_k.isZero(0.0) ? 0.0 : 1.0, a = term.of_a0.isZero(0.0) ? 0.0 : 1.0;
+    counts.log_k += k / std::max(1.0, k + a);
+    counts.a0 += a / std::max(1.0, k + a);
+  }
+  return counts;
+}
+
 double root_mean_square(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
@@ -271,15 +321,19 @@ LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& term
   s.sd_k = kFirstSd_k;
   s.sd_a = kFirstSd_a;
   Eigen::VectorXd weight(2 * n), off, fit;
-  Eigen::MatrixXd inverse;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
-    weight << Eigen::VectorXd::Constant(n, 1.0 / s.sd_k), Eigen::VectorXd::Constant(n, 1.0 / s.sd_a);
-    const Eigen::MatrixXd wx = weight.asDiagonal() * x;
+  const auto inverse_of = [&](const Eigen::VectorXd& weights) {
+    const Eigen::MatrixXd wx = weights.asDiagonal() * x;
     Eigen::MatrixXd normal = base::transposed_product(wx, wx);
     const Eigen::VectorXd scale = (normal.diagonal().array() + 1e-300).sqrt().inverse();
     normal = scale.asDiagonal() * normal * scale.asDiagonal();
     normal.diagonal().array() += 1e-10;
-    inverse = scale.asDiagonal() * base::inverse_positive(normal) * scale.asDiagonal();
+    return Eigen::MatrixXd(scale.asDiagonal() * base::inverse_positive(normal) * scale.asDiagonal());
+  };
+  Eigen::MatrixXd inverse;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    weight << Eigen::VectorXd::Constant(n, 1.0 / s.sd_k), Eigen::VectorXd::Constant(n, 1.0 / s.sd_a);
+    const Eigen::MatrixXd wx = weight.asDiagonal() * x;
+    inverse = inverse_of(weight);
     fit = base::product(inverse, base::transposed_product(wx, Eigen::VectorXd(weight.cwiseProduct(y))));
     off = y - base::product(x, fit);
     const double sd_k = std::max(root_mean_square(off.head(n)), data.rounding_log_k);
@@ -292,9 +346,17 @@ LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& term
   s.off_k = off.head(n);
   s.off_a = off.tail(n);
   s.size = fit.tail(pt);
-  // With the degrees of freedom that the fit takes.
-  const auto values = static_cast<double>(2 * n), parameters = static_cast<double>(pk + pa + pt);
-  s.sd = inverse.diagonal().tail(pt).cwiseSqrt() * std::sqrt(values / std::max(1.0, values - parameters));
+  s.all = fit;
+  // With the degrees of freedom that the fit takes of each kind.
+  const auto of_kind = term_counts(terms);
+  const auto widened = [&](double sd, double parameters) {
+    const auto values = static_cast<double>(n);
+    return sd * std::sqrt(values / std::max(1.0, values - parameters));
+  };
+  weight << Eigen::VectorXd::Constant(n, 1.0 / widened(s.sd_k, static_cast<double>(pk) + of_kind.log_k)),
+      Eigen::VectorXd::Constant(n, 1.0 / widened(s.sd_a, static_cast<double>(pa) + of_kind.a0));
+  s.covariance = inverse_of(weight);
+  s.sd = s.covariance.diagonal().tail(pt).cwiseSqrt();
   for (Eigen::Index t = 0; t < pt && !s.left_out; ++t) {
     s.left_out = impossible(terms[static_cast<std::size_t>(t)], s.size[t]);
   }
@@ -345,12 +407,7 @@ double log_bayes_factor(double left, double nominal_left, double lines, double n
 
 double log_line_evidence(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
                          const LineSolution& nominal) {
-  double of_k = 0.0, of_a = 0.0;
-  for (const LineTerm& term : terms) {
-    const double k = term.of_log_k.isZero(0.0) ? 0.0 : 1.0, a = term.of_a0.isZero(0.0) ? 0.0 : 1.0;
-    of_k += k / std::max(1.0, k + a);
-    of_a += a / std::max(1.0, k + a);
-  }
+  const auto [of_k, of_a] = term_counts(terms);
   const auto lines = static_cast<double>(data.a0.size());
   double sum = 0.0;
   if (of_k > 0.0) {

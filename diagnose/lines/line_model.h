@@ -58,34 +58,32 @@ base::Issue too_few_lines(const std::string& file, std::size_t lines);
 /// The values of a member among the lines, ascending, each once.
 std::vector<double> different(const std::vector<TableLine>& lines, double TableLine::*member);
 
-/// What may act on a table of lines besides the nominal model, an effect with a name, or friction or drag without one:
-/// what one unit of it adds to ln(K/m) and to a0 (m/s²) of every line.
+/// One size that is fitted beside the nominal model: what one unit of it adds to ln(K/m) and to a0 (m/s²) of every
+/// line.
 struct LineTerm {
-  std::string id, key;
-  Stage stage = Stage::dynamics;
-  std::string words;
+  std::string key;
   Eigen::VectorXd of_log_k, of_a0;
   bool both_signs = false;
   double largest = 0.0;  ///< in the unit of the key
 };
 
-/// Terms without a name that come together.
-struct LineFamily {
-  UnnamedInLines of;
-  double share = 0.0;  ///< of the odds of something without a name: each variable alike, and of it friction and drag
-  std::vector<LineTerm> terms;
+/// Lines that have a mu or a K of their own together, and which: "335 g, 4°", "4°".
+struct LineCell {
+  std::string name;
+  std::vector<Eigen::Index> lines;
 };
 
-/// Those of the effects that lines can show, less what is left `without`. What each does to a line stands in its file
-/// (diagnose/effects/effect.h, OnLines). None where all masses are the same: they are K and mu then.
-std::vector<LineTerm> named_terms(const std::vector<TableLine>& lines, const std::vector<std::string>& without);
-
-/// Friction and drag without a name. With the line's mass m, direction s and K/m they make a0 - s f or ln(K/m) + d,
-/// with f or d of each mass, of each set-up, or of each mass in each set-up, and ln(K/m) + s d.
-std::vector<LineFamily> unnamed_line_families(const std::vector<TableLine>& lines);
-
-/// Effects of the speed whose lines are those of load_independent_friction, less what is left `without`.
-std::vector<std::string> alike_friction_force(const std::vector<std::string>& without);
+/// An effect that lines can show, in one of its forms.
+struct LineCause {
+  std::string id;
+  Stage stage = Stage::dynamics;
+  std::string words;
+  std::vector<LineTerm> terms;         ///< one; of a form with n cells n - 1, since the first has the nominal mu or K
+  double share = 1.0;                  ///< of the effect's odds
+  std::optional<LinesOver> over = {};  ///< the form; none where one size goes for all lines
+  std::vector<LineCell> cells = {};    ///< of the form
+  bool drag = false;                   ///< of a form: a K of each cell, not a mu
+};
 
 /// Both kinds of data, and the nominal model's columns.
 struct LineData {
@@ -94,9 +92,26 @@ struct LineData {
   double rounding_log_k = 0.0, rounding_a0 = 0.0;  ///< standard deviations of the numbers' own rounding
 };
 
+LineData line_data(const std::vector<TableLine>& lines, double gravity_m_s2);
+
+/// The effects that these lines can show, less what is left `without`: those of one size (what each does to a line
+/// stands in its file, diagnose/effects/effect.h, OnLines), then a mu, and a K, of each mass, of each set-up, or of
+/// each mass on each set-up. Of an effect with several forms each is as likely as another. None of which the nominal
+/// model can make nearly all itself (a cosine of kAlike), as with a single mass.
+std::vector<LineCause> line_causes(const std::vector<TableLine>& lines, const LineData& data,
+                                   const std::vector<std::string>& without);
+
+/// A mu, and a K, of each mass on each set-up, each a cause; empty where there is one of these alone.
+std::vector<LineCause> own_of_each_configuration(const std::vector<TableLine>& lines, const LineData& data);
+
+/// Effects of the speed whose lines are those of load_independent_friction, less what is left `without`.
+std::vector<std::string> alike_friction_force(const std::vector<std::string>& without);
+
 /// Lines fitted by the nominal model and terms beside it, and how well.
 struct LineSolution {
   Eigen::VectorXd size, sd;                    ///< of the terms; sd from what is left
+  Eigen::VectorXd all;                         ///< ln K, the intercept of each set-up, mu, and the terms' sizes
+  Eigen::MatrixXd covariance;                  ///< of all
   Eigen::VectorXd off_k, off_a;                ///< measured less fitted
   double sd_k = 0.0, sd_a = 0.0;               ///< root mean square of what is left
   std::vector<double> held_out_k, held_out_a;  ///< off the prediction by the other lines
@@ -110,8 +125,6 @@ struct OwnScatter {
   std::size_t freedom = 0;  ///< degrees of freedom of both together
   bool known() const { return intercept_m_s2 > 0.0 && slope > 0.0; }
 };
-
-LineData line_data(const std::vector<TableLine>& lines, double gravity_m_s2);
 
 /// Weighted least squares of both kinds together; their errors from the residuals, in turn.
 LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& terms);

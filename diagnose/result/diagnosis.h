@@ -148,6 +148,10 @@ struct ResidualCurve {
 /// Two effects are called alike from this cosine on: the second one then explains 90 % of what the first one gains.
 inline constexpr double kAlike = 0.95;
 
+/// Parts of the gap's excess that two explanations leave are the same within this: by causes/cause_odds.h it makes odds
+/// of twenty.
+inline constexpr double kSameLeft = 0.24;
+
 /// How alike the changes by two effects are: the cosine of the angle between them, everything fitted projected out.
 struct Isolability {
   std::vector<std::string> ids;

@@ -23,21 +23,24 @@ struct ImpossibleSize {
   std::optional<double> largest;  ///< that is possible; none where the value is below zero and cannot be
 };
 
-/// What has no name in a table of lines: a friction or a drag that differs between masses, set-ups, directions.
-struct UnnamedInLines {
-  enum class What { friction, drag } what = What::friction;
-  enum class Over { mass, set_up, mass_and_set_up, direction } over = Over::mass;
+/// Lines with a mu, or a K, of their own: those of each mass, of each set-up, or of each mass on each set-up.
+enum class LinesOver { mass, set_up, mass_and_set_up };
+
+/// How configuration_friction or configuration_drag divides the lines.
+struct LineForm {
+  std::string id;
+  LinesOver over = LinesOver::mass;
 };
 
 /// One explanation of the lines.
 struct LineCandidate {
   Explanation explanation;
-  std::optional<UnnamedInLines> unnamed;  ///< what has no name in it
+  std::vector<LineForm> forms;  ///< of the effects that have one; the same effects in other forms are other candidates
   double probability = 0.0;
   double log_evidence_gain = 0.0;
   double log_likelihood_gain = 0.0;
   std::size_t terms = 0;                   ///< more than the nominal model has
-  std::vector<LineSize> sizes;             ///< of effects with a name
+  std::vector<LineSize> sizes;             ///< of the effects: of one with a form, the spread over its parts
   std::optional<double> chi2, gap;         ///< over the lines' own scatter, where that is known
   std::optional<ImpossibleSize> left_out;  ///< why it was not weighed, where it was not
 };

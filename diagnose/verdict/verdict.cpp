@@ -22,7 +22,6 @@ namespace {
 
 constexpr double kSameGain = 3.0;      // log likelihood within which effects are alike: twenty times is no difference
 constexpr double kSameEvidence = 4.6;  // log evidence within which they are: what follows anything is no equal
-constexpr double kSameLeft = 0.24;     // part of the gap, the same: by cause_odds.h it makes odds of twenty
 constexpr double kNoChance = 5e-4;     // probability below which explanations are ranked by their evidence
 
 Explanation explanation_of(const Hypothesis& hypothesis) {

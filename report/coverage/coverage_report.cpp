@@ -1,8 +1,10 @@
 #include "report/coverage/coverage_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "base/text/number_text.h"
@@ -290,6 +292,26 @@ std::string coverage_json(const validate::Coverage& coverage) {
   return json_text(document);
 }
 
+std::string coverage_answer(const validate::Coverage& coverage) {
+  std::vector<const validate::CoverageRow*> counted;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    if (row.determined > 0 && row.estimator != validate::kNaiveLines) counted.push_back(&row);
+  }
+  if (counted.empty()) return {};
+  const auto [least, most] = std::minmax_element(
+      counted.begin(), counted.end(), [](const auto* a, const auto* b) { return a->coverage < b->coverage; });
+  std::string text = fmt::format("The stated 95 % intervals hold the truth in {:.1f} to {:.1f} % of {} replicates, ",
+                                 100.0 * (*least)->coverage, 100.0 * (*most)->coverage, coverage.replicates);
+  std::set<std::string> failing;
+  for (const validate::CoverageFailure& one : validate::too_narrow(coverage)) {
+    failing.insert(fmt::format("{} of {} by the {}", symbol_of(one.row.quantity), one.row.configuration,
+                               estimator_name(one.row.estimator)));
+  }
+  if (failing.empty()) return text + "as often as they say, as far as this many replicates can tell.";
+  return text + fmt::format("less often than they say for {} of {}: {}.", failing.size(), counted.size(),
+                            fmt::join(failing, "; "));
+}
+
 std::string coverage_text(const validate::Coverage& coverage) {
   std::vector<std::vector<std::string>> rows = {{"configuration", "estimator", "quantity", "truth", "bias", "sd",
                                                  "stated sd", "least sd", "efficiency", "coverage (95 % interval)",
@@ -312,8 +334,9 @@ std::string coverage_text(const validate::Coverage& coverage) {
       levels.back().push_back(k < row.levels.size() ? fmt::format("{:.1f} %", 100.0 * row.levels[k].coverage) : "–");
     }
   }
-  std::string text =
-      text_table(rows, 3) + (coverage.levels.empty() ? std::string() : fmt::format("\n{}", text_table(levels, 3)));
+  const std::string answer = coverage_answer(coverage);
+  std::string text = (answer.empty() ? answer : answer + "\n\n") + text_table(rows, 3) +
+                     (coverage.levels.empty() ? std::string() : fmt::format("\n{}", text_table(levels, 3)));
   if (coverage.outside) text += "\n" + outside_text(*coverage.outside) + "\n";
   return text;
 }

@@ -19,7 +19,11 @@ Plot reliability_plot(const validate::Coverage& coverage);
 /// One JSON object, with a newline at its end. No number in it is NaN.
 std::string coverage_json(const validate::Coverage& coverage);
 
-/// Every quantity, and below it how often the intervals of every level hold the truth.
+/// How often the intervals of all estimators but the naive one hold the truth, and which do so less often than they
+/// say, as one sentence; empty where there is nothing to count.
+std::string coverage_answer(const validate::Coverage& coverage);
+
+/// That sentence, every quantity, and below it how often the intervals of every level hold the truth.
 std::string coverage_text(const validate::Coverage& coverage);
 
 /// The same as a page, with what it means first. EnvironmentError if gnuplot fails.

@@ -49,17 +49,6 @@ std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
   return text;
 }
 
-/// What differs from one configuration to the next, where an effect has a value of each.
-std::string member_section(const diagnose::Diagnosis& diagnosis) {
-  std::string text;
-  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-    const auto rows = member_rows(effect);
-    if (rows.empty() || rows.size() < 3) continue;  // of one alone nothing differs
-    text += fmt::format("<h3>{}</h3>\n", effect_html(effect.id)) + html_of(rows);
-  }
-  return text.empty() ? text : "<h2>What differs</h2>\n" + text;
-}
-
 constexpr std::size_t kPlacesTold = 4;
 
 /// Where nothing has a name, the curve that would fill the gap over the variable that matters most.
@@ -92,6 +81,16 @@ Html rest_section(const diagnose::Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+std::string member_section(const diagnose::Diagnosis& diagnosis) {
+  std::string text;
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    const auto rows = member_rows(effect);
+    if (rows.empty() || rows.size() < 3) continue;  // of one alone nothing differs
+    text += fmt::format("<h3>{}</h3>\n", effect_html(effect.id)) + html_of(rows);
+  }
+  return text.empty() ? text : "<h2>What differs</h2>\n" + text;
+}
 
 std::string region_table(const std::vector<diagnose::GapRegion>& regions) {
   HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where clearest"}, 2);

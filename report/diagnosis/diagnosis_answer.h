@@ -10,6 +10,9 @@ namespace glidelab::report {
 /// Places of a gap; empty without any. A size that images show has a parameter's key for its unit.
 std::string region_table(const std::vector<diagnose::GapRegion>& regions);
 
+/// What differs from one configuration to the next, where an effect has a value of each; empty where none has.
+std::string member_section(const diagnose::Diagnosis& diagnosis);
+
 /// Parts that there is nothing to say of are left out. Not of a table of lines.
 Html answer_sections(const diagnose::Diagnosis& diagnosis);
 

@@ -291,6 +291,17 @@ std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
                             acceleration(*gap.acceleration_after, over_clips.acceleration_after));
 }
 
+/// What each configuration has of its own, a table for each effect.
+std::vector<std::string> member_tables(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::string> tables;
+  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    if (const auto rows = member_rows(effect); rows.size() > 2) {
+      tables.push_back(effect.id + ":\n" + text_table(rows, 1));
+    }
+  }
+  return tables;
+}
+
 /// Below the summary: each cause's share, what the rest is like, and the quantities with the causes in the model.
 std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
   std::string text;
@@ -307,9 +318,7 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
     }
     if (!rest.empty()) add(wrapped(rest));
   }
-  for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-    if (const auto rows = member_rows(effect); rows.size() > 2) add(effect.id + ":\n" + text_table(rows, 1));
-  }
+  for (const std::string& table : member_tables(diagnosis)) add(table);
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
     add(with_words(table.with) + ":\n" + text_table(table.rows, 1));
     for (const std::string& why : table.why) text += wrapped(printable(why));
@@ -332,11 +341,15 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     rows.push_back({explanation_id(ranked.explanation), fmt::format("{:.3f}", ranked.probability),
                     ranked.left_out ? "not weighed" : base::gain_text(ranked.log_evidence_gain)});
   }
-  if (diagnosis.lines && !diagnosis.explained.empty()) text += text_table(explained_rows(diagnosis, true), 1) + "\n";
+  if (diagnosis.lines) {
+    if (!diagnosis.explained.empty()) text += text_table(explained_rows(diagnosis, true), 1) + "\n";
+    for (const std::string& table : member_tables(diagnosis)) text += table + "\n";
+  }
   text += text_table(diagnosis.lines ? line_rows(*diagnosis.lines) : rows, diagnosis.lines ? 2 : 1) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
-      if (!sequence.empty() && parameter.key.find('.') != std::string::npos) continue;  // in the table above
+      if ((!sequence.empty() || diagnosis.lines) && parameter.key.find('.') != std::string::npos)
+        continue;  // in the table above
       text += fmt::format("{}: {}\n", effect.id, parameter_text(parameter));
     }
   }

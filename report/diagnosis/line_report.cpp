@@ -11,6 +11,7 @@
 
 #include "base/text/number_text.h"
 #include "report/diagnosis/cause_waterfall.h"
+#include "report/diagnosis/diagnosis_answer.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/verdict_words.h"
@@ -80,7 +81,7 @@ std::vector<Plot> line_plots(const diagnose::LineComparison& lines) {
 
 namespace {
 
-constexpr std::size_t kUnnamedRows = 3;
+constexpr double kShown = 0.01;  // probability from which on an explanation has a row in any case
 
 std::string line_tiles(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
@@ -99,7 +100,7 @@ std::string line_tiles(const diagnose::Diagnosis& diagnosis) {
 
 std::string name_of(const diagnose::LineCandidate& candidate) {
   const std::string id = explanation_id(candidate.explanation);
-  return candidate.unnamed ? fmt::format("{}: {}", id, unnamed_words(*candidate.unnamed)) : id;
+  return candidate.forms.empty() ? id : fmt::format("{}: {}", id, forms_words(candidate));
 }
 
 std::string sizes_text(const diagnose::LineCandidate& candidate) {
@@ -145,14 +146,15 @@ std::string gap_table(const diagnose::GapSizes& gap) {
   return text;
 }
 
-/// Those that are shown: weighed, and of those without a name the likeliest few.
+/// Those that are shown, of those that were weighed: what is likely, and the likeliest form of each single effect.
 std::vector<const diagnose::LineCandidate*> shown_candidates(const diagnose::LineComparison& lines) {
   std::vector<const diagnose::LineCandidate*> shown;
-  std::size_t unnamed = 0;
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
     if (candidate.left_out) continue;
-    if (candidate.unnamed && ++unnamed > kUnnamedRows) continue;
-    shown.push_back(&candidate);
+    const bool again = std::any_of(shown.begin(), shown.end(),
+                                   [&](const auto* one) { return one->explanation == candidate.explanation; });
+    const bool single = candidate.explanation.effects.size() < 2 && !again;
+    if (single || candidate.probability >= kShown) shown.push_back(&candidate);
   }
   return shown;
 }
@@ -164,13 +166,13 @@ std::string candidate_table(const diagnose::LineComparison& lines) {
   for (std::size_t r = 1; r < rows.size(); ++r) {
     const diagnose::LineCandidate& candidate = *shown[r - 1];
     std::vector<std::string> cells = {explanation_html(candidate.explanation)};
-    if (candidate.unnamed) cells.front() += ": " + unnamed_words(*candidate.unnamed);
+    if (!candidate.forms.empty()) cells.front() += ": " + escape(forms_words(candidate));
     for (std::size_t c = 1; c < rows[r].size(); ++c) cells.push_back(symbols_html(rows[r][c]));
     table.row(cells);
   }
   std::string text = table.str();
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
-    if (!candidate.left_out || candidate.unnamed) continue;
+    if (!candidate.left_out) continue;
     text += fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", explanation_html(candidate.explanation),
                         escape(impossible_words(*candidate.left_out)));
   }
@@ -180,11 +182,10 @@ std::string candidate_table(const diagnose::LineComparison& lines) {
 constexpr const char* kLineMethod =
     "<h2>Method</h2>\n<p>In the nominal model every line has the slope −K/m with one K, and the intercept "
     "g sin α − sign(v) µ g cos α with one µ and one α for each set-up. Each effect that lines can show is added to it, "
-    "alone and in pairs. A friction or drag of each mass, of each set-up, of each mass in each set-up, and of each "
-    "direction competes with them, alone and alongside them, as “unknown”. A table states no errors: they are fitted "
-    "with each explanation, and the evidence is the Bayes factor for an unknown scatter (Zellner and Siow). Chi² and "
-    "the gap are relative to the lines' own scatter, which involves no friction: that of the mean intercept over both "
-    "directions, and of the slopes within each mass.</p>\n";
+    "alone and in pairs. A µ or a K of its own may go with each mass, with each set-up, or with each mass in each "
+    "set-up. A table states no errors: they are fitted with each explanation, and the evidence is the Bayes factor for "
+    "an unknown scatter (Zellner and Siow). Chi² and the gap are relative to the lines' own scatter, which involves no "
+    "friction: that of the mean intercept over both directions, and of the slopes within each mass.</p>\n";
 
 }  // namespace
 
@@ -217,7 +218,7 @@ Json lines_json(const diagnose::LineComparison& lines) {
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
     Json one;
     one["id"] = explanation_id(candidate.explanation);
-    if (candidate.unnamed) one["words"] = unnamed_words(*candidate.unnamed);
+    if (!candidate.forms.empty()) one["words"] = forms_words(candidate);
     put(one, "probability", candidate.probability);
     if (candidate.left_out) {
       one["not_weighed"] = impossible_words(*candidate.left_out);
@@ -247,7 +248,8 @@ Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis)
   Html body = question_heading(title, kDiagnosisQuestion) +
               fmt::format("<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n", lines.lines);
   body += line_tiles(diagnosis);
-  body += diagnosis_meaning(diagnosis) + next_step_note(diagnosis) + note_paragraphs(diagnosis);
+  body +=
+      diagnosis_meaning(diagnosis) + next_step_note(diagnosis) + member_section(diagnosis) + note_paragraphs(diagnosis);
   body += "<h2>The verdict</h2>\n" + candidate_table(lines) + figures(verdict_plots(diagnosis));
   const std::vector<Plot> waterfall = waterfall_plots(diagnosis);
   if (!waterfall.empty()) body += "<h2>What explains the gap</h2>\n" + figures(waterfall);

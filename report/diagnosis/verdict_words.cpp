@@ -15,8 +15,6 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kWorthSaying = 0.01;  // probability of a named explanation that is stated beside an unnamed one
-
 std::string line_times(double gap) {
   return gap < 10.0 ? fmt::format("{:.1f}", gap) : fmt::format("{:.0f}", gap);
 }
@@ -24,6 +22,10 @@ std::string line_times(double gap) {
 std::string line_size_text(const diagnose::LineSize& size) {
   if (size.key == "force_n") return base::size_and_sd_text(size.value, size.sd, "N");
   if (size.key == "mass_kg") return base::size_and_sd_text(size.value, size.sd, "kg");
+  if (size.key == "d") return "d = " + base::value_and_sd_text(size.value, size.sd) + " in K (1 + d sign(v))";
+  if (size.key == "sd") return "µ differs by " + base::value_and_sd_text(size.value, size.sd) + " (standard deviation)";
+  if (size.key == "sd_n_s_m")
+    return "K differs by " + base::value_and_sd_text(size.value, size.sd) + " N s/m (standard deviation)";
   return base::size_and_sd_text(size.value, size.sd, "m/s²") + " for each 1/s² of (K/m)²";
 }
 
@@ -44,6 +46,27 @@ std::string sizes_of(const diagnose::LineCandidate& candidate) {
     text += (text.empty() ? "" : " and ") + line_size_text(size);
   }
   return text;
+}
+
+/// "µ from 0.0051 (535 g, 0°) to 0.0075 (335 g, 0°)", of an effect with a size for each cell; or its one size.
+std::string effect_size_text(const diagnose::DiagnosedEffect& effect) {
+  constexpr std::string_view kMuOf = "mu.", kDragOf = "k_n_s_m.";
+  const diagnose::DiagnosedParameter *least = nullptr, *most = nullptr;
+  for (const diagnose::DiagnosedParameter& one : effect.parameters) {
+    if (!one.key.starts_with(kMuOf) && !one.key.starts_with(kDragOf)) continue;
+    if (least == nullptr || one.value < least->value) least = &one;
+    if (most == nullptr || one.value > most->value) most = &one;
+  }
+  if (least == nullptr) {
+    const diagnose::DiagnosedParameter& size = effect.parameters.front();
+    return line_size_text({size.key, size.value, size.sd});
+  }
+  const bool drag = least->key.starts_with(kDragOf);
+  const auto one = [&](const diagnose::DiagnosedParameter& of) {
+    return fmt::format("{}{} ({})", base::value_and_sd_text(of.value, of.sd), drag ? " N s/m" : "",
+                       of.key.substr((drag ? kDragOf : kMuOf).size()));
+  };
+  return fmt::format("{} from {} to {}", drag ? "K" : "µ", one(*least), one(*most));
 }
 
 std::string words_of(const diagnose::Diagnosis& diagnosis, const std::string& id) {
@@ -105,44 +128,17 @@ std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
       " Predicted from the others with the nominal model, each line is {} times as far off as that scatter explains",
       line_times(gap.before));
   if (diagnosis.verdict == diagnose::Verdict::none) return text + " (1 is the floor).";
-  const bool named = diagnosis.verdict == diagnose::Verdict::effect;
   text += fmt::format(", and {} times with {} (1 is the floor).", line_times(gap.after),
-                      !named                                ? "the likeliest unnamed difference"
-                      : !diagnosis.lines->either_of.empty() ? "the better of them"
-                      : diagnosis.effects.size() > 1        ? "both"
-                                                            : "this effect");
-  if (named && gap.after > 1.0 + diagnose::kClearGap * gap.standard_error) {
+                      !diagnosis.lines->either_of.empty() ? "the better of them"
+                      : diagnosis.effects.size() > 1      ? "both"
+                                                          : "this effect");
+  if (gap.after > 1.0 + diagnose::kClearGap * gap.standard_error) {
     text += fmt::format(
-        " Even the best named explanation leaves {} times the lines' own scatter: something else is missing as well, "
-        "or errors within one set-up are correlated. The probability that something unnamed acts is {}.",
-        line_times(gap.after), percent(diagnosis.unknown));
+        " Even the best explanation leaves {} times the lines' own scatter: something else is missing as well, or "
+        "errors "
+        "within one set-up are correlated.",
+        line_times(gap.after));
   }
-  return text;
-}
-
-std::string unknown_words(const diagnose::Diagnosis& diagnosis) {
-  const diagnose::LineComparison& lines = *diagnosis.lines;
-  const auto unnamed = std::find_if(lines.candidates.begin(), lines.candidates.end(),
-                                    [](const diagnose::LineCandidate& c) { return c.unnamed.has_value(); });
-  std::string text = fmt::format("Something is missing that no known effect explains ({}). The likeliest is {}",
-                                 percent(diagnosis.unknown), unnamed_words(*unnamed->unnamed));
-  if (!unnamed->explanation.effects.empty()) {
-    text += " beside " + explanation_id({unnamed->explanation.effects, false});
-  }
-  text += ".";
-  if (!diagnosis.regions.empty()) {
-    const diagnose::GapRegion& most = diagnosis.regions.front();
-    text += fmt::format(" The largest deviation from the nominal model, {} {}, is in the {} of {}{}.",
-                        base::value_and_sd_text(most.size, most.size_sd.value_or(0.0)), most.unit, to_text(most.what),
-                        most.variable == diagnose::GapVariable::set_up
-                            ? fmt::format("the set-up at {:.3g} degrees", most.from)
-                            : fmt::format("{:.0f} g", 1e3 * most.from),
-                        most.direction == 0  ? ""
-                        : most.direction > 0 ? " where v > 0"
-                                             : " where v < 0");
-  }
-  if (lines.either_of.size() > 1 && lines.either_probability >= kWorthSaying)
-    return text + " The best named explanation is " + either(diagnosis) + ".";
   return text;
 }
 
@@ -160,36 +156,40 @@ std::string line_words(const diagnose::Diagnosis& diagnosis) {
                                    percent(diagnosis.none))) +
            line_gap_words(diagnosis);
   }
-  if (diagnosis.verdict == diagnose::Verdict::unknown) return unknown_words(diagnosis) + line_gap_words(diagnosis);
   const diagnose::Explanation& named_first = diagnosis.ranking.front().explanation;
+  const std::string within = holds_within_words(diagnosis);
+  const std::string first = within.empty() ? "" : within + " ";
   if (!lines.either_of.empty()) {
-    return fmt::format("These {} lines show {}.{}", lines.lines, either(diagnosis), alike_words(diagnosis)) +
+    return first + fmt::format("These {} lines show {}.{}", lines.lines, either(diagnosis), alike_words(diagnosis)) +
            chi2_words(diagnosis, named_first) + line_gap_words(diagnosis);
   }
-  std::string named;
+  std::string named, sizes;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+    sizes += (sizes.empty() ? "" : " and ") + effect_size_text(effect);
     named += fmt::format("{}{} ({}, {})", named.empty() ? "" : " and ", effect.words, effect.id,
                          percent(effect.probability));
   }
-  return fmt::format("These {} lines show {}: {}.{}", lines.lines, named, sizes_of(candidate(lines, named_first)),
-                     alike_words(diagnosis)) +
+  return first + fmt::format("These {} lines show {}: {}.{}", lines.lines, named, sizes, alike_words(diagnosis)) +
          chi2_words(diagnosis, named_first) + line_gap_words(diagnosis);
 }
 
-std::string unnamed_words(const diagnose::UnnamedInLines& of) {
-  using Over = diagnose::UnnamedInLines::Over;
-  const char* what = of.what == diagnose::UnnamedInLines::What::friction ? "friction" : "drag";
-  switch (of.over) {
-    case Over::mass:
+std::string form_words(const diagnose::LineForm& form) {
+  const char* what = form.id == diagnose::ids::configuration_drag ? "K" : "µ";
+  switch (form.over) {
+    case diagnose::LinesOver::mass:
       return fmt::format("a separate {} for each mass", what);
-    case Over::set_up:
+    case diagnose::LinesOver::set_up:
       return fmt::format("a separate {} for each set-up", what);
-    case Over::mass_and_set_up:
+    case diagnose::LinesOver::mass_and_set_up:
       return fmt::format("a separate {} for each mass in each set-up", what);
-    case Over::direction:
-      return fmt::format("a separate {} for each direction", what);
   }
   return {};
+}
+
+std::string forms_words(const diagnose::LineCandidate& candidate) {
+  std::string text;
+  for (const diagnose::LineForm& form : candidate.forms) text += (text.empty() ? "" : ", ") + form_words(form);
+  return text;
 }
 
 std::string impossible_words(const diagnose::ImpossibleSize& size) {

@@ -16,8 +16,8 @@ inline constexpr std::string_view kDiagnosisQuestion = "What does the simple law
 /// `diagnosis.lines` is there.
 std::string line_words(const diagnose::Diagnosis& diagnosis);
 
-/// "a friction of each mass by itself"
-std::string unnamed_words(const diagnose::UnnamedInLines& of);
+/// "a separate µ for each mass", of each form; empty where an explanation has none.
+std::string forms_words(const diagnose::LineCandidate& candidate);
 
 /// Why an explanation was not weighed: "force would have to be -3.1 mN, and it cannot be below zero".
 std::string impossible_words(const diagnose::ImpossibleSize& size);

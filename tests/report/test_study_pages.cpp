@@ -122,6 +122,28 @@ TEST_CASE("a plan says sizes with their units, and what to do about effects that
   CHECK_FALSE(has(report::plan_text(plan), "plan again"));
 }
 
+TEST_CASE("the first line of coverage is the answer: how often the intervals hold, and which of them do not") {
+  validate::Coverage coverage;
+  CHECK(report::coverage_answer(coverage).empty());
+  coverage.replicates = 200;
+  coverage.levels = {0.95};
+  coverage.rows = {row("phase-diagram", "mu", 0.0028, 0.0028), row("trajectory", "mu", 0.001, 0.001),
+                   row("naive-lines", "mu", 0.0083, 0.0026)};
+  for (validate::CoverageRow& one : coverage.rows) one.levels = {{0.95, 190, 0.95, 0.91, 0.98, 1.0}};
+  coverage.rows[1].coverage = 0.935;
+  coverage.rows[2].coverage = 0.1;
+  CHECK(report::coverage_answer(coverage) ==
+        "The stated 95 % intervals hold the truth in 93.5 to 95.0 % of 200 replicates, as often as they say, as far as "
+        "this many replicates can tell.");
+  coverage.rows[1].coverage = 0.6;
+  coverage.rows[1].levels = {{0.95, 120, 0.6, 0.53, 0.67, 1e-40}};
+  const std::string text = report::coverage_text(coverage);
+  CHECK(
+      text.substr(0, text.find('\n')) ==
+      "The stated 95 % intervals hold the truth in 60.0 to 95.0 % of 200 replicates, less often than they say for 1 of "
+      "2: µ of m1 by the fit of the whole motion.");
+}
+
 TEST_CASE("coverage names what scatters farther than it states, and the naive lines are not asked") {
   validate::Coverage coverage;
   coverage.replicates = 200;

@@ -33,7 +33,7 @@ EffectInfo configuration_drag() {
                       .held_sd = 0.5}},
       .law = {.resistance = own_drag},
       .shapes = nullptr,
-      .lines = {},
+      .lines = {.own = OwnOfLines::drag},
       .twin = EffectTwin::as_force(own_drag_twin),
       .next = {},
       .alike = {},

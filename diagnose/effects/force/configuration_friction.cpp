@@ -33,7 +33,7 @@ EffectInfo configuration_friction() {
                       .held_sd = 0.02}},
       .law = {.friction = own_friction},
       .shapes = nullptr,
-      .lines = {},
+      .lines = {.own = OwnOfLines::mu},
       .twin = EffectTwin::as_force(own_friction_twin),
       .next = {},
       .alike = {},

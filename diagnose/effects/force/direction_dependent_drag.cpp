@@ -8,6 +8,11 @@ void directed_resistance(const double* p, const GliderConstants&, const GliderSt
   of.drag_factor *= at.v < 0.0 ? 1.0 - p[0] : 1.0 + p[0];
 }
 
+/// ln K + d s to first order.
+LineChange directed_lines(const LineQuantities& line) {
+  return {line.direction, 0.0};
+}
+
 }  // namespace
 
 EffectInfo direction_dependent_drag() {
@@ -22,7 +27,7 @@ EffectInfo direction_dependent_drag() {
       .parameters = {{.key = "d", .absent = 0.0, .low = -0.99, .high = 0.99, .step = 1e-5}},
       .law = {.resistance = directed_resistance},
       .shapes = nullptr,
-      .lines = {},
+      .lines = {.change = directed_lines, .key = "d", .largest = 0.5},
       .twin = EffectTwin::none("no drag in a scenario depends on the direction"),
       .next = {},
       .alike = {},

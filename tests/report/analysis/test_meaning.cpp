@@ -147,24 +147,23 @@ bool tells(const report::Page& page, const std::string& part) {
 TEST_CASE("a diagnosis of clips or of lines says at the top what its verdict means for the numbers of an analysis") {
   diagnose::Diagnosis of;
   of.none = 0.9;
-  of.effects = {{"quadratic_drag", diagnose::Stage::dynamics, "<a drag>", 0.9, {}, {}, 0.9, {}}};
+  of.effects = {{"quadratic_drag", diagnose::Stage::dynamics, "<a drag>", 0.9, {}, {{"force_n", 1.0, 0.1}}, 0.9, {}}};
   of.ranking = {{{{"quadratic_drag"}}, 0.5, 1.0, 1.0, 1, {}}};
   diagnose::Diagnosis lines = of;
   lines.lines.emplace();
   lines.lines->lines = 12;
   lines.lines->candidates = {{{}, {}, 0.9, 0.0, 0.0, 0, {}, {}, {}, {}},
-                             {{{"quadratic_drag"}}, {}, 0.05, 1.0, 1.0, 1, {{"force_n", 1.0, 0.1}}, {}, {}, {}},
-                             {{{}, true}, diagnose::UnnamedInLines{}, 0.05, 1.0, 1.0, 1, {}, {}, {}, {}}};
+                             {{{"quadratic_drag"}}, {}, 0.05, 1.0, 1.0, 1, {{"force_n", 1.0, 0.1}}, {}, {}, {}}};
   for (diagnose::Diagnosis* diagnosis : {&of, &lines}) {
     diagnosis->verdict = diagnose::Verdict::effect;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), " show &lt;a drag&gt; (quadratic_drag, 90"));
     CHECK(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data leaves this out"));
-    diagnosis->verdict = diagnose::Verdict::unknown;
-    CHECK(tells(report::diagnosis_report("d", *diagnosis), "need not be properties of the track"));
     diagnosis->verdict = diagnose::Verdict::none;
     CHECK(tells(report::diagnosis_report("d", *diagnosis), " can show, nothing is missing"));
     CHECK_FALSE(tells(report::diagnosis_report("d", *diagnosis), "An analysis of these data"));
   }
+  of.verdict = diagnose::Verdict::unknown;
+  CHECK(tells(report::diagnosis_report("d", of), "need not be properties of the track"));
 }
 
 TEST_CASE(

@@ -167,7 +167,7 @@ TEST_CASE("the page of a diagnosed table of lines has every name from a file as 
   lines.either_of = {kEvil, kEvil};
   lines.candidates = {
       {{{kEvil}}, {}, 0.5, 1.0, 1.0, 1, {{kEvil, 1.0, 0.1}}, 3.0, 1.0, {}},
-      {{{kEvil}, true}, diagnose::UnnamedInLines{}, 0.4, 1.0, 1.0, 1, {{kEvil, 1.0, 0.1}}, 3.0, 1.0, {}},
+      {{{kEvil, kEvil}}, {{kEvil, diagnose::LinesOver::mass}}, 0.4, 1.0, 1.0, 1, {{kEvil, 1.0, 0.1}}, 3.0, 1.0, {}},
       {{}, {}, 0.1, 0.0, 0.0, 0, {}, 9.0, 3.0, {}},
       {{{kEvil, kEvil}}, {}, 0.0, 0.0, 0.0, 1, {}, {}, {}, diagnose::ImpossibleSize{kEvil, -1.0, {}}}};
   lines.off = {{0.335, 4.0, 1, 2.7, 0.01, 0.0}, {0.335, 4.0, -1, 2.7, -0.01, 0.0}};
