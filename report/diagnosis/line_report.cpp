@@ -172,7 +172,7 @@ std::string candidate_table(const diagnose::LineComparison& lines) {
   }
   std::string text = table.str();
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
-    if (!candidate.left_out) continue;
+    if (!candidate.left_out || candidate.explanation.effects.size() > 1) continue;  // of a pair for the same reason
     text += fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", explanation_html(candidate.explanation),
                         escape(impossible_words(*candidate.left_out)));
   }
