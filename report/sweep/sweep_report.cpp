@@ -104,14 +104,15 @@ using validate::ErrorStatistics;
 using validate::SweepSummary;
 
 std::vector<std::string> cells_of(const ErrorStatistics& of) {
+  const auto& sds = of.in_stated_sds;
   return {fmt::format("{} / {}", of.answered, of.runs),
           of.answered == 0 ? "–" : base::value_and_sd_text(of.bias, of.bias_sd),
           of.answered == 0 ? "–" : base::digits_text(of.rms, 3),
           of.answered == 0 ? "–" : base::digits_text(of.sd, 3),
           of.least_sd ? base::digits_text(*of.least_sd, 3) : "–",
           of.answered == 0 ? "–" : fmt::format("{:.1f} %", 100.0 * of.coverage),
-          of.answered == 0 ? "–" : fmt::format("{:.2f} ± {:.2f}", of.mean_in_sds, of.mean_in_sds_sd),
-          of.answered == 0 ? "–" : fmt::format("{:.2f} ± {:.2f}", of.rms_in_sds, of.rms_in_sds_sd)};
+          sds ? fmt::format("{:.2f} ± {:.2f}", sds->mean, sds->mean_sd) : "–",
+          sds ? fmt::format("{:.2f} ± {:.2f}", sds->rms, sds->rms_sd) : "–"};
 }
 
 /// Quantity, estimator and numbers, as text: the quantities in the order in which every page has them, which is not
@@ -193,10 +194,14 @@ Json statistics_json(const ErrorStatistics& of) {
   put(object, "stated_sd", of.sd);
   put(object, "least_sd", of.least_sd, "known for tracks only, whose noise is known");
   put(object, "coverage", of.coverage);
-  put(object, "mean_error_in_stated_sd", of.mean_in_sds);
-  put(object, "mean_error_in_stated_sd_sd", of.mean_in_sds_sd);
-  put(object, "rms_error_in_stated_sd", of.rms_in_sds);
-  put(object, "rms_error_in_stated_sd_sd", of.rms_in_sds_sd);
+  const char* why = "no standard deviation is stated";
+  const auto in_sds = [&](const char* key, double ErrorStatistics::InStatedSds::*member) {
+    put(object, key, of.in_stated_sds ? std::optional((*of.in_stated_sds).*member) : std::nullopt, why);
+  };
+  in_sds("mean_error_in_stated_sd", &ErrorStatistics::InStatedSds::mean);
+  in_sds("mean_error_in_stated_sd_sd", &ErrorStatistics::InStatedSds::mean_sd);
+  in_sds("rms_error_in_stated_sd", &ErrorStatistics::InStatedSds::rms);
+  in_sds("rms_error_in_stated_sd_sd", &ErrorStatistics::InStatedSds::rms_sd);
   return object;
 }
 

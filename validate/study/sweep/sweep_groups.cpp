@@ -31,7 +31,7 @@ struct Moments {
   std::uint64_t runs = 0, answered = 0;
   double error = 0.0, square = 0.0, variance = 0.0, coverage = 0.0;
   std::optional<double> least_variance;
-  double in_sds = 0.0, square_in_sds = 0.0;  // the error over its stated standard deviation
+  std::optional<double> in_sds, square_in_sds;  // the error over its stated standard deviation
 };
 
 /// The columns of kStatistics, from the given one.
@@ -43,8 +43,8 @@ Moments moments_at(const SqlStatement& row, int column) {
           row.number(column + 4),
           row.number(column + 6),
           row.maybe_number(column + 5),
-          row.number(column + 7),
-          row.number(column + 8)};
+          row.maybe_number(column + 7),
+          row.maybe_number(column + 8)};
 }
 
 ErrorStatistics statistics_of(const Moments& of) {
@@ -53,13 +53,16 @@ ErrorStatistics statistics_of(const Moments& of) {
   statistics.answered = of.answered;
   statistics.bias = of.error;
   statistics.rms = std::sqrt(of.square);
-  statistics.mean_in_sds = of.in_sds;
-  statistics.rms_in_sds = std::sqrt(of.square_in_sds);
+  if (of.in_sds && of.square_in_sds) {
+    statistics.in_stated_sds = ErrorStatistics::InStatedSds{*of.in_sds, 0.0, std::sqrt(*of.square_in_sds), 0.0};
+  }
   if (of.answered > 1) {
     const auto count = static_cast<double>(of.answered);
     statistics.bias_sd = std::sqrt(std::max(0.0, of.square - of.error * of.error) / (count - 1.0));
-    statistics.mean_in_sds_sd = std::sqrt(std::max(0.0, of.square_in_sds - of.in_sds * of.in_sds) / (count - 1.0));
-    statistics.rms_in_sds_sd = statistics.rms_in_sds / std::sqrt(2.0 * count);
+    if (auto& sds = statistics.in_stated_sds) {
+      sds->mean_sd = std::sqrt(std::max(0.0, sds->rms * sds->rms - sds->mean * sds->mean) / (count - 1.0));
+      sds->rms_sd = sds->rms / std::sqrt(2.0 * count);
+    }
   }
   statistics.sd = std::sqrt(of.variance);
   if (of.least_variance) statistics.least_sd = std::sqrt(*of.least_variance);
@@ -130,7 +133,7 @@ void set_combination(const Sweep& sweep, const Axis& axis, Grouping& grouping) {
 /// Sums of one group over the combinations that are compared.
 struct Sum {
   Moments total;
-  std::uint64_t combinations = 0, with_least = 0;
+  std::uint64_t combinations = 0, with_least = 0, with_sds = 0;
   void add(const Moments& of) {
     ++combinations;
     total.runs += of.runs;
@@ -139,8 +142,11 @@ struct Sum {
     total.square += of.square;
     total.variance += of.variance;
     total.coverage += of.coverage;
-    total.in_sds += of.in_sds;
-    total.square_in_sds += of.square_in_sds;
+    if (of.in_sds && of.square_in_sds) {
+      ++with_sds;
+      total.in_sds = total.in_sds.value_or(0.0) + *of.in_sds;
+      total.square_in_sds = total.square_in_sds.value_or(0.0) + *of.square_in_sds;
+    }
     if (!of.least_variance) return;
     ++with_least;
     total.least_variance = total.least_variance.value_or(0.0) + *of.least_variance;
@@ -148,9 +154,10 @@ struct Sum {
   Moments mean() const {
     Moments mean = total;
     const auto count = static_cast<double>(combinations);
-    for (double* const part :
-         {&mean.error, &mean.square, &mean.variance, &mean.coverage, &mean.in_sds, &mean.square_in_sds})
-      *part /= count;
+    for (double* const part : {&mean.error, &mean.square, &mean.variance, &mean.coverage}) *part /= count;
+    for (auto* const part : {&mean.in_sds, &mean.square_in_sds}) {
+      if (*part) **part /= static_cast<double>(with_sds);
+    }
     if (mean.least_variance) *mean.least_variance /= static_cast<double>(with_least);
     return mean;
   }

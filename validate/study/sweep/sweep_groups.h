@@ -33,9 +33,12 @@ struct ErrorStatistics {
   std::optional<double> least_sd;
   double coverage = 0.0;  ///< part of the 95 % intervals that hold the truth
   /// Of the errors over their stated standard deviations: mean and root mean square, 0 and 1 where these are honest,
-  /// each with its standard error (of the second as of normal errors).
-  double mean_in_sds = 0.0, mean_in_sds_sd = 0.0;
-  double rms_in_sds = 0.0, rms_in_sds_sd = 0.0;
+  /// each with its standard error (of the second as of normal errors). None where no standard deviation was stated.
+  struct InStatedSds {
+    double mean = 0.0, mean_sd = 0.0;
+    double rms = 0.0, rms_sd = 0.0;
+  };
+  std::optional<InStatedSds> in_stated_sds = {};
 };
 
 struct GroupStatistics {

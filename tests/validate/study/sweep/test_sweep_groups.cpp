@@ -222,6 +222,7 @@ TEST_CASE("The error of a(t) beside the best possible one is given of each confi
     CHECK(*of.regret == Approx(c == 0 ? 2.0 : 5.0).epsilon(1e-12));
   }
   CHECK(summary.accelerations.front().clips == 4);
+  CHECK_FALSE(summary.overall.front().groups.front().statistics.in_stated_sds);  // none is stated
 }
 
 TEST_CASE("Errors are also given over their stated standard deviations, with the standard errors of normal ones") {
@@ -231,8 +232,9 @@ TEST_CASE("Errors are also given over their stated standard deviations, with the
   REQUIRE(summary.overall.size() == 1);
   const validate::ErrorStatistics& of = summary.overall.front().groups.front().statistics;
   const auto count = static_cast<double>(of.answered);
-  CHECK(std::abs(of.mean_in_sds) < 1e-12);
-  CHECK(std::abs(of.rms_in_sds - of.rms / 2.0) < 1e-12);
-  CHECK(std::abs(of.mean_in_sds_sd - of.rms / 2.0 / std::sqrt(count - 1.0)) < 1e-12);
-  CHECK(std::abs(of.rms_in_sds_sd - of.rms / 2.0 / std::sqrt(2.0 * count)) < 1e-12);
+  REQUIRE(of.in_stated_sds);
+  CHECK(std::abs(of.in_stated_sds->mean) < 1e-12);
+  CHECK(std::abs(of.in_stated_sds->rms - of.rms / 2.0) < 1e-12);
+  CHECK(std::abs(of.in_stated_sds->mean_sd - of.rms / 2.0 / std::sqrt(count - 1.0)) < 1e-12);
+  CHECK(std::abs(of.in_stated_sds->rms_sd - of.rms / 2.0 / std::sqrt(2.0 * count)) < 1e-12);
 }
