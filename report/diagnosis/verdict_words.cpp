@@ -428,8 +428,9 @@ bool one_model(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words) {
-  std::string text = tile(probability_text(diagnosis.none), "nothing is missing") +
-                     tile(probability_text(diagnosis.unknown), "an unnamed cause");
+  std::string text = tile(probability_text(diagnosis.none), "nothing is missing");
+  // What differs between lines always has a name.
+  if (!diagnosis.lines) text += tile(probability_text(diagnosis.unknown), "an unnamed cause");
   if (!diagnosis.gap) return text;
   const std::string before = base::number_text(diagnosis.gap->before, 3);
   return text +

@@ -275,11 +275,17 @@ std::string cell(const std::optional<double>& value, std::string (*text)(double,
   return value ? text(*value, sd) : "–";
 }
 
+/// A quantity that these motions do not have, as a level track has no terminal velocity: no row.
+bool is_absent(const validate::QuantityComparison& of) {
+  return !of.truth && !of.value;
+}
+
 std::string comparison_table(const validate::Comparison& comparison) {
   HtmlTable table(
       {"quantity", "truth", "recovered", "sd", "error", "error / sd", "relative", "least sd", "efficiency"});
   std::string previous, estimator;
   for (const validate::QuantityComparison& q : comparison.quantities) {
+    if (is_absent(q)) continue;
     const double sd = q.sd.value_or(0.0);
     if (q.configuration != previous || q.estimator != estimator) {
       table.heading(fmt::format("{}: {:.6g} kg, stated {:.4g}°, {}", escape(q.configuration), q.mass_kg, q.incline_deg,
@@ -313,6 +319,7 @@ std::string comparison_text(const validate::Comparison& comparison) {
   std::string estimator;
   std::string previous;
   for (const validate::QuantityComparison& q : comparison.quantities) {
+    if (is_absent(q)) continue;
     const double sd = q.sd.value_or(0.0);
     const bool first = q.configuration != previous;
     const bool other = first || q.estimator != estimator;

@@ -51,6 +51,14 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
 }
 
+TEST_CASE("a quantity that these motions do not have has no row; one that was not recovered keeps its row") {
+  validate::Comparison comparison = made_comparison();
+  comparison.quantities.push_back(quantity("m1", "trajectory", "v_lim_m_s", std::nullopt, std::nullopt, 0.0));
+  CHECK(report::comparison_text(comparison).find("terminal velocity (m/s)") == std::string::npos);
+  comparison.quantities.back().truth = 0.24;
+  CHECK(report::comparison_text(comparison).find("terminal velocity (m/s)") != std::string::npos);
+}
+
 TEST_CASE("without a fit of the whole motion the lines' numbers come first, and a truth that is none is explained") {
   validate::Comparison comparison = made_comparison();
   comparison.quantities = {quantity("m1", "phase-diagram", "k_over_m_1_s", std::nullopt, 2.780, 0.004),
