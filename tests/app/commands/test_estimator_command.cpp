@@ -87,6 +87,47 @@ TEST_CASE("validate judges the example that takes finite differences") {
   CHECK(rows_of(document, "finite_differences", "alpha_deg").at(0).at("value").is_number());
 }
 
+TEST_CASE("every example of an estimator answers for a film's positions, or says which package is missing") {
+  const char* const python = "/usr/bin/python3";
+  if (!fs::exists(python)) {
+    WARN("skipped: no /usr/bin/python3");
+    return;
+  }
+  const tests::TempDir temp;
+  base::write_file(temp / "small.toml", tests::kSmallScenario);
+  const fs::path examples = fs::path(tests::kSourceDir) / "examples/estimators";
+  // A stand-in for an estimator that keeps the folder that it is given.
+  const tests::ProcessResult filmed =
+      tests::glidelab({"validate", "small.toml", "--out", "out", "--json", "--estimator-command",
+                       "sh -c 'cp -r \"$1\" \"" + (temp / "given").string() + "\"; exit 1' keep {folder} {out}"},
+                      temp.path());
+  INFO(filmed.err);
+  REQUIRE(filmed.status == 0);
+  const json truth = rows_of(json::parse(filmed.out), "phase-diagram", "k_over_m_1_s").at(0).at("truth");
+  std::size_t answered = 0, examples_tried = 0;
+  for (const fs::directory_entry& example : fs::directory_iterator(examples)) {
+    if (example.path().extension() != ".py" || example.path().stem() == "experiment_folder") continue;
+    ++examples_tried;
+    const fs::path out = temp / example.path().stem().string();
+    fs::create_directories(out);
+    const tests::ProcessResult result =
+        tests::run({python, "-B", example.path().string(), (temp / "given").string(), out.string()});
+    INFO(example.path() << ": " << result.err);
+    if (result.status != 0) {
+      CHECK_THAT(result.err, Catch::Matchers::StartsWith("skipped: no "));
+      WARN(example.path().filename() << ": " << result.err);
+      continue;
+    }
+    ++answered;
+    const json results = json::parse(base::read_file(out / "results.json"));
+    const json k = results.at("configurations").at(0).at("k_over_m_1_s");
+    // Second differences at 100 Hz of positions good to some 0.02 mm: a to 0.1 m/s², K/m of 250 points to some 10 %.
+    CHECK(std::abs(k.at("value").get<double>() - truth.get<double>()) < 0.5 * truth.get<double>());
+  }
+  CHECK(examples_tried == 8);
+  CHECK(answered > 0);
+}
+
 TEST_CASE("an outside program that fails is told with its kind and last words, and the command ends well") {
   const tests::TempDir temp;
   base::write_file(temp / "small.toml", tests::kSmallScenario);
