@@ -9,7 +9,7 @@ class Notebooks(InFolder):
         import nbclient
         import nbformat
         paths = sorted((SOURCE / "examples" / "notebooks").glob("*.ipynb"))
-        self.assertGreater(len(paths), 1)
+        self.assertEqual(len(paths), 6)
         for path in paths:
             with self.subTest(path.name):
                 notebook = nbformat.read(path, as_version=4)
