@@ -156,8 +156,7 @@ FitPoint integrated_start(const TrackSet& set) {
   }
   const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  const Eigen::VectorXd found =
-      scale.cwiseProduct(resisting(scaled, scale.cwiseProduct(right), only_falls(set)));
+  const Eigen::VectorXd found = scale.cwiseProduct(resisting(scaled, scale.cwiseProduct(right), only_falls(set)));
   FitPoint start;
   start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
   start.global.head(2) = found.head(2);

@@ -221,12 +221,12 @@ std::vector<LikelyTwin> likely_twins(const TrackSet& set, const Explanations& ex
 /// it has sizes of each clip or a second cause to follow it with.
 bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
   const MotionFit& nominal = by_noise.fits.front();
-  if (!has_gap(set, nominal, nominal)) return false;
+  if (!has_gap(set, nominal)) return false;
   const Hypothesis* best = best_named(set, by_noise);
   if (best == nullptr || best->fit <= 0) return true;
   const bool is_law = best->effects.size() == 1 && !follows_each_clip(best->effects.front());
   if (!is_law && by_noise.none + by_noise.unknown > kDoubt) return true;
-  return has_gap(set, nominal, by_noise.fits[static_cast<std::size_t>(best->fit)]);
+  return has_gap(set, by_noise.fits[static_cast<std::size_t>(best->fit)]);
 }
 
 }  // namespace
