@@ -156,8 +156,8 @@ bool is_place_column(const TableColumn& column) {
 
 bool is_height_column(const TableColumn& column) {
   static const std::vector<std::string> kHeights{
-      "y",           "position y", "y-position", "y position", "position (y)",     "height",
-      "h\xC3\xB6he", "hauteur",    "altura",     "altezza",    "vertical position"};
+      "y",           "position y", "y-position", "y position", "position (y)",      "height",
+      "h\xC3\xB6he", "hauteur",    "altura",     "altezza",    "vertical position", "z"};
   return !is_time_column(column) && std::find(kHeights.begin(), kHeights.end(), lower(column.name)) != kHeights.end();
 }
 

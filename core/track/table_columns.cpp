@@ -219,6 +219,18 @@ ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked,
   chosen.place = asked.empty() ? place_column(table, notes) : asked_column(table, asked);
   chosen.time = time_column(table, chosen.place);
   chosen.is_height = asked.empty() && is_height_column(table.columns[chosen.place]);
+  if (chosen.is_height) {
+    notes.push_back(fmt::format("x is \"{}\", a height: state an inclination of 90° if this is a fall (--incline 90)",
+                                table.columns[chosen.place].text));
+  }
+  for (const TableColumn& column : table.columns) {
+    if (column.unit != "N" && lower(column.name) != "force") continue;
+    notes.push_back(
+        fmt::format("\"{}\" is not used: a force along x that was recorded with it stands under force_n in a "
+                    "table with the header t_s,x_m,force_n",
+                    column.text));
+    break;
+  }
   return chosen;
 }
 

@@ -93,7 +93,12 @@ void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& c
   const bool half = sequence.named_share >= kHalf || !shows_in_gap(best);
   const bool most = sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id));
   comparison.unknown += std::exchange(comparison.none, 0.0);
-  if (!half) set_unknown(std::max(comparison.unknown + best.probability, kJustUnknown), comparison);
+  // What explanations that leave more than half had is unknown already, the best one's included.
+  double of_best = 0.0;
+  for (const Hypothesis& one : comparison.all) {
+    if (!one.unnamed && one.effects == best.effects) of_best += one.probability;
+  }
+  if (!half) set_unknown(std::max(comparison.unknown + of_best, kJustUnknown), comparison);
   // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
   if (!most || sequence.gap_before * sequence.gap_before - 1.0 < kLargestExcess || comparison.unknown < 1.0 - kTrusted)
     return;
