@@ -25,8 +25,9 @@ namespace glidelab::core {
 
 namespace {
 
-constexpr double kHardlyTurns = 0.8;   // of the range of x, from the first position to the last
-constexpr double kNotableTick = 1e-3;  // of a frame: a coarser last digit is told
+constexpr double kSlowestUnstated_s = 5.0;  // from one position to the next, of times without a unit
+constexpr double kHardlyTurns = 0.8;        // of the range of x, from the first position to the last
+constexpr double kNotableTick = 1e-3;       // of a frame: a coarser last digit is told
 
 /// Times of an even camera in place of those that a table rounds.
 void put_even(TrackData& track) {
@@ -175,6 +176,15 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
     throw base::InputError(base::Issue{table.file, 0, fmt::format("column \"{}\"", x.text),
                                        fmt::format("{} points", track.t_s.size()),
                                        fmt::format("at least {}", kFewestTrackPoints)});
+  }
+  const double step_s = median_step(track.t_s);
+  if (t.unit.empty() && step_s > kSlowestUnstated_s) {
+    throw base::InputError(base::Issue{
+        table.file, 0, fmt::format("column \"{}\"", t.text),
+        fmt::format("times without a unit, {:.4g} from one to the next", step_s),
+        fmt::format("their unit in the header, as \"{0} (ms)\", or \"{0} (s)\" if they are seconds; numbers of frames "
+                    "are to be divided by the frame rate",
+                    t.name.starts_with("column ") ? "t" : t.name)});
   }
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
   if (chosen.is_height && !downhill) count_along_motion(track);

@@ -225,3 +225,13 @@ TEST_CASE("a table without times says so once") {
     CHECK_THAT(error.what(), Contains("values that do not rise"));
   }
 }
+
+TEST_CASE("times without a unit that would be 16.7 s apart are not taken as seconds") {
+  std::string text = "frame,time,x\n";
+  for (int i = 0; i < 10; ++i) text += fmt::format("{},{},0.{}\n", i, 600.0 + 16.683 * i, i);
+  CHECK_THROWS_WITH(Made(text).read(), Contains("times without a unit, 16.68") && Contains("\"time (ms)\""));
+  text.replace(text.find("time"), 4, "time (ms)");
+  CHECK(Made(text).read().frame_rate_hz == Approx(1.0 / 0.016683).epsilon(1e-3));
+  text.replace(text.find("(ms)"), 4, "(s)");
+  CHECK(Made(text).read().t_s[1] == Approx(616.683));
+}
