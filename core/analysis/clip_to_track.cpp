@@ -255,9 +255,10 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
 
 namespace {
 
-constexpr double kSlantedRad = 15.0 * base::kRadPerDegree;  // "X lies along the track to within a few degrees"
-constexpr double kAcrossRad = 80.0 * base::kRadPerDegree;   // off the axis along which downhill is stated
-constexpr double kLeastPath = 0.5;                          // marker diameters from end to end
+constexpr double kSlantedRad = 15.0 * base::kRadPerDegree;       // "X lies along the track to within a few degrees"
+constexpr double kAcrossRad = 80.0 * base::kRadPerDegree;        // off the axis along which downhill is stated
+constexpr double kSurelyAFall_rad = 80.0 * base::kRadPerDegree;  // stated inclination
+constexpr double kLeastPath = 0.5;                               // marker diameters from end to end
 
 struct PlanePoint {
   MarkerSighting sighting;
@@ -419,7 +420,10 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
     const ClipSetup& clip = experiment.clips[i];
     if (clip.file.empty()) {
-      results.tracks[i] = read_track(clip.track, downhill_of(experiment, clip.group), clip.column);
+      const std::optional<Downhill> downhill = downhill_of(experiment, clip.group);
+      results.tracks[i] = read_track(clip.track, downhill, clip.column);
+      // A fall goes down, whether a sensor above it or below it measures the distance.
+      if (!downhill && std::abs(clip.incline_rad) >= kSurelyAFall_rad) count_along_motion(results.tracks[i]);
     } else {
       pictures.push_back(i);
     }

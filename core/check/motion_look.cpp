@@ -27,9 +27,15 @@ constexpr double kHarmonic = 0.8;                         // of the variance of 
 constexpr double kSmoothPart = 1e-7;                      // of the range of x
 constexpr double kAboveGravity = 1.05;                    // of g: a fall has 1
 constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;    // of g, on an incline of less than 60 degrees
+constexpr double kFoot_m = 0.3048, kSameGravity = 0.1;    // of g
 constexpr double kMostBend = 0.08;                        // a wide lens bends a straight path by half of that
 constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0;  // on an incline of less than 60 degrees, and of more
 constexpr double kSlowFrames_s = 1.0;                     // from one to the next
+constexpr std::size_t kFewestLost = 4;                    // equal positions,
+constexpr double kLostOff = 0.2;                          // of the range of x, from the one before,
+constexpr double kLostOverStep = 10.0;  // and so many times as far as from any to the next, but a tenth
+constexpr double kGapSteps = 3.0;       // median steps: a longer one is a gap
+constexpr double kMostUnseen = 0.2;     // of the time
 
 /// x = x0 + v t + a t²/2 through some points.
 Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_m) {
@@ -95,6 +101,30 @@ double harmonic_part(const std::vector<double>& x, const std::vector<double>& a)
   return xa < 0.0 && aa > 0.0 && xx > 0.0 ? xa * xa / (xx * aa) : 0.0;
 }
 
+std::optional<LostPositions> lost_in(std::span<const double> t_s, std::span<const double> x_m, double distance_m) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < x_m.size(); ++i) steps.push_back(std::abs(x_m[i] - x_m[i - 1]));
+  const double least = std::max(kLostOff * distance_m, kLostOverStep * quantile(steps, 0.9));
+  for (std::size_t i = 1; i < x_m.size(); ++i) {
+    if (!(steps[i - 1] > least)) continue;
+    std::size_t to = i;
+    while (to < x_m.size() && x_m[to] == x_m[i]) ++to;
+    if (to - i >= kFewestLost) return LostPositions{t_s[i], x_m[i], steps[i - 1], to - i};
+  }
+  return std::nullopt;
+}
+
+void look_for_gaps(std::span<const double> t_s, MotionLook& look) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);
+  const double longest = kGapSteps * quantile(steps, 0.5);
+  for (const double step : steps) {
+    if (!(step > longest)) continue;
+    look.unseen += step / (t_s.back() - t_s.front());
+    look.longest_gap_s = std::max(look.longest_gap_s, step);
+  }
+}
+
 double bend_of(std::span<const MarkerSighting> sightings) {
   if (sightings.size() < kFewestPoints) return 0.0;
   const auto& first = sightings.front();
@@ -129,6 +159,8 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   look.distance_m = *most - *least;
   look.frame_s = (t_s.back() - t_s.front()) / static_cast<double>(t_s.size() - 1);
   look.bend = bend_of(sightings);
+  if (sightings.empty()) look.lost = lost_in(t_s, x_m, look.distance_m);
+  look_for_gaps(t_s, look);
   const double noise_m = pilot_noise(t_s, x_m);
   look.smooth = noise_m < kSmoothPart * look.distance_m;
   if (forced) return look;
@@ -165,10 +197,14 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
         "the law contains no spring; if one stretch between turns is a free run, select it with start_s and end_s");
   } else if (a > kAboveGravity * gravity_m_s2) {
     std::string units;
+    const auto is_gravity_in = [&](double metres) { return std::abs(a * metres / gravity_m_s2 - 1.0) < kSameGravity; };
     if (a < 100.0 * gravity_m_s2) units = "centimetres";
     if (a > 20.0 * gravity_m_s2 && a < 1000.0 * gravity_m_s2)
       units += units.empty() ? "millimetres" : " or millimetres";
     if (units.empty()) units = "another unit";
+    if (is_gravity_in(kFoot_m)) units = "feet (this would be a free fall)";
+    if (is_gravity_in(0.01)) units = "centimetres (this would be a free fall)";
+    if (is_gravity_in(0.001)) units = "millimetres (this would be a free fall)";
     book.add(
         Severity::unusable,
         fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline can produce that", a,
@@ -190,6 +226,19 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   if (look.frame_s > kSlowFrames_s) {
     book.add(Severity::change, fmt::format("its positions are {:.3g} s apart", look.frame_s),
              "check the unit of the times: they may be milliseconds, or numbers of frames");
+  }
+  if (look.lost) {
+    book.add(Severity::change,
+             fmt::format("from {:.6g} s on {} positions are all {:.6g} m, {:.3g} m from the one before: the object was "
+                         "lost there",
+                         look.lost->from_s, look.lost->count, look.lost->x_m, look.lost->off_m),
+             "delete these rows from the file, or state end_s");
+  }
+  if (look.unseen > kMostUnseen && look.frame_s <= kSlowFrames_s) {
+    book.add(Severity::change,
+             fmt::format("{} of its time lies in gaps of up to {:.3g} s between positions", percent_text(look.unseen),
+                         look.longest_gap_s),
+             "record at an even rate, and track every frame: no acceleration is measured across a gap");
   }
   if (look.bend > kMostBend) {
     book.add(Severity::unusable,

@@ -67,6 +67,13 @@ struct PatternCheck {
   double covered = 0.0;  ///< share of the image's 8 x 6 equal parts that hold a corner
 };
 
+/// Positions that stand at one value far from those before: a tracker that has lost its object writes such rows.
+struct LostPositions {
+  double from_s = 0.0, x_m = 0.0;
+  double off_m = 0.0;  ///< from the position before
+  std::size_t count = 0;
+};
+
 /// Of the positions alone (motion_look.h).
 struct MotionLook {
   double distance_m = 0.0;
@@ -76,6 +83,9 @@ struct MotionLook {
   bool oscillates = false;
   double bend = 0.0;    ///< of the path in the image: sagitta over length
   bool smooth = false;  ///< smoother than any measurement
+  std::optional<LostPositions> lost;
+  double unseen = 0.0;         ///< part of the time that lies in gaps between positions
+  double longest_gap_s = 0.0;  ///< of these
 };
 
 /// Light on the marker along its path.

@@ -307,13 +307,14 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
   std::vector<Finding> findings = statement_findings(experiment, check);
   if (check.pattern) judge_pattern(*check.pattern, {findings, "pattern"});
   for (const ClipCheck& clip : check.clips) {
-    judge_clip(experiment, clip, {findings, clip.name});
+    // A wrong unit or a motion that is none explains what else is found.
     for (const ClipSetup& setup : experiment.clips) {
       if (setup.name != clip.name) continue;
       for (Finding& finding : motion_findings(clip.motion, setup, experiment.gravity_m_s2)) {
         findings.push_back(std::move(finding));
       }
     }
+    judge_clip(experiment, clip, {findings, clip.name});
   }
   for (const ClipSetup& setup : experiment.clips) {
     if (setup.launched != Launched::unknown) continue;

@@ -28,9 +28,11 @@ std::vector<TrackRun> runs_in(const std::filesystem::path& file) {
     return runs;
   }
   const ColumnTable table = read_column_table(file);
+  // Heights where there is nothing else, as of falls.
+  const bool places = std::any_of(table.columns.begin(), table.columns.end(), is_place_column);
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
-    if (!is_place_column(column)) continue;
+    if (!(places ? is_place_column(column) : is_height_column(column))) continue;
     runs.push_back({std::to_string(c + 1), column.run.empty() ? column.text : column.run});
   }
   return runs;

@@ -50,7 +50,15 @@ bool speaks_of_a_run(std::string_view field) {
   return std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) { return text.starts_with(word); });
 }
 
+/// "[s]" in a line of units is "s".
+std::string_view without_brackets(std::string_view field) {
+  const bool bracketed = field.size() > 2 && (field.front() == '[' || field.front() == '(') &&
+                         (field.back() == ']' || field.back() == ')');
+  return bracketed ? trimmed(field.substr(1, field.size() - 2)) : field;
+}
+
 bool looks_like_a_unit(std::string_view field) {
+  if (without_brackets(field).size() < field.size()) return true;
   if (metres_per(field) || seconds_per(field)) return true;
   // m/s, m/s^2, m/s², N, 1, °: short and with no name of a quantity.
   const auto slash = field.find('/');
@@ -111,6 +119,15 @@ TableColumn column_of(const std::string& text) {
       name.resize(underscore);
     }
   }
+  // "x / cm", "t in s", "x, cm".
+  for (const std::string_view between : {"/", " in ", ","}) {
+    const auto at = name.rfind(between);
+    if (!column.unit.empty() || at == std::string::npos || at == 0) continue;
+    const std::string_view tail = trimmed(std::string_view(name).substr(at + between.size()));
+    if (!metres_per(tail) && !seconds_per(tail)) continue;
+    column.unit = std::string(tail);
+    name = std::string(trimmed(std::string_view(name).substr(0, at)));
+  }
   column.name = name;
   return column;
 }
@@ -118,8 +135,8 @@ TableColumn column_of(const std::string& text) {
 }  // namespace
 
 bool is_time_name(std::string_view name) {
-  static constexpr std::array<std::string_view, 8> kNames{"t",      "time",  "zeit", "temps",
-                                                          "tiempo", "tempo", "tijd", "elapsed time"};
+  static constexpr std::array<std::string_view, 12> kNames{
+      "t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "czas", "elapsed time", "seconds", "times", "timestamp"};
   return std::find(kNames.begin(), kNames.end(), lower(name)) != kNames.end();
 }
 
@@ -132,9 +149,16 @@ bool is_place_column(const TableColumn& column) {
       "x", "position", "pos", "distance", "displacement", "position x", "x-position", "position (x)",
       // German, Spanish, French, Italian, Portuguese
       "weg", "ort", "abstand", "strecke", "entfernung", "posici\xC3\xB3n", "posici\xC3\x93n", "posicion", "distancia",
-      "desplazamiento", "d\xC3\xA9placement", "distance x", "posizione", "spostamento", "distanza",
-      "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento"};
+      "desplazamiento", "d\xC3\xA9placement", "distance x", "x position", "pos x", "x pos", "pos_x", "x_pos",
+      "posizione", "spostamento", "distanza", "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento"};
   return !is_time_column(column) && std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
+}
+
+bool is_height_column(const TableColumn& column) {
+  static const std::vector<std::string> kHeights{
+      "y",           "position y", "y-position", "y position", "position (y)",      "height",
+      "h\xC3\xB6he", "hauteur",    "altura",     "altezza",    "vertical position", "z"};
+  return !is_time_column(column) && std::find(kHeights.begin(), kHeights.end(), lower(column.name)) != kHeights.end();
 }
 
 std::optional<double> metres_per(std::string_view unit) {
@@ -174,6 +198,13 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
     units = header.back();
     header.pop_back();
   }
+  // A title of as many words as columns.
+  const auto names_time = [](const std::vector<std::string>& line) {
+    return std::any_of(line.begin(), line.end(),
+                       [](const std::string& field) { return is_time_column(column_of(field)); });
+  };
+  const auto names = std::find_if(header.begin(), header.end(), names_time);
+  if (names != header.end()) header.erase(header.begin(), names);
   std::vector<TableColumn> columns;
   std::string run;
   for (std::size_t c = 0; c < width; ++c) {
@@ -181,7 +212,7 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
     columns.push_back(column_of(named ? header.front()[c] : fmt::format("column {}", c + 1)));
     if (c < runs.size() && !runs[c].empty()) run = runs[c];  // one word over several columns
     if (columns.back().run.empty()) columns.back().run = run;
-    if (c < units.size() && columns.back().unit.empty()) columns.back().unit = units[c];
+    if (c < units.size() && columns.back().unit.empty()) columns.back().unit = without_brackets(units[c]);
   }
   return columns;
 }
@@ -205,7 +236,7 @@ std::string_view field_text(std::string_view field) {
 }
 
 /// A delimiter within quotes is none.
-std::vector<std::string_view> split(std::string_view line, char delimiter) {
+std::vector<std::string_view> split_at(std::string_view line, char delimiter) {
   std::vector<std::string_view> fields;
   std::size_t from = 0;
   bool quoted = false;
@@ -218,10 +249,38 @@ std::vector<std::string_view> split(std::string_view line, char delimiter) {
   return fields;
 }
 
+constexpr char kBlanks = ' ';  // as a delimiter: any number of blanks and tabs
+
 struct Format {
   char delimiter = ',';
   char decimal = '.';
 };
+
+/// At runs of blanks and tabs; a unit in brackets belongs to the name before it.
+std::vector<std::string_view> split_at_blanks(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const auto from = line.find_first_not_of(" \t\r");
+    if (from == std::string_view::npos) return fields;
+    line.remove_prefix(from);
+    const char* const start = line.data();
+    const bool quoted = line.front() == '"';
+    const auto end = quoted ? line.find('"', 1) : line.find_first_of(" \t\r");
+    const auto size = end == std::string_view::npos ? line.size() : end + (quoted ? 1 : 0);
+    const bool is_unit = line.front() == '(' || line.front() == '[';
+    if (is_unit && !fields.empty()) {
+      const char* const first = fields.back().data();
+      fields.back() = std::string_view(first, static_cast<std::size_t>(start + size - first));
+    } else {
+      fields.push_back(field_text(line.substr(0, size)));
+    }
+    line.remove_prefix(size);
+  }
+}
+
+std::vector<std::string_view> split(std::string_view line, char delimiter) {
+  return delimiter == kBlanks ? split_at_blanks(line) : split_at(line, delimiter);
+}
 
 bool is_missing(std::string_view field) {
   return field.empty() || field == "NaN" || field == "nan" || field == "NAN";
@@ -278,25 +337,28 @@ Lines lines_of(std::string_view text) {
   return lines;
 }
 
-/// The names that stand behind a '#': of the last comment before the numbers that has as many fields as these. Empty
-/// without one.
-std::vector<std::string> commented_header(const std::vector<Line>& comments, int first_data, std::size_t width,
-                                          const Format& format) {
-  std::vector<std::string> header;
+/// What stands behind a '#': of the comments before the numbers the last that has as many fields as these, and where it
+/// is one of units, the names before it. Empty without one.
+std::vector<std::vector<std::string>> commented_header(const std::vector<Line>& comments, int first_data,
+                                                       std::size_t width, const Format& format) {
+  std::vector<std::vector<std::string>> lines;
   for (const Line& comment : comments) {
     if (comment.number > first_data) break;
     const std::vector<std::string_view> fields = split(comment.text, format.delimiter);
-    if (fields.size() == width && !is_data(fields, format.decimal)) header.assign(fields.begin(), fields.end());
+    if (fields.size() != width || is_data(fields, format.decimal)) continue;
+    lines.emplace_back(fields.begin(), fields.end());
   }
-  return header;
+  const std::size_t wanted = !lines.empty() && all_that_is_there(lines.back(), looks_like_a_unit) ? 2 : 1;
+  if (lines.size() > wanted) lines.erase(lines.begin(), lines.end() - static_cast<std::ptrdiff_t>(wanted));
+  return lines;
 }
 
 /// Nothing where no line holds two numbers.
 std::optional<Format> format_of(const std::vector<Line>& lines) {
   std::optional<Format> best;
   std::size_t most = 0;
-  for (const Format& format :
-       {Format{'\t', '.'}, Format{'\t', ','}, Format{';', '.'}, Format{';', ','}, Format{',', '.'}}) {
+  for (const Format& format : {Format{'\t', '.'}, Format{'\t', ','}, Format{';', '.'}, Format{';', ','},
+                               Format{',', '.'}, Format{kBlanks, '.'}, Format{kBlanks, ','}}) {
     std::size_t count = 0;
     for (const Line& line : lines) count += is_data(split(line.text, format.delimiter), format.decimal);
     if (count > most) {
@@ -325,7 +387,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   const auto format = format_of(lines);
   if (!format) {
     throw base::InputError(base::Issue{table.file, 0, "", "no line with two numbers",
-                                       "columns of numbers, with tabs, semicolons or commas between them"});
+                                       "columns of numbers, with tabs, semicolons, commas or blanks between them"});
   }
   std::vector<std::vector<std::string_view>> rows;
   for (const Line& line : lines) rows.push_back(split(line.text, format->delimiter));
@@ -337,13 +399,11 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
 
   std::vector<std::vector<std::string>> header;
   for (std::size_t r = 0; r < first_data; ++r) {
-    if (rows[r].size() < 2) continue;  // a title
+    if (rows[r].size() < 2) continue;                                       // a title
+    if (format->delimiter == kBlanks && rows[r].size() != width) continue;  // words of a title
     header.emplace_back(rows[r].begin(), rows[r].end());
   }
-  if (header.empty()) {
-    std::vector<std::string> names = commented_header(read.comments, lines[first_data].number, width, *format);
-    if (!names.empty()) header.push_back(std::move(names));
-  }
+  if (header.empty()) header = commented_header(read.comments, lines[first_data].number, width, *format);
   table.has_header = !header.empty();
   table.columns = columns_of_header(header, width);
 

@@ -1,12 +1,12 @@
 /// Tables of numbers as other programs export them: Tracker, Logger Pro and Vernier Graphical Analysis, PASCO Capstone,
 /// phyphox, spreadsheets.
 ///
-/// Understood, whatever the file's name: tab, semicolon or comma between fields; decimal point or decimal comma; quoted
-/// fields; LF or CRLF, a byte-order mark; titles and comments ('#') before the header, or a header behind a '#'; one to
-/// three header lines (a line of runs or of the bodies that several columns belong to, padded; names, short names,
-/// units); channels as "Position, Ch 1 (m)"; units as "Time (s)", "x [cm]", "x_mm" or in a line of their own; runs as
-/// "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of different lengths; NaN for no value. The
-/// delimiter and the decimal sign are those with which most lines are all numbers.
+/// Understood, whatever the file's name: tab, semicolon, comma or blanks between fields; decimal point or decimal
+/// comma; quoted fields; LF or CRLF, a byte-order mark; titles and comments ('#') before the header, or a header behind
+/// a '#'; one to three header lines (a line of runs or of the bodies that several columns belong to, padded; names,
+/// short names, units); channels as "Position, Ch 1 (m)"; units as "Time (s)", "x [cm]", "x_mm", "x / cm", "x in cm" or
+/// in a line of their own; runs as "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of different
+/// lengths; NaN for no value. The delimiter and the decimal sign are those with which most lines are all numbers.
 #pragma once
 
 #include <filesystem>
@@ -34,6 +34,10 @@ bool is_time_column(const TableColumn& column);
 /// A column that is called x, position, distance or displacement (or the like in German, French, Italian, Portuguese,
 /// Spanish) and is none of times.
 bool is_place_column(const TableColumn& column);
+
+/// One that is called y, height (or the like in other languages): the other coordinate of a body in a plane, or the
+/// only one of a fall.
+bool is_height_column(const TableColumn& column);
 
 /// Metres for a unit of length, seconds for one of time; nothing for any other text. "um" and "µm" are one.
 std::optional<double> metres_per(std::string_view unit);

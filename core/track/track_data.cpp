@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -20,12 +19,15 @@
 #include "core/math/time_gap.h"
 #include "core/track/column_table.h"
 #include "core/track/even_times.h"
+#include "core/track/table_columns.h"
 
 namespace glidelab::core {
 
 namespace {
 
-constexpr double kNotableTick = 1e-3;  // of a frame: a coarser last digit is told
+constexpr double kSlowestUnstated_s = 5.0;  // from one position to the next, of times without a unit
+constexpr double kHardlyTurns = 0.8;        // of the range of x, from the first position to the last
+constexpr double kNotableTick = 1e-3;       // of a frame: a coarser last digit is told
 
 /// Times of an even camera in place of those that a table rounds.
 void put_even(TrackData& track) {
@@ -101,94 +103,6 @@ void check_gaps(const TrackData& track, const std::string& file, const std::stri
                   gap->longest_s, kLongestGapSteps)});
 }
 
-bool is_acceleration(const TableColumn& column) {
-  const std::string name = lower(column.name);
-  return column.unit.starts_with("m/s^2") || column.unit.starts_with("m/s\xC2\xB2") ||
-         name.find("accel") != std::string::npos || name.find("beschleunigung") != std::string::npos ||
-         name.find("aceler") != std::string::npos || name.find("acc\xC3\xA9l") != std::string::npos;
-}
-
-std::string columns_text(const ColumnTable& table) {
-  std::vector<std::string> names;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const TableColumn& column = table.columns[c];
-    const bool run_apart = !column.run.empty() && column.text.find(column.run) == std::string::npos;
-    names.push_back(fmt::format("{} \"{}{}\"", c + 1, run_apart ? column.run + ": " : "", column.text));
-  }
-  return fmt::format("columns {}", fmt::join(names, ", "));
-}
-
-base::InputError wrong_column(const ColumnTable& table, const std::string& found, const std::string& expected) {
-  return base::InputError(base::Issue{table.file, 0, "column", found, expected});
-}
-
-bool is_asked(const TableColumn& column, std::size_t index, const std::string& asked) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(asked.data(), asked.data() + asked.size(), number);
-  if (error == std::errc{} && end == asked.data() + asked.size()) return number == index + 1;
-  const std::string small = lower(asked);
-  return small == lower(column.text) || small == lower(column.name) ||
-         small == lower(column.run + ": " + column.text) || small == lower(column.run + ": " + column.name);
-}
-
-/// Accelerations alone are no track, and a person who exported them from a phone should know why.
-void refuse_accelerations(const ColumnTable& table) {
-  if (std::none_of(table.columns.begin(), table.columns.end(), is_acceleration)) return;
-  throw wrong_column(table, "accelerations without positions, " + columns_text(table),
-                     "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
-                     "integrated, and a phone on an incline measures gravity besides. Film the glider, or record its "
-                     "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
-}
-
-std::size_t place_column(const ColumnTable& table, const std::string& asked) {
-  std::vector<std::size_t> found;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const TableColumn& column = table.columns[c];
-    if (asked.empty() ? is_place_column(column) : is_asked(column, c, asked)) {
-      found.push_back(c);
-    }
-  }
-  if (asked.empty() && !table.has_header && table.columns.size() == 2) return 1;
-  if (found.size() == 1) return found.front();
-  if (!asked.empty()) {
-    throw wrong_column(table, fmt::format("{} of the name or number \"{}\"", found.empty() ? "none" : "several", asked),
-                       "one of the " + columns_text(table));
-  }
-  if (found.empty()) refuse_accelerations(table);
-  throw wrong_column(
-      table, columns_text(table),
-      fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
-                  "experiment.toml) by its header or its number{}",
-                  found.empty() ? "one" : "just one", found.empty() ? "" : ", or take all as clips (--runs all)"));
-}
-
-std::size_t time_column(const ColumnTable& table, std::size_t place) {
-  if (!table.has_header && place != 0) return 0;
-  std::vector<std::size_t> times;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const bool same_run = table.columns[c].run == table.columns[place].run || table.columns[c].run.empty();
-    if (c != place && is_time_column(table.columns[c]) && same_run) times.push_back(c);
-  }
-  const auto right = std::lower_bound(times.begin(), times.end(), place);
-  if (right != times.begin()) return *std::prev(right);
-  if (times.size() == 1) return times.front();
-  throw wrong_column(table,
-                     fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
-                                 columns_text(table)),
-                     "one, called t or time or with a unit of time");
-}
-
-double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),
-                 const char* kind, const char* standard, std::vector<std::string>& notes) {
-  if (column.unit.empty()) {
-    notes.push_back(fmt::format("\"{}\" states no unit and is taken as {}", column.text, standard));
-    return 1.0;
-  }
-  const auto value = factor(column.unit);
-  if (value) return *value;
-  throw wrong_column(table, fmt::format("the unit \"{}\" of \"{}\"", column.unit, column.text), kind);
-}
-
 }  // namespace
 
 TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n,
@@ -205,18 +119,38 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
   return track;
 }
 
-TrackData import_track(const std::filesystem::path& file, const std::string& column, int downhill) {
-  assert(downhill == 1 || downhill == -1);
+void count_along_motion(TrackData& track) {
+  const auto [low, high] = std::minmax_element(track.x_m.begin(), track.x_m.end());
+  double way = track.x_m.back() - track.x_m.front();
+  if (std::abs(way) < kHardlyTurns * (*high - *low)) {
+    // Through the ends and the middle of the time: the way in which it accelerates.
+    const double middle_s = 0.5 * (track.t_s.front() + track.t_s.back());
+    const auto at =
+        static_cast<std::size_t>(std::lower_bound(track.t_s.begin(), track.t_s.end(), middle_s) - track.t_s.begin());
+    way = track.x_m.front() + track.x_m.back() - 2.0 * track.x_m[at];
+  }
+  if (!(way < 0.0)) return;
+  for (double& x : track.x_m) x = -x;
+  for (double& force : track.force_n) force = -force;
+  track.notes.emplace_back("x is counted along the motion: its values are taken with the other sign");
+}
+
+TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill) {
+  assert(!downhill || *downhill == 1 || *downhill == -1);
   const ColumnTable table = read_column_table(file);
-  const std::size_t place = place_column(table, column), time = time_column(table, place);
-  const TableColumn &x = table.columns[place], &t = table.columns[time];
   TrackData track;
-  const double metres =
-      downhill * factor_of(table, x, metres_per, "m, dm, cm, mm, um, km, in or ft", "metres", track.notes);
-  const double seconds = factor_of(table, t, seconds_per, "s, ms, us or min", "seconds", track.notes);
+  const ChosenColumns chosen = choose_columns(table, column, track.notes);
+  const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
+  const double metres = downhill.value_or(1) * metres_of(table, x, track.notes);
+  const double seconds = seconds_of(table, t, track.notes);
   if (table.columns.size() > 2) {
     track.notes.push_back(fmt::format("x is \"{}\", its time \"{}\"{}", x.text, t.text,
                                       x.run.empty() || x.text.find(x.run) != std::string::npos ? "" : ", " + x.run));
+  }
+  if (!rises_mostly(t)) {
+    throw base::InputError(
+        base::Issue{table.file, 0, fmt::format("column \"{}\"", t.text), "values that do not rise",
+                    "times; a table without them, such as x and y alone, says nothing about a motion"});
   }
   std::vector<base::Issue> issues;
   std::vector<int> lines;
@@ -243,7 +177,17 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
                                        fmt::format("{} points", track.t_s.size()),
                                        fmt::format("at least {}", kFewestTrackPoints)});
   }
+  const double step_s = median_step(track.t_s);
+  if (t.unit.empty() && step_s > kSlowestUnstated_s) {
+    throw base::InputError(base::Issue{
+        table.file, 0, fmt::format("column \"{}\"", t.text),
+        fmt::format("times without a unit, {:.4g} from one to the next", step_s),
+        fmt::format("their unit in the header, as \"{0} (ms)\", or \"{0} (s)\" if they are seconds; numbers of frames "
+                    "are to be divided by the frame rate",
+                    t.name.starts_with("column ") ? "t" : t.name)});
+  }
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
+  if (chosen.is_height && !downhill) count_along_motion(track);
   if (missing > 0)
     track.notes.push_back(fmt::format("{} rows between others lack a time or x and are left out", missing));
   take_rows_as_frames(track);
@@ -300,8 +244,8 @@ bool has_own_header(const std::filesystem::path& file) {
 
 }  // namespace
 
-TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column) {
-  assert(downhill == 1 || downhill == -1);
+TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill, const std::string& column) {
+  assert(!downhill || *downhill == 1 || *downhill == -1);
   if (!column.empty() || !has_own_header(file)) return import_track(file, column, downhill);
   const base::CsvTable table = base::read_csv(file, {"t_s", "x_m"}, {"force_n"});
   TrackData track;
@@ -309,10 +253,10 @@ TrackData read_track_csv(const std::filesystem::path& file, int downhill, const 
   check_times(table, track.t_s);
   check_gaps(track, table.file, "column \"t_s\"", table.line);
   track.x_m = table.column("x_m");
-  for (double& x : track.x_m) x *= downhill;
+  for (double& x : track.x_m) x *= downhill.value_or(1);
   if (table.has("force_n")) {
     track.force_n = table.column("force_n");
-    for (double& force : track.force_n) force *= downhill;
+    for (double& force : track.force_n) force *= downhill.value_or(1);
   }
   take_rows_as_frames(track);
   return track;

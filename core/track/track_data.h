@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,23 +52,27 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 
 /// A track from a table that another program exported (column_table.h): which column is x, which is its time.
 ///
-/// x is the column that is asked for, by its header, its name or its number from 1 on; otherwise the one that is called
-/// x, position, distance or displacement (or the like in German, French, Spanish), if there is just one. Its time is
-/// the nearest column to the left that is called t or time or has a unit of time, of the same run where runs are
-/// stated; else the only one there is. In a file without header the first column is the time. Units: m, dm, cm, mm, um,
-/// km, in, ft; s, ms, us, min. Where none is stated metres and seconds are taken, and a note says so. Rows without time
-/// or x are left out (columns of several runs differ in length), and a note counts those that lie between others.
+/// Which columns are x and t: table_columns.h. Units: m, dm, cm, mm, um, km, in, ft; s, ms, us, min. Where none is
+/// stated metres and seconds are taken, and a note says so. Rows without time or x are left out (columns of several
+/// runs differ in length), and a note counts those that lie between others.
 ///
-/// x is multiplied by `downhill`. InputError: no or several columns that x may be, a unit that is no length or time,
-/// times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than kFewestTrackPoints.
-TrackData import_track(const std::filesystem::path& file, const std::string& column, int downhill);
+/// x is multiplied by `downhill`. Where that is not stated and x is a height that nobody asked for, it is counted along
+/// the motion (count_along_motion()). InputError: no or several columns that x may be, a curved path, a unit that is no
+/// length or time, times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than
+/// kFewestTrackPoints.
+TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill);
+
+/// Counts x positive the way that the body moves, where it hardly turns; else the way that it accelerates. A note says
+/// so where that turns the sign: of a height, and of a distance from a sensor that a body falls towards.
+void count_along_motion(TrackData& track);
 
 /// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or what another
-/// program exported. x and the force are multiplied by `downhill` (+1 or -1), so that both are positive downhill. Times
-/// stay those of the file but for take_rows_as_frames(). InputError, up to ten issues named by line: no number, a time
-/// that does not rise, a gap that is too long (core/math/time_gap.h), too few points.
+/// program exported. x and the force are multiplied by `downhill` (+1 or -1; 1 where it is not stated), so that both
+/// are positive downhill. Times stay those of the file but for take_rows_as_frames(). InputError, up to ten issues
+/// named by line: no number, a time that does not rise, a gap that is too long (core/math/time_gap.h), too few points.
 ///
 /// A file whose header has no `t_s`, or of which a column is asked for, goes to import_track().
-TrackData read_track_csv(const std::filesystem::path& file, int downhill, const std::string& column = {});
+TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill,
+                         const std::string& column = {});
 
 }  // namespace glidelab::core

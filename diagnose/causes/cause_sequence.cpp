@@ -24,35 +24,32 @@ struct Step {
   std::vector<ClipSquares> clips;
 };
 
-Step step_of(const TrackSet& set, const MotionFit& nominal, MotionFit fit) {
+Step step_of(const TrackSet& set, MotionFit fit) {
   Step step;
-  if (set.clips.size() < 2) {
-    std::vector<Note> notes;
-    const GapSizes gap = gap_of(set, nominal, fit, false, notes);
-    const bool is_nominal = fit.effects.empty() && fit.late.empty();
-    step.gap = is_nominal ? gap.before : gap.after;
-    step.standard_error = gap.standard_error;
-  } else {
-    const HeldOutGap gap = held_out_gap(set, fit);
-    step.gap = gap.value;
-    step.standard_error = gap.standard_error;
-    for (const ClipGap& clip : gap.clips) step.clips.push_back({clip.chi2, clip.freedom});
-  }
+  const HeldOutGap gap = held_out_gap(set, fit);
+  step.gap = gap.value;
+  step.standard_error = gap.standard_error;
+  for (const ClipGap& clip : gap.clips) step.clips.push_back({clip.chi2, clip.freedom});
   step.fit = std::move(fit);
   return step;
+}
+
+/// Its stretches or pieces do not differ as clips do: no interval over them.
+bool is_one_clip(const TrackSet& set) {
+  return set.pieces || set.clips.size() < 2;
 }
 
 bool is_above_floor(const Step& step) {
   return step.gap > 1.0 + kClearGap * step.standard_error;
 }
 
-ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& before, const Step& after, bool pieces,
+ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& before, const Step& after, bool one_clip,
                         double floor = 1.0) {
   ExplainedCause cause;
   cause.id = effect_list()[effect].id;
   cause.gap_after = after.gap;
   cause.share = (before.gap * before.gap - after.gap * after.gap) / (first.gap * first.gap - floor * floor);
-  if (!pieces) cause.share_interval95 = share_interval(first.clips, before.clips, after.clips, floor);
+  if (!one_clip) cause.share_interval95 = share_interval(first.clips, before.clips, after.clips, floor);
   return cause;
 }
 
@@ -94,8 +91,7 @@ std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, co
 }
 
 /// The best further cause beside a step's, or nothing.
-std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, const MotionFit& nominal,
-                                                       const TrackSet& with, const Step& here,
+std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, const TrackSet& with, const Step& here,
                                                        const std::set<std::size_t>& without) {
   std::set<std::size_t> out = without;
   out.insert(here.fit.effects.begin(), here.fit.effects.end());
@@ -115,7 +111,7 @@ std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, cons
     const FitPoint start = with_effect(set, here.fit, scan.effect, scan.values, scan.own);
     MotionFit fit = fit_motions(set, effects, start, here.fit.late);
     if (!std::isfinite(fit.cost) || fit.cost > here.fit.cost) continue;
-    Step step = step_of(set, nominal, std::move(fit));
+    Step step = step_of(set, std::move(fit));
     // Laws for all clips first.
     const bool follows = best && follows_each_clip(scan.effect) && !follows_each_clip(best->first);
     const bool leads = best && !follows_each_clip(scan.effect) && follows_each_clip(best->first);
@@ -126,19 +122,19 @@ std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, cons
 
 }  // namespace
 
-bool has_gap(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit) {
-  return is_above_floor(step_of(set, nominal, fit));
+bool has_gap(const TrackSet& set, const MotionFit& fit) {
+  return is_above_floor(step_of(set, fit));
 }
 
-double held_out_excess(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit) {
-  const double gap = step_of(set, nominal, fit).gap;
+double held_out_excess(const TrackSet& set, const MotionFit& fit) {
+  const double gap = step_of(set, fit).gap;
   return gap * gap - 1.0;
 }
 
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
                           const std::set<std::size_t>& without, double least_named) {
   CauseSequence sequence;
-  const Step first = step_of(set, nominal, nominal);
+  const Step first = step_of(set, nominal);
   sequence.gap_before = sequence.gap_after = first.gap;
   sequence.standard_error = first.standard_error;
   sequence.named = nominal;
@@ -159,13 +155,13 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       if (left[k] != dropped) effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);
       if (!fit) continue;
-      Step step = step_of(set, nominal, std::move(*fit));
+      Step step = step_of(set, std::move(*fit));
       if (best && step.gap >= best->gap) continue;
       best = std::move(step);
       which = k;
     }
     if (!best) break;
-    const double share = cause_of(left[which], first, here, *best, set.pieces).share;
+    const double share = cause_of(left[which], first, here, *best, is_one_clip(set)).share;
     if (!(share > (steps.empty() ? kLeastShare : least_named))) break;
     here = std::move(*best);
     steps.emplace_back(left[which], here);
@@ -175,9 +171,9 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   const std::size_t named_steps = steps.size();
 
   while (steps.size() < kMostCauses && is_above_floor(here)) {
-    auto next = next_cause(set, nominal, with, here, without);
+    auto next = next_cause(set, with, here, without);
     if (!next) break;
-    if (!is_worth(cause_of(next->first, first, here, next->second, set.pieces))) break;
+    if (!is_worth(cause_of(next->first, first, here, next->second, is_one_clip(set)))) break;
     here = next->second;
     steps.push_back(std::move(*next));
   }
@@ -185,7 +181,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   const double floor = floor_of(here.gap, here.standard_error);
   const Step* before = &first;
   for (const auto& [effect, after] : steps) {
-    sequence.causes.push_back(cause_of(effect, first, *before, after, set.pieces, floor));
+    sequence.causes.push_back(cause_of(effect, first, *before, after, is_one_clip(set), floor));
     if (sequence.causes.size() <= named_steps) sequence.named_share += sequence.causes.back().share;
     before = &after;
   }

@@ -37,11 +37,11 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
                           const std::set<std::size_t>& without, double least_named);
 
 /// Whether a fit's gap is above its floor by more than kClearGap standard errors.
-bool has_gap(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);
+bool has_gap(const TrackSet& set, const MotionFit& fit);
 
 inline constexpr double kLeastShare = 0.02;  ///< of the excess: nobody would look for a cause of less
 
 /// g² - 1 of a fit to `set`, g the gap of held-out clips, or of the quarters of a single one.
-double held_out_excess(const TrackSet& set, const MotionFit& nominal, const MotionFit& fit);
+double held_out_excess(const TrackSet& set, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose

@@ -260,7 +260,7 @@ double unnamed_excess(const TrackSet& set, const Comparison& by_noise) {
   const UnnamedFamily* family = likeliest_shared(by_noise.unnamed);
   if (family == nullptr || set.clips.size() < 2) return std::numeric_limits<double>::quiet_NaN();
   const MotionFit& nominal = by_noise.fits.front();
-  return held_out_excess(set, nominal, with_unnamed(set, nominal, *family));
+  return held_out_excess(set, with_unnamed(set, nominal, *family));
 }
 
 }  // namespace
@@ -293,7 +293,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
 
   Comparison& comparison = weighed.comparison;
   const MotionFit& nominal = first.fits.front();
-  const bool searched = held_out_excess(set, nominal, nominal) < kLargestExcess;
+  const bool searched = held_out_excess(set, nominal) < kLargestExcess;
   if (!searched) {
     // Next to such a gap there is no noise, and the remainder changes nothing of what is found.
     comparison = first;
@@ -325,11 +325,11 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     const std::size_t f = worth[k];
     if (!std::isfinite(noise_alone[f].cost)) return;
     // By the noise alone the fit is another: where there is a remainder, the one that leaves less.
-    excess[f] = held_out_excess(set, noise_alone.front(), noise_alone[f]);
+    excess[f] = held_out_excess(set, noise_alone[f]);
     if (f == 0 || !searched || also.contains(static_cast<int>(f))) return;
     const MotionFit anew = fit_motions(set, comparison.fits[f].effects, comparison.fits[f].at, comparison.fits[f].late);
     if (std::isfinite(anew.cost)) {
-      excess[f] = std::min(excess[f], held_out_excess(set, noise_alone.front(), anew));
+      excess[f] = std::min(excess[f], held_out_excess(set, anew));
     }
   });
   done(0.9);

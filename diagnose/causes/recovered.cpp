@@ -20,6 +20,12 @@ constexpr double kNoLoad = 0.02;        // cos(alpha): less than that and no fri
 constexpr double kInstant_s = 1e-4;     // over which a speed changes by an acceleration
 constexpr double kFastest_m_s = 100.0;  // terminal velocities are sought below
 const char* const kWhyTogether = "these motions do not tell it apart from the other quantities";
+const char* const kWhyApart = "the likely explanations differ too much in it";
+
+/// The standard deviation from which on a rate of drag counts as not known.
+double unknown_rate(double rate_1_s) {
+  return std::max(kUnknownRate, kUnknownRate * std::abs(rate_1_s));
+}
 
 /// Without what acts at some places, times or clips only: a terminal velocity is the configuration's.
 void leave_out_passing(EffectValues& effects) {
@@ -125,7 +131,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     RecoveredSet one;
     one.of = of;
     one.k_over_m_1_s = found(rate(at), gradient(rate), 1.0);
-    one.k_over_m_1_s.known &= one.k_over_m_1_s.sd < std::max(kUnknownRate, kUnknownRate * std::abs(rate(at)));
+    one.k_over_m_1_s.known &= one.k_over_m_1_s.sd < unknown_rate(rate(at));
     one.mu = found(mu(at), gradient(mu), 1.0);
     one.mu.known &= one.mu.sd < kUnknownMu;
     if (!(std::cos(alpha(at)) > kNoLoad)) {
@@ -153,7 +159,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
 /// What is said of a quantity under one explanation and `others`, as far as they are likely: its own value, and
 /// sd² = sum of p (sd² + (value - own value)²) / sum of p.
 core::Quantity mixed(const Recovered& own, double probability, const std::vector<std::pair<Recovered, double>>& others,
-                     double unit) {
+                     double unit, double unknown_sd) {
   if (!own.known) return core::undetermined(own.why);
   double sum = probability, square = probability * own.sd * own.sd;
   for (const auto& [other, p] : others) {
@@ -162,7 +168,9 @@ core::Quantity mixed(const Recovered& own, double probability, const std::vector
     sum += p;
     square += p * (other.sd * other.sd + off * off);
   }
-  return core::determined(core::estimate(own.value / unit, std::sqrt(square / sum) / unit, own.degrees));
+  const double sd = std::sqrt(square / sum);
+  if (!(sd < unknown_sd)) return core::undetermined(kWhyApart);
+  return core::determined(core::estimate(own.value / unit, sd / unit, own.degrees));
 }
 
 }  // namespace
@@ -171,12 +179,12 @@ std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const Expl
   const LikelyFit& reported = explanations.front();
   std::vector<std::vector<RecoveredSet>> under;
   for (const LikelyFit& one : explanations) under.push_back(recovered_under(set, *one.fit, one.sizes));
-  const auto mixture = [&](std::size_t c, Recovered RecoveredSet::*quantity, double unit) {
+  const auto mixture = [&](std::size_t c, Recovered RecoveredSet::*quantity, double unit, double unknown_sd) {
     std::vector<std::pair<Recovered, double>> others;
     for (std::size_t h = 1; h < under.size(); ++h) {
       others.emplace_back(under[h][c].*quantity, explanations[h].probability);
     }
-    return mixed(under.front()[c].*quantity, reported.probability, others, unit);
+    return mixed(under.front()[c].*quantity, reported.probability, others, unit, unknown_sd);
   };
   std::vector<RecoveredConfiguration> recovered;
   for (std::size_t c = 0; c < under.front().size(); ++c) {
@@ -186,10 +194,11 @@ std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const Expl
     one.mass_kg = set.masses[mass].mass_kg;
     one.incline_deg = set.groups[group].stated_rad / base::kRadPerDegree;
     for (const std::size_t e : reported.fit->effects) one.with.emplace_back(effect_list()[e].id);
-    one.k_over_m_1_s = mixture(c, &RecoveredSet::k_over_m_1_s, 1.0);
-    one.mu = mixture(c, &RecoveredSet::mu, 1.0);
-    one.alpha_deg = mixture(c, &RecoveredSet::alpha_rad, base::kRadPerDegree);
-    one.v_lim_m_s = mixture(c, &RecoveredSet::v_lim_m_s, 1.0);
+    const RecoveredSet& own = under.front()[c];
+    one.k_over_m_1_s = mixture(c, &RecoveredSet::k_over_m_1_s, 1.0, unknown_rate(own.k_over_m_1_s.value));
+    one.mu = mixture(c, &RecoveredSet::mu, 1.0, kUnknownMu);
+    one.alpha_deg = mixture(c, &RecoveredSet::alpha_rad, base::kRadPerDegree, kUnknownAngle_rad);
+    one.v_lim_m_s = mixture(c, &RecoveredSet::v_lim_m_s, 1.0, own.v_lim_m_s.value);
     recovered.push_back(std::move(one));
   }
   return recovered;

@@ -224,7 +224,6 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
   constexpr double kMostForce = 1.0, kMostDrag = 0.7, kDecades = 6.0;
   Best best;
   if (start != nullptr) best.sizes = *start;
-  best.log_likelihood = log_likelihood(best.sizes);
   const auto look = [&](double RemainderSizes::*member, double value) {
     RemainderSizes sizes = best.sizes;
     sizes.*member = value;
@@ -245,10 +244,17 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
       }
     }
   };
+  // How motions scatter about their mean shows between two of them at least; one by itself hands its own law over to
+  // it.
+  const bool scatter = motions_.size() > 1;
+  if (!scatter) best.sizes.force_m_s2 = best.sizes.drag = 0.0;
+  best.log_likelihood = log_likelihood(best.sizes);
   const double q_most = kMostForce * kMostForce * part_s_;
   if (start == nullptr || start->q_m2_s3 == 0.0) along(&RemainderSizes::q_m2_s3, q_most, 2.0 * kDecades, 1.0);
-  if (start == nullptr || start->force_m_s2 == 0.0) along(&RemainderSizes::force_m_s2, kMostForce, kDecades, 1.0);
-  if (start == nullptr || start->drag == 0.0) along(&RemainderSizes::drag, kMostDrag, 0.5 * kDecades, 0.75);
+  if (scatter && (start == nullptr || start->force_m_s2 == 0.0))
+    along(&RemainderSizes::force_m_s2, kMostForce, kDecades, 1.0);
+  if (scatter && (start == nullptr || start->drag == 0.0))
+    along(&RemainderSizes::drag, kMostDrag, 0.5 * kDecades, 0.75);
   for (const double ratio : {3.0, 1.4}) {
     refine(&RemainderSizes::q_m2_s3, ratio * ratio);
     refine(&RemainderSizes::force_m_s2, ratio);

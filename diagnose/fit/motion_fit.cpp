@@ -10,6 +10,7 @@
 #include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
 #include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/integrated_start.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -351,9 +352,18 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
   MotionFit best;
   best.cost = std::numeric_limits<double>::infinity();
   double mass = 0.0;
-  for (const TrackedMotion& motion : set.motions) mass += set.masses[motion.mass].mass_kg;
+  std::size_t points = 0;
+  for (const TrackedMotion& motion : set.motions) {
+    mass += set.masses[motion.mass].mass_kg;
+    points += motion.t_s.size();
+  }
   mass /= static_cast<double>(set.motions.size());
-  for (const double k_over_m : {1.0, 3.0, 0.1}) {
+  const auto fit_if_better = [&](const FitPoint& start) {
+    MotionFit fit = fit_motions(set, {}, start, late);
+    if (fit.cost < 0.999 * best.cost) best = std::move(fit);
+    return best.converged && best.cost < 4.0 * static_cast<double>(points);  // other starts find nothing better
+  };
+  const auto from_statements = [&](double k_over_m) {
     FitPoint start;
     start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
     start.global[0] = k_over_m * mass;
@@ -362,18 +372,19 @@ MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
       start.global[static_cast<Eigen::Index>(2 + g)] = set.groups[g].stated_rad;
     }
     for (const TrackedMotion& motion : set.motions) start.own.push_back(start_of(motion));
-    MotionFit fit = fit_motions(set, {}, start, late);
-    if (fit.cost < 0.999 * best.cost) best = std::move(fit);
-    std::size_t points = 0;
-    for (const TrackedMotion& motion : set.motions) points += motion.t_s.size();
-    if (best.converged && best.cost < 4.0 * static_cast<double>(points)) break;  // other starts find nothing better
+    return start;
+  };
+  if (!fit_if_better(integrated_start(set))) {
+    for (const double k_over_m : {1.0, 3.0, 0.1}) {
+      if (fit_if_better(from_statements(k_over_m))) break;
+    }
   }
   for (int more = 0; more < kMoreRounds && std::isfinite(best.cost) && !best.converged; ++more) {
     best = fit_motions(set, {}, best.at, late);
   }
   if (!std::isfinite(best.cost)) {
     throw base::NumericalError(
-        "the nominal model cannot be fitted to these positions: the fit makes no progress from any of three starting "
+        "the nominal model cannot be fitted to these positions: the fit makes no progress from any of four starting "
         "points");
   }
   return best;

@@ -50,7 +50,8 @@ MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effe
 /// A fit as it stands, with residuals and derivatives by the noise of another set of the same motions.
 MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
 
-/// The nominal model, from its own first guess.
+/// The nominal model, from where the integrated positions put it (integrated_start.h); where that fits badly, also
+/// from the stated inclinations with three rates of drag. The best of them.
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late = {});
 
 /// One more effect than `base` has, from where a search puts it. Where that leads to a worse fit than `base`, which is

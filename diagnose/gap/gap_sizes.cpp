@@ -86,7 +86,7 @@ namespace {
 
 constexpr std::size_t kPlotted = 250;  // residuals of a motion
 
-/// A single clip in quarters, and both fits to them.
+/// A single clip in quarters, and both fits to them: what the phase plane is compared by.
 struct SplitFits {
   TrackSet set;
   MotionFit nominal, best;
@@ -168,16 +168,12 @@ double most_seen(const std::vector<PictureFinding>& pictures, const std::vector<
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
                 std::vector<Note>& notes) {
   GapSizes gap;
-  HeldOutGap before, after;
+  const HeldOutGap before = held_out_gap(set, nominal), after = held_out_gap(set, best);
   if (set.clips.size() < 2) {
     const SplitFits split = split_fits(set, best);
-    before = held_out_gap(split.set, split.nominal);
-    after = held_out_gap(split.set, split.best);
     gap.phase_plane = phase_gaps(split.set, split.nominal, split.best);
     notes.emplace_back(QuartersHeldOut{});
   } else {
-    before = held_out_gap(set, nominal);
-    after = held_out_gap(set, best);
     gap.phase_plane = phase_gaps(set, nominal, best);
   }
   gap.before = before.value;

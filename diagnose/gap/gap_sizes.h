@@ -55,8 +55,8 @@ std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, st
                                           std::span<const ClipSquares> after, double floor = 1.0);
 
 /// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips. `best` has a named
-/// effect, the likeliest function without a name (`unnamed`), or nothing more. A single clip is cut into stretches that
-/// are fitted again, and a note says so. The domains are left empty.
+/// effect, the likeliest function without a name (`unnamed`), or nothing more. Of a single clip stretches are held out,
+/// and a note says so. The domains are left empty.
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
                 std::vector<Note>& notes);
 

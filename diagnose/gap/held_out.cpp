@@ -17,17 +17,19 @@ constexpr std::size_t kStretches = 4;  // of a single clip
 constexpr std::size_t kFewest = 8;     // points of a stretch, or to smooth
 constexpr double kLeastKnown = 1e-4;   // of a statement's variance: below, a pull is a difference of rounding
 
-/// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions.
-void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd& residual, ClipGap& clip) {
+/// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions; those of a motion
+/// from point `first` on.
+void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd& over_sd, std::size_t first,
+                       ClipGap& clip) {
   const TrackedMotion& data = set.motions[i];
   const double bandwidth = set.clips[data.clip].bandwidth_s;
   if (!(bandwidth > 0.0)) return;
   std::vector<double> t, r;
-  const Eigen::VectorXd over_sd = coloured(data, residual);
-  for (std::size_t p = 0; p < data.t_s.size(); ++p) {
+  for (Eigen::Index k = 0; k < over_sd.size(); ++k) {
+    const std::size_t p = first + static_cast<std::size_t>(k);
     if (data.outlier[p]) continue;
     t.push_back(data.t_s[p]);
-    r.push_back(over_sd[static_cast<Eigen::Index>(p)] * data.sd_of(p));
+    r.push_back(over_sd[k] * data.sd_of(p));
   }
   if (t.size() < kFewest) return;
   const core::LocalCubic cubic(t, bandwidth);
@@ -41,16 +43,85 @@ void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd
   }
 }
 
+HeldOutGap gap_over(std::vector<ClipGap> clips) {
+  HeldOutGap gap;
+  double chi2 = 0.0, freedom = 0.0, a_sum = 0.0, a_count = 0.0;
+  for (const ClipGap& clip : clips) {
+    chi2 += clip.chi2;
+    freedom += clip.freedom;
+    a_sum += clip.acceleration_square;
+    a_count += clip.acceleration_count;
+  }
+  gap.clips = std::move(clips);
+  if (freedom <= 0.0) return gap;
+  gap.value = std::sqrt(std::max(0.0, chi2) / freedom);
+  // Of n residuals' root mean square 0.5/n, and 1.32/n of the noise that it is held against. Both come from the same
+  // positions, and as the first is the least that there is, it is their covariance too: 0.5 + 1.32 - 2 * 0.5.
+  gap.standard_error = std::sqrt(0.82 / freedom);
+  if (a_count > 0.0) gap.acceleration_m_s2 = std::sqrt(a_sum / a_count);
+  return gap;
+}
+
+/// How many stretches a motion of so many points is held out in.
+std::size_t stretches_of(std::size_t points) {
+  return std::clamp<std::size_t>(points / kFewest, 1, kStretches);
+}
+
+/// The stretches of a single clip's motions, each predicted from all the others, with the motion's own start and speed
+/// from the rest of the motion. With D a stretch's derivatives by the common and the motion's own parameters, N the
+/// normal matrix of both and r what the fit to everything leaves,
+///
+///     u'(1 + D (N - D'D)^-1 D')^-1 u = r'r + (D'r)' (N - D'D)^-1 D'r,     u = r + D (N - D'D)^-1 D'r.
+HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
+  const MotionFit fit = at_linear_minimum(set, at);
+  CommonNormal all = statements_normal(fit);
+  std::vector<ProjectedMotion> projected;
+  for (const FitMotion& motion : fit.motions) {
+    projected.push_back(project(motion));
+    all.add(projected.back());
+  }
+  std::vector<ClipGap> clips;
+  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
+    const FitMotion& motion = fit.motions[i];
+    const TrackedMotion& data = set.motions[i];
+    const Eigen::Index common = motion.global.cols(), own = motion.own.cols();
+    Eigen::MatrixXd columns(motion.global.rows(), common + own);
+    columns << motion.global, motion.own;
+    CommonNormal others = all;
+    others.add(projected[i], -1.0);
+    Eigen::MatrixXd normal = base::transposed_product(columns, columns);
+    normal.topLeftCorner(common, common) += others.matrix;
+    const std::size_t points = data.t_s.size(), stretches = stretches_of(points);
+    for (std::size_t k = 0; k < stretches; ++k) {
+      const std::size_t from = points * k / stretches, to = points * (k + 1) / stretches;
+      ClipGap clip{fmt::format("{}, {:.2f} to {:.2f} s", set.clips[data.clip].name, data.t_s[from], data.t_s[to - 1])};
+      for (std::size_t p = from; p < to; ++p) clip.freedom += data.outlier[p] ? 0.0 : 1.0;
+      if (stretches == 1) clip.freedom = projected[i].freedom;  // its start is fitted to itself
+      if (clip.freedom <= 0.0) continue;
+      const auto row = static_cast<Eigen::Index>(from), rows = static_cast<Eigen::Index>(to - from);
+      const Eigen::MatrixXd d = columns.middleRows(row, rows);
+      const Eigen::VectorXd r = motion.residual.segment(row, rows), dr = base::transposed_product(d, r);
+      const Eigen::VectorXd taken = base::product(inverse_normal(normal - base::transposed_product(d, d)), dr);
+      clip.chi2 = r.squaredNorm() + dr.dot(taken);
+      Eigen::VectorXd whole = Eigen::VectorXd::Zero(motion.residual.size());
+      whole.segment(row, rows) = r + base::product(d, taken);
+      add_accelerations(set, i, coloured(data, std::move(whole)).segment(row, rows), from, clip);
+      clips.push_back(std::move(clip));
+    }
+  }
+  return gap_over(std::move(clips));
+}
+
 }  // namespace
 
 HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
-  HeldOutGap gap;
+  if (set.clips.size() == 1) return gap_of_stretches(set, fit);
   std::vector<ProjectedMotion> motions;
   for (const FitMotion& motion : fit.motions) motions.push_back(project(motion));
   CommonNormal all = statements_normal(fit);
   for (const ProjectedMotion& motion : motions) all.add(motion);
   const Eigen::MatrixXd together = inverse_normal(all.matrix);
-  double chi2 = 0.0, freedom = 0.0, a_sum = 0.0, a_count = 0.0;
+  std::vector<ClipGap> clips;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
     ClipGap clip{set.clips[c].name};
     for (std::size_t i = 0; i < motions.size(); ++i) {
@@ -67,23 +138,13 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
       const Eigen::VectorXd u = motions[i].residual - base::product(motions[i].common, shift);
       clip.chi2 += u.squaredNorm();
       gu += base::transposed_product(motions[i].common, u);
-      add_accelerations(set, i, u, clip);
+      add_accelerations(set, i, coloured(set.motions[i], u), 0, clip);
     }
     const Eigen::VectorXd taken = base::product(together, gu);
     clip.chi2 -= gu.dot(taken);
-    chi2 += clip.chi2;
-    freedom += clip.freedom;
-    a_sum += clip.acceleration_square;
-    a_count += clip.acceleration_count;
-    gap.clips.push_back(clip);
+    clips.push_back(std::move(clip));
   }
-  if (freedom <= 0.0) return gap;
-  gap.value = std::sqrt(std::max(0.0, chi2) / freedom);
-  // Of n residuals' root mean square 0.5/n, and 1.32/n of the noise that it is held against. Both come from the same
-  // positions, and as the first is the least that there is, it is their covariance too: 0.5 + 1.32 - 2 * 0.5.
-  gap.standard_error = std::sqrt(0.82 / freedom);
-  if (a_count > 0.0) gap.acceleration_m_s2 = std::sqrt(a_sum / a_count);
-  return gap;
+  return gap_over(std::move(clips));
 }
 
 TrackSet split_clip(const TrackSet& set) {

@@ -7,6 +7,10 @@
 /// of Newton's taken, which is exact where the model is linear in what is fitted. What is found by a search and not by
 /// steps comes from all clips: which of several waves or places it is, which frames are lost, and the shape and tau of
 /// a function without a name.
+///
+/// Of a single clip quarters of each motion are left out instead. Such a stretch keeps the motion's own start and
+/// speed, which come from the rest of the motion: a start of its own would take up what a wrong law does within a
+/// quarter.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,10 +39,9 @@ struct HeldOutGap {
       acceleration_m_s2;  ///< rms of a(real) - a(model), both smoothed as the analysis does, noise included
 };
 
-/// `set` needs two clips or more (see split_clip).
 HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit);
 
-/// A single clip as four stretches that count as separate clips.
+/// A single clip as four stretches that count as separate clips, each with a start of its own.
 TrackSet split_clip(const TrackSet& set);
 
 /// Covariance of the common parameters: positions and statements.

@@ -23,7 +23,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestPositions = 40;  // of all clips together: fewer carry no verdict beside four parameters
+constexpr std::size_t kFewestPositions = 25;  // of all clips together: fewer carry no verdict beside four parameters
 constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
 constexpr double kContradiction = 5.0;        // standard deviations between two statements
 constexpr double kLatestLaunch_s = 0.2;       // a motion that begins later is not the launch

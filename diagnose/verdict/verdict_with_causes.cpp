@@ -93,7 +93,12 @@ void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& c
   const bool half = sequence.named_share >= kHalf || !shows_in_gap(best);
   const bool most = sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id));
   comparison.unknown += std::exchange(comparison.none, 0.0);
-  if (!half) set_unknown(std::max(comparison.unknown + best.probability, kJustUnknown), comparison);
+  // What explanations that leave more than half had is unknown already, the best one's included.
+  double of_best = 0.0;
+  for (const Hypothesis& one : comparison.all) {
+    if (!one.unnamed && one.effects == best.effects) of_best += one.probability;
+  }
+  if (!half) set_unknown(std::max(comparison.unknown + of_best, kJustUnknown), comparison);
   // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
   if (!most || sequence.gap_before * sequence.gap_before - 1.0 < kLargestExcess || comparison.unknown < 1.0 - kTrusted)
     return;
@@ -221,12 +226,12 @@ std::vector<LikelyTwin> likely_twins(const TrackSet& set, const Explanations& ex
 /// it has sizes of each clip or a second cause to follow it with.
 bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
   const MotionFit& nominal = by_noise.fits.front();
-  if (!has_gap(set, nominal, nominal)) return false;
+  if (!has_gap(set, nominal)) return false;
   const Hypothesis* best = best_named(set, by_noise);
   if (best == nullptr || best->fit <= 0) return true;
   const bool is_law = best->effects.size() == 1 && !follows_each_clip(best->effects.front());
   if (!is_law && by_noise.none + by_noise.unknown > kDoubt) return true;
-  return has_gap(set, nominal, by_noise.fits[static_cast<std::size_t>(best->fit)]);
+  return has_gap(set, by_noise.fits[static_cast<std::size_t>(best->fit)]);
 }
 
 }  // namespace

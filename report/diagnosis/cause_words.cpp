@@ -71,10 +71,11 @@ std::string causes_words(const diagnose::Diagnosis& diagnosis, bool gap_named = 
     const std::string name = effect_name(cause.id);
     const std::string share = share_text(cause.share, cause.share_interval95);
     const bool first = text.empty();
+    const bool all = cause.share > 1.0;  // what it leaves is below the noise by chance
     text +=
         fmt::format("{}{}{} {} {}{}{}", first ? "" : "; ", first && !gap_named ? capital(name) : name,
                     sizes_aside(diagnosis, cause.id), is_plural(name) ? "explain" : "explains", first ? "" : "another ",
-                    share, first && !gap_named ? " of the gap on clips that were held out" : "");
+                    all ? "all" : share, first && !gap_named ? " of the gap on clips that were held out" : "");
   }
   if (diagnosis.remainder) text += "; " + left_words(*diagnosis.remainder);
   return text + ".";

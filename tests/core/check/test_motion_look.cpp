@@ -1,5 +1,6 @@
 #include "core/check/motion_look.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -135,4 +136,37 @@ TEST_CASE("of a motion that a recorded force drives the size of the acceleration
   const core::MotionLook look = core::look_at_motion(of.t_s, of.x_m, {}, true);
   CHECK_FALSE(look.acceleration_m_s2);
   CHECK_FALSE(look.oscillates);
+}
+
+TEST_CASE("gravity in feet is told as feet") {
+  CHECK(unusable(findings(positions([](double t) { return 0.5 * kGravity_m_s2 / 0.3048 * t * t; }, 1e-3)), "in feet"));
+}
+
+TEST_CASE("positions that stand at one value far from the others are those of a lost object") {
+  Positions made = positions(run);
+  for (std::size_t i = 150; i < made.x_m.size(); ++i) made.x_m[i] = 0.0;
+  const auto found = findings(made);
+  REQUIRE_FALSE(found.empty());
+  CHECK(std::any_of(found.begin(), found.end(), [](const core::Finding& finding) {
+    return finding.severity == core::Severity::change &&
+           finding.found.find("from 1.5 s on 50 positions are all 0 m") != std::string::npos;
+  }));
+  // A glider that comes to rest stands still as well, and where it was.
+  const auto rest = findings(positions([](double t) { return t < 1.0 ? run(t) : run(1.0); }, 0.0));
+  CHECK(std::none_of(rest.begin(), rest.end(),
+                     [](const core::Finding& finding) { return finding.found.find("lost") != std::string::npos; }));
+}
+
+TEST_CASE("gaps that hold much of the time are told") {
+  Positions made = positions(run), clusters;
+  for (std::size_t i = 0; i < made.t_s.size(); ++i) {
+    if (i % 40 >= 8) continue;  // 8 positions, then 0.33 s without
+    clusters.t_s.push_back(made.t_s[i]);
+    clusters.x_m.push_back(made.x_m[i]);
+  }
+  const auto found = findings(clusters);
+  CHECK(std::any_of(found.begin(), found.end(), [](const core::Finding& finding) {
+    return finding.found.find("gaps of up to 0.33 s") != std::string::npos;
+  }));
+  CHECK(findings(made).empty());
 }

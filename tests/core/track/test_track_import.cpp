@@ -167,3 +167,71 @@ TEST_CASE("bad tables give one clear error each") {
   }
   CHECK_THROWS_AS(core::read_track_csv("nothing-here.csv", 1), base::InputError);
 }
+
+TEST_CASE("blanks between the columns, as numpy and MATLAB write them, with and without names, in any number") {
+  check_motion(Made(rows("   0.{0}00E0    {1}E-2\n")).read());
+  check_motion(Made("Falling ball, second try\nt (s)   x (cm)\n" + rows(" 0.{0}  {1}.0\n")).read());
+  check_motion(Made("time position\n" + rows("0,{0} {1}e-2\n")).read());
+  check_motion(Made("A title\nt x y\n" + rows("0.{0} {1}e-2 0.5\n")).read());
+}
+
+TEST_CASE("names behind a '#' and their units behind another, and units behind a stroke or \"in\"") {
+  check_motion(Made("#made on a Tuesday\n#Time\tPos\n#[s]\t[cm]\n" + rows("0.{0}\t{1}\n")).read());
+  check_motion(Made("t / s;x / cm\n" + rows("0,{0};{1}\n")).read());
+  check_motion(Made("Zeit in ms;Weg in mm\n" + rows("{0}00;{1}0\n")).read());
+  CHECK_THROWS_WITH(Made("#Time\tPos\n#[s]\t[au]\n" + rows("0.{0}\t{1}\n")).read(), Contains("the unit \"au\""));
+}
+
+TEST_CASE("a height alone is x, counted along the motion where nobody states its sign") {
+  const std::string fall = "t (s)\ty (m)\n" + rows("0.{0}\t-{1}e-2\n");
+  const core::TrackData down = core::read_track_csv(Made(fall).file, std::nullopt);
+  check_motion(down);
+  CHECK(has_note(down, "counted along the motion"));
+  CHECK(core::read_track_csv(Made(fall).file, 1).x_m[3] == Approx(-0.09));
+  // Thrown upwards and caught: it turns, and accelerates downwards.
+  std::string text = "t,height\n";
+  for (int i = 0; i <= 10; ++i) text += fmt::format("0.{},{}\n", i < 10 ? fmt::format("{}", i) : "95", i * (10 - i));
+  const core::TrackData thrown = core::read_track_csv(Made(text).file, std::nullopt);
+  CHECK(thrown.x_m[5] == Approx(-25.0));
+}
+
+TEST_CASE("of x and y the one along which the body moves is x; a slanted path is told, a curved one is refused") {
+  const auto plane = [](const std::string& pattern) {
+    const Made made("mass A\t\t\nt\tx\ty\n" + rows(pattern));
+    return core::read_track_csv(made.file, std::nullopt);
+  };
+  const core::TrackData upright = plane("0.{0}\t0.5\t{1}e-2\n");
+  check_motion(upright);
+  CHECK(has_note(upright, "along y"));
+  CHECK_FALSE(has_note(upright, "runs at"));
+  const core::TrackData slanted = plane("0.{0}\t{1}e-2\t{1}e-2\n");
+  CHECK(has_note(slanted, "45.0° to the x axis"));
+  CHECK(has_note(slanted, "1.41 times"));
+  // y = x²: with x 0 to 9 and y 0 to 81 the path's sagitta is 81²/4/(9² + 81²)... of its length, far from straight.
+  CHECK_THROWS_WITH(plane("0.{0}\t{0}e-1\t{1}e-2\n"), Contains("a curved path"));
+  const Made flight("t\tx\ty\n" + rows("0.{0}\t{0}e-1\t{1}e-2\n"));
+  CHECK(flight.read("x").x_m[3] == Approx(0.3));  // whoever asks for it has it
+}
+
+TEST_CASE("a table without times says so once") {
+  const Made made(
+      "56.77,159.0\n56.73,159.1\n56.69,158.8\n56.63,158.3\n56.56,157.3\n56.46,156.1\n56.37,154.3\n"
+      "56.29,152.2\n56.20,149.6\n");
+  try {
+    made.read();
+    FAIL("read");
+  } catch (const base::InputError& error) {
+    CHECK(error.issues().size() == 1);
+    CHECK_THAT(error.what(), Contains("values that do not rise"));
+  }
+}
+
+TEST_CASE("times without a unit that would be 16.7 s apart are not taken as seconds") {
+  std::string text = "frame,time,x\n";
+  for (int i = 0; i < 10; ++i) text += fmt::format("{},{},0.{}\n", i, 600.0 + 16.683 * i, i);
+  CHECK_THROWS_WITH(Made(text).read(), Contains("times without a unit, 16.68") && Contains("\"time (ms)\""));
+  text.replace(text.find("time"), 4, "time (ms)");
+  CHECK(Made(text).read().frame_rate_hz == Approx(1.0 / 0.016683).epsilon(1e-3));
+  text.replace(text.find("(ms)"), 4, "(s)");
+  CHECK(Made(text).read().t_s[1] == Approx(616.683));
+}

@@ -100,6 +100,19 @@ TEST_CASE("an explanation that is nearly as likely widens what is recovered by h
   CHECK(both[0].with == std::vector<std::string>{"quadratic_drag"});
 }
 
+TEST_CASE("a quantity in which the likely explanations differ by more than itself is not given") {
+  const diagnose::TrackSet set = set_of(7, {});
+  const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  // The same residuals and derivatives about another point: an explanation with a K/m that is 20 1/s higher.
+  diagnose::MotionFit far = fit;
+  far.at.global[0] += 20.0 * 0.4;
+  const auto alone = diagnose::recovered_of(set, {{&fit, {}, 1.0}});
+  REQUIRE(alone[0].k_over_m_1_s.estimate);
+  const auto both = diagnose::recovered_of(set, {{&fit, {}, 0.6}, {&far, {}, 0.3}});
+  CHECK_FALSE(both[0].k_over_m_1_s.estimate);
+  CHECK(both[0].mu.estimate);
+}
+
 TEST_CASE("a cable that pulls in the middle of the track, or friction that drifts, moves no terminal velocity") {
   // m g (sin(alpha) - mu cos(alpha)) = K v, of the law without them.
   const tests::MadeGlider glider;

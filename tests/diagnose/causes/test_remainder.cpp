@@ -207,3 +207,14 @@ TEST_CASE("one motion that is far worse than the others does not make the remain
     if (of.set.motions[i].clip != 2) CHECK(found.sizes.wider[i] <= 2.0);
   }
 }
+
+TEST_CASE("one motion by itself has no scatter from motion to motion, whatever its law lacks") {
+  const tests::MadeEffect bow{.force = [](double m, double x, double, double) { return -0.5 * m * x; }};
+  const Fitted one = fitted({{0.4, 4.0, -0.6, 1.2}}, 5, bow);
+  const diagnose::RemainderSpace space(one.set, one.fit);
+  const auto best = space.likeliest();
+  CHECK(best.sizes.drag == 0.0);
+  CHECK(best.sizes.force_m_s2 == 0.0);
+  const diagnose::RemainderSizes scattered{1e-4, 0.1, 0.7, {}};
+  CHECK(space.likeliest(&scattered).sizes.drag == 0.0);
+}

@@ -212,3 +212,50 @@ TEST_CASE("where nothing is missing the gap scatters about 1 by its standard err
   CHECK(squares > 0.58);
   CHECK(squares < 1.42);
 }
+
+TEST_CASE("a stretch of a single clip has the chi² of a prediction from all the rest, the motion's start included") {
+  Linear made = linear_case(true, 0.0, 1.0);
+  made.set.clips.resize(1);
+  made.set.motions.resize(1);
+  made.fit.motions.resize(1);
+  made.fit.at.own.resize(1);
+  for (Eigen::Index p = 0; p < kPoints; ++p) {
+    made.set.motions[0].t_s[static_cast<std::size_t>(p)] = 0.01 * static_cast<double>(p);
+  }
+  const diagnose::HeldOutGap gap = diagnose::held_out_gap(made.set, made.fit);
+  REQUIRE(gap.clips.size() == 4);
+  // Ordinary least squares of the other thirty points and the statement, and its prediction's covariance.
+  const diagnose::FitMotion& of = made.fit.motions[0];
+  Eigen::MatrixXd columns(kPoints, 5);
+  columns << of.global, of.own;
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    const Eigen::Index from = 10 * k;
+    Eigen::MatrixXd others(31, 5);
+    Eigen::VectorXd right(31);
+    others.topRows(from) = columns.topRows(from);
+    others.middleRows(from, 30 - from) = columns.bottomRows(30 - from);
+    others.row(30) << 0.0, 0.0, 1.0 / kSd, 0.0, 0.0;
+    right.head(from) = of.residual.head(from);
+    right.segment(from, 30 - from) = of.residual.tail(30 - from);
+    right[30] = kStated / kSd;
+    const Eigen::MatrixXd covariance = (others.transpose() * others).inverse();
+    const Eigen::VectorXd sizes = covariance * (others.transpose() * right);
+    const Eigen::MatrixXd held = columns.middleRows(from, 10);
+    const Eigen::VectorXd off = of.residual.segment(from, 10) - held * sizes;
+    const Eigen::MatrixXd predictive = Eigen::MatrixXd::Identity(10, 10) + held * covariance * held.transpose();
+    const auto& clip = gap.clips[static_cast<std::size_t>(k)];
+    CHECK(clip.freedom == 10.0);
+    CHECK(clip.chi2 == Approx(off.dot(predictive.llt().solve(off))).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("the gap of a single clip sees what a wrong law does over the whole motion") {
+  // The slope changes by 0.4 m/s² in a metre: within a quarter of the motion a start of its own would take most of it.
+  const tests::MadeEffect bow{.force = [](double m, double x, double, double) { return -0.4 * m * x; }};
+  const auto made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, bow, 3, 3e-5, 150, 100.0, 0.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const double rms = std::sqrt(nominal.cost / static_cast<double>(set.motions[0].t_s.size()));
+  REQUIRE(rms > 3.0);
+  CHECK(diagnose::held_out_gap(set, nominal).value > rms);  // predicted is further off than fitted
+}

@@ -221,6 +221,10 @@ TEST_CASE("data that carry no verdict are refused or say so") {
     const auto made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-5, 20);
     CHECK_THROWS_AS(diagnosed(made), base::InputError);
   }
+  SECTION("a clip with 28 frames, as of a short film, lacks nothing") {
+    const auto diagnosis = diagnosed(tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-4, 28, 30.0));
+    CHECK(diagnosis.verdict == diagnose::Verdict::none);
+  }
   SECTION("one clip: held-out quarters, and a note") {
     const auto diagnosis = diagnosed(tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1));
     CHECK(diagnosis.verdict == diagnose::Verdict::none);

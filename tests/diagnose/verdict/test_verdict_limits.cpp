@@ -208,7 +208,7 @@ TEST_CASE("too little motion is told clip by clip, with their files") {
     CHECK(error.issues()[0].found == "20 positions of free motion");
     CHECK(error.issues()[1].file == "still.csv");
     CHECK(error.issues()[1].found == "nothing that moves freely");
-    CHECK(contains(error.issues()[1].expected, "at least 40"));
+    CHECK(contains(error.issues()[1].expected, "at least 25"));
   }
 }
 

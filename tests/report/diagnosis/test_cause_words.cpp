@@ -51,6 +51,15 @@ TEST_CASE("a cause is told without what was not fitted, of each set-up by itself
   CHECK(report::sequence_words(of).ends_with("; nothing is left above the noise."));
 }
 
+TEST_CASE("a cause that leaves less than the noise explains all of the gap, not more than that") {
+  diagnose::Diagnosis of = tests::two_causes();
+  of.explained.resize(1);
+  of.explained.front().share = 1.126;
+  of.explained.front().share_interval95.reset();
+  of.remainder = diagnose::GapRemainder{-0.126, 0.93, 0.0, 0.0, 0.0, {}};
+  CHECK(says(report::sequence_words(of), "explains all of the gap on clips that were held out; nothing is left"));
+}
+
 TEST_CASE("the verb follows the name of the cause: several frame times explain, one drag explains") {
   diagnose::Diagnosis of = tests::two_causes();
   const auto begins = [&](const char* id, const char* words) {

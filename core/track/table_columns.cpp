@@ -1,0 +1,259 @@
+#include "core/track/table_columns.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "base/errors.h"
+#include "base/math/angles.h"
+#include "base/math/dense.h"
+#include "core/experiment/file_names.h"
+#include "core/math/quantile.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr double kOtherAxis = 3.0;      // times as far along y as along x: the motion is along y
+constexpr double kStraightPath = 0.08;  // sagitta over length: a wide lens bends a straight path by half of that
+constexpr double kCurveExplains = 0.8;  // of the variance across the path: less is scatter
+constexpr double kSlanted_deg = 5.0;    // x is then 0.4 % short
+constexpr std::size_t kFewestOfPath = 8;
+
+bool is_acceleration(const TableColumn& column) {
+  const std::string name = lower(column.name);
+  return column.unit.starts_with("m/s^2") || column.unit.starts_with("m/s\xC2\xB2") ||
+         name.find("accel") != std::string::npos || name.find("beschleunigung") != std::string::npos ||
+         name.find("aceler") != std::string::npos || name.find("acc\xC3\xA9l") != std::string::npos;
+}
+
+std::string columns_text(const ColumnTable& table) {
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const TableColumn& column = table.columns[c];
+    const bool run_apart = !column.run.empty() && column.text.find(column.run) == std::string::npos;
+    names.push_back(fmt::format("{} \"{}{}\"", c + 1, run_apart ? column.run + ": " : "", column.text));
+  }
+  return fmt::format("columns {}", fmt::join(names, ", "));
+}
+
+base::InputError wrong_column(const ColumnTable& table, const std::string& found, const std::string& expected) {
+  return base::InputError(base::Issue{table.file, 0, "column", found, expected});
+}
+
+bool is_asked(const TableColumn& column, std::size_t index, const std::string& asked) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(asked.data(), asked.data() + asked.size(), number);
+  if (error == std::errc{} && end == asked.data() + asked.size()) return number == index + 1;
+  const std::string small = lower(asked);
+  return small == lower(column.text) || small == lower(column.name) ||
+         small == lower(column.run + ": " + column.text) || small == lower(column.run + ": " + column.name);
+}
+
+/// Accelerations alone are no track, and a person who exported them from a phone should know why.
+void refuse_accelerations(const ColumnTable& table) {
+  if (std::none_of(table.columns.begin(), table.columns.end(), is_acceleration)) return;
+  throw wrong_column(table, "accelerations without positions, " + columns_text(table),
+                     "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
+                     "integrated, and a phone on an incline measures gravity besides. Film the glider, or record its "
+                     "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
+}
+
+/// The places in a plane at which a body was seen, first to last.
+struct Path {
+  std::vector<double> x_m, y_m;
+};
+
+Path path_of(const TableColumn& x, const TableColumn& y) {
+  Path path;
+  const double x_unit = metres_per(x.unit).value_or(1.0), y_unit = metres_per(y.unit).value_or(1.0);
+  for (std::size_t row = 0; row < x.values.size(); ++row) {
+    if (!x.values[row] || !y.values[row]) continue;
+    path.x_m.push_back(*x.values[row] * x_unit);
+    path.y_m.push_back(*y.values[row] * y_unit);
+  }
+  return path;
+}
+
+double range_of(const std::vector<double>& values) {
+  return quantile(values, 0.98) - quantile(values, 0.02);
+}
+
+/// Sagitta over length of a parabola through the path, across the line from its first place to the farthest from that;
+/// 0 where the parabola explains little of what lies across.
+double sagitta_of(const Path& path) {
+  double along_x = 0.0, along_y = 0.0;
+  for (std::size_t i = 0; i < path.x_m.size(); ++i) {
+    const double dx = path.x_m[i] - path.x_m[0], dy = path.y_m[i] - path.y_m[0];
+    if (std::hypot(dx, dy) > std::hypot(along_x, along_y)) along_x = dx, along_y = dy;
+  }
+  const double length = std::hypot(along_x, along_y);
+  if (!(length > 0.0)) return 0.0;
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(path.x_m.size()), 3);
+  Eigen::VectorXd across(design.rows());
+  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double dx = path.x_m[k] - path.x_m[0], dy = path.y_m[k] - path.y_m[0];
+    const double s = (dx * along_x + dy * along_y) / (length * length);
+    design.row(i) << 1.0, s, s * s;
+    across[i] = (dy * along_x - dx * along_y) / (length * length);
+  }
+  const Eigen::VectorXd fit = base::least_squares(design, across);
+  const Eigen::VectorXd left = across - base::product(design, fit);
+  const Eigen::VectorXd about_mean = across.array() - across.mean();
+  if (!(left.squaredNorm() < (1.0 - kCurveExplains) * about_mean.squaredNorm())) return 0.0;
+  return 0.25 * std::abs(fit[2]);
+}
+
+/// The angle between the x axis and the line that fits the path best, 0 to 90 degrees.
+double slant_deg(const Path& path) {
+  const auto n = static_cast<Eigen::Index>(path.x_m.size());
+  Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(path.x_m.data(), n),
+                 y = Eigen::Map<const Eigen::ArrayXd>(path.y_m.data(), n);
+  x -= x.mean();
+  y -= y.mean();
+  const double angle = 0.5 * std::atan2(2.0 * (x * y).sum(), (x.square() - y.square()).sum());
+  return std::abs(angle) * base::kDegreesPerRad;
+}
+
+/// x or y: along which of them the body moves.
+std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<std::string>& notes) {
+  const Path path = path_of(table.columns[x], table.columns[y]);
+  if (path.x_m.size() < kFewestOfPath) return x;
+  const double bend = sagitta_of(path);
+  if (bend > kStraightPath) {
+    throw wrong_column(table,
+                       fmt::format("a curved path: the sagitta of (x, y) is {:.2g} % of its length", 100.0 * bend),
+                       "the motion of a body along a straight line, not a free flight, a swing or a turn; if y is no "
+                       "place, say which column is x (--column)");
+  }
+  const double way_x = range_of(path.x_m), way_y = range_of(path.y_m);
+  const bool upright = way_y > kOtherAxis * way_x;
+  if (upright) {
+    notes.push_back(
+        fmt::format("y covers {:.3g} m and x only {:.2g} m: the motion is taken along y (--column says "
+                    "otherwise)",
+                    way_y, way_x));
+  }
+  const double off_deg = upright ? 90.0 - slant_deg(path) : slant_deg(path);
+  if (off_deg > kSlanted_deg) {
+    notes.push_back(
+        fmt::format("the path runs at {:.1f}° to the {} axis: along it distances are {:.3g} times as long. "
+                    "Turn the axes along the track and export again",
+                    off_deg, upright ? "y" : "x", 1.0 / std::cos(off_deg / base::kDegreesPerRad)));
+  }
+  return upright ? y : x;
+}
+
+std::vector<std::size_t> columns_that(const ColumnTable& table, bool (*is)(const TableColumn&)) {
+  std::vector<std::size_t> found;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (is(table.columns[c])) found.push_back(c);
+  }
+  return found;
+}
+
+std::size_t asked_column(const ColumnTable& table, const std::string& asked) {
+  std::vector<std::size_t> found;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (is_asked(table.columns[c], c, asked)) found.push_back(c);
+  }
+  if (found.size() == 1) return found.front();
+  throw wrong_column(table, fmt::format("{} of the name or number \"{}\"", found.empty() ? "none" : "several", asked),
+                     "one of the " + columns_text(table));
+}
+
+std::size_t place_column(const ColumnTable& table, std::vector<std::string>& notes) {
+  if (!table.has_header && table.columns.size() == 2) return 1;
+  const std::vector<std::size_t> found = columns_that(table, is_place_column),
+                                 heights = columns_that(table, is_height_column);
+  if (found.empty() && heights.size() == 1) return heights.front();
+  if (found.size() == 1) {
+    const bool plane = heights.size() == 1 && lower(table.columns[heights.front()].name).find('y') != std::string::npos;
+    return plane ? along_path(table, found.front(), heights.front(), notes) : found.front();
+  }
+  if (found.empty()) refuse_accelerations(table);
+  throw wrong_column(
+      table, columns_text(table),
+      fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
+                  "experiment.toml) by its header or its number{}",
+                  found.empty() ? "one" : "just one", found.empty() ? "" : ", or take all as clips (--runs all)"));
+}
+
+std::size_t time_column(const ColumnTable& table, std::size_t place) {
+  if (!table.has_header && place != 0) return 0;
+  std::vector<std::size_t> times;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const bool same_run = table.columns[c].run == table.columns[place].run || table.columns[c].run.empty();
+    if (c != place && is_time_column(table.columns[c]) && same_run) times.push_back(c);
+  }
+  const auto right = std::lower_bound(times.begin(), times.end(), place);
+  if (right != times.begin()) return *std::prev(right);
+  if (times.size() == 1) return times.front();
+  throw wrong_column(table,
+                     fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
+                                 columns_text(table)),
+                     "one, called t or time or with a unit of time");
+}
+
+double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),
+                 const char* kind, const char* standard, std::vector<std::string>& notes) {
+  if (column.unit.empty()) {
+    notes.push_back(fmt::format("\"{}\" states no unit and is taken as {}", column.text, standard));
+    return 1.0;
+  }
+  const auto value = factor(column.unit);
+  if (value) return *value;
+  throw wrong_column(table, fmt::format("the unit \"{}\" of \"{}\"", column.unit, column.text), kind);
+}
+
+}  // namespace
+
+ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<std::string>& notes) {
+  ChosenColumns chosen;
+  chosen.place = asked.empty() ? place_column(table, notes) : asked_column(table, asked);
+  chosen.time = time_column(table, chosen.place);
+  chosen.is_height = asked.empty() && is_height_column(table.columns[chosen.place]);
+  if (chosen.is_height) {
+    notes.push_back(fmt::format("x is \"{}\", a height: state an inclination of 90° if this is a fall (--incline 90)",
+                                table.columns[chosen.place].text));
+  }
+  for (const TableColumn& column : table.columns) {
+    if (column.unit != "N" && lower(column.name) != "force") continue;
+    notes.push_back(
+        fmt::format("\"{}\" is not used: a force along x that was recorded with it stands under force_n in a "
+                    "table with the header t_s,x_m,force_n",
+                    column.text));
+    break;
+  }
+  return chosen;
+}
+
+double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<std::string>& notes) {
+  return factor_of(table, column, metres_per, "m, dm, cm, mm, um, km, in or ft", "metres", notes);
+}
+
+double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<std::string>& notes) {
+  return factor_of(table, column, seconds_per, "s, ms, us or min", "seconds", notes);
+}
+
+bool rises_mostly(const TableColumn& times) {
+  std::size_t up = 0, steps = 0;
+  std::optional<double> last;
+  for (const std::optional<double>& value : times.values) {
+    if (!value) continue;
+    if (last) {
+      ++steps;
+      up += *value > *last;
+    }
+    last = value;
+  }
+  return 2 * up >= steps;
+}
+
+}  // namespace glidelab::core

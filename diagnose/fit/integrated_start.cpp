@@ -1,0 +1,176 @@
+#include "diagnose/fit/integrated_start.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/math/dense.h"
+#include "diagnose/tracks/tracked_motions.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+// Beside the positions these count as nothing: they keep apart what the positions do not.
+constexpr double kOpenRate = 30.0;     // 1/s, sd of K/m
+constexpr double kOpenFriction = 0.3;  // sd of mu
+
+/// Running integral by the trapezoidal rule, from 0.
+std::vector<double> integral(const std::vector<double>& t_s, const std::vector<double>& y) {
+  std::vector<double> sum(y.size(), 0.0);
+  for (std::size_t p = 1; p < y.size(); ++p) sum[p] = sum[p - 1] + 0.5 * (y[p] + y[p - 1]) * (t_s[p] - t_s[p - 1]);
+  return sum;
+}
+
+/// The direction of motion at each position; constant between turns.
+std::vector<double> directions(const TrackedMotion& motion) {
+  std::vector<std::size_t> ends = turns_of(motion);
+  ends.push_back(motion.x_m.size() - 1);
+  std::vector<double> direction(motion.x_m.size(), 0.0);
+  std::size_t from = 0;
+  for (const std::size_t to : ends) {
+    const double way = motion.x_m[to] - motion.x_m[from];
+    for (std::size_t p = from; p <= to; ++p) direction[p] = way > 0.0 ? 1.0 : way < 0.0 ? -1.0 : 0.0;
+    from = to;
+  }
+  return direction;
+}
+
+/// The recorded force at each position's time, linear between its samples.
+std::vector<double> force_at(const TrackedMotion& motion) {
+  const KnownForce& known = motion.known;
+  std::vector<double> force;
+  std::size_t after = 0;
+  for (const double t : motion.t_s) {
+    while (after < known.t_s.size() && known.t_s[after] <= t) ++after;
+    if (after == 0 || after == known.t_s.size()) {
+      force.push_back(known.force_n[after == 0 ? 0 : after - 1]);
+      continue;
+    }
+    const double part = (t - known.t_s[after - 1]) / (known.t_s[after] - known.t_s[after - 1]);
+    force.push_back(known.force_n[after - 1] + part * (known.force_n[after] - known.force_n[after - 1]));
+  }
+  return force;
+}
+
+/// A motion's positions and what the parameters do to them, over the noise.
+struct Integrated {
+  Eigen::MatrixXd common;  ///< by K, mu, sin(alpha) of its group
+  Eigen::MatrixXd own;     ///< by x0, v0
+  Eigen::VectorXd x;
+};
+
+Integrated integrated(const TrackSet& set, const TrackedMotion& motion) {
+  const double mass = set.masses[motion.mass].mass_kg, g = set.gravity_m_s2;
+  const double normal = g * std::cos(set.groups[motion.group].stated_rad);
+  const auto count = motion.t_s.size();
+  std::vector<double> way(count), driven(count, 0.0);
+  for (std::size_t p = 0; p < count; ++p) way[p] = motion.x_m[p] - motion.x_m.front();
+  const std::vector<double> path = integral(motion.t_s, way);
+  const std::vector<double> sign = integral(motion.t_s, integral(motion.t_s, directions(motion)));
+  if (!motion.known.t_s.empty()) driven = integral(motion.t_s, integral(motion.t_s, force_at(motion)));
+  Integrated all;
+  const auto rows = static_cast<Eigen::Index>(count);
+  all.common = Eigen::MatrixXd::Zero(rows, 3);
+  all.own = Eigen::MatrixXd::Zero(rows, 2);
+  all.x = Eigen::VectorXd::Zero(rows);
+  for (std::size_t p = 0; p < count; ++p) {
+    if (motion.outlier[p] != 0) continue;
+    const auto row = static_cast<Eigen::Index>(p);
+    const double t = motion.t_s[p] - motion.t_s.front(), by = 1.0 / motion.sd_of(p);
+    all.common.row(row) << -by * path[p] / mass, -by * normal * sign[p], 0.5 * by * g * t * t;
+    all.own.row(row) << by, by * t;
+    all.x[row] = by * (motion.x_m[p] - driven[p] / mass);
+  }
+  return all;
+}
+
+/// The least of y'Ay/2 - b'y with the first two of y not below zero: of the four choices of what is held at zero, the
+/// best that keeps to it.
+Eigen::VectorXd resisting(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, bool frictionless) {
+  Eigen::VectorXd best = Eigen::VectorXd::Zero(b.size());
+  double least = 0.0;
+  for (const std::array<bool, 2> held : {std::array{false, false}, {true, false}, {false, true}, {true, true}}) {
+    if (frictionless && !held[1]) continue;
+    Eigen::MatrixXd rest = a;
+    Eigen::VectorXd right = b;
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      if (!held[static_cast<std::size_t>(k)]) continue;
+      rest.row(k).setZero();
+      rest.col(k).setZero();
+      rest(k, k) = 1.0;
+      right[k] = 0.0;
+    }
+    const Eigen::VectorXd y = base::solve_positive(rest, right);
+    if (!y.allFinite() || y[0] < 0.0 || y[1] < 0.0) continue;
+    const Eigen::VectorXd along = base::product(a, y);
+    const double value = 0.5 * y.dot(along) - b.dot(y);
+    if (!(value < least)) continue;
+    least = value;
+    best = y;
+  }
+  return best;
+}
+
+}  // namespace
+
+FitPoint integrated_start(const TrackSet& set) {
+  const ParameterLayout layout(set, {});
+  const auto groups = static_cast<Eigen::Index>(set.groups.size());
+  double heaviest = 0.0;
+  for (const TrackedMass& mass : set.masses) heaviest = std::max(heaviest, mass.mass_kg);
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(2 + groups, 2 + groups);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(2 + groups);
+  normal(0, 0) = std::pow(kOpenRate * heaviest, -2);
+  normal(1, 1) = std::pow(kOpenFriction, -2);
+  for (std::size_t g = 0; g < set.groups.size(); ++g) {
+    const TrackGroup& group = set.groups[g];
+    const Eigen::Index k = 2 + static_cast<Eigen::Index>(g);
+    const auto state = [&](double alpha_rad, double sd_rad) {
+      const double sd = std::max(1e-3, sd_rad * std::abs(std::cos(alpha_rad)));
+      normal(k, k) += 1.0 / (sd * sd);
+      right[k] += std::sin(alpha_rad) / (sd * sd);
+    };
+    state(group.stated_rad, is_fall(group) ? kFallInclination_rad : kOpenInclination_rad);
+    for (const InclineStatement& s : group.statements) state(s.alpha_rad, s.sd_rad);
+  }
+  std::vector<Integrated> motions;
+  for (const TrackedMotion& motion : set.motions) {
+    motions.push_back(integrated(set, motion));
+    const Integrated& one = motions.back();
+    // Without what its own x0 and v0 can take up.
+    const Eigen::MatrixXd own = base::orthonormal_columns(one.own, 1e-9);
+    const Eigen::MatrixXd common = one.common - base::product(own, base::transposed_product(own, one.common));
+    const Eigen::VectorXd x = one.x - base::product(own, base::transposed_product(own, one.x));
+    const Eigen::MatrixXd a = base::transposed_product(common, common);
+    const Eigen::VectorXd b = base::transposed_product(common, x);
+    const std::array<Eigen::Index, 3> at{0, 1, 2 + static_cast<Eigen::Index>(motion.group)};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      right[at[static_cast<std::size_t>(i)]] += b[i];
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        normal(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(j)]) += a(i, j);
+      }
+    }
+  }
+  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  const Eigen::VectorXd found = scale.cwiseProduct(resisting(scaled, scale.cwiseProduct(right), only_falls(set)));
+  FitPoint start;
+  start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
+  start.global.head(2) = found.head(2);
+  for (Eigen::Index g = 0; g < groups; ++g) start.global[2 + g] = std::asin(std::clamp(found[2 + g], -0.99, 0.99));
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const Integrated& one = motions[i];
+    const Eigen::Vector3d of(found[0], found[1], found[2 + static_cast<Eigen::Index>(set.motions[i].group)]);
+    const Eigen::VectorXd left = one.x - base::product(one.common, of);
+    Eigen::VectorXd own = base::least_squares(one.own, left);
+    // The integral runs from the first position, not from x0.
+    own[1] += found[0] / set.masses[set.motions[i].mass].mass_kg * (set.motions[i].x_m.front() - own[0]);
+    start.own.push_back(own);
+  }
+  return start;
+}
+
+}  // namespace glidelab::diagnose
