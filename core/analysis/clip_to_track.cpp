@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/long_work.h"
 #include "base/math/angles.h"
+#include "core/motion/codec_drag.h"
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
 #include "core/pictures/camera/restitution.h"
@@ -140,6 +141,7 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
   }
   seen.marker = tracker.finish();
   seen.notes = source->notes();
+  seen.predicted = source->facts().predicts;
   if (experiment.camera->time == TimeSource::container) put_even(seen);
   if (scene) finish_record(source->facts(), *scene, seen);
   seen.notes.insert(seen.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
@@ -409,6 +411,36 @@ class GroupTracks {
   std::vector<std::vector<PlanePoint>> points_;  ///< of each clip of the group
 };
 
+constexpr double kBeyondDoubt = 10.0;  // log evidence
+
+/// Takes off what a codec that predicts images does to the positions (codec_drag.h), where the file says that it is
+/// one, or does not say and the positions leave no doubt; what remains unknown of it is one more shared error.
+void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenClip>& seen, PictureResults& results) {
+  std::vector<DragTrack> tracks;
+  std::vector<std::size_t> of_clip;
+  bool predicts = false;
+  for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
+    if (experiment.clips[i].file.empty() || !seen[i].predicted.value_or(true)) continue;
+    tracks.push_back({&experiment.clips[i], &results.tracks[i]});
+    of_clip.push_back(i);
+    predicts = predicts || seen[i].predicted.value_or(false);
+  }
+  const std::optional<CodecDrag> drag = find_codec_drag(tracks, predicts);
+  if (!drag || (!predicts && drag->log_evidence < kBeyondDoubt)) return;
+  for (std::size_t k = 0; k < of_clip.size(); ++k) {
+    TrackData& track = results.tracks[of_clip[k]];
+    for (std::size_t p = 0; p < drag->drag_m[k].size(); ++p) track.x_m[p] -= drag->drag_m[k][p];
+    track.shared_m.resize(results.modes);
+    for (const auto& mode : drag->error_m) track.shared_m.push_back(mode[k]);
+    if (drag->log_evidence < kBeyondDoubt) continue;
+    track.notes.push_back(
+        fmt::format("the codec draws the marker towards displacements of parts of a pixel a frame, by {:.2g} px (root "
+                    "mean square): that is taken off, and the intervals allow for what is not known of it",
+                    drag->rms_px));
+  }
+  results.modes += drag->error_m.size();
+}
+
 }  // namespace
 
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress,
@@ -442,6 +474,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   for (const auto& [name, restitution] : setting.restitutions) {
     GroupTracks(experiment, setting, name, seen).add_to(results);
   }
+  take_off_codec_drag(experiment, seen, results);
   for (const std::size_t i : pictures) results.fits[i] = std::move(seen[i].marker.fits);
   results.calibration = setting.calibration;
   return results;

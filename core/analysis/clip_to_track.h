@@ -31,6 +31,7 @@ struct SeenClip {
   std::vector<std::string> notes;
   std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
   bool dark_marker = false;                 ///< seen as darker than its surroundings, without a colour that says so
+  std::optional<bool> predicted;  ///< by a lossy codec, out of the images before; nothing where it is not known
 };
 
 /// Counts frames over all clips for the progress; clips may be looked at at the same time.
@@ -60,7 +61,8 @@ struct PictureResults {
   std::vector<std::vector<MarkerFit>> fits;  ///< as many: the marker's image wherever it was seen, frames rise
   std::optional<CalibrationResult> calibration;
   std::vector<PlumbResult> plumbs;
-  std::size_t modes = 0;  ///< independent errors of camera and planes: entries of every track's shared_m, at most
+  std::size_t modes =
+      0;  ///< independent errors of camera, planes and codec: entries of every track's shared_m, at most
 };
 
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of

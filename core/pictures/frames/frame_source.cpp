@@ -152,6 +152,14 @@ std::optional<bool> is_lossy(const std::string& letters) {
   return std::nullopt;
 }
 
+/// Whether a lossy codec makes images out of those before; the others code each by itself.
+std::optional<bool> does_predict(const std::string& letters) {
+  static const std::set<std::string> kEachByItself{"mjpg", "apcn", "apch", "apcs", "ap4h", "dvsd"};
+  const std::optional<bool> lossy = is_lossy(letters);
+  if (!lossy) return std::nullopt;
+  return *lossy && !kEachByItself.contains(lower(letters));
+}
+
 class VideoFrames final : public FrameSource {
  public:
   VideoFrames(const fs::path& file, const CameraSettings& camera, bool with_color, std::optional<cv::Size> size)
@@ -221,6 +229,7 @@ class VideoFrames final : public FrameSource {
     FileFacts facts;
     facts.codec = decoder_->codec();
     facts.lossy = is_lossy(facts.codec);
+    facts.predicts = does_predict(facts.codec);
     if (stated_rate_hz_ > 0.0) facts.container_rate_hz = stated_rate_hz_;
     facts.stamps_missing = missing_;
     facts.irregular_steps = irregular_;

@@ -38,6 +38,7 @@ inline constexpr double kRateRounding = 1.5e-3;
 struct FileFacts {
   std::string codec;                        ///< four letters; empty for a folder of frames
   std::optional<bool> lossy;                ///< nothing for an unknown codec
+  std::optional<bool> predicts;             ///< lossy, and images are made out of those before; likewise
   std::optional<double> container_rate_hz;  ///< frames a second, as the container says
   std::size_t stamps_missing = 0;           ///< frames for which the time stamps leave a gap
   std::size_t irregular_steps = 0;          ///< between time stamps, that differ from the median step
