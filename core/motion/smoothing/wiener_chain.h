@@ -46,6 +46,7 @@ struct WienerRatio {
   double density = 0.0;                                        ///< q / s^2, above 0, in s^(1 - 2N)
   double jump_1_s2 = std::numeric_limits<double>::infinity();  ///< j / s, of each break; infinite: any jump
   double jump_time_s = 1.0;                                    ///< u
+  double rate_1_s = 0.0;                                       ///< k, at which x^(N-1) decays
 };
 
 /// A time of a chain: of a measured position, of a break, or one at which the motion is wanted.
