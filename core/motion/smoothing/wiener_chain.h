@@ -93,6 +93,9 @@ class ChainPosterior {
   /// Covariance (at s = 1) of state k with state l.
   Matrix covariance(std::size_t k, std::size_t l) const;
 
+  /// The same of state k with state k + 1.
+  Matrix covariance_with_next(std::size_t k) const { return gain_[k] * covariance_[k + 1]; }
+
   /// The weights of the positions in x, v and a of node k, over the chain's points: the posterior mean is linear in
   /// them, and dE[state_k]/dy_i = cov(state_k, x_i) / f_i^2. Weights that fade below 1e-10 of the largest are cut off.
   /// Over uniform steps far from ends and breaks, neighbours share one set.
