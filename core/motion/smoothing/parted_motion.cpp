@@ -114,7 +114,8 @@ double PartedMotion<N>::minus_two_log_likelihood(const Smoothness& how) const {
   double size = kSize * parts_.range_m / parts_.longest_s;
   for (int d = 2; d < N; ++d) {
     size *= d / parts_.longest_s;
-    value += unknown * std::log(2.0 * std::numbers::pi * size * size);
+    const double decaying = d == N - 1 ? kSize * parts_.range_m * std::pow(std::abs(how.rate_1_s), d) : 0.0;
+    value += unknown * std::log(2.0 * std::numbers::pi * std::pow(std::max(size, decaying), 2));
   }
   return value;
 }

@@ -1,8 +1,8 @@
 /// The smoothers: positions in; x, v and a with their standard deviations out, and how strongly they were smoothed.
 ///
 ///     local-polynomial  the local cubic of the paper, whose bandwidth is given (local_polynomial.h)
-///     kalman            the integrated Wiener process of order 4, its strength by marginal likelihood
-///     spline            the smoothing spline of degree 7, its strength by generalised cross-validation
+///     kalman            an integrated Wiener or Ornstein-Uhlenbeck process, its strength by marginal likelihood
+///     spline            the spline of the same process, its strength by generalised cross-validation
 ///
 /// The last two are one posterior (wiener_chain.h) with two ways to choose its strength; wiener_smoother.cpp has both.
 /// All three are linear in the positions once the strength is chosen, so that the effect of any noise and of any

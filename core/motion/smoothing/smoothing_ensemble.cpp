@@ -104,7 +104,8 @@ std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnse
       const double before = ensemble.smoothed[p][b - 1][2], after = ensemble.smoothed[p][b][2];
       const double reach = kSide * sd[b][1] / std::max(0.5 * (std::abs(before) + std::abs(after)), 1e-300);
       for (std::size_t k = 0; k < nodes.size(); ++k) {
-        if (std::abs(nodes[k].t_s - nodes[b].t_s) < reach) more[k] = std::max(more[k], std::abs(after - before) / kNormal);
+        if (std::abs(nodes[k].t_s - nodes[b].t_s) < reach)
+          more[k] = std::max(more[k], std::abs(after - before) / kNormal);
       }
     }
     for (std::size_t k = 0; k < nodes.size(); ++k) sd[k][2] = std::hypot(sd[k][2], more[k]);
@@ -123,8 +124,7 @@ double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         const double own = std::sqrt(nodes[k].variance[2]);
         const bool last = k + 1 == nodes.size();
-        const double correlation =
-            last ? 1.0 : nodes[k].with_next / (own * std::sqrt(nodes[k + 1].variance[2]));
+        const double correlation = last ? 1.0 : nodes[k].with_next / (own * std::sqrt(nodes[k + 1].variance[2]));
         part.push_back({sd[p][k][2] / own, (nodes[k].mean[2] - ensemble.smoothed[p][k][2]) / own,
                         std::acos(std::clamp(correlation, -1.0, 1.0))});
       }
@@ -141,7 +141,8 @@ double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<
   double high = 4.0;
   while (excess(high) > 0.0) high *= 1.5;
   std::uintmax_t most = 20;
-  const auto found = boost::math::tools::toms748_solve(excess, 1.0, high, boost::math::tools::eps_tolerance<double>(10), most);
+  const auto found =
+      boost::math::tools::toms748_solve(excess, 1.0, high, boost::math::tools::eps_tolerance<double>(10), most);
   return 0.5 * (found.first + found.second);
 }
 

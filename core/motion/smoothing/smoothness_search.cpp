@@ -13,11 +13,15 @@ namespace {
 constexpr double kTauRatio = 1.5;
 constexpr double kLeastTau = 0.3;     // steps: interpolation
 constexpr double kGreatestTau = 0.5;  // of the longest part
-constexpr double kRateWidth = 10.0;   // of the prior, over the longest part
+constexpr double kRateWidth = 3.0;    // of the prior, over the longest part
+constexpr double kWidest = 5.0;       // standard deviation of k, over the longest part
 constexpr double kFastest = 0.3;      // rate, per step
 constexpr double kGrowing = 10.0;     // e-folds over the longest part
 constexpr double kOutOfReach = 60.0;  // of -2 log
 constexpr int kBrentBits = 8;
+/// Odds beforehand that a motion follows the process without its noise. With them the bands of made gliders hold
+/// (docs/evidence/peers.md).
+constexpr double kSpike = 3.0;
 
 double least_tau(const MotionParts& parts) {
   return kLeastTau * parts.step_s;
@@ -26,17 +30,24 @@ double greatest_tau(const MotionParts& parts) {
   return std::max(kGreatestTau * parts.longest_s, 2.0 * least_tau(parts));
 }
 
+/// Of k: Cauchy's.
+double prior_density(const MotionParts& parts, double rate_1_s) {
+  const double scale = kRateWidth / parts.longest_s;
+  return 1.0 / (std::numbers::pi * scale * (1.0 + std::pow(rate_1_s / scale, 2)));
+}
+
 /// By parabolas through three rates, a standard deviation apart.
 template <int N>
 AtTau best_rate(const PartedMotion<N>& motion, Smoothness how, double rate_1_s, double width_1_s) {
   constexpr int kMost = 12;
   constexpr double kSettled = 0.1;  // standard deviations
   const MotionParts& parts = motion.parts();
-  const double widest = 0.5 * kRateWidth / parts.longest_s;
+  const double widest = kWidest / parts.longest_s;
   const double low = -kGrowing / parts.longest_s, high = std::max(kFastest / parts.step_s, 2.0 * widest);
   const auto value = [&](double rate) {
     how.rate_1_s = rate;
-    return motion.minus_two_log_likelihood(how);
+    return motion.minus_two_log_likelihood(how) -
+           2.0 * std::log(prior_density(parts, rate) / prior_density(parts, 0.0));
   };
   double width = std::min(width_1_s, widest), middle = std::clamp(rate_1_s, low + width, high - width);
   double at_middle = value(middle);
@@ -47,7 +58,8 @@ AtTau best_rate(const PartedMotion<N>& motion, Smoothness how, double rate_1_s, 
     double step = curvature > 0.0 ? -slope / curvature : above < below ? 3.0 * width : -3.0 * width;
     step = std::clamp(step, -4.0 * width, 4.0 * width);
     double next = middle + step;
-    double next_width = curvature > 0.0 ? std::clamp(std::sqrt(2.0 / curvature), 0.02 * width, 20.0 * width) : 2.0 * width;
+    double next_width =
+        curvature > 0.0 ? std::clamp(std::sqrt(2.0 / curvature), 0.02 * width, 20.0 * width) : 2.0 * width;
     next_width = std::min(next_width, widest);
     next = std::clamp(next, low + next_width, high - next_width);
     const double at_next = value(next);
@@ -65,7 +77,7 @@ AtTau best_rate(const PartedMotion<N>& motion, Smoothness how, double rate_1_s, 
   }
   AtTau made{how, width, 0.0};
   made.how.rate_1_s = middle;
-  const double share = std::sqrt(2.0 * std::numbers::pi) * width * parts.longest_s / kRateWidth;
+  const double share = std::sqrt(2.0 * std::numbers::pi) * width * prior_density(parts, 0.0);
   made.minus_two_log = at_middle - 2.0 * std::log(std::min(share, 1.0));
   return made;
 }
@@ -88,7 +100,8 @@ std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Ra
   const int count = static_cast<int>(std::ceil((to - from) / std::log(kTauRatio)));
   const auto tau = [&](int i) { return std::exp(from + i * (to - from) / count); };
   const auto value = [&](int i, double rate) {
-    return motion.minus_two_log_likelihood({tau(i), rate, jump_1_s2});
+    return motion.minus_two_log_likelihood({tau(i), rate, jump_1_s2}) -
+           2.0 * std::log(prior_density(parts, rate) / prior_density(parts, 0.0));
   };
   int first = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -216,6 +229,19 @@ std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best) {
   return made;
 }
 
+template <int N>
+AtTau exact(const PartedMotion<N>& motion, const AtTau& best) {
+  const double from = std::log(least_tau(motion.parts())), to = std::log(greatest_tau(motion.parts()));
+  AtTau last = best;
+  for (double log_tau = std::log(best.how.tau_s); log_tau < to;) {
+    log_tau = std::min(log_tau + std::log(kTauRatio), to);
+    last = at_tau(motion, std::exp(log_tau), last);
+    if (last.minus_two_log > best.minus_two_log + kOutOfReach) break;
+  }
+  last.minus_two_log -= 2.0 * std::log(kSpike * (to - from));
+  return last;
+}
+
 template std::vector<AtTau> along_tau(const PartedMotion<3>&, double, Rate, const std::vector<double>&);
 template std::vector<AtTau> along_tau(const PartedMotion<4>&, double, Rate, const std::vector<double>&);
 template std::vector<AtTau> along_tau(const PartedMotion<5>&, double, Rate, const std::vector<double>&);
@@ -228,6 +254,9 @@ template AtTau refined(const PartedMotion<5>&, const AtTau&);
 template AtTau with_jump(const PartedMotion<3>&, AtTau);
 template AtTau with_jump(const PartedMotion<4>&, AtTau);
 template AtTau with_jump(const PartedMotion<5>&, AtTau);
+template AtTau exact(const PartedMotion<3>&, const AtTau&);
+template AtTau exact(const PartedMotion<4>&, const AtTau&);
+template AtTau exact(const PartedMotion<5>&, const AtTau&);
 template std::vector<AtTau> spread(const PartedMotion<3>&, const AtTau&);
 template std::vector<AtTau> spread(const PartedMotion<4>&, const AtTau&);
 template std::vector<AtTau> spread(const PartedMotion<5>&, const AtTau&);

@@ -21,10 +21,11 @@ struct AtTau {
 
 enum class Rate { none, any };
 
-/// The likeliest k (or none) for taus that rise by a factor of 1.5, from that which is best for k = 0. `others`: rates that may be
-/// near the likeliest.
+/// The likeliest k (or none) for taus that rise by a factor of 1.5, from that which is best for k = 0. `others`: rates
+/// that may be near the likeliest.
 template <int N>
-std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Rate rate, const std::vector<double>& others);
+std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Rate rate,
+                             const std::vector<double>& others);
 
 /// The same at one more tau, from a neighbour's.
 template <int N>
@@ -42,6 +43,10 @@ AtTau with_jump(const PartedMotion<N>& motion, AtTau near);
 /// `minus_two_log`.
 template <int N>
 std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best);
+
+/// The motion without noise of the process, which is as probable beforehand as all taus together.
+template <int N>
+AtTau exact(const PartedMotion<N>& motion, const AtTau& best);
 
 inline const AtTau& likeliest(const std::vector<AtTau>& all) {
   const AtTau* best = &all.front();

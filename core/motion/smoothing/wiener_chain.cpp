@@ -71,6 +71,48 @@ void triangulate(StepRows<N>& rows) {
   for (int i = 0; i < N; ++i) reflect(N + i, N + i + 1, N - 1 - i, N + i);
 }
 
+/// Far from ends and breaks, over even times, the filter's triangle no longer changes, and a step is linear in z and in
+/// the position.
+template <int N>
+struct Steady {
+  bool reached = false;
+  Square<N> next = Square<N>::Zero(),
+            noise = Square<N>::Zero();  // z of the next node, and what the step's noise has on its right side, of z
+  Column<N> next_of_y = Column<N>::Zero(),
+            left = Column<N>::Zero();  // of the position over its noise; the innovation of z
+  double left_of_y = 0.0, log_determinant = 0.0;
+
+  Steady() = default;
+  /// From the rows of a step before they are a triangle.
+  Steady(const StepRows<N>& whole, double per_noise) : reached(true) {
+    const Column<N> row = per_noise * Column<N>::Unit(0);
+    Square<N> upper;
+    for (int i = 0; i < N; ++i) {
+      StepRows<N> rows = whole;
+      rows.template block<N, 1>(N, 2 * N) = Column<N>::Unit(i);
+      triangulate<N>(rows);
+      noise.col(i) = rows.template block<N, 1>(0, 2 * N);
+      Column<N> z = rows.template block<N, 1>(N, 2 * N);
+      upper = rows.template block<N, N>(N, N);
+      Square<N> turned = upper;
+      left[i] = rotate_in<N>(turned, z, row, 0.0);
+      next.col(i) = z;
+    }
+    Column<N> z = Column<N>::Zero();
+    left_of_y = rotate_in<N>(upper, z, row, 1.0);
+    next_of_y = z;
+  }
+};
+
+template <int N>
+bool settled(const Square<N>& upper, const Square<N>& before) {
+  constexpr double kUnchanged = 1e-12;
+  for (int j = 0; j < N; ++j) {
+    if (!((upper.col(j) - before.col(j)).norm() <= kUnchanged * upper.col(j).norm())) return false;
+  }
+  return upper(N - 1, N - 1) != 0.0;
+}
+
 double log_square(double value) {
   return 2.0 * std::log(std::abs(value));
 }
@@ -141,10 +183,41 @@ ChainFit WienerChain<N>::filter(const WienerRatio& ratio, Matrix& last, Vector& 
   Matrix upper = Matrix::Zero();
   Vector z = Vector::Zero();
   StepRows<N> rows;
+  Matrix root = Matrix::Zero(), back = Matrix::Identity();
+  Steady<N> steady;
+  double h_before = 0.0, factor_before = 0.0;
+  const auto measure = [&](std::size_t k) {
+    if (!nodes_[k].point) return;
+    const std::size_t i = *nodes_[k].point;
+    const double per_noise = 1.0 / factor_[i];
+    const double left = rotate_in<N>(upper, z, per_noise * Vector::Unit(0), (x_m_[i] - origin_m_) * per_noise);
+    fit.squares_m2 += left * left;
+    fit.freedom += 1.0;
+    fit.log_determinant -= log_square(per_noise);
+  };
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     if (k > 0) {
       const double h = (nodes_[k].t_s - nodes_[k - 1].t_s) / unit_s_;
-      Matrix root = Matrix::Zero(), back = Matrix::Identity();
+      const bool like_before = nodes_[k].point && !nodes_[k].after_break && std::abs(h - h_before) <= kOneStep * h &&
+                               factor_[*nodes_[k].point] == factor_before;
+      h_before = nodes_[k].point ? h : 0.0;
+      factor_before = nodes_[k].point ? factor_[*nodes_[k].point] : 0.0;
+      if (steady.reached && like_before) {
+        rows.template block<N, 1>(0, 2 * N) = steady.noise * z;
+        visit(k - 1, back, root, rows);
+        const std::size_t i = *nodes_[k].point;
+        const double y = (x_m_[i] - origin_m_) / factor_[i], left = steady.left.dot(z) + steady.left_of_y * y;
+        z = (steady.next * z + steady.next_of_y * y).eval();
+        fit.squares_m2 += left * left;
+        fit.freedom += 1.0;
+        fit.log_determinant += steady.log_determinant;
+        continue;
+      }
+      const Matrix upper_before = upper;
+      const double determinant_before = fit.log_determinant;
+      steady.reached = false;
+      root.setZero();
+      back.setIdentity();
       if (nodes_[k].after_break) {
         for (int d = 2; d < N; ++d) {
           root(d, d) = jump / std::pow(jump_time, d - 2);
@@ -169,6 +242,7 @@ ChainFit WienerChain<N>::filter(const WienerRatio& ratio, Matrix& last, Vector& 
       rows.template bottomLeftCorner<N, N>().noalias() = -known * root;
       rows.template block<N, N>(N, N) = known;
       rows.template block<N, 1>(N, 2 * N) = z;
+      const StepRows<N> whole = rows;
       triangulate<N>(rows);
       upper = rows.template block<N, N>(N, N);
       z = rows.template block<N, 1>(N, 2 * N);
@@ -176,14 +250,13 @@ ChainFit WienerChain<N>::filter(const WienerRatio& ratio, Matrix& last, Vector& 
       for (int i = 0; i < N; ++i) determinant *= rows(i, i);
       fit.log_determinant += log_square(determinant);
       visit(k - 1, back, root, rows);
-    }
-    if (nodes_[k].point) {
-      const std::size_t i = *nodes_[k].point;
-      const double per_noise = 1.0 / factor_[i];
-      const double left = rotate_in<N>(upper, z, per_noise * Vector::Unit(0), (x_m_[i] - origin_m_) * per_noise);
-      fit.squares_m2 += left * left;
-      fit.freedom += 1.0;
-      fit.log_determinant -= log_square(per_noise);
+      measure(k);
+      if (like_before && settled<N>(upper, upper_before)) {
+        steady = Steady<N>(whole, 1.0 / factor_before);
+        steady.log_determinant = fit.log_determinant - determinant_before;
+      }
+    } else {
+      measure(k);
     }
   }
   for (int i = 0; i < N; ++i) fit.log_determinant += log_square(upper(i, i));

@@ -22,6 +22,7 @@ enum class StrengthBy { likelihood, cross_validation };
 constexpr int kLeastOrder = 3, kOrders = 3;
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr double kMatters = 20.0;       // of -2 log: orders less probable than that by e^-10 are left out
+constexpr double kLeastWeight = 1e-3;   // of a member, over the most probable one
 constexpr double kBreakSettled = 1e-4;  // of a step
 constexpr int kBreakPasses = 6, kBreakSearches = 3;
 constexpr double kCostOfParameter = 1.4;  // of cross-validation (Kim and Gu 2004): 1 follows the noise now and then
@@ -56,9 +57,8 @@ std::vector<Choice> search(const MotionParts& parts, std::vector<double> rates_1
 }
 
 const Choice& likeliest(const std::vector<Choice>& all) {
-  return *std::min_element(all.begin(), all.end(), [](const Choice& a, const Choice& b) {
-    return a.at.minus_two_log < b.at.minus_two_log;
-  });
+  return *std::min_element(all.begin(), all.end(),
+                           [](const Choice& a, const Choice& b) { return a.at.minus_two_log < b.at.minus_two_log; });
 }
 
 /// Moves the breaks to where v = 0 until they stay; the farthest that one moved at first.
@@ -76,11 +76,24 @@ double settle_breaks(MotionParts& parts, const Choice& choice) {
 
 /// Members of an order with the weights exp(-minus_two_log / 2), about `best`.
 template <int N>
-void add_members(const PartedMotion<N>& motion, const AtTau& likeliest_one, double best, SmoothingEnsemble& ensemble) {
-  for (const AtTau& at : spread(motion, likeliest_one)) {
+std::pair<double, AtTau> add_members(const PartedMotion<N>& motion, const AtTau& likeliest_one, double best,
+                                     SmoothingEnsemble& ensemble) {
+  std::pair<double, AtTau> chosen{-1.0, likeliest_one};
+  double of_sum = 0.0;
+  std::vector<AtTau> all = spread(motion, likeliest_one);
+  all.push_back(exact(motion, likeliest_one));
+  for (const AtTau& at : all) {
     const double weight = std::exp(-0.5 * (at.minus_two_log - best));
+    if (weight < kLeastWeight) continue;
+    if (&at == &all.back()) {
+      if (weight > of_sum) chosen = {weight, at};
+    } else {
+      of_sum += weight;
+      chosen = {of_sum, likeliest_one};
+    }
     // k by Gauss and Hermite's rule of three points.
-    for (const auto& [off, share] : {std::pair{0.0, 2.0 / 3.0}, {std::sqrt(3.0), 1.0 / 6.0}, {-std::sqrt(3.0), 1.0 / 6.0}}) {
+    for (const auto& [off, share] :
+         {std::pair{0.0, 2.0 / 3.0}, {std::sqrt(3.0), 1.0 / 6.0}, {-std::sqrt(3.0), 1.0 / 6.0}}) {
       if (at.rate_sd_1_s == 0.0 && off != 0.0) continue;
       Smoothness how = at.how;
       how.rate_1_s += off * at.rate_sd_1_s;
@@ -92,6 +105,7 @@ void add_members(const PartedMotion<N>& motion, const AtTau& likeliest_one, doub
       ensemble.members.push_back(std::move(member));
     }
   }
+  return chosen;
 }
 
 double cross_validation(const SmoothedSums& sums) {
@@ -100,7 +114,8 @@ double cross_validation(const SmoothedSums& sums) {
 
 /// The tau of the least criterion, k the likeliest at each.
 template <int N>
-std::pair<double, AtTau> by_cross_validation(const PartedMotion<N>& motion, Rate rate, const std::vector<double>& rates_1_s) {
+std::pair<double, AtTau> by_cross_validation(const PartedMotion<N>& motion, Rate rate,
+                                             const std::vector<double>& rates_1_s) {
   const auto criterion = [&](const AtTau& at) {
     const SmoothedSums sums = sums_of(motion.posteriors(at.how), motion.parts());
     return sums.points > kCostOfParameter * sums.trace ? cross_validation(sums) : kAny;
@@ -185,16 +200,21 @@ class WienerSmoother final : public Smoother {
     }
     SmoothingEnsemble ensemble;
     const double best = likeliest(orders).at.minus_two_log;
+    Choice most;
+    double most_weight = -1.0;
     for (const Choice& choice : orders) {
       for_order(choice.order, [&](auto order) {
-        add_members<order>(PartedMotion<order>(parts), choice.at, best, ensemble);
+        const auto [weight, at] = add_members<order>(PartedMotion<order>(parts), choice.at, best, ensemble);
+        if (weight <= most_weight) return;
+        most_weight = weight;
+        most = {order, at};
       });
     }
     double sum = 0.0;
     for (const EnsembleMember& member : ensemble.members) sum += member.weight;
     for (EnsembleMember& member : ensemble.members) member.weight /= sum;
 
-    const Choice chosen = by_ == StrengthBy::likelihood ? likeliest(orders) : cross_validated(parts, orders);
+    const Choice chosen = by_ == StrengthBy::likelihood ? most : cross_validated(parts, orders);
     for_order(chosen.order, [&](auto order) { finish<order>(parts, chosen, std::move(ensemble), made); });
     return made;
   }
@@ -230,10 +250,11 @@ class WienerSmoother final : public Smoother {
       }
     }
     if (!parts.input.noise_sd_m) ensemble.freedom = std::max(fit.freedom - 2.0, 1.0);
-    const double variance = by_ == StrengthBy::likelihood || parts.input.noise_sd_m ? motion.noise_variance(fit)
-                                                                                    : sums.noise_variance();
+    const double variance =
+        by_ == StrengthBy::likelihood || parts.input.noise_sd_m ? motion.noise_variance(fit) : sums.noise_variance();
     SmoothingStrength& strength = made.strength;
-    strength.method = by_ == StrengthBy::likelihood ? "maximum marginal likelihood" : "minimum generalised cross-validation";
+    strength.method =
+        by_ == StrengthBy::likelihood ? "maximum marginal likelihood" : "minimum generalised cross-validation";
     strength.noise_sd_m = std::sqrt(variance);
     strength.order = N;
     strength.rate_1_s = chosen.at.how.rate_1_s;
