@@ -129,10 +129,11 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
     if (gathered->point.empty()) continue;
     want_other_frames(track, motion, whole.frames, *gathered);
     gathered->input.rows = gathered == &of_free || motion.forced;
+    gathered->input.rate_in_rows = !motion.forced;  // x of a driven motion is smoothed by the weights of y
     gathered->input.simultaneous = gathered == &of_free;
     const SmoothedSeries series = smoother.smooth(gathered->input);
     if (gathered == &of_free) whole.strength = series.strength;
-    // Rows are over the points that the smoother was given, which in each part follow each other in the motion too.
+    // Rows are over the points that the smoother was given; between two parts there may be others.
     const auto x_by = [&](const SmoothedState& y, const std::optional<KernelRow>& row) {
       if (!motion.forced) return y;
       SmoothedState x = y;
@@ -143,7 +144,19 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
       return x;
     };
     const auto in_motion = [&](std::optional<KernelRow> row) {
-      if (row) row->first = gathered->point[row->first];
+      if (!row) return row;
+      const std::size_t from = row->first, last = from + row->weights->a.size() - 1;
+      row->first = gathered->point[from];
+      const std::size_t size = gathered->point[last] - row->first + 1;
+      if (size == row->weights->a.size()) return row;
+      KernelWeights spread{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size)};
+      for (std::size_t i = from; i <= last; ++i) {
+        const std::size_t to = gathered->point[i] - row->first;
+        spread.x[to] = row->weights->x[i - from];
+        spread.v[to] = row->weights->v[i - from];
+        spread.a[to] = row->weights->a[i - from];
+      }
+      row->weights = std::make_shared<const KernelWeights>(std::move(spread));
       return row;
     };
     for (std::size_t j = 0; j < gathered->point.size(); ++j) {

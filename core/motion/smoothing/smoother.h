@@ -33,6 +33,7 @@ struct SmoothingInput {
   std::vector<double> at_s = {};           ///< rising: other times within the parts of the motion that are wanted
   std::optional<double> bandwidth_s = {};  ///< of the local polynomial (asserted there), and of no other
   bool rows = false;                       ///< whether they are wanted
+  bool rate_in_rows = false;               ///< whether rows follow the noise through the rate k too, for a covariance
   bool simultaneous = false;               ///< whether the simultaneous band is wanted
 };
 
