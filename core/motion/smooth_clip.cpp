@@ -63,7 +63,16 @@ void fill_frame(const SmoothedState& state, double force_a_m_s2, double mass_kg,
 void leave_out(const FreeStretch& stretch, double most_sd_m_s2, const std::vector<double>& sd_m_s2, std::size_t from,
                std::vector<StretchPoint>& points) {
   const std::size_t to = points.size();
-  const auto bad = [&](std::size_t j) { return !(sd_m_s2[points[j].point] <= most_sd_m_s2); };
+  // Where the whole of a is known well beside what it varies over, all of it counts.
+  constexpr double kWell = 0.02;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t j = from; j < to; ++j) {
+    if (!points[j].smoothed) continue;
+    low = std::min(low, points[j].y.a_m_s2);
+    high = std::max(high, points[j].y.a_m_s2);
+  }
+  const double most = std::max(most_sd_m_s2, kWell * (high - low));
+  const auto bad = [&](std::size_t j) { return !(sd_m_s2[points[j].point] <= most); };
   std::size_t start = from, end = to;
   while (start < to && bad(start)) ++start;
   while (end > start && bad(end - 1)) --end;
