@@ -63,7 +63,16 @@ void fill_frame(const SmoothedState& state, double force_a_m_s2, double mass_kg,
 void leave_out(const FreeStretch& stretch, double most_sd_m_s2, const std::vector<double>& sd_m_s2, std::size_t from,
                std::vector<StretchPoint>& points) {
   const std::size_t to = points.size();
-  const auto bad = [&](std::size_t j) { return !(sd_m_s2[points[j].point] <= most_sd_m_s2); };
+  // Where the whole of a is known well beside what it varies over, all of it counts.
+  constexpr double kWell = 0.02;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t j = from; j < to; ++j) {
+    if (!points[j].smoothed) continue;
+    low = std::min(low, points[j].y.a_m_s2);
+    high = std::max(high, points[j].y.a_m_s2);
+  }
+  const double most = std::max(most_sd_m_s2, kWell * (high - low));
+  const auto bad = [&](std::size_t j) { return !(sd_m_s2[points[j].point] <= most); };
   std::size_t start = from, end = to;
   while (start < to && bad(start)) ++start;
   while (end > start && bad(end - 1)) --end;
@@ -129,10 +138,11 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
     if (gathered->point.empty()) continue;
     want_other_frames(track, motion, whole.frames, *gathered);
     gathered->input.rows = gathered == &of_free || motion.forced;
+    gathered->input.rate_in_rows = !motion.forced;  // x of a driven motion is smoothed by the weights of y
     gathered->input.simultaneous = gathered == &of_free;
     const SmoothedSeries series = smoother.smooth(gathered->input);
     if (gathered == &of_free) whole.strength = series.strength;
-    // Rows are over the points that the smoother was given, which in each part follow each other in the motion too.
+    // Rows are over the points that the smoother was given; between two parts there may be others.
     const auto x_by = [&](const SmoothedState& y, const std::optional<KernelRow>& row) {
       if (!motion.forced) return y;
       SmoothedState x = y;
@@ -143,7 +153,19 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
       return x;
     };
     const auto in_motion = [&](std::optional<KernelRow> row) {
-      if (row) row->first = gathered->point[row->first];
+      if (!row) return row;
+      const std::size_t from = row->first, last = from + row->weights->a.size() - 1;
+      row->first = gathered->point[from];
+      const std::size_t size = gathered->point[last] - row->first + 1;
+      if (size == row->weights->a.size()) return row;
+      KernelWeights spread{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size)};
+      for (std::size_t i = from; i <= last; ++i) {
+        const std::size_t to = gathered->point[i] - row->first;
+        spread.x[to] = row->weights->x[i - from];
+        spread.v[to] = row->weights->v[i - from];
+        spread.a[to] = row->weights->a[i - from];
+      }
+      row->weights = std::make_shared<const KernelWeights>(std::move(spread));
       return row;
     };
     for (std::size_t j = 0; j < gathered->point.size(); ++j) {

@@ -3,7 +3,7 @@
 /// The free motion has one strength, and what is not free (a hand, a stop, a rest) another. Where the motion turns,
 /// both sides are smoothed together with a jump of a, because dry friction jumps there while x and v are continuous;
 /// elsewhere every part starts anew. Points count for lines where the variance of a is below kEndVariance of its
-/// median.
+/// median, or the standard deviation below 2 % of the range of a in the stretch.
 #pragma once
 
 #include <vector>

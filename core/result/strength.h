@@ -11,6 +11,8 @@ namespace glidelab::core {
 struct SmoothingStrength {
   std::string smoother = "local-polynomial";
   std::string method;        ///< one line for a reader: how it was chosen
+  int order = 0;             ///< N of the process (wiener_chain.h); 0 where there is none
+  double rate_1_s = 0.0;     ///< k, at which its last derivative decays
   double bandwidth_s = 0.0;  ///< of the local cubic; else of the one with as much noise in a, far from ends
   double noise_sd_m = 0.0;   ///< of a position of factor 1, where the smoother has to know it; 0 otherwise
   /// Of the integrated Wiener process of order N (wiener_chain.h): (s^2 dt / q)^(1 / 2N), dt the mean time step.

@@ -30,8 +30,7 @@ class Strength:
     jump_sd_m_s2 : float or None
         Standard deviation of the jumps, infinite where any is allowed; None without a break.
     simultaneous_a : float
-        a ± this times its standard deviation holds a at all times together with 95 % probability, for signals of
-        the smoother's own kind; for gliders less often.
+        a ± this times its standard deviation holds a at all times together with 95 % probability.
     """
 
     method: str
@@ -100,9 +99,10 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
     at_s : array_like, shape (m,), optional
         Other times at which to evaluate; a local polynomial then gives no standard deviations.
     smoother : {"local-polynomial", "kalman", "spline"}
-        ``kalman``: the integrated Wiener process of order 4, its strength by marginal likelihood. ``spline``: the
-        smoothing spline of degree 7, its strength by generalised cross-validation. Both estimate the noise where
-        `noise_m` does not state it, and take neither `bandwidth_s` nor `order` and `kernel`.
+        ``kalman``: an integrated Wiener or Ornstein-Uhlenbeck process of order 3 to 5, its order, rate and strength
+        by marginal likelihood. ``spline``: the spline of the same process, its strength by generalised
+        cross-validation. Both estimate the noise where `noise_m` does not state it, and take neither `bandwidth_s` nor
+        `order` and `kernel`.
     breaks_s : array_like, shape (b,), optional
         Of ``kalman`` and ``spline``: about when v = 0 and a may jump (dry friction), rising. They are moved to where
         the smoothed v is 0.

@@ -116,6 +116,10 @@ Json strength_json(const core::SmoothingStrength& strength) {
   Json object;
   object["smoother"] = strength.smoother;
   object["method"] = strength.method;
+  if (strength.order > 0) {
+    object["order"] = strength.order;
+    put(object, "rate_1_s", strength.rate_1_s);
+  }
   put(object, "time_s", strength.time_s);
   put(object, "noise_sd_m", strength.noise_sd_m);
   if (strength.jump_sd_m_s2) {

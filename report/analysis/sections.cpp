@@ -106,6 +106,10 @@ std::string smoothing_text(const core::ClipResult& clip) {
       text += fmt::format(" (standard deviation {} m/s²)", base::number_text(*strength.jump_sd_m_s2, 2));
     }
   }
+  if (strength.simultaneous_a) {
+    text += fmt::format("; a(t) lies within ± {} of its standard deviations at all frames together (95 %)",
+                        base::number_text(*strength.simultaneous_a, 2));
+  }
   return text;
 }
 

@@ -1,8 +1,8 @@
 /// The smoothers: positions in; x, v and a with their standard deviations out, and how strongly they were smoothed.
 ///
 ///     local-polynomial  the local cubic of the paper, whose bandwidth is given (local_polynomial.h)
-///     kalman            the integrated Wiener process of order 4, its strength by marginal likelihood
-///     spline            the smoothing spline of degree 7, its strength by generalised cross-validation
+///     kalman            an integrated Wiener or Ornstein-Uhlenbeck process, its strength by marginal likelihood
+///     spline            the spline of the same process, its strength by generalised cross-validation
 ///
 /// The last two are one posterior (wiener_chain.h) with two ways to choose its strength; wiener_smoother.cpp has both.
 /// All three are linear in the positions once the strength is chosen, so that the effect of any noise and of any
@@ -33,6 +33,7 @@ struct SmoothingInput {
   std::vector<double> at_s = {};           ///< rising: other times within the parts of the motion that are wanted
   std::optional<double> bandwidth_s = {};  ///< of the local polynomial (asserted there), and of no other
   bool rows = false;                       ///< whether they are wanted
+  bool rate_in_rows = false;               ///< whether rows follow the noise through the rate k too, for a covariance
   bool simultaneous = false;               ///< whether the simultaneous band is wanted
 };
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/smoothing/process_step.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -18,41 +20,6 @@ template <int N>
 using Square = Eigen::Matrix<double, N, N>;
 template <int N>
 using Column = Eigen::Matrix<double, N, 1>;
-
-double factorial(int n) {
-  return n < 2 ? 1.0 : n * factorial(n - 1);
-}
-
-template <int N>
-Square<N> transition(double h) {
-  Square<N> f = Square<N>::Identity();
-  for (int i = 0; i < N; ++i) {
-    double power = 1.0;
-    for (int j = i + 1; j < N; ++j) f(i, j) = power *= h / (j - i);
-  }
-  return f;
-}
-
-/// An upper triangle R with R R' = cov w for q = 1 and h = 1.
-template <int N>
-Square<N> unit_noise_root() {
-  Square<N> turned;  // the last state first: its Cholesky triangle is lower, and upper once it is turned back
-  for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < N; ++j) turned(i, j) = 1.0 / ((1 + i + j) * factorial(i) * factorial(j));
-  }
-  const Square<N> lower = turned.llt().matrixL();
-  return lower.reverse();
-}
-
-/// The same for any h.
-template <int N>
-Square<N> noise_root(double h) {
-  static const Square<N> unit = unit_noise_root<N>();
-  Square<N> root = unit;
-  double scale = std::sqrt(h);
-  for (int i = N - 1; i >= 0; --i, scale *= h) root.row(i) *= scale;
-  return root;
-}
 
 /// Rotates the row (h, right) into the upper triangle; what is left of its right side.
 template <int N>
@@ -71,6 +38,79 @@ double rotate_in(Square<N>& upper, Column<N>& z, Column<N> row, double right) {
     right = c * right - s * above;
   }
   return right;
+}
+
+/// The rows of one step: N that know the noise of the step and N that know the state before; columns of both and the
+/// right side.
+template <int N>
+using StepRows = Eigen::Matrix<double, 2 * N, 2 * N + 1>;
+
+/// The upper triangle of rows whose top left is diagonal and whose top right is 0, by reflections of those entries that
+/// are not 0.
+template <int N>
+void triangulate(StepRows<N>& rows) {
+  const auto reflect = [&](int pivot, int below, int count, int column) {
+    double tail = 0.0;
+    for (int r = 0; r < count; ++r) tail += rows(below + r, column) * rows(below + r, column);
+    if (tail == 0.0) return;
+    const double top = rows(pivot, column);
+    const double length = std::copysign(std::sqrt(top * top + tail), top);
+    const double first = top + length;
+    const double scale = 1.0 / (length * first);  // 2 / |(first, tail)|^2
+    for (int c = column + 1; c < 2 * N + 1; ++c) {
+      double dot = first * rows(pivot, c);
+      for (int r = 0; r < count; ++r) dot += rows(below + r, column) * rows(below + r, c);
+      dot *= scale;
+      rows(pivot, c) -= dot * first;
+      for (int r = 0; r < count; ++r) rows(below + r, c) -= dot * rows(below + r, column);
+    }
+    rows(pivot, column) = -length;
+    for (int r = 0; r < count; ++r) rows(below + r, column) = 0.0;
+  };
+  for (int i = 0; i < N; ++i) reflect(i, N, N, i);
+  for (int i = 0; i < N; ++i) reflect(N + i, N + i + 1, N - 1 - i, N + i);
+}
+
+/// Far from ends and breaks, over even times, the filter's triangle no longer changes, and a step is linear in z and in
+/// the position.
+template <int N>
+struct Steady {
+  bool reached = false;
+  Square<N> next = Square<N>::Zero(),
+            noise = Square<N>::Zero();  // z of the next node, and what the step's noise has on its right side, of z
+  Column<N> next_of_y = Column<N>::Zero(),
+            left = Column<N>::Zero();  // of the position over its noise; the innovation of z
+  double left_of_y = 0.0, log_determinant = 0.0;
+
+  Steady() = default;
+  /// From the rows of a step before they are a triangle.
+  Steady(const StepRows<N>& whole, double per_noise) : reached(true) {
+    const Column<N> row = per_noise * Column<N>::Unit(0);
+    Square<N> upper;
+    for (int i = 0; i < N; ++i) {
+      StepRows<N> rows = whole;
+      rows.template block<N, 1>(N, 2 * N) = Column<N>::Unit(i);
+      triangulate<N>(rows);
+      noise.col(i) = rows.template block<N, 1>(0, 2 * N);
+      Column<N> z = rows.template block<N, 1>(N, 2 * N);
+      upper = rows.template block<N, N>(N, N);
+      Square<N> turned = upper;
+      left[i] = rotate_in<N>(turned, z, row, 0.0);
+      next.col(i) = z;
+    }
+    Column<N> z = Column<N>::Zero();
+    left_of_y = rotate_in<N>(upper, z, row, 1.0);
+    next_of_y = z;
+  }
+};
+
+template <int N>
+bool settled(const Square<N>& upper, const Square<N>& before) {
+  constexpr double kUnchanged = 1e-12;
+  for (int j = 0; j < N; ++j) {
+    if (!((upper.col(j) - before.col(j)).norm() <= kUnchanged * upper.col(j).norm())) return false;
+  }
+  return upper(N - 1, N - 1) != 0.0;
 }
 
 double log_square(double value) {
@@ -135,24 +175,60 @@ ChainFit WienerChain<N>::filter(const WienerRatio& ratio, Matrix& last, Vector& 
   fit.freedom = -N;
   fit.log_determinant = 0.5 * N * (N - 1) * log_square(unit_s_);  // what nothing is known of is in SI units
   const double root_density = std::sqrt(ratio.density * std::pow(unit_s_, 2 * N - 1));
+  const double rate = ratio.rate_1_s * unit_s_;
+  ProcessSteps<N> steps(rate);
   const bool free_jump = std::isinf(ratio.jump_1_s2);
   const double jump_time = free_jump ? 1.0 : ratio.jump_time_s / unit_s_;
   const double jump = free_jump ? 1.0 : ratio.jump_1_s2 * unit_s_ * unit_s_;
   Matrix upper = Matrix::Zero();
   Vector z = Vector::Zero();
-  using Rows = Eigen::Matrix<double, 2 * N, 2 * N + 1>;
-  Rows rows;
-  Eigen::HouseholderQR<Rows> qr;
+  StepRows<N> rows;
+  Matrix root = Matrix::Zero(), back = Matrix::Identity();
+  Steady<N> steady;
+  double h_before = 0.0, factor_before = 0.0;
+  const auto measure = [&](std::size_t k) {
+    if (!nodes_[k].point) return;
+    const std::size_t i = *nodes_[k].point;
+    const double per_noise = 1.0 / factor_[i];
+    const double left = rotate_in<N>(upper, z, per_noise * Vector::Unit(0), (x_m_[i] - origin_m_) * per_noise);
+    fit.squares_m2 += left * left;
+    fit.freedom += 1.0;
+    fit.log_determinant -= log_square(per_noise);
+  };
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     if (k > 0) {
       const double h = (nodes_[k].t_s - nodes_[k - 1].t_s) / unit_s_;
-      Matrix root = Matrix::Zero();
-      if (nodes_[k].after_break) {
-        for (int d = 2; d < N; ++d) root(d, d) = jump / std::pow(jump_time, d - 2);
-      } else {
-        root = root_density * noise_root<N>(h);
+      const bool like_before = nodes_[k].point && !nodes_[k].after_break && std::abs(h - h_before) <= kOneStep * h &&
+                               factor_[*nodes_[k].point] == factor_before;
+      h_before = nodes_[k].point ? h : 0.0;
+      factor_before = nodes_[k].point ? factor_[*nodes_[k].point] : 0.0;
+      if (steady.reached && like_before) {
+        rows.template block<N, 1>(0, 2 * N) = steady.noise * z;
+        visit(k - 1, back, root, rows);
+        const std::size_t i = *nodes_[k].point;
+        const double y = (x_m_[i] - origin_m_) / factor_[i], left = steady.left.dot(z) + steady.left_of_y * y;
+        z = (steady.next * z + steady.next_of_y * y).eval();
+        fit.squares_m2 += left * left;
+        fit.freedom += 1.0;
+        fit.log_determinant += steady.log_determinant;
+        continue;
       }
-      const Matrix back = transition<N>(-h);
+      const Matrix upper_before = upper;
+      const double determinant_before = fit.log_determinant;
+      steady.reached = false;
+      root.setZero();
+      back.setIdentity();
+      if (nodes_[k].after_break) {
+        for (int d = 2; d < N; ++d) {
+          root(d, d) = jump / std::pow(jump_time, d - 2);
+          for (int e = d + 1; e < N; ++e) root(e, d) = -rate * root(e - 1, d);
+        }
+      } else {
+        const ProcessStep<N>& step = steps.of(h);
+        root = root_density * step.root;
+        back = step.back;
+        fit.log_determinant -= 2.0 * rate * h;  // of back
+      }
       const Matrix known = upper * back;
       rows.setZero();
       rows.template topLeftCorner<N, N>().setIdentity();
@@ -166,20 +242,21 @@ ChainFit WienerChain<N>::filter(const WienerRatio& ratio, Matrix& last, Vector& 
       rows.template bottomLeftCorner<N, N>().noalias() = -known * root;
       rows.template block<N, N>(N, N) = known;
       rows.template block<N, 1>(N, 2 * N) = z;
-      qr.compute(rows);
-      const auto& r = qr.matrixQR();
-      upper = r.template block<N, N>(N, N).template triangularView<Eigen::Upper>();
-      z = r.template block<N, 1>(N, 2 * N);
-      for (int i = 0; i < N; ++i) fit.log_determinant += log_square(r(i, i));
-      visit(k - 1, back, root, r);
-    }
-    if (nodes_[k].point) {
-      const std::size_t i = *nodes_[k].point;
-      const double per_noise = 1.0 / factor_[i];
-      const double left = rotate_in<N>(upper, z, per_noise * Vector::Unit(0), (x_m_[i] - origin_m_) * per_noise);
-      fit.squares_m2 += left * left;
-      fit.freedom += 1.0;
-      fit.log_determinant -= log_square(per_noise);
+      const StepRows<N> whole = rows;
+      triangulate<N>(rows);
+      upper = rows.template block<N, N>(N, N);
+      z = rows.template block<N, 1>(N, 2 * N);
+      double determinant = 1.0;
+      for (int i = 0; i < N; ++i) determinant *= rows(i, i);
+      fit.log_determinant += log_square(determinant);
+      visit(k - 1, back, root, rows);
+      measure(k);
+      if (like_before && settled<N>(upper, upper_before)) {
+        steady = Steady<N>(whole, 1.0 / factor_before);
+        steady.log_determinant = fit.log_determinant - determinant_before;
+      }
+    } else {
+      measure(k);
     }
   }
   for (int i = 0; i < N; ++i) fit.log_determinant += log_square(upper(i, i));

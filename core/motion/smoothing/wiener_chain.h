@@ -6,14 +6,12 @@
 ///
 ///     dx^(k) = x^(k+1) dt,   dx^(N-1) = sqrt(q) dW,        y_i = x(t_i) + n_i,   n_i ~ N(0, (s f_i)^2),
 ///
-/// with nothing known of the state at the start. So over any step h, exactly,
-///
-///     state(t + h) = F(h) state(t) + w,   F_ij = h^(j-i) / (j-i)!,
-///     cov(w_i, w_j) = q h^m / (m (N-1-i)! (N-1-j)!),   m = 2N - 1 - i - j,
-///
-/// for times of any spacing, with times among them at which nothing was measured. At a break x and v go on, while a
-/// jumps by N(0, j^2) and the derivative m above it by N(0, (j / u^m)^2), or all by anything (j infinite). The
-/// posterior mean is the smoothing spline of degree 2N - 1 that makes
+/// with nothing known of the state at the start. With a rate k, x^(N-1) decays (dx^(N-1) = -k x^(N-1) dt + …): for N =
+/// 3 that is the integrated Ornstein-Uhlenbeck process, whose motion without noise is the one under constant and
+/// viscous friction. Steps of any length are exact (process_step.h), for times of any spacing, with times among them at
+/// which nothing was measured. At a break x and v go on, while a jumps by N(0, j^2), what decays with it, and the
+/// derivative m above it by N(0, (j / u^m)^2) more, or all by anything (j infinite). The posterior mean is the
+/// smoothing spline of degree 2N - 1 that makes
 ///
 ///     sum ((y_i - x(t_i)) / f_i)^2 + (s^2 / q) integral (x^(N))^2 dt
 ///
@@ -46,6 +44,7 @@ struct WienerRatio {
   double density = 0.0;                                        ///< q / s^2, above 0, in s^(1 - 2N)
   double jump_1_s2 = std::numeric_limits<double>::infinity();  ///< j / s, of each break; infinite: any jump
   double jump_time_s = 1.0;                                    ///< u
+  double rate_1_s = 0.0;                                       ///< k, at which x^(N-1) decays
 };
 
 /// A time of a chain: of a measured position, of a break, or one at which the motion is wanted.
@@ -91,6 +90,9 @@ class ChainPosterior {
 
   /// Covariance (at s = 1) of state k with state l.
   Matrix covariance(std::size_t k, std::size_t l) const;
+
+  /// The same of state k with state k + 1.
+  Matrix covariance_with_next(std::size_t k) const { return gain_[k] * covariance_[k + 1]; }
 
   /// The weights of the positions in x, v and a of node k, over the chain's points: the posterior mean is linear in
   /// them, and dE[state_k]/dy_i = cov(state_k, x_i) / f_i^2. Weights that fade below 1e-10 of the largest are cut off.

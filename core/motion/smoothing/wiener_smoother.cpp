@@ -3,356 +3,147 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/minima.hpp>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
 #include <limits>
+#include <memory>
 #include <utility>
 
-#include "core/math/quantile.h"
-#include "core/motion/smoothing/wiener_chain.h"
+#include "core/motion/smoothing/parted_motion.h"
+#include "core/motion/smoothing/smoothing_ensemble.h"
+#include "core/motion/smoothing/smoothness_search.h"
 
 namespace glidelab::core {
 namespace {
 
 enum class StrengthBy { likelihood, cross_validation };
 
-/// Of the process. Lower orders are too rough for motions under a smooth law, and smooth too little; of higher ones a
-/// short clip has too few effective parameters to find their strength from.
-constexpr int kOrder = 4;
-constexpr double kGridRatio = 1.5;
-constexpr double kLeastTau = 0.3;     // mean steps: interpolation
-constexpr double kGreatestTau = 3.0;  // of the longest part: next to a parabola
-constexpr int kBrentBits = 10;
-constexpr double kBreakSettled = 1e-3;  // of a step
-constexpr int kBreakPasses = 4;
-constexpr double kSpreadRatio = 1.3;  // from one strength that is averaged over to the next
-constexpr int kSpread = 4;            // of them to each side
-constexpr int kDraws = 2000;          // of a whole a(t): the band's 95 % is good to 0.5 %
-constexpr std::uint64_t kDrawsFrom = 0x5eed;
+constexpr int kLeastOrder = 3, kOrders = 3;
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr double kMatters = 20.0;       // of -2 log: orders less probable than that by e^-10 are left out
+constexpr double kLeastWeight = 1e-3;   // of a member, over the most probable one
+constexpr double kBreakSettled = 1e-4;  // of a step
+constexpr int kBreakPasses = 6, kBreakSearches = 3;
+constexpr double kCostOfParameter = 1.4;  // of cross-validation (Kim and Gu 2004): 1 follows the noise now and then
 
-/// One part with its own breaks.
-struct Part {
-  SeriesPart points;
-  std::vector<double> breaks_s;
-  std::vector<double> at_s;
-  std::size_t first_at = 0;  // of at_s in the input's
-};
-
-template <int N>
-class PartedMotion {
- public:
-  explicit PartedMotion(const SmoothingInput& input) : input_(input) {
-    std::size_t a = 0, b = 0;
-    double span = 0.0, steps = 0.0;
-    for (const SeriesPart& points : parts_of(input)) {
-      const double from = input.t_s[points.first], to = input.t_s[points.first + points.count - 1];
-      Part part{points, {}, {}, 0};
-      while (a < input.at_s.size() && input.at_s[a] < from) ++a;
-      part.first_at = a;
-      for (; a < input.at_s.size() && input.at_s[a] <= to; ++a) part.at_s.push_back(input.at_s[a]);
-      while (b < input.breaks_s.size() && input.breaks_s[b] <= from) ++b;
-      for (; b < input.breaks_s.size() && input.breaks_s[b] < to; ++b) part.breaks_s.push_back(input.breaks_s[b]);
-      if (points.count < kFewestSmoothed) continue;
-      while (!breaks_stand(part)) part.breaks_s.pop_back();
-      span += to - from;
-      steps += static_cast<double>(points.count - 1);
-      longest_s_ = std::max(longest_s_, to - from);
-      parts_.push_back(std::move(part));
-    }
-    step_s_ = steps > 0.0 ? span / steps : 0.0;
-    const auto [low, high] = std::minmax_element(input.x_m.begin(), input.x_m.end());
-    // What doubles cannot tell apart is no noise.
-    const double rounding = parts_.empty() ? 0.0 : std::numeric_limits<double>::epsilon() * (*high - *low);
-    least_variance_ = std::max(rounding * rounding, std::numeric_limits<double>::min());
-    chain();
-  }
-
-  bool empty() const { return parts_.empty(); }
-  const std::vector<Part>& parts() const { return parts_; }
-  double step_s() const { return step_s_; }
-  double longest_s() const { return longest_s_; }
-  bool breaks() const {
-    return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return !part.breaks_s.empty(); });
-  }
-
-  WienerRatio ratio(double tau_s, double jump_1_s2) const {
-    return {step_s_ / std::pow(tau_s, 2 * N), jump_1_s2, tau_s};
-  }
-
-  double noise_variance(const ChainFit& fit) const {
-    if (input_.noise_sd_m) return std::max(std::pow(*input_.noise_sd_m, 2), least_variance_);
-    return std::max(fit.noise_variance(), least_variance_);
-  }
-  ChainFit fit(const WienerRatio& ratio) const {
-    ChainFit all;
-    for (const WienerChain<N>& chain : chains_) all += chain.fit(ratio);
-    return all;
-  }
-  /// -2 log of the marginal likelihood and of the prior of the strength, which is flat in sqrt(q) and so goes as
-  /// tau^-N: where motions are so smooth that tau has no upper end, its likelihood alone has none either.
-  double minus_two_log_posterior(const WienerRatio& ratio) const {
-    const ChainFit all = fit(ratio);
-    return all.minus_two_log_likelihood(noise_variance(all)) - std::log(ratio.density);
-  }
-
-  std::vector<ChainPosterior<N>> posteriors(const WienerRatio& ratio) const {
-    std::vector<ChainPosterior<N>> all;
-    for (const WienerChain<N>& chain : chains_) all.push_back(chain.posterior(ratio));
-    return all;
-  }
-
-  /// Moves each break to the next time at which the smoothed v is 0; the farthest that one moved.
-  double refine_breaks(const std::vector<ChainPosterior<N>>& posteriors) {
-    double farthest = 0.0;
-    for (std::size_t p = 0; p < parts_.size(); ++p) {
-      for (std::size_t b = 0; b < parts_[p].breaks_s.size(); ++b) {
-        const std::optional<double> turn = turn_near(posteriors[p], parts_[p].breaks_s[b]);
-        if (!turn) continue;
-        const double before = std::exchange(parts_[p].breaks_s[b], *turn);
-        if (breaks_stand(parts_[p])) {
-          farthest = std::max(farthest, std::abs(*turn - before));
-        } else {
-          parts_[p].breaks_s[b] = before;
-        }
-      }
-    }
-    chain();
-    return farthest;
-  }
-
- private:
-  bool breaks_stand(const Part& part) const {
-    const auto begin = input_.t_s.begin() + static_cast<std::ptrdiff_t>(part.points.first);
-    const auto end = begin + static_cast<std::ptrdiff_t>(part.points.count);
-    auto from = begin;
-    for (const double t : part.breaks_s) {
-      const auto to = std::lower_bound(from, end, t);
-      if (to - from < static_cast<std::ptrdiff_t>(kFewestSmoothed)) return false;
-      from = to;
-    }
-    return part.breaks_s.empty() || end - from >= static_cast<std::ptrdiff_t>(kFewestSmoothed);
-  }
-
-  static std::optional<double> turn_near(const ChainPosterior<N>& posterior, double near_s) {
-    std::optional<double> nearest;
-    for (std::size_t k = 1; k < posterior.size(); ++k) {
-      const double before = posterior.mean(k - 1)[1], after = posterior.mean(k)[1];
-      if (before * after > 0.0 || before == after) continue;
-      const double from = posterior.node(k - 1).t_s, to = posterior.node(k).t_s;
-      const double at = from + (to - from) * before / (before - after);
-      if (!nearest || std::abs(at - near_s) < std::abs(*nearest - near_s)) nearest = at;
-    }
-    return nearest;
-  }
-
-  void chain() {
-    chains_.clear();
-    for (const Part& part : parts_) {
-      const std::span factor = input_.noise_factor.empty()
-                                   ? std::span<const double>()
-                                   : std::span(input_.noise_factor).subspan(part.points.first, part.points.count);
-      chains_.emplace_back(ChainData{std::span(input_.t_s).subspan(part.points.first, part.points.count),
-                                     std::span(input_.x_m).subspan(part.points.first, part.points.count), factor,
-                                     part.breaks_s, part.at_s});
-    }
-  }
-
-  const SmoothingInput& input_;
-  std::vector<Part> parts_;
-  std::vector<WienerChain<N>> chains_;
-  double step_s_ = 0.0, longest_s_ = 0.0, least_variance_ = 0.0;
-};
+/// Calls what(order), an integral constant, for every order, or for one.
+template <typename What>
+void for_order(int order, What&& what) {
+  if (order == 3) what(std::integral_constant<int, 3>());
+  if (order == 4) what(std::integral_constant<int, 4>());
+  if (order == 5) what(std::integral_constant<int, 5>());
+}
+template <typename What>
+void for_orders(What&& what) {
+  for (int order = kLeastOrder; order < kLeastOrder + kOrders; ++order) for_order(order, what);
+}
 
 struct Choice {
-  double tau_s = 0.0;
-  double jump_1_s2 = std::numeric_limits<double>::infinity();
-  double noise_variance = 0.0;
-  bool smoothest = false, roughest = false;
+  int order = 0;
+  AtTau at;
 };
 
-struct CrossValidation {
-  double squares = 0.0, points = 0.0, trace = 0.0;
-  double criterion() const { return points * squares / std::pow(points - trace, 2); }
-  double noise_variance() const { return squares / (points - trace); }
-};
-
-template <int N>
-CrossValidation cross_validation(const PartedMotion<N>& motion, const std::vector<ChainPosterior<N>>& posteriors) {
-  CrossValidation sums;
-  for (std::size_t p = 0; p < posteriors.size(); ++p) {
-    sums.squares += posteriors[p].residual_squares_m2();
-    sums.trace += posteriors[p].trace();
-    sums.points += static_cast<double>(motion.parts()[p].points.count);
-  }
-  return sums;
+/// The likeliest process of each order, any jump of a at a break.
+std::vector<Choice> search(const MotionParts& parts, std::vector<double> rates_1_s) {
+  std::vector<Choice> found;
+  for_orders([&](auto order) {
+    const PartedMotion<order> motion(parts);
+    found.push_back({order, likeliest(along_tau(motion, kAny, Rate::none, {}))});
+    found.push_back({order, likeliest(along_tau(motion, kAny, Rate::any, rates_1_s))});
+    rates_1_s.push_back(found.back().at.how.rate_1_s);
+  });
+  return found;
 }
 
-/// Sets tau to that of the least criterion(tau), of all or near the one that is chosen.
-enum class Tau { any, near };
-template <int N, typename Criterion>
-void choose_tau(const PartedMotion<N>& motion, const Criterion& criterion, Tau where, Choice& choice) {
-  const double from = std::log(kLeastTau * motion.step_s()), to = std::log(kGreatestTau * motion.longest_s());
-  const auto count = static_cast<int>(std::ceil((to - from) / std::log(kGridRatio)));
-  const double step = (to - from) / count;
-  const auto at = [&](double log_tau) { return criterion(std::exp(log_tau)); };
-  if (where == Tau::near) {
-    const double middle = std::log(choice.tau_s);
-    choice.tau_s = std::exp(boost::math::tools::brent_find_minima(at, std::max(middle - step, from),
-                                                                  std::min(middle + step, to), kBrentBits)
-                                .first);
-    return;
-  }
-  int best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= count; ++i) {
-    const double value = at(from + i * step);
-    if (value < least) {
-      least = value;
-      best = i;
-    }
-  }
-  choice.smoothest = best == count;
-  choice.roughest = best == 0;
-  const double low = from + std::max(best - 1, 0) * step, high = from + std::min(best + 1, count) * step;
-  choice.tau_s = std::exp(boost::math::tools::brent_find_minima(at, low, high, kBrentBits).first);
+const Choice& likeliest(const std::vector<Choice>& all) {
+  return *std::min_element(all.begin(), all.end(),
+                           [](const Choice& a, const Choice& b) { return a.at.minus_two_log < b.at.minus_two_log; });
 }
 
-/// The root mean square of the jumps that the positions show where any is allowed.
-template <int N>
-double free_jumps_m_s2(const std::vector<ChainPosterior<N>>& posteriors) {
-  double squares = 0.0, count = 0.0;
-  for (const ChainPosterior<N>& posterior : posteriors) {
-    for (std::size_t k = 1; k < posterior.size(); ++k) {
-      if (!posterior.node(k).after_break) continue;
-      squares += std::pow(posterior.mean(k)[2] - posterior.mean(k - 1)[2], 2);
-      count += 1.0;
-    }
-  }
-  return std::sqrt(squares / count);
-}
-
-template <int N>
-Choice choose(PartedMotion<N>& motion, StrengthBy by) {
-  Choice choice;
-  const auto criterion = [&](double tau_s) {
-    const WienerRatio ratio = motion.ratio(tau_s, choice.jump_1_s2);
-    return by == StrengthBy::likelihood ? motion.minus_two_log_posterior(ratio)
-                                        : cross_validation(motion, motion.posteriors(ratio)).criterion();
-  };
-  choose_tau(motion, criterion, Tau::any, choice);
-  if (motion.breaks()) {
+/// Moves the breaks to where v = 0 until they stay; the farthest that one moved at first.
+double settle_breaks(MotionParts& parts, const Choice& choice) {
+  double first = 0.0;
+  for_order(choice.order, [&](auto order) {
     for (int pass = 0; pass < kBreakPasses; ++pass) {
-      const auto posteriors = motion.posteriors(motion.ratio(choice.tau_s, choice.jump_1_s2));
-      if (motion.refine_breaks(posteriors) < kBreakSettled * motion.step_s()) break;
+      const double moved = refine_breaks(PartedMotion<order>(parts).posteriors(choice.at.how), parts);
+      if (pass == 0) first = moved;
+      if (moved < kBreakSettled * parts.step_s) break;
     }
-    choose_tau(motion, criterion, Tau::near, choice);
-    if (by == StrengthBy::likelihood) {
-      const WienerRatio free = motion.ratio(choice.tau_s, choice.jump_1_s2);
-      const double noise = std::sqrt(motion.noise_variance(motion.fit(free)));
-      const double about = std::log(free_jumps_m_s2(motion.posteriors(free)) / noise);
-      constexpr double kBelow = 7.0, kAbove = 5.0;  // e-folds
-      const auto of_jump = [&](double log_jump) {
-        return motion.minus_two_log_posterior(motion.ratio(choice.tau_s, std::exp(log_jump)));
-      };
-      choice.jump_1_s2 =
-          std::exp(boost::math::tools::brent_find_minima(of_jump, about - kBelow, about + kAbove, kBrentBits).first);
-      choose_tau(motion, criterion, Tau::near, choice);
-    }
-  }
-  return choice;
+  });
+  return first;
 }
 
-/// What the positions say of the strength itself: posteriors about the chosen one with the weights of their
-/// likelihoods. The covariance about the chosen mean is that within them and between them.
+/// Members of an order with the weights exp(-minus_two_log / 2), about `best`.
 template <int N>
-struct Spread {
-  struct Member {
-    std::vector<ChainPosterior<N>> posteriors;
-    double weight = 0.0;
-    double noise_sd = 0.0;
-  };
-  std::vector<Member> members;  // the chosen one first
-
-  const std::vector<ChainPosterior<N>>& chosen() const { return members.front().posteriors; }
-
-  /// Variances of x, v and a at a node.
-  Eigen::Array3d variance(std::size_t p, std::size_t k) const {
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
-    const Eigen::Array3d middle = chosen()[p].mean(k).template head<3>().array();
-    for (const Member& member : members) {
-      const ChainPosterior<N>& of = member.posteriors[p];
-      const Eigen::Array3d within = of.covariance(k).diagonal().template head<3>().array();
-      const Eigen::Array3d off = of.mean(k).template head<3>().array() - middle;
-      sum += member.weight * (member.noise_sd * member.noise_sd * within + off * off);
+std::pair<double, AtTau> add_members(const PartedMotion<N>& motion, const AtTau& likeliest_one, double best,
+                                     SmoothingEnsemble& ensemble) {
+  std::pair<double, AtTau> chosen{-1.0, likeliest_one};
+  double of_sum = 0.0;
+  std::vector<AtTau> all = spread(motion, likeliest_one);
+  all.push_back(exact(motion, likeliest_one));
+  for (const AtTau& at : all) {
+    const double weight = std::exp(-0.5 * (at.minus_two_log - best));
+    if (weight < kLeastWeight) continue;
+    if (&at == &all.back()) {
+      if (weight > of_sum) chosen = {weight, at};
+    } else {
+      of_sum += weight;
+      chosen = {of_sum, likeliest_one};
     }
-    return sum;
-  }
-};
-
-template <int N>
-Spread<N> spread_of(const PartedMotion<N>& motion, const Choice& choice, StrengthBy by, double noise_variance) {
-  Spread<N> spread;
-  spread.members.push_back(
-      {motion.posteriors(motion.ratio(choice.tau_s, choice.jump_1_s2)), 1.0, std::sqrt(noise_variance)});
-  if (by == StrengthBy::cross_validation) return spread;
-  const double best = motion.minus_two_log_posterior(motion.ratio(choice.tau_s, choice.jump_1_s2));
-  double sum = 1.0;
-  for (int i = -kSpread; i <= kSpread; ++i) {
-    const WienerRatio ratio = motion.ratio(choice.tau_s * std::pow(kSpreadRatio, i), choice.jump_1_s2);
-    const ChainFit fit = motion.fit(ratio);
-    const double variance = motion.noise_variance(fit);
-    const double weight = std::exp(-0.5 * (motion.minus_two_log_posterior(ratio) - best));
-    constexpr double kNoMatter = 1e-3;
-    if (i == 0 || !(weight > kNoMatter)) continue;
-    spread.members.push_back({motion.posteriors(ratio), weight, std::sqrt(variance)});
-    sum += weight;
-  }
-  for (auto& member : spread.members) member.weight /= sum;
-  return spread;
-}
-
-/// The quantile of max |a - E a| / sd a over all nodes, by draws of the posterior.
-template <int N>
-double simultaneous_factor(const Spread<N>& spread) {
-  boost::random::mt19937_64 random(kDrawsFrom);
-  boost::random::normal_distribution<double> normal;
-  const auto draw = [&] { return normal(random); };
-  std::vector<std::vector<double>> per_sd;
-  for (std::size_t p = 0; p < spread.chosen().size(); ++p) {
-    per_sd.emplace_back();
-    for (std::size_t k = 0; k < spread.chosen()[p].size(); ++k) {
-      per_sd.back().push_back(1.0 / std::sqrt(spread.variance(p, k)[2]));
-    }
-  }
-  std::vector<double> greatest;
-  double share = 0.0;
-  for (const auto& member : spread.members) {
-    share += member.weight;
-    while (static_cast<double>(greatest.size()) < share * kDraws - 0.5) {
-      double most = 0.0;
-      for (std::size_t p = 0; p < member.posteriors.size(); ++p) {
-        const ChainPosterior<N>& of = member.posteriors[p];
-        const auto off = of.draw(draw);
-        for (std::size_t k = 0; k < off.size(); ++k) {
-          const double a = member.noise_sd * off[k][2] + of.mean(k)[2] - spread.chosen()[p].mean(k)[2];
-          most = std::max(most, std::abs(a) * per_sd[p][k]);
-        }
+    // k by Gauss and Hermite's rule of three points.
+    for (const auto& [off, share] :
+         {std::pair{0.0, 2.0 / 3.0}, {std::sqrt(3.0), 1.0 / 6.0}, {-std::sqrt(3.0), 1.0 / 6.0}}) {
+      if (at.rate_sd_1_s == 0.0 && off != 0.0) continue;
+      Smoothness how = at.how;
+      how.rate_1_s += off * at.rate_sd_1_s;
+      const double noise_sd = std::sqrt(motion.noise_variance(motion.fit(how)));
+      EnsembleMember member{at.rate_sd_1_s == 0.0 ? weight : weight * share, {}};
+      for (const ChainPosterior<N>& posterior : motion.posteriors(how)) {
+        member.parts.push_back(nodes_of(posterior, noise_sd));
       }
-      greatest.push_back(most);
+      ensemble.members.push_back(std::move(member));
     }
   }
-  return quantile(std::move(greatest), 0.95);
+  return chosen;
 }
 
+double cross_validation(const SmoothedSums& sums) {
+  return sums.points * sums.squares_m2 / std::pow(sums.points - kCostOfParameter * sums.trace, 2);
+}
+
+/// The tau of the least criterion, k the likeliest at each.
 template <int N>
-SmoothedState state_of(const Spread<N>& spread, std::size_t p, std::size_t k) {
-  const Eigen::Vector3d mean = spread.chosen()[p].mean(k).template head<3>();
-  const Eigen::Array3d sd = spread.variance(p, k).sqrt();
-  return {mean[0], mean[1], mean[2], sd[0], sd[1], sd[2]};
+std::pair<double, AtTau> by_cross_validation(const PartedMotion<N>& motion, Rate rate,
+                                             const std::vector<double>& rates_1_s) {
+  const auto criterion = [&](const AtTau& at) {
+    const SmoothedSums sums = sums_of(motion.posteriors(at.how), motion.parts());
+    return sums.points > kCostOfParameter * sums.trace ? cross_validation(sums) : kAny;
+  };
+  const std::vector<AtTau> along = along_tau(motion, kAny, rate, rates_1_s);
+  std::pair<double, AtTau> best{kAny, along.front()};
+  std::size_t of_best = 0;
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    const double value = criterion(along[i]);
+    if (value < best.first) {
+      best = {value, along[i]};
+      of_best = i;
+    }
+  }
+  const double low = along[of_best > 0 ? of_best - 1 : 0].how.tau_s;
+  const double high = along[std::min(of_best + 1, along.size() - 1)].how.tau_s;
+  const AtTau near = best.second;
+  constexpr int kBits = 8;
+  boost::math::tools::brent_find_minima(
+      [&](double log_tau) {
+        const AtTau at = at_tau(motion, std::exp(log_tau), near);
+        const double value = criterion(at);
+        if (value < best.first) best = {value, at};
+        return value;
+      },
+      std::log(low), std::log(high), kBits);
+  return best;
 }
 
 /// The bandwidth of the local cubic whose a has as much noise as the posterior's where that has least.
@@ -372,15 +163,63 @@ double like_bandwidth(const std::vector<ChainPosterior<N>>& posteriors, double s
   return std::pow(kGaussianA.variance * step_s / squares, 0.2);
 }
 
-std::string words_of(StrengthBy by, const Choice& choice) {
-  std::string words =
-      by == StrengthBy::likelihood ? "maximum marginal likelihood" : "minimum generalised cross-validation";
-  if (choice.smoothest) words += " (the smoothest tried)";
-  if (choice.roughest) words += " (the roughest tried)";
-  return words;
+/// x, v and a of every node, and x of every point of the input, by k.
+struct OfRate {
+  std::vector<std::vector<Eigen::Array3d>> nodes;
+  std::vector<double> point_gain;  ///< dk / dy of every point: k is the likeliest of these positions
+};
+
+/// k follows the noise of the positions as dk/dy_i = (sd k / s)^2 (dx_i/dk) / f_i^2, for the derivative of -log
+/// likelihood by y is the residual over its variance.
+template <int N>
+OfRate of_rate(const PartedMotion<N>& motion, const AtTau& at, double noise_variance) {
+  constexpr double kStep = 0.5;  // standard deviations
+  const MotionParts& parts = motion.parts();
+  const double step = kStep * at.rate_sd_1_s;
+  Smoothness how = at.how;
+  how.rate_1_s = at.how.rate_1_s - step;
+  const std::vector<ChainPosterior<N>> below = motion.posteriors(how);
+  how.rate_1_s = at.how.rate_1_s + step;
+  const std::vector<ChainPosterior<N>> above = motion.posteriors(how);
+  OfRate made;
+  made.point_gain.assign(parts.input.t_s.size(), 0.0);
+  std::vector<double> residual(parts.input.t_s.size(), 0.0);
+  const double per_point = at.rate_sd_1_s * at.rate_sd_1_s / noise_variance;
+  for (std::size_t p = 0; p < below.size(); ++p) {
+    made.nodes.emplace_back();
+    for (std::size_t k = 0; k < below[p].size(); ++k) {
+      const Eigen::Array3d by = (above[p].mean(k) - below[p].mean(k)).template head<3>().array() / (2.0 * step);
+      made.nodes.back().push_back(by);
+      if (!below[p].node(k).point) continue;
+      const std::size_t i = parts.parts[p].points.first + *below[p].node(k).point;
+      const double factor = parts.input.noise_factor.empty() ? 1.0 : parts.input.noise_factor[i];
+      made.point_gain[i] = per_point * by[0] / (factor * factor);
+      const double middle = 0.5 * (above[p].mean(k)[0] + below[p].mean(k)[0]);
+      residual[i] = (parts.input.x_m[i] - middle) / (factor * factor);
+    }
+  }
+  // Of these positions themselves the gain makes nothing, so that rows still give the smoothed motion.
+  double of_gain = 0.0, of_residual = 0.0;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    of_gain += made.point_gain[i] * parts.input.x_m[i];
+    of_residual += residual[i] * parts.input.x_m[i];
+  }
+  for (std::size_t i = 0; i < residual.size(); ++i) made.point_gain[i] -= of_gain / of_residual * residual[i];
+  return made;
 }
 
-template <int N>
+/// A row with what its motion follows the noise through k, over all points.
+KernelRow with_rate(const KernelRow& row, const Eigen::Array3d& by_rate, const std::vector<double>& point_gain) {
+  KernelWeights weights{point_gain, point_gain, point_gain};
+  const std::array<std::vector<double>*, 3> to{&weights.x, &weights.v, &weights.a};
+  const std::array<const std::vector<double>*, 3> from{&row.weights->x, &row.weights->v, &row.weights->a};
+  for (int d = 0; d < 3; ++d) {
+    for (double& w : *to[d]) w *= by_rate[d];
+    for (std::size_t i = 0; i < from[d]->size(); ++i) (*to[d])[row.first + i] += (*from[d])[i];
+  }
+  return {0, std::make_shared<const KernelWeights>(std::move(weights))};
+}
+
 class WienerSmoother final : public Smoother {
  public:
   WienerSmoother(std::string_view name, std::string_view words, StrengthBy by) : name_(name), words_(words), by_(by) {}
@@ -398,36 +237,107 @@ class WienerSmoother final : public Smoother {
       made.rows.resize(input.t_s.size());
       made.rows_at.resize(input.at_s.size());
     }
-    PartedMotion<N> motion(input);
-    if (motion.empty()) {
+    MotionParts parts(input);
+    if (parts.parts.empty()) {
       made.strength.method = "no part of the motion is long enough to be smoothed";
       return made;
     }
-    const Choice choice = choose(motion, by_);
-    const WienerRatio ratio = motion.ratio(choice.tau_s, choice.jump_1_s2);
-    const CrossValidation sums = cross_validation(motion, motion.posteriors(ratio));
-    const double variance = by_ == StrengthBy::likelihood || input.noise_sd_m ? motion.noise_variance(motion.fit(ratio))
-                                                                              : sums.noise_variance();
-    const Spread<N> spread = spread_of(motion, choice, by_, variance);
-    made.strength.method = words_of(by_, choice);
-    made.strength.noise_sd_m = std::sqrt(variance);
-    made.strength.time_s = choice.tau_s;
-    made.strength.parameters = sums.trace;
-    made.strength.bandwidth_s = like_bandwidth(spread.chosen(), motion.step_s());
-    if (motion.breaks()) made.strength.jump_sd_m_s2 = made.strength.noise_sd_m * choice.jump_1_s2;
-    for (std::size_t p = 0; p < motion.parts().size(); ++p) {
-      const Part& part = motion.parts()[p];
-      made.strength.breaks_s.insert(made.strength.breaks_s.end(), part.breaks_s.begin(), part.breaks_s.end());
-      fill(spread, p, part, input, made);
+    std::vector<Choice> orders = search(parts, {0.0});
+    for (int i = 0; parts.breaks() && i < kBreakSearches; ++i) {
+      const double moved = settle_breaks(parts, likeliest(orders));
+      orders = search(parts, {0.0, likeliest(orders).at.how.rate_1_s});
+      if (moved < kBreakSettled * parts.step_s) break;
     }
-    if (input.simultaneous) made.strength.simultaneous_a = simultaneous_factor(spread);
+    const double least = likeliest(orders).at.minus_two_log;
+    std::erase_if(orders, [&](const Choice& one) { return one.at.minus_two_log > least + kMatters; });
+    for (Choice& choice : orders) {
+      for_order(choice.order, [&](auto order) {
+        const PartedMotion<order> motion(parts);
+        choice.at = parts.breaks() ? with_jump(motion, choice.at) : refined(motion, choice.at);
+      });
+    }
+    SmoothingEnsemble ensemble;
+    const double best = likeliest(orders).at.minus_two_log;
+    Choice most;
+    double most_weight = -1.0;
+    for (const Choice& choice : orders) {
+      for_order(choice.order, [&](auto order) {
+        const auto [weight, at] = add_members<order>(PartedMotion<order>(parts), choice.at, best, ensemble);
+        if (weight <= most_weight) return;
+        most_weight = weight;
+        most = {order, at};
+      });
+    }
+    double sum = 0.0;
+    for (const EnsembleMember& member : ensemble.members) sum += member.weight;
+    for (EnsembleMember& member : ensemble.members) member.weight /= sum;
+
+    const Choice chosen = by_ == StrengthBy::likelihood ? most : cross_validated(parts, orders);
+    for_order(chosen.order, [&](auto order) { finish<order>(parts, chosen, std::move(ensemble), made); });
     return made;
   }
 
  private:
-  static void fill(const Spread<N>& spread, std::size_t p, const Part& part, const SmoothingInput& input,
-                   SmoothedSeries& made) {
-    const ChainPosterior<N>& posterior = spread.chosen()[p];
+  static Choice cross_validated(const MotionParts& parts, const std::vector<Choice>& orders) {
+    Choice best;
+    double least = kAny;
+    for_orders([&](auto order) {
+      for (const Rate rate : {Rate::none, Rate::any}) {
+        const auto [value, at] =
+            by_cross_validation(PartedMotion<order>(parts), rate, {0.0, likeliest(orders).at.how.rate_1_s});
+        if (best.order != 0 && value >= least) continue;
+        best = {order, at};
+        least = value;
+      }
+    });
+    return best;
+  }
+
+  template <int N>
+  void finish(const MotionParts& parts, const Choice& chosen, SmoothingEnsemble ensemble, SmoothedSeries& made) const {
+    const PartedMotion<N> motion(parts);
+    const std::vector<ChainPosterior<N>> posteriors = motion.posteriors(chosen.at.how);
+    const ChainFit fit = motion.fit(chosen.at.how);
+    const SmoothedSums sums = sums_of(posteriors, parts);
+    for (const ChainPosterior<N>& posterior : posteriors) {
+      ensemble.nodes.emplace_back();
+      ensemble.smoothed.emplace_back();
+      for (std::size_t k = 0; k < posterior.size(); ++k) {
+        ensemble.nodes.back().push_back(posterior.node(k));
+        ensemble.smoothed.back().push_back(posterior.mean(k).template head<3>());
+      }
+    }
+    if (!parts.input.noise_sd_m) ensemble.freedom = std::max(fit.freedom - 2.0, 1.0);
+    const double variance =
+        by_ == StrengthBy::likelihood || parts.input.noise_sd_m ? motion.noise_variance(fit) : sums.noise_variance();
+    SmoothingStrength& strength = made.strength;
+    strength.method =
+        by_ == StrengthBy::likelihood ? "maximum marginal likelihood" : "minimum generalised cross-validation";
+    strength.noise_sd_m = std::sqrt(variance);
+    strength.order = N;
+    strength.rate_1_s = chosen.at.how.rate_1_s;
+    strength.time_s = chosen.at.how.tau_s;
+    strength.parameters = sums.trace;
+    strength.bandwidth_s = like_bandwidth(posteriors, parts.step_s);
+    if (parts.breaks()) strength.jump_sd_m_s2 = strength.noise_sd_m * chosen.at.how.jump_1_s2;
+    const auto sd = standard_deviations(ensemble);
+    for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+      const MotionPart& part = parts.parts[p];
+      strength.breaks_s.insert(strength.breaks_s.end(), part.breaks_s.begin(), part.breaks_s.end());
+      fill(posteriors[p], sd[p], part, parts.input, made);
+    }
+    if (parts.input.rows && parts.input.rate_in_rows && chosen.at.rate_sd_1_s > 0.0) {
+      const OfRate by = of_rate(motion, chosen.at, variance);
+      for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+        add_rate(posteriors[p], by.nodes[p], by.point_gain, parts.parts[p], made);
+      }
+    }
+    if (parts.input.simultaneous) strength.simultaneous_a = simultaneous_factor(ensemble, sd);
+  }
+
+  template <int N>
+  static void fill(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& sd, const MotionPart& part,
+                   const SmoothingInput& input, SmoothedSeries& made) {
     std::vector<std::size_t> nodes;               // of points and of wanted times
     std::vector<std::optional<KernelRow>*> rows;  // where theirs go
     std::size_t a = part.first_at;
@@ -436,7 +346,8 @@ class WienerSmoother final : public Smoother {
       const bool before_break = k + 1 < posterior.size() && posterior.node(k + 1).after_break;
       if (!node.point && (node.after_break || before_break)) continue;
       const std::size_t of = node.point ? part.points.first + *node.point : a++;
-      (node.point ? made.points : made.at)[of] = state_of(spread, p, k);
+      const auto& mean = posterior.mean(k);
+      (node.point ? made.points : made.at)[of] = SmoothedState{mean[0], mean[1], mean[2], sd[k][0], sd[k][1], sd[k][2]};
       if (!input.rows) continue;
       nodes.push_back(k);
       rows.push_back(&(node.point ? made.rows : made.rows_at)[of]);
@@ -448,6 +359,19 @@ class WienerSmoother final : public Smoother {
     }
   }
 
+  template <int N>
+  static void add_rate(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& by_rate,
+                       const std::vector<double>& point_gain, const MotionPart& part, SmoothedSeries& made) {
+    std::size_t a = part.first_at;
+    for (std::size_t k = 0; k < posterior.size(); ++k) {
+      const ChainNode& node = posterior.node(k);
+      const bool before_break = k + 1 < posterior.size() && posterior.node(k + 1).after_break;
+      if (!node.point && (node.after_break || before_break)) continue;
+      std::optional<KernelRow>& row = node.point ? made.rows[part.points.first + *node.point] : made.rows_at[a++];
+      row = with_rate(*row, by_rate[k], point_gain);
+    }
+  }
+
   std::string name_, words_;
   StrengthBy by_;
 };
@@ -455,17 +379,17 @@ class WienerSmoother final : public Smoother {
 }  // namespace
 
 const Smoother& kalman_smoother() {
-  static const WienerSmoother<kOrder> smoother(
+  static const WienerSmoother smoother(
       "kalman",
-      "Kalman smoother of the integrated Wiener process of order 4, its strength by "
-      "marginal likelihood",
+      "Kalman smoother of an integrated Wiener or Ornstein-Uhlenbeck process of order 3 to 5, its strength by marginal "
+      "likelihood",
       StrengthBy::likelihood);
   return smoother;
 }
 
 const Smoother& spline_smoother() {
-  static const WienerSmoother<kOrder> smoother(
-      "spline", "smoothing spline of degree 7, its strength by generalised cross-validation",
+  static const WienerSmoother smoother(
+      "spline", "smoothing spline of polynomials and an exponential, its strength by generalised cross-validation",
       StrengthBy::cross_validation);
   return smoother;
 }

