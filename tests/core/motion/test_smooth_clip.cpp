@@ -63,7 +63,7 @@ TEST_CASE("smoothers that find their own strength know a better than the local c
   CHECK_FALSE(analyze_motion(kUp, track, MotionOptions{}).strength);
 }
 
-TEST_CASE("95 % intervals of lines by other smoothers hold the truth in 95 % of simulated clips") {
+TEST_CASE("95 % intervals of lines by other smoothers hold the truth in 95 % of simulated clips", "[slow]") {
   const std::string smoother = GENERATE("kalman", "spline");
   constexpr unsigned kClips = 150;
   std::map<std::string, int> inside;

@@ -132,7 +132,7 @@ TEST_CASE("a part with fewer points than a smoother needs is left as it is") {
   CHECK_FALSE(kalman_smoother().smooth(input).points.front());
 }
 
-TEST_CASE("bands of a hold 95 % of signals of the prior, at single times and at all times together") {
+TEST_CASE("bands of a hold 95 % of signals of the prior, at single times and at all times together", "[slow]") {
   // x is four times integrated white noise over even times, from the exact law of its steps (its own Cholesky here),
   // with noise; strength and noise are estimated. 400 signals: the share of 400 * 200 correlated points (some 15
   // independent ones a signal) scatters by 0.3 %, that of whole signals by 1.1 %.
