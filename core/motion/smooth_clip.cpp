@@ -137,21 +137,15 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
   for (Gathered* gathered : {&of_free, &of_rest}) {
     if (gathered->point.empty()) continue;
     want_other_frames(track, motion, whole.frames, *gathered);
-    gathered->input.rows = gathered == &of_free || motion.forced;
+    gathered->input.rows = gathered == &of_free;
     gathered->input.rate_in_rows = !motion.forced;  // x of a driven motion is smoothed by the weights of y
     gathered->input.simultaneous = gathered == &of_free;
+    if (motion.forced) {
+      for (const std::size_t i : gathered->point) gathered->input.along_m.push_back(motion.x_m[i]);
+    }
     const SmoothedSeries series = smoother.smooth(gathered->input);
     if (gathered == &of_free) whole.strength = series.strength;
     // Rows are over the points that the smoother was given; between two parts there may be others.
-    const auto x_by = [&](const SmoothedState& y, const std::optional<KernelRow>& row) {
-      if (!motion.forced) return y;
-      SmoothedState x = y;
-      const SmoothedPoint sums = weighted_sums(*row, motion.x_m);
-      x.x_m = sums.x_m;
-      x.v_m_s = sums.v_m_s;
-      x.a_m_s2 = sums.a_m_s2;
-      return x;
-    };
     const auto in_motion = [&](std::optional<KernelRow> row) {
       if (!row) return row;
       const std::size_t from = row->first, last = from + row->weights->a.size() - 1;
@@ -174,7 +168,7 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
       const std::size_t i = gathered->point[j];
       StretchPoint& point = smoothed[i];
       if (gathered->input.rows) point.row = in_motion(series.rows[j]);
-      const SmoothedState x = x_by(y, point.row);
+      const SmoothedState& x = motion.forced ? *series.along[j] : y;
       point.smoothed = true;
       point.x = {x.x_m, x.v_m_s, x.a_m_s2};
       point.y = {y.x_m, y.v_m_s, y.a_m_s2};
@@ -184,7 +178,7 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
     for (std::size_t j = 0; j < gathered->frame.size(); ++j) {
       if (!series.at[j]) continue;
       const SmoothedState& y = *series.at[j];
-      const SmoothedState x = x_by(y, motion.forced ? in_motion(series.rows_at[j]) : std::nullopt);
+      const SmoothedState& x = motion.forced ? *series.along_at[j] : y;
       fill_frame(x, x.a_m_s2 - y.a_m_s2, mass_kg, whole.frames[gathered->frame[j]]);
     }
   }

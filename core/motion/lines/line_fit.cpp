@@ -340,7 +340,7 @@ LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& poin
   input.forced = motion.forced;
   for (std::size_t j = 0; j < points.size(); ++j) {
     const StretchPoint& point = points[j];
-    if (point.direction != direction || point.left_out != LeftOut::used) continue;
+    if (point.direction != direction || point.left_out != LeftOut::used || !point.row) continue;
     input.v_m_s.push_back(point.x.v_m_s);
     input.a_m_s2.push_back(point.y.a_m_s2);
     input.rows.push_back(*point.row);

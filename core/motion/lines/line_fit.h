@@ -123,7 +123,7 @@ struct StretchPoint {
   bool smoothed = false;
   SmoothedPoint x;               ///< x, v, a
   SmoothedPoint y;               ///< y, y', y'': without the known force
-  std::optional<KernelRow> row;  ///< over the points of the motion
+  std::optional<KernelRow> row;  ///< over the points of the motion; without one it is in no line
 };
 
 /// Which points a caller needs: where only those that may count are wanted, those at a stretch's ends are not smoothed

@@ -24,9 +24,11 @@ class LocalCubicSmoother final : public Smoother {
     made.strength.noise_sd_m = input.noise_sd_m ? *input.noise_sd_m : pilot_noise(input.t_s, input.x_m);
     made.points.resize(input.t_s.size());
     made.at.resize(input.at_s.size());
-    if (input.rows) {
-      made.rows.resize(input.t_s.size());
-      made.rows_at.resize(input.at_s.size());
+    if (input.rows) made.rows.resize(input.t_s.size());
+    const bool along = !input.along_m.empty();
+    if (along) {
+      made.along.resize(input.t_s.size());
+      made.along_at.resize(input.at_s.size());
     }
     const std::vector<double> factor =
         input.noise_factor.empty() ? std::vector<double>(input.t_s.size(), 1.0) : input.noise_factor;
@@ -39,9 +41,10 @@ class LocalCubicSmoother final : public Smoother {
         if (row) row->first += part.first;
         return row;
       };
-      const auto state = [&](const std::optional<KernelRow>& row) -> std::optional<SmoothedState> {
+      const auto state = [&](const std::optional<KernelRow>& row,
+                             const std::vector<double>& series_m) -> std::optional<SmoothedState> {
         if (!row) return {};
-        const SmoothedPoint of = weighted_sums(*row, input.x_m);
+        const SmoothedPoint of = weighted_sums(*row, series_m);
         const Eigen::Matrix3d covariance = point_covariance(*row, *row, noise);
         return SmoothedState{of.x_m,
                              of.v_m_s,
@@ -53,14 +56,15 @@ class LocalCubicSmoother final : public Smoother {
       for (std::size_t j = 0; j < part.count; ++j) {
         const auto row = of_all(cubic.row_of_point(j));
         if (row) made.strength.parameters += row->weights->x[part.first + j - row->first];
-        made.points[part.first + j] = state(row);
+        made.points[part.first + j] = state(row, input.x_m);
+        if (along) made.along[part.first + j] = state(row, input.along_m);
         if (input.rows) made.rows[part.first + j] = row;
       }
       while (a < input.at_s.size() && input.at_s[a] < t.front()) ++a;
       for (; a < input.at_s.size() && input.at_s[a] <= t.back(); ++a) {
         const auto row = of_all(cubic.row(input.at_s[a]));
-        made.at[a] = state(row);
-        if (input.rows) made.rows_at[a] = row;
+        made.at[a] = state(row, input.x_m);
+        if (along) made.along_at[a] = state(row, input.along_m);
       }
     }
     return made;

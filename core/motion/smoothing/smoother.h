@@ -32,6 +32,7 @@ struct SmoothingInput {
   std::vector<double> breaks_s = {};       ///< rising: where v = 0 and a may jump, to a step or two
   std::vector<double> at_s = {};           ///< rising: other times within the parts of the motion that are wanted
   std::optional<double> bandwidth_s = {};  ///< of the local polynomial (asserted there), and of no other
+  std::vector<double> along_m = {};        ///< another series at the same times, to be smoothed by the same weights
   bool rows = false;                       ///< whether they are wanted
   bool rate_in_rows = false;               ///< whether rows follow the noise through the rate k too, for a covariance
   bool simultaneous = false;               ///< whether the simultaneous band is wanted
@@ -49,8 +50,10 @@ struct SmoothedSeries {
   SmoothingStrength strength;
   std::vector<std::optional<SmoothedState>> points;  ///< nothing where a part has fewer than kFewestSmoothed positions
   std::vector<std::optional<SmoothedState>> at;      ///< of at_s; nothing outside of the parts as well
-  std::vector<std::optional<KernelRow>> rows;        ///< of the points, over all positions, where wanted
-  std::vector<std::optional<KernelRow>> rows_at;     ///< likewise of at_s
+  std::vector<std::optional<SmoothedState>> along, along_at;  ///< the same of `along_m`, with the same deviations
+  /// Of the points, over all positions, where wanted. Where kernels reach over much of a motion neighbours tell the
+  /// same, and a few hundred points spread over it have one.
+  std::vector<std::optional<KernelRow>> rows;
 };
 
 class Smoother {

@@ -20,6 +20,8 @@ namespace {
 
 enum class StrengthBy { likelihood, cross_validation };
 
+constexpr double kMostRows = 300.0;        // of a motion whose kernels reach far; else
+constexpr double kRowsOfParameter = 10.0;  // for each parameter that the smoothing amounts to
 constexpr int kLeastOrder = 3, kOrders = 3;
 constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr double kMatters = 20.0;       // of -2 log: orders less probable than that by e^-10 are left out
@@ -233,9 +235,10 @@ class WienerSmoother final : public Smoother {
     made.strength.smoother = name_;
     made.points.resize(input.t_s.size());
     made.at.resize(input.at_s.size());
-    if (input.rows) {
-      made.rows.resize(input.t_s.size());
-      made.rows_at.resize(input.at_s.size());
+    if (input.rows) made.rows.resize(input.t_s.size());
+    if (!input.along_m.empty()) {
+      made.along.resize(input.t_s.size());
+      made.along_at.resize(input.at_s.size());
     }
     MotionParts parts(input);
     if (parts.parts.empty()) {
@@ -321,10 +324,23 @@ class WienerSmoother final : public Smoother {
     strength.bandwidth_s = like_bandwidth(posteriors, parts.step_s);
     if (parts.breaks()) strength.jump_sd_m_s2 = strength.noise_sd_m * chosen.at.how.jump_1_s2;
     const auto sd = standard_deviations(ensemble);
+    const double most_rows = std::max(kMostRows, kRowsOfParameter * sums.trace);
+    const std::size_t every = std::max<std::size_t>(1, static_cast<std::size_t>(parts.points / most_rows));
     for (std::size_t p = 0; p < parts.parts.size(); ++p) {
       const MotionPart& part = parts.parts[p];
       strength.breaks_s.insert(strength.breaks_s.end(), part.breaks_s.begin(), part.breaks_s.end());
-      fill(posteriors[p], sd[p], part, parts.input, made);
+      fill(posteriors[p], sd[p], part, made.points, made.at);
+      if (parts.input.rows) fill_rows(posteriors[p], part, every, made.rows);
+    }
+    if (!parts.input.along_m.empty()) {
+      SmoothingInput other = parts.input;
+      other.x_m = parts.input.along_m;
+      MotionParts along(other);
+      along.parts = parts.parts;  // with the breaks as they were found
+      const std::vector<ChainPosterior<N>> of_other = PartedMotion<N>(along).posteriors(chosen.at.how);
+      for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+        fill(of_other[p], sd[p], parts.parts[p], made.along, made.along_at);
+      }
     }
     if (parts.input.rows && parts.input.rate_in_rows && chosen.at.rate_sd_1_s > 0.0) {
       const OfRate by = of_rate(motion, chosen.at, variance);
@@ -337,38 +353,51 @@ class WienerSmoother final : public Smoother {
 
   template <int N>
   static void fill(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& sd, const MotionPart& part,
-                   const SmoothingInput& input, SmoothedSeries& made) {
-    std::vector<std::size_t> nodes;               // of points and of wanted times
-    std::vector<std::optional<KernelRow>*> rows;  // where theirs go
+                   std::vector<std::optional<SmoothedState>>& points,
+                   std::vector<std::optional<SmoothedState>>& times) {
     std::size_t a = part.first_at;
     for (std::size_t k = 0; k < posterior.size(); ++k) {
+      if (is_break(posterior, k)) continue;
       const ChainNode& node = posterior.node(k);
-      const bool before_break = k + 1 < posterior.size() && posterior.node(k + 1).after_break;
-      if (!node.point && (node.after_break || before_break)) continue;
       const std::size_t of = node.point ? part.points.first + *node.point : a++;
       const auto& mean = posterior.mean(k);
-      (node.point ? made.points : made.at)[of] = SmoothedState{mean[0], mean[1], mean[2], sd[k][0], sd[k][1], sd[k][2]};
-      if (!input.rows) continue;
+      (node.point ? points : times)[of] = SmoothedState{mean[0], mean[1], mean[2], sd[k][0], sd[k][1], sd[k][2]};
+    }
+  }
+
+  /// A node of a break, before or behind it.
+  template <int N>
+  static bool is_break(const ChainPosterior<N>& posterior, std::size_t k) {
+    const ChainNode& node = posterior.node(k);
+    const bool before = k + 1 < posterior.size() && posterior.node(k + 1).after_break;
+    return !node.point && (node.after_break || before);
+  }
+
+  template <int N>
+  static void fill_rows(const ChainPosterior<N>& posterior, const MotionPart& part, std::size_t every,
+                        std::vector<std::optional<KernelRow>>& rows) {
+    std::vector<std::size_t> nodes, points;
+    for (std::size_t k = 0; k < posterior.size(); ++k) {
+      const ChainNode& node = posterior.node(k);
+      if (!node.point || *node.point % every != 0) continue;
       nodes.push_back(k);
-      rows.push_back(&(node.point ? made.rows : made.rows_at)[of]);
+      points.push_back(part.points.first + *node.point);
     }
     std::vector<KernelRow> of_nodes = posterior.rows(nodes);
     for (std::size_t j = 0; j < of_nodes.size(); ++j) {
       of_nodes[j].first += part.points.first;
-      *rows[j] = std::move(of_nodes[j]);
+      rows[points[j]] = std::move(of_nodes[j]);
     }
   }
 
   template <int N>
   static void add_rate(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& by_rate,
                        const std::vector<double>& point_gain, const MotionPart& part, SmoothedSeries& made) {
-    std::size_t a = part.first_at;
     for (std::size_t k = 0; k < posterior.size(); ++k) {
       const ChainNode& node = posterior.node(k);
-      const bool before_break = k + 1 < posterior.size() && posterior.node(k + 1).after_break;
-      if (!node.point && (node.after_break || before_break)) continue;
-      std::optional<KernelRow>& row = node.point ? made.rows[part.points.first + *node.point] : made.rows_at[a++];
-      row = with_rate(*row, by_rate[k], point_gain);
+      if (!node.point) continue;
+      std::optional<KernelRow>& row = made.rows[part.points.first + *node.point];
+      if (row) row = with_rate(*row, by_rate[k], point_gain);
     }
   }
 
