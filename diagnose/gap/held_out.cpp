@@ -13,9 +13,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kStretches = 4;  // of a single clip
-constexpr std::size_t kFewest = 8;     // points of a stretch, or to smooth
-constexpr double kLeastKnown = 1e-4;   // of a statement's variance: below, a pull is a difference of rounding
+constexpr std::size_t kStretches = 4;      // of a single clip
+constexpr std::size_t kMotionsForAll = 3;  // of a single clip, that tell of each other: fewer may all go one way
+constexpr std::size_t kFewest = 8;         // points of a stretch, or to smooth
+constexpr double kLeastKnown = 1e-4;       // of a statement's variance: below, a pull is a difference of rounding
 
 /// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions; those of a motion
 /// from point `first` on.
@@ -112,10 +113,25 @@ HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
   return gap_over(std::move(clips));
 }
 
+/// Every motion of a single clip as a clip by itself.
+TrackSet motions_apart(const TrackSet& set) {
+  TrackSet apart = set;
+  apart.clips.clear();
+  for (std::size_t i = 0; i < apart.motions.size(); ++i) {
+    TrackedMotion& motion = apart.motions[i];
+    apart.clips.push_back(set.clips.front());
+    apart.clips.back().name += fmt::format(", {:.2f} to {:.2f} s", motion.t_s.front(), motion.t_s.back());
+    motion.clip = i;
+  }
+  return apart;
+}
+
 }  // namespace
 
 HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
-  if (set.clips.size() == 1) return gap_of_stretches(set, fit);
+  if (set.clips.size() == 1) {
+    return set.motions.size() < kMotionsForAll ? gap_of_stretches(set, fit) : held_out_gap(motions_apart(set), fit);
+  }
   std::vector<ProjectedMotion> motions;
   for (const FitMotion& motion : fit.motions) motions.push_back(project(motion));
   CommonNormal all = statements_normal(fit);

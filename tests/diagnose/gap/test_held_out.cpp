@@ -259,3 +259,21 @@ TEST_CASE("the gap of a single clip sees what a wrong law does over the whole mo
   REQUIRE(rms > 3.0);
   CHECK(diagnose::held_out_gap(set, nominal).value > rms);  // predicted is further off than fitted
 }
+
+TEST_CASE("three motions of a single clip are held out as three clips of one motion each are") {
+  const auto gap_of = [](bool together) {
+    const tests::MadeEffect bow{.force = [](double m, double x, double, double) { return -0.4 * m * x; }};
+    const auto made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}, {0.4, 4.0, 0.0, 0.6}, {0.4, 4.0, 0.2, -0.8}}, bow,
+                                             3, 3e-5, 150, 100.0, 0.0);
+    diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    REQUIRE(set.motions.size() == 3);
+    if (together) {
+      set.clips.resize(1);
+      for (diagnose::TrackedMotion& motion : set.motions) motion.clip = 0;
+    }
+    return diagnose::held_out_gap(set, diagnose::fit_nominal(set));
+  };
+  const diagnose::HeldOutGap one = gap_of(true), three = gap_of(false);
+  REQUIRE(one.clips.size() == 3);
+  CHECK(one.value == Approx(three.value).epsilon(1e-9));
+}
