@@ -102,12 +102,27 @@ void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& c
   // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
   if (!most || sequence.gap_before * sequence.gap_before - 1.0 < kLargestExcess || comparison.unknown < 1.0 - kTrusted)
     return;
+  // All explanations that have the main cause share that probability, as they did before: beside it another keeps its
+  // own.
+  const std::size_t main = effect_index(sequence.causes.front().id);
+  const auto has_main = [&](const Hypothesis& one) {
+    return !one.unnamed && std::find(one.effects.begin(), one.effects.end(), main) != one.effects.end();
+  };
+  double with_main = 0.0, rest = comparison.unknown;
+  for (const Hypothesis& one : comparison.all)
+    (has_main(one) ? with_main : rest) += one.unnamed ? 0.0 : one.probability;
+  std::fill(comparison.effect_probability.begin(), comparison.effect_probability.end(), 0.0);
   for (Hypothesis& one : comparison.all) {
-    one.probability = !one.unnamed && one.effects == best.effects ? kTrusted : one.probability * (1.0 - kTrusted);
+    if (with_main > 0.0) {
+      one.probability *= has_main(one) ? kTrusted / with_main : (1.0 - kTrusted) / rest;
+    } else {
+      one.probability =
+          !one.unnamed && one.effects == best.effects ? kTrusted : one.probability * (1.0 - kTrusted) / rest;
+    }
+    if (one.unnamed) continue;
+    for (const std::size_t e : one.effects) comparison.effect_probability[e] += one.probability;
   }
-  for (double& probability : comparison.effect_probability) probability *= 1.0 - kTrusted;
-  for (const std::size_t e : best.effects) comparison.effect_probability[e] = kTrusted;
-  comparison.unknown = 1.0 - kTrusted;
+  comparison.unknown *= (1.0 - kTrusted) / rest;
   std::stable_sort(comparison.all.begin(), comparison.all.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
