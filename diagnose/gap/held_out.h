@@ -8,9 +8,9 @@
 /// steps comes from all clips: which of several waves or places it is, which frames are lost, and the shape and tau of
 /// a function without a name.
 ///
-/// Of a single clip each motion is left out, where there are three or more, or else quarters of each. Such a stretch keeps the motion's own start and
-/// speed, which come from the rest of the motion: a start of its own would take up what a wrong law does within a
-/// quarter.
+/// Of a single clip each motion is left out, where there are three or more, or else quarters of each. Such a stretch
+/// keeps the motion's own start and speed, which come from the rest of the motion: a start of its own would take up
+/// what a wrong law does within a quarter.
 #pragma once
 
 #include <Eigen/Core>
