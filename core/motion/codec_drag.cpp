@@ -12,7 +12,7 @@
 #include "core/motion/free/free_motion.h"
 #include "core/motion/free/lost_frames.h"
 #include "core/motion/free/motion.h"
-#include "core/motion/smoothing/smoother_list.h"
+#include "core/motion/smoothing/wiener_smoother.h"
 
 namespace glidelab::core {
 namespace {
@@ -136,7 +136,6 @@ struct FreePoints {
 
 FreePoints free_points(const Motion& motion, const ClipSetup& setup) {
   FreePoints free;
-  free.input.rows = true;
   const FreeMotion found = find_free_motion(motion, setup);
   for (std::size_t s = 0; s < found.stretches.size(); ++s) {
     const FreeStretch& stretch = found.stretches[s];
@@ -167,7 +166,7 @@ EachHanded<TrackSums> sums_of(const ClipSetup& setup, const TrackData& filed,
   const Motion motion = without(measured, find_outliers(measured));
   const FreePoints free = free_points(motion, setup);
   if (free.point.empty()) return sums;
-  const SmoothedSeries smoothed = find_smoother("kalman")->smooth(free.input);
+  const std::vector<std::optional<KernelRow>> rows = lawless_rows(free.input);
   const auto n = static_cast<Eigen::Index>(free.point.size());
   constexpr auto kColumns = static_cast<Eigen::Index>(kHandedOn.size()) * kTerms;
   Eigen::MatrixXd columns(n, kColumns + 1);
@@ -183,7 +182,7 @@ EachHanded<TrackSums> sums_of(const ClipSetup& setup, const TrackData& filed,
   Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, kColumns + 1);  // P times them
   double freedom = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::optional<KernelRow>& row = smoothed.rows[static_cast<std::size_t>(i)];
+    const std::optional<KernelRow>& row = rows[static_cast<std::size_t>(i)];
     if (!row) continue;
     left.row(i) = columns.row(i);
     const std::vector<double>& weights = row->weights->x;

@@ -16,8 +16,8 @@
 /// from which it came, in addition.
 ///
 /// Found without a law of motion: the positions of free motion are a smooth motion (the integrated Wiener process of
-/// order 4, its strength by likelihood: smoothing/smoother.h), plus e, plus white noise s of each track. With S the
-/// smoother's matrix the inverse covariance of what is not e is (I - S) / s^2. b_n is normal with the standard
+/// order 4, its strength by likelihood: smoothing/wiener_smoother.h), plus e, plus white noise s of each track. With S
+/// the smoother's matrix the inverse covariance of what is not e is (I - S) / s^2. b_n is normal with the standard
 /// deviation p / sqrt(n), and c with p; p and s are the likeliest (expectation maximisation), p with what is known of
 /// such codecs. The posterior's mean is taken off the positions; its covariance, in independent modes, is an error that
 /// all tracks share.

@@ -222,6 +222,24 @@ KernelRow with_rate(const KernelRow& row, const Eigen::Array3d& by_rate, const s
   return {0, std::make_shared<const KernelWeights>(std::move(weights))};
 }
 
+/// Of every so many points of a part.
+template <int N>
+void fill_rows(const ChainPosterior<N>& posterior, const MotionPart& part, std::size_t every,
+               std::vector<std::optional<KernelRow>>& rows) {
+  std::vector<std::size_t> nodes, points;
+  for (std::size_t k = 0; k < posterior.size(); ++k) {
+    const ChainNode& node = posterior.node(k);
+    if (!node.point || *node.point % every != 0) continue;
+    nodes.push_back(k);
+    points.push_back(part.points.first + *node.point);
+  }
+  std::vector<KernelRow> of_nodes = posterior.rows(nodes);
+  for (std::size_t j = 0; j < of_nodes.size(); ++j) {
+    of_nodes[j].first += part.points.first;
+    rows[points[j]] = std::move(of_nodes[j]);
+  }
+}
+
 class WienerSmoother final : public Smoother {
  public:
   WienerSmoother(std::string_view name, std::string_view words, StrengthBy by) : name_(name), words_(words), by_(by) {}
@@ -374,23 +392,6 @@ class WienerSmoother final : public Smoother {
   }
 
   template <int N>
-  static void fill_rows(const ChainPosterior<N>& posterior, const MotionPart& part, std::size_t every,
-                        std::vector<std::optional<KernelRow>>& rows) {
-    std::vector<std::size_t> nodes, points;
-    for (std::size_t k = 0; k < posterior.size(); ++k) {
-      const ChainNode& node = posterior.node(k);
-      if (!node.point || *node.point % every != 0) continue;
-      nodes.push_back(k);
-      points.push_back(part.points.first + *node.point);
-    }
-    std::vector<KernelRow> of_nodes = posterior.rows(nodes);
-    for (std::size_t j = 0; j < of_nodes.size(); ++j) {
-      of_nodes[j].first += part.points.first;
-      rows[points[j]] = std::move(of_nodes[j]);
-    }
-  }
-
-  template <int N>
   static void add_rate(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& by_rate,
                        const std::vector<double>& point_gain, const MotionPart& part, SmoothedSeries& made) {
     for (std::size_t k = 0; k < posterior.size(); ++k) {
@@ -421,6 +422,25 @@ const Smoother& spline_smoother() {
       "spline", "smoothing spline of polynomials and an exponential, its strength by generalised cross-validation",
       StrengthBy::cross_validation);
   return smoother;
+}
+
+std::vector<std::optional<KernelRow>> lawless_rows(const SmoothingInput& input) {
+  constexpr int kOrder = 4;
+  std::vector<std::optional<KernelRow>> rows(input.t_s.size());
+  MotionParts parts(input);
+  if (parts.parts.empty()) return rows;
+  const auto search_tau = [&]() { return likeliest(along_tau(PartedMotion<kOrder>(parts), kAny, Rate::none, {0.0})); };
+  AtTau at = search_tau();
+  for (int i = 0; parts.breaks() && i < kBreakSearches; ++i) {
+    const double moved = settle_breaks(parts, {kOrder, at});
+    at = search_tau();
+    if (moved < kBreakSettled * parts.step_s) break;
+  }
+  const PartedMotion<kOrder> motion(parts);
+  at = parts.breaks() ? with_jump(motion, at) : refined(motion, at);
+  const std::vector<ChainPosterior<kOrder>> posteriors = motion.posteriors(at.how);
+  for (std::size_t p = 0; p < parts.parts.size(); ++p) fill_rows(posteriors[p], parts.parts[p], 1, rows);
+  return rows;
 }
 
 }  // namespace glidelab::core

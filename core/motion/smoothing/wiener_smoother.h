@@ -24,4 +24,8 @@ namespace glidelab::core {
 const Smoother& kalman_smoother();
 const Smoother& spline_smoother();
 
+/// The rows of all points by the integrated Wiener process of order 4 alone, its strength the likeliest: no rate, no
+/// exact motion and no mixture, so that nothing of a law of motion is in them. For what is to be found beside any law.
+std::vector<std::optional<KernelRow>> lawless_rows(const SmoothingInput& input);
+
 }  // namespace glidelab::core
