@@ -51,7 +51,7 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
 }
 
-TEST_CASE("a quantity that these motions do not have has no row; one that was not recovered keeps its row") {
+TEST_CASE("a quantity that these motions do not have has no row, and one that was not recovered keeps its row") {
   validate::Comparison comparison = made_comparison();
   comparison.quantities.push_back(quantity("m1", "trajectory", "v_lim_m_s", std::nullopt, std::nullopt, 0.0));
   CHECK(report::comparison_text(comparison).find("terminal velocity (m/s)") == std::string::npos);
