@@ -195,7 +195,7 @@ TEST_CASE("a height alone is x, counted along the motion where nobody states its
   CHECK(thrown.x_m[5] == Approx(-25.0));
 }
 
-TEST_CASE("of x and y the one along which the body moves is x; a slanted path is told, a curved one is refused") {
+TEST_CASE("of x and y the one along which the body moves is x, a slanted path is told, a curved one is refused") {
   const auto plane = [](const std::string& pattern) {
     const Made made("mass A\t\t\nt\tx\ty\n" + rows(pattern));
     return core::read_track_csv(made.file, std::nullopt);
