@@ -41,7 +41,7 @@ bool has_gap(const TrackSet& set, const MotionFit& fit);
 
 inline constexpr double kLeastShare = 0.02;  ///< of the excess: nobody would look for a cause of less
 
-/// g² - 1 of a fit to `set`, g the gap of held-out clips, or of the quarters of a single one.
+/// g² - 1 of a fit to `set`, g the gap of held-out clips, or of the parts of a single one (gap/held_out.h).
 double held_out_excess(const TrackSet& set, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose
