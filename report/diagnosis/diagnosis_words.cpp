@@ -122,7 +122,7 @@ struct Sentence {
   }
   std::string operator()(const diagnose::QuartersHeldOut&) const {
     return "There is only one clip, and no other to predict it from: the gap is measured on held-out quarters of that "
-           "clip.";
+           "clip or, where it has three motions or more, on each of these.";
   }
   std::string operator()(const diagnose::LastingErrors& of) const {
     return fmt::format(
