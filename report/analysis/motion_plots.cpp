@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/math/normal95.h"
+#include "core/math/quantile.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
@@ -325,10 +326,24 @@ std::string axes(const char* y) {
       y);
 }
 
+/// Half of the usual 95 % interval: residuals are judged beside it. 0 where no bar is drawn.
+double usual_bar(const std::vector<PlotData>& data) {
+  constexpr std::size_t kHalf = 3;  // column of a bar's half length
+  std::vector<double> halves;
+  for (const PlotData& block : data) {
+    if (!block.name.starts_with("bars")) continue;
+    for (const std::vector<double>& row : block.rows) {
+      if (row.size() > kHalf && std::isfinite(row[kHalf])) halves.push_back(row[kHalf]);
+    }
+  }
+  return halves.empty() ? 0.0 : core::median_of(std::move(halves));
+}
+
 /// The range of the points and the lines, for the band of a line that is hardly known runs out of it, and the labels of
-/// v.
+/// v. Residuals that are much smaller than their bars leave room for these.
 std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
-  double low = HUGE_VAL, high = -HUGE_VAL, slowest = 0.0, fastest = 0.0;
+  const double bar = residuals ? usual_bar(data) : 0.0;
+  double low = bar > 0.0 ? -bar : HUGE_VAL, high = bar > 0.0 ? bar : -HUGE_VAL, slowest = 0.0, fastest = 0.0;
   for (const PlotData& block : data) {
     const bool lines = block.name.starts_with("lines");
     if (lines && residuals) continue;

@@ -2,6 +2,7 @@
 #include "report/analysis/motion_plots.h"
 
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include "report/validation/validation_report.h"
@@ -82,6 +83,31 @@ TEST_CASE("a phase diagram carries its lines' bands and the bars of some points,
   // 1.96 of the points' own standard deviation, 0.02 m/s².
   for (const auto& row : block(plots[0], "bars0").rows) CHECK(std::abs(row[3] - 0.0392) < 1e-5);
   CHECK(block(plots[0], "bars0").rows.size() <= 13);
+}
+
+TEST_CASE("residuals that are far below their intervals are drawn beside these") {
+  core::AnalysisResults results = tests::made_results();
+  // Every point on the line of its direction, as smoothers leave them that know the law's exponential.
+  const report::PhaseGroup first = report::phase_groups(results).front();
+  const report::PhaseGroup group{first.incline_deg, {first.configurations.front()}};
+  for (core::ClipResult& clip : results.clips) {
+    for (core::MotionPoint& point : clip.motion) {
+      for (const core::LineFit& line : results.configurations[group.configurations.front()].lines) {
+        if (line.direction * point.v_m_s <= 0.0) continue;
+        point.a_m_s2 = line.a0_m_s2.value - line.k_over_m_1_s.value * point.v_m_s + 1e-6 * point.t_s;
+      }
+    }
+  }
+  const std::string script = report::phase_plots(results, group)[2].drawing.script;
+  const std::size_t at = script.find("set yrange [");
+  REQUIRE(at != std::string::npos);
+  double low = 0.0, high = 0.0;
+  REQUIRE(std::sscanf(script.c_str() + at, "set yrange [%lf:%lf]", &low, &high) == 2);
+  // 1.96 of the points' own standard deviation, 0.02 m/s², and a margin of 8 % of both.
+  CHECK(low <= -0.0392);
+  CHECK(low > -0.0392 * 1.2);
+  CHECK(high >= 0.0392);
+  CHECK(high < 0.0392 * 1.2);
 }
 
 TEST_CASE("colours that stand for clips are told by name where each clip has its own") {
