@@ -17,6 +17,7 @@
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
+#include "diagnose/verdict/probabilities_by_share.h"
 #include "diagnose/verdict/verdict.h"
 #include "diagnose/verdict/verdict_details.h"
 
@@ -25,32 +26,11 @@ namespace {
 
 constexpr double kLeft = 0.5;    // probability of something without a name from which on a remainder is weighed
 constexpr double kDoubt = 0.05;  // of names by the noise alone
-constexpr double kHalf = 0.5;    // of the excess: what a verdict's causes take at least
 constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 
-constexpr double kJustUnknown = 0.5 + 1e-9;  // the least probability of an unknown cause with such a verdict
-
 constexpr double kLeastNamed = 0.1;   // of the excess: beside a remainder less is part of it
-constexpr double kMost = 0.75;        // of the excess: what a law takes that has its name by its share alone
-constexpr double kTrusted = 0.8;      // the probability of a name by its share alone
 constexpr double kNotMeasured = 0.5;  // a gap below which the noise is not that of the positions
 constexpr double kSureScatter = 0.9;  // the probability of scatter without a gap from which on it is the verdict
-
-/// Whether some of an explanation takes part of the gap.
-bool shows_in_gap(const Hypothesis& best) {
-  return std::any_of(best.effects.begin(), best.effects.end(),
-                     [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
-}
-
-/// What these explanations would explain needs no cause.
-void set_none_of(bool (*of)(const Hypothesis&), Comparison& comparison) {
-  for (Hypothesis& one : comparison.all) {
-    if (one.unnamed || one.effects.empty() || !of(one)) continue;
-    comparison.none += one.probability;
-    for (const std::size_t e : one.effects) comparison.effect_probability[e] -= one.probability;
-    one.probability = 0.0;
-  }
-}
 
 double probability_of_scatter(const Comparison& comparison) {
   double sum = 0.0;
@@ -63,76 +43,12 @@ bool shows_in_images(const Hypothesis& best) {
                      [](std::size_t e) { return effect_list()[e].search == Search::pictures; });
 }
 
-/// The rest is shared as before among what has a name, or nothing.
-void set_unknown(double unknown, Comparison& comparison) {
-  const double before = 1.0 - comparison.unknown;
-  const double factor = before > 0.0 ? (1.0 - unknown) / before : 0.0;
-  for (Hypothesis& one : comparison.all) {
-    if (!one.unnamed) one.probability *= factor;
-  }
-  for (double& probability : comparison.effect_probability) probability *= factor;
-  comparison.none *= factor;
-  comparison.unknown = unknown;
-}
-
-/// Explanations that leave more than half of the gap have no name to give: what acts is unknown if they are all there
-/// is.
-void set_unknown_of_half(Comparison& comparison) {
-  for (Hypothesis& one : comparison.all) {
-    if (one.unnamed || !shows_in_gap(one) || one.left.value_or(0.0) <= 1.0 - kHalf) continue;
-    for (const std::size_t e : one.effects) comparison.effect_probability[e] -= one.probability;
-    comparison.unknown += std::exchange(one.probability, 0.0);
-  }
-  std::stable_sort(comparison.all.begin(), comparison.all.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
-}
-
-/// Probabilities of a comparison as a verdict on a gap above its floor. What the remainder makes is unknown; so is the
-/// cause where those that would be named take less than half after all.
-void settle(const CauseSequence& sequence, const Hypothesis& best, Comparison& comparison) {
-  const bool half = sequence.named_share >= kHalf || !shows_in_gap(best);
-  const bool most = sequence.named_share >= kMost && !follows_each_clip(effect_index(sequence.causes.front().id));
-  comparison.unknown += std::exchange(comparison.none, 0.0);
-  // What explanations that leave more than half had is unknown already, the best one's included.
-  double of_best = 0.0;
-  for (const Hypothesis& one : comparison.all) {
-    if (!one.unnamed && one.effects == best.effects) of_best += one.probability;
-  }
-  if (!half) set_unknown(std::max(comparison.unknown + of_best, kJustUnknown), comparison);
-  // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
-  if (!most || sequence.gap_before * sequence.gap_before - 1.0 < kLargestExcess || comparison.unknown < 1.0 - kTrusted)
-    return;
-  // All explanations that have the main cause share that probability, as they did before: beside it another keeps its
-  // own.
-  const std::size_t main = effect_index(sequence.causes.front().id);
-  const auto has_main = [&](const Hypothesis& one) {
-    return !one.unnamed && std::find(one.effects.begin(), one.effects.end(), main) != one.effects.end();
-  };
-  double with_main = 0.0, rest = comparison.unknown;
-  for (const Hypothesis& one : comparison.all)
-    (has_main(one) ? with_main : rest) += one.unnamed ? 0.0 : one.probability;
-  std::fill(comparison.effect_probability.begin(), comparison.effect_probability.end(), 0.0);
-  for (Hypothesis& one : comparison.all) {
-    if (with_main > 0.0) {
-      one.probability *= has_main(one) ? kTrusted / with_main : (1.0 - kTrusted) / rest;
-    } else {
-      one.probability =
-          !one.unnamed && one.effects == best.effects ? kTrusted : one.probability * (1.0 - kTrusted) / rest;
-    }
-    if (one.unnamed) continue;
-    for (const std::size_t e : one.effects) comparison.effect_probability[e] += one.probability;
-  }
-  comparison.unknown *= (1.0 - kTrusted) / rest;
-  std::stable_sort(comparison.all.begin(), comparison.all.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
-}
-
 /// Of an unknown cause what helps, less than half of the excess together: a cause that would take more is not likely
 /// enough for its name, and is not said to explain anything.
 std::vector<ExplainedCause> helpful(std::vector<ExplainedCause> causes) {
   double sum = 0.0;
-  const auto first_too_many = std::find_if(causes.begin(), causes.end(),
-                                           [&](const ExplainedCause& cause) { return (sum += cause.share) >= kHalf; });
+  const auto first_too_many = std::find_if(
+      causes.begin(), causes.end(), [&](const ExplainedCause& cause) { return (sum += cause.share) >= kHalfOfGap; });
   causes.erase(first_too_many, causes.end());
   return causes;
 }
@@ -267,7 +183,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   std::optional<Hypothesis> helps;  // what explains most, enough for its name or not
   if (weighed) {
     if (const Hypothesis* best = best_named(with, weighed->comparison)) helps = *best;
-    set_unknown_of_half(weighed->comparison);
+    move_minorities_to_unknown(weighed->comparison);
   }
   const Comparison& by = weighed ? weighed->comparison : first;
   // Beside a remainder nothing counts as unknown: there is a gap.
@@ -294,7 +210,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   std::vector<std::string> traces;
   // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
   const bool settled = weighed && sequence.is_gap && names;
-  if (settled) settle(sequence, best, weighed->comparison);
+  if (settled) weigh_by_share(sequence, best.effects, weighed->comparison);
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
@@ -304,11 +220,11 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     const bool not_measured = noise_is_rounding(set) || sequence.gap_before < kNotMeasured;
     const bool below_noise = not_measured && !sequence.is_gap && !in_images;
     if (below_noise) {
-      set_none_of([](const Hypothesis&) { return true; }, first);
+      move_to_none([](const Hypothesis&) { return true; }, first);
       first.none += std::exchange(first.unknown, 0.0);
     }
     // A name that takes next to nothing of a gap explains something else.
-    const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalf;
+    const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalfOfGap;
     if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
     if (weighed && sequence.is_gap && !in_images) {
       // Nothing that moves the glider explains the gap.
@@ -319,7 +235,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     // parameter either: unless it is all but certain, it is a trace.
     if (!weighed && !sequence.is_gap && !below_noise && !named.empty()) {
       if (names && shows_in_gap(best)) allow_for_remainders(set, without, jobs, first);
-      if (scatter && probability_of_scatter(first) < kSureScatter) set_none_of(is_scatter_alone, first);
+      if (scatter && probability_of_scatter(first) < kSureScatter) move_to_none(is_scatter_alone, first);
       if ((scatter || shows_in_gap(best)) && verdict_by(first.none, first.unknown) == Verdict::none) {
         for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
       }

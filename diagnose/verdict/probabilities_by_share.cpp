@@ -1,0 +1,105 @@
+#include "diagnose/verdict/probabilities_by_share.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "diagnose/causes/cause_odds.h"
+#include "diagnose/effects/effect_library.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+void sort_by_probability(Comparison& comparison) {
+  std::stable_sort(comparison.all.begin(), comparison.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
+bool has(const Hypothesis& explanation, std::size_t effect) {
+  const std::vector<std::size_t>& effects = explanation.effects;
+  return !explanation.unnamed && std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+/// Each effect's is the sum over the explanations that have it.
+void sum_of_effects(Comparison& comparison) {
+  std::fill(comparison.effect_probability.begin(), comparison.effect_probability.end(), 0.0);
+  for (const Hypothesis& one : comparison.all) {
+    if (one.unnamed) continue;
+    for (const std::size_t e : one.effects) comparison.effect_probability[e] += one.probability;
+  }
+}
+
+/// The explanations with `main` have kByShare together, and all else the rest.
+void trust(std::size_t main, const std::vector<std::size_t>& best, Comparison& comparison) {
+  double with_main = 0.0, rest = comparison.unknown;
+  for (const Hypothesis& one : comparison.all) {
+    if (!one.unnamed) (has(one, main) ? with_main : rest) += one.probability;
+  }
+  // They may have lost all of it to the unknown; the best one then stands for them.
+  const bool lost = !(with_main > 0.0);
+  for (Hypothesis& one : comparison.all) {
+    if (lost && !one.unnamed && one.effects == best) {
+      one.probability = kByShare;
+    } else {
+      one.probability *= has(one, main) && !lost ? kByShare / with_main : (1.0 - kByShare) / rest;
+    }
+  }
+  comparison.unknown *= (1.0 - kByShare) / rest;
+  sum_of_effects(comparison);
+  sort_by_probability(comparison);
+}
+
+}  // namespace
+
+bool shows_in_gap(const Hypothesis& explanation) {
+  return std::any_of(explanation.effects.begin(), explanation.effects.end(),
+                     [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
+}
+
+void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
+  for (Hypothesis& one : comparison.all) {
+    if (one.unnamed || one.effects.empty() || !of(one)) continue;
+    comparison.none += one.probability;
+    for (const std::size_t e : one.effects) comparison.effect_probability[e] -= one.probability;
+    one.probability = 0.0;
+  }
+}
+
+void set_unknown(double unknown, Comparison& comparison) {
+  const double before = 1.0 - comparison.unknown;
+  const double factor = before > 0.0 ? (1.0 - unknown) / before : 0.0;
+  for (Hypothesis& one : comparison.all) {
+    if (!one.unnamed) one.probability *= factor;
+  }
+  for (double& probability : comparison.effect_probability) probability *= factor;
+  comparison.none *= factor;
+  comparison.unknown = unknown;
+}
+
+void move_minorities_to_unknown(Comparison& comparison) {
+  for (Hypothesis& one : comparison.all) {
+    if (one.unnamed || !shows_in_gap(one) || one.left.value_or(0.0) <= 1.0 - kHalfOfGap) continue;
+    for (const std::size_t e : one.effects) comparison.effect_probability[e] -= one.probability;
+    comparison.unknown += std::exchange(one.probability, 0.0);
+  }
+  sort_by_probability(comparison);
+}
+
+void weigh_by_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, Comparison& comparison) {
+  comparison.unknown += std::exchange(comparison.none, 0.0);
+  const Hypothesis of{best};
+  if (sequence.named_share < kHalfOfGap && shows_in_gap(of)) {
+    // What explanations that leave more than half had is unknown already; now the best one's is as well.
+    double of_best = 0.0;
+    for (const Hypothesis& one : comparison.all) {
+      if (!one.unnamed && one.effects == best) of_best += one.probability;
+    }
+    set_unknown(std::max(comparison.unknown + of_best, kJustUnknown), comparison);
+  }
+  if (sequence.named_share < kMostOfGap || comparison.unknown < 1.0 - kByShare) return;
+  const std::size_t main = effect_index(sequence.causes.front().id);
+  // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
+  const bool no_noise = sequence.gap_before * sequence.gap_before - 1.0 >= kLargestExcess;
+  if (no_noise && !follows_each_clip(main)) trust(main, best, comparison);
+}
+
+}  // namespace glidelab::diagnose

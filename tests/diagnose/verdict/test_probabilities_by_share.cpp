@@ -1,0 +1,149 @@
+/// What the share of the gap does to probabilities: sums that must hold whatever was weighed, and each rule by hand.
+#include "diagnose/verdict/probabilities_by_share.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "diagnose/effects/effect_library.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+using diagnose::Comparison;
+using diagnose::effect_index;
+using diagnose::Hypothesis;
+namespace ids = diagnose::ids;
+
+namespace {
+
+const std::size_t kDrag = effect_index(ids::quadratic_drag), kInertia = effect_index(ids::rotational_inertia),
+                  kPlace = effect_index(ids::place_friction);
+
+struct Weighed {
+  std::vector<std::size_t> effects;
+  double probability;
+  double left = 0.0;  // of the gap
+};
+
+/// What is left to 1 is unknown.
+Comparison comparison_of(const std::vector<Weighed>& all, double none = 0.0) {
+  Comparison comparison;
+  comparison.effect_probability.assign(diagnose::effect_list().size(), 0.0);
+  comparison.none = none;
+  comparison.unknown = 1.0 - none;
+  for (const Weighed& one : all) {
+    Hypothesis explanation;
+    explanation.effects = one.effects;
+    explanation.probability = one.probability;
+    explanation.left = one.left;
+    comparison.all.push_back(explanation);
+    comparison.unknown -= one.probability;
+    for (const std::size_t e : one.effects) comparison.effect_probability[e] += one.probability;
+  }
+  return comparison;
+}
+
+diagnose::CauseSequence sequence_of(std::string_view main, double share, double gap_before) {
+  diagnose::CauseSequence sequence;
+  sequence.is_gap = true;
+  sequence.gap_before = gap_before;
+  sequence.named_share = share;
+  sequence.causes = {{std::string(main), share, {}, 1.0}};
+  return sequence;
+}
+
+constexpr double kNoNoise = 1e4;  // a gap beside which the noise is next to nothing: its square is above 1e6
+constexpr double kPlain = 5.0;
+
+double probability_of(const Comparison& comparison, const std::vector<std::size_t>& effects) {
+  for (const Hypothesis& one : comparison.all) {
+    if (one.effects == effects) return one.probability;
+  }
+  FAIL("not there");
+  return 0.0;
+}
+
+/// Probabilities are some: they sum to 1, and an effect has those of its explanations.
+void check_sums(const Comparison& comparison) {
+  double sum = comparison.none + comparison.unknown;
+  std::vector<double> of_effects(comparison.effect_probability.size(), 0.0);
+  for (const Hypothesis& one : comparison.all) {
+    sum += one.probability;
+    for (const std::size_t e : one.effects) of_effects[e] += one.probability;
+  }
+  CHECK(std::abs(sum - 1.0) < 1e-12);
+  for (std::size_t e = 0; e < of_effects.size(); ++e) {
+    CHECK(std::abs(of_effects[e] - comparison.effect_probability[e]) < 1e-12);
+  }
+  CHECK(comparison.unknown >= 0.0);
+  CHECK(comparison.unknown <= 1.0);
+}
+
+}  // namespace
+
+TEST_CASE("a law that takes most of a gap without noise has its name, and what stands beside it keeps its own part") {
+  Comparison comparison = comparison_of({{{kDrag}, 0.06}, {{kDrag, kInertia}, 0.02}, {{kPlace}, 0.12}});
+  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag, kInertia}, comparison);
+  check_sums(comparison);
+  CHECK(comparison.effect_probability[kDrag] == Approx(0.8));
+  CHECK(comparison.effect_probability[kInertia] == Approx(0.8 * 0.02 / 0.08));  // as likely beside it as before
+  CHECK(probability_of(comparison, {kDrag}) == Approx(0.8 * 0.06 / 0.08));
+  // 0.12 and 0.8 of the unknown share what is left as they did before.
+  CHECK(probability_of(comparison, {kPlace}) == Approx(0.2 * 0.12 / 0.92));
+  CHECK(comparison.unknown == Approx(0.2 * 0.8 / 0.92));
+  CHECK(comparison.all.front().effects == std::vector{kDrag});  // the likeliest first
+}
+
+TEST_CASE("a law that lost its probability to the unknown has it back by its share") {
+  Comparison comparison = comparison_of({{{kDrag}, 0.0}, {{kPlace}, 0.1}});
+  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag}, comparison);
+  check_sums(comparison);
+  CHECK(probability_of(comparison, {kDrag}) == Approx(0.8));
+  CHECK(comparison.unknown == Approx(0.2 * 0.9));
+}
+
+TEST_CASE("a name by its share alone takes noise that is next to nothing, most of the gap, and a law of all clips") {
+  const auto after = [](std::string_view main, double share, double gap, double probability) {
+    const std::size_t effect = effect_index(main);
+    Comparison comparison = comparison_of({{{effect}, probability}});
+    diagnose::weigh_by_share(sequence_of(main, share, gap), {effect}, comparison);
+    check_sums(comparison);
+    return comparison.effect_probability[effect];
+  };
+  CHECK(after(ids::quadratic_drag, 0.9, kNoNoise, 0.1) == Approx(0.8));
+  CHECK(after(ids::quadratic_drag, 0.9, kPlain, 0.1) == Approx(0.1));      // the noise counts
+  CHECK(after(ids::quadratic_drag, 0.7, kNoNoise, 0.1) == Approx(0.1));    // half, and not most
+  CHECK(after(ids::clip_scatter, 0.9, kNoNoise, 0.1) == Approx(0.1));      // any clip's size follows any curve
+  CHECK(after(ids::quadratic_drag, 0.9, kNoNoise, 0.95) == Approx(0.95));  // the evidence has more for it
+}
+
+TEST_CASE("causes that take less than half of a gap are unknown, and none is not said of a gap") {
+  Comparison comparison = comparison_of({{{kDrag}, 0.7}, {{kPlace}, 0.1}}, 0.15);
+  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, comparison);
+  check_sums(comparison);
+  CHECK(comparison.none == 0.0);
+  // 0.05 of the unknown, 0.15 of none, and the name's own 0.7.
+  CHECK(comparison.unknown == Approx(0.9));
+  CHECK(comparison.effect_probability[kDrag] == Approx(0.1 * 0.7 / 0.8));
+
+  Comparison unlikely = comparison_of({{{kDrag}, 0.05}, {{kPlace}, 0.9}});
+  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, unlikely);
+  check_sums(unlikely);
+  CHECK(unlikely.unknown > 0.5);  // that is the verdict
+}
+
+TEST_CASE("explanations that leave more than half of the gap give their probability to the unknown") {
+  Comparison comparison = comparison_of({{{kDrag}, 0.6, 0.7}, {{kPlace}, 0.3, 0.2}});
+  diagnose::move_minorities_to_unknown(comparison);
+  check_sums(comparison);
+  CHECK(comparison.unknown == Approx(0.7));
+  CHECK(probability_of(comparison, {kDrag}) == 0.0);
+  CHECK(comparison.all.front().effects == std::vector{kPlace});
+}
+
+TEST_CASE("what needs no cause counts as none") {
+  Comparison comparison = comparison_of({{{kDrag}, 0.6}, {{kPlace}, 0.3}}, 0.05);
+  diagnose::move_to_none([](const Hypothesis& one) { return one.effects.front() == kDrag; }, comparison);
+  check_sums(comparison);
+  CHECK(comparison.none == Approx(0.65));
+  CHECK(comparison.effect_probability[kDrag] == Approx(0.0).margin(1e-12));
+}
