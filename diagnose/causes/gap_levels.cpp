@@ -14,8 +14,6 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSeen_se = 4.0;  // standard errors of a gap at the floor: less is no gap
-
 struct Squares {
   double sum = 0.0, freedom = 0.0;
   void add(const Squares& of) {
@@ -91,7 +89,7 @@ GapLevels levels_of(const TrackSet& set, const MotionFit& nominal, int jobs) {
       set, nominal, parts_by(set, [](const TrackedMotion& m) { return std::pair(m.mass, m.group); }), jobs);
   levels.clip = gap_of_parts(set, nominal, parts_by(set, [](const TrackedMotion& m) { return m.clip; }), jobs);
   const double error = std::sqrt(1.82 / all.freedom);  // of a gap at the floor (held_out.cpp)
-  if (levels.configuration && levels.all > 1.0 + kSeen_se * error) {
+  if (levels.configuration && levels.all > 1.0 + kClearGap * error) {
     levels.holds_within = holds_within(*levels.configuration, levels.all);
   }
   return levels;

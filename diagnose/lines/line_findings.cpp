@@ -222,15 +222,13 @@ std::vector<ClipSquares> squares_of(const LineSolution& solution, const OwnScatt
   return squares;
 }
 
-constexpr double kClear = 3.0;  // standard errors of a gap
-
 }  // namespace
 
 std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineCause>& causes,
                                          const LineSolution& nominal, const OwnScatter& scatter,
                                          double standard_error) {
   const double first = gap_of_lines(nominal, scatter);
-  if (!(first > 1.0 + kClear * standard_error)) return {};
+  if (!(first > 1.0 + kClearGap * standard_error)) return {};
   std::vector<ExplainedCause> explained;
   std::vector<std::size_t> beside, left(causes.size());
   std::iota(left.begin(), left.end(), std::size_t{0});
@@ -265,7 +263,8 @@ GapLevels line_levels(const std::vector<TableLine>& lines, const LineData& data,
   const std::vector<LineCause> own = own_of_each_configuration(lines, data);
   if (own.empty()) return levels;
   levels.configuration = gap_of_lines(solve_lines(data, terms_of(own, {0, 1})), scatter);
-  levels.holds_within = levels.all > 1.0 + kClear * standard_error && holds_within(*levels.configuration, levels.all);
+  levels.holds_within =
+      levels.all > 1.0 + kClearGap * standard_error && holds_within(*levels.configuration, levels.all);
   return levels;
 }
 
