@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "report/html/folded.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
@@ -41,6 +44,14 @@ std::string part_text(std::size_t some, std::size_t all, double low, double high
                      100.0 * low, 100.0 * high);
 }
 
+/// A number's interval on a line of its own: eight columns fit a page.
+std::string with_small_interval(const std::string& cell) {
+  const std::size_t bracket = cell.find(" (");
+  const bool interval = bracket != std::string::npos && cell.find(" to ", bracket) != std::string::npos;
+  if (!interval) return escape(cell);
+  return escape(cell.substr(0, bracket)) + "<br><small>" + escape(cell.substr(bracket + 1)) + "</small>";
+}
+
 const std::vector<std::string> kHeader = {"quantity",    "rank",     "entrant",        "answers (%)",
                                           "error (rms)", "coverage", "interval score", "seconds a case"};
 
@@ -61,7 +72,37 @@ std::vector<std::vector<std::string>> rows_of(const ChallengeScore& score) {
   return rows;
 }
 
-/// "Of K/m: a is better than b in 18 of 20 cases (p 0.0004).": those that are significant.
+/// Who has the first rank, quantities with the same winners together: "Best in K/m and α: a. In µ 8 cases do not tell
+/// a and b apart, the best of 3."
+std::string answer_of(const ChallengeScore& score) {
+  std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> by_winners;  // winners, quantities
+  for (const ChallengeQuantity& of : score.quantities) {
+    std::vector<std::string> winners;
+    for (const ChallengeRow& row : ranked(of)) {
+      if (row.rank == 1 && row.answers > 0) winners.push_back(score.entrants[row.entrant].name);
+    }
+    auto found = std::ranges::find(by_winners, winners, [](const auto& one) { return one.first; });
+    if (found == by_winners.end()) found = by_winners.insert(by_winners.end(), {winners, {}});
+    found->second.push_back(symbol_of(of.quantity));
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [winners, quantities] : by_winners) {
+    const std::string in = list_of(quantities);
+    if (winners.empty()) {
+      sentences.push_back(fmt::format("Nobody has an answer to {}.", in));
+    } else if (winners.size() == 1) {
+      sentences.push_back(fmt::format("Best in {}: {}.", in, winners.front()));
+    } else {
+      sentences.push_back(
+          fmt::format("In {} {} cases do not tell {} apart{}.", in, score.challenge.cases, list_of(winners),
+                      winners.size() < score.entrants.size() ? fmt::format(", the best of {}", score.entrants.size())
+                                                             : std::string()));
+    }
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+/// "K/m: a is better than b in 18 of 20 cases (p = 0.0004).": those that are significant.
 std::vector<std::string> sentences_of(const ChallengeScore& score) {
   std::vector<std::string> sentences;
   for (const ChallengeQuantity& of : score.quantities) {
@@ -137,12 +178,12 @@ std::vector<Plot> score_plot(const ChallengeScore& score) {
   if (data.rows.empty()) return {};
   const std::string script =
       std::string(kFrame) + fmt::format(
-                                "unset offsets\nset logscale x\nset yrange [{:.4g}:0.3]\nset ytics ({})\nunset key\n"
-                                "set xlabel 'interval score / lowest of the quantity'\n"
+                                "unset offsets\nset logscale x\nset format x '%g'\nset yrange [{:.4g}:0.3]\n"
+                                "set ytics ({})\nunset key\nset xlabel 'interval score over the lowest'\n"
                                 "plot $scores using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}'\n",
                                 row_number + 0.7, tics, color(0));
   const int height = 120 + 18 * std::max(6, static_cast<int>(row_number));
-  return {{Drawing{script, {data}, {560, height}},
+  return {{Drawing{script, {data}, {720, height}},
            "Interval score of each entrant over the lowest one of the quantity, with 95 % intervals; lower is better",
            "Interval scores of the entrants"}};
 }
@@ -178,7 +219,7 @@ std::string challenge_json(const ChallengeScore& score) {
 std::string challenge_text(const ChallengeScore& score) {
   std::vector<std::vector<std::string>> rows = rows_of(score);
   rows.insert(rows.begin(), kHeader);
-  std::string text = title_of(score) + "\n\n" + text_table(rows, 3) + "\n";
+  std::string text = printable(answer_of(score)) + "\n\n" + title_of(score) + "\n\n" + text_table(rows, 3) + "\n";
   for (const std::string& sentence : sentences_of(score)) text += printable(sentence) + "\n";
   text += "\n";
   for (const fit::OutsideTally& entrant : score.entrants) text += outside_text(entrant) + "\n";
@@ -186,24 +227,31 @@ std::string challenge_text(const ChallengeScore& score) {
 }
 
 Page challenge_page(const ChallengeScore& score) {
-  Html body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">{}</p>\n", escape(title_of(score)), escape(kHow));
-  std::string meaning;
-  for (const std::string& sentence : sentences_of(score)) meaning += fmt::format("<p>{}</p>\n", escape(sentence));
-  if (!meaning.empty()) body += meaning_section(meaning);
+  const char* const question = "Which estimator is best?";
+  Html body = question_heading(title_of(score), question);
+  body += fmt::format("<p><b>{}</b></p>\n", escape(answer_of(score)));
+  body += figures(score_plot(score));
   HtmlTable table(kHeader, 3);
   for (const std::vector<std::string>& row : rows_of(score)) {
     std::vector<std::string> cells;
-    for (const std::string& cell : row) cells.push_back(escape(cell));
+    for (const std::string& cell : row) cells.push_back(with_small_interval(cell));
     table.row(cells);
   }
   body += "<h2 id=\"table\">Errors, coverage, sharpness</h2>\n" + table.str();
-  body += figures(score_plot(score));
-  body += "<h2 id=\"runs\">Runs</h2>\n";
+  body +=
+      "<p class=\"soft\">95 % intervals are in brackets. The interval score is the width of a 95 % interval, plus 40 "
+      "times the distance of the truth outside it: lower is better.</p>\n";
+  Html pairs;
+  for (const std::string& sentence : sentences_of(score)) pairs += fmt::format("<p>{}</p>\n", escape(sentence));
+  pairs += fmt::format("<p class=\"soft\">{}</p>\n", escape(kHow));
+  body += folded("Who is better than whom", pairs);
+  Html runs;
   for (const fit::OutsideTally& entrant : score.entrants) {
-    body += fmt::format("<p>{}.</p>\n", escape(outside_text(entrant)));
+    runs += fmt::format("<p>{}.</p>\n", escape(outside_text(entrant)));
   }
-  body += fmt::format("<p class=\"soft\">SHA-256 of the truth: {}</p>\n", escape(score.challenge.truth_sha256));
-  return page(title_of(score), body);
+  runs += fmt::format("<p class=\"soft\">SHA-256 of the truth: {}</p>\n", escape(score.challenge.truth_sha256));
+  body += folded("Runs", runs);
+  return page(question, body);
 }
 
 }  // namespace glidelab::report

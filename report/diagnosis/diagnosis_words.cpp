@@ -55,14 +55,6 @@ std::string percent(double probability) {
   return fmt::format("{:.0f} %", 100.0 * probability);
 }
 
-std::string list_of(const std::vector<std::string>& words, const std::string& last) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
-  }
-  return text;
-}
-
 namespace {
 
 /// Decimals of a value to the first digit of its standard deviation, two at least.

@@ -27,9 +27,6 @@ std::string explanation_html(const diagnose::Explanation& explanation);
 /// A probability for a person: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
 std::string percent(double probability);
 
-/// "a, b and c", or with another last word: "a, b, or c".
-std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ");
-
 std::string note_words(const diagnose::Note& note);
 
 std::vector<std::string> notes_words(const std::vector<diagnose::Note>& notes);

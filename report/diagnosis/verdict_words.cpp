@@ -11,6 +11,7 @@
 #include "report/diagnosis/cause_words.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/html/html.h"
+#include "report/text/display_text.h"
 
 namespace glidelab::report {
 namespace {

@@ -91,6 +91,9 @@ std::string interval_text(const std::optional<diagnose::GapInterval>& interval);
 /// How much of what is above the floor goes: "96.9 % (95.8 to 98.0 %)"; "" where the gap is at the floor.
 std::string shrink_text(const diagnose::GapSizes& gap);
 
+/// "a, b and c", or with another last word: "a, b, or c".
+std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ");
+
 /// The text with "?" for each control character: a clip's name must not steer the terminal.
 std::string printable(std::string text);
 

@@ -1,0 +1,61 @@
+/// The first line of a challenge's score: who is best in what, and where nobody is.
+#include "report/challenge/challenge_report.h"
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+validate::ChallengeQuantity quantity_of(const char* key, const std::vector<std::size_t>& ranks, std::size_t answers) {
+  validate::ChallengeQuantity quantity{key, {}, {}};
+  for (std::size_t e = 0; e < ranks.size(); ++e) {
+    validate::ChallengeRow row;
+    row.entrant = e;
+    row.true_values = 8;
+    row.answers = answers;
+    row.rank = ranks[e];
+    if (answers > 0) row.rms_error = row.interval_score = validate::ScoredMean{0.01, 0.005, 0.02};
+    quantity.rows.push_back(row);
+  }
+  return quantity;
+}
+
+validate::ChallengeScore score_of(std::vector<validate::ChallengeQuantity> quantities) {
+  validate::ChallengeScore score;
+  score.challenge.cases = 8;
+  for (const char* name : {"mine", "lines", "spline"}) {
+    fit::OutsideTally entrant;
+    entrant.name = name;
+    score.entrants.push_back(entrant);
+    score.timed.push_back(false);
+  }
+  score.quantities = std::move(quantities);
+  return score;
+}
+
+std::string first_line(const validate::ChallengeScore& score) {
+  const std::string text = report::challenge_text(score);
+  return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+TEST_CASE("a challenge's score begins with who is best in what") {
+  CHECK(first_line(score_of({quantity_of("k_over_m_1_s", {2, 1, 3}, 8), quantity_of("mu", {3, 1, 2}, 8)})) ==
+        "Best in K/m and µ: lines.");
+  CHECK(first_line(score_of({quantity_of("k_over_m_1_s", {1, 1, 3}, 8), quantity_of("mu", {1, 2, 2}, 8)})) ==
+        "In K/m 8 cases do not tell mine and lines apart, the best of 3. Best in µ: mine.");
+  CHECK(first_line(score_of({quantity_of("mu", {1, 1, 1}, 8)})) ==
+        "In µ 8 cases do not tell mine, lines and spline apart.");
+  CHECK(first_line(score_of({quantity_of("alpha_deg", {1, 1, 1}, 0)})) == "Nobody has an answer to α.");
+}
+
+TEST_CASE("the page of a challenge's score begins with the same answer, and folds the pairs away") {
+  const std::string html = report::challenge_page(score_of({quantity_of("mu", {2, 1, 3}, 8)})).html;
+  const std::size_t answer = html.find("Best in µ: lines.");
+  REQUIRE(answer != std::string::npos);
+  CHECK(answer < html.find("<h2"));
+  CHECK(html.find("Which estimator is best?") < answer);
+  CHECK(html.find("<details class=\"part\"><summary>Who is better than whom") != std::string::npos);
+}
