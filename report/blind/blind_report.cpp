@@ -344,11 +344,13 @@ std::string blind_text(const BlindRun& run) {
 Page blind_page(const BlindRun& run) {
   if (run.everyday) return everyday_page(run);
   const validate::BlindScore& score = run.score;
-  Html body = fmt::format(
-      "<h1>Blind cases</h1>\n<p class=\"soft\">{} experiments{}, seed {}, made by a generator that shares no "
-      "model with the diagnosis; each was diagnosed by another process that was given the experiment folder "
-      "only.</p>\n",
-      run.outcomes.size(), run.pictures ? ", rendered as clips" : " of tracks", run.seed);
+  const char* const question = "How often is the diagnosis right?";
+  Html body = question_heading(
+      fmt::format("blind cases: {} {}, seed {}", run.outcomes.size(), run.pictures ? "films" : "tracks", run.seed),
+      question);
+  body +=
+      "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis. Another "
+      "process that was given the experiment folder only diagnosed each.</p>\n";
   body += blind_meaning(score);
   HtmlTable targets({"what", "found", "wanted"});
   for (const BlindTarget& target : blind_targets(score)) {
@@ -385,7 +387,7 @@ Page blind_page(const BlindRun& run) {
           : "On tracks, a wrong scale and a wrong frame rate count as one, and so do a shaking camera and a shaking "
             "table.</p>\n";
   body += "<h2>All cases</h2>\n" + cases_table(run);
-  return page("Blind cases", body);
+  return page(question, body);
 }
 
 }  // namespace glidelab::report

@@ -315,11 +315,13 @@ std::string everyday_text(const BlindRun& run) {
 
 Page everyday_page(const BlindRun& run) {
   const EverydayScore& score = *run.everyday;
-  Html body = fmt::format(
-      "<h1>Blind cases as students record them</h1>\n<p class=\"soft\">{} experiments of tracks, seed {}, made by a "
-      "generator that shares no model with the diagnosis. Each has three to five small imperfections besides its "
-      "causes; each was diagnosed by another process that was given the experiment folder only.</p>\n",
-      run.outcomes.size(), run.seed);
+  const char* const question = "How often is the diagnosis right about experiments as students record them?";
+  Html body = question_heading(fmt::format("blind cases: {} everyday tracks, seed {}", run.outcomes.size(), run.seed),
+                               question);
+  body +=
+      "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis, each with "
+      "three to five small imperfections besides its causes. Another process that was given the experiment folder only "
+      "diagnosed each.</p>\n";
   HtmlTable targets({"what", "found (95 % interval)", "wanted"});
   for (const EverydayTarget& target : everyday_targets(score)) {
     const char* how = !bears(target) ? "" : is_met(target) ? ": met" : ": missed";
@@ -341,7 +343,7 @@ Page everyday_page(const BlindRun& run) {
       "the gap most when added to it, and claims them where they take half of the excess; it states no probability, "
       "so each of its names counts as certain.</p>\n<h2>All cases</h2>\n" +
       everyday_cases_table(run);
-  return page("Everyday blind cases", body);
+  return page(question, body);
 }
 
 }  // namespace glidelab::report

@@ -229,16 +229,16 @@ std::string how_judged(const Requirement& requirement) {
 }  // namespace
 
 Page requirement_report(const Requirement& requirement) {
-  Html body =
-      fmt::format("<h1>Which of these reaches {}?</h1>\n<p><b>{}</b> {}</p>\n<p>{} From <i>{}</i>.</p>\n",
-                  escape(targets_text(requirement)), escape(requirement_answer(requirement)),
-                  escape(enough_words(requirement)), escape(counts_text(requirement)), escape(requirement.name));
+  const std::string question = fmt::format("Which of these reaches {}?", targets_text(requirement));
+  Html body = question_heading(requirement.name, question);
+  body += fmt::format("<p><b>{}</b> {}</p>\n<p>{}</p>\n", escape(requirement_answer(requirement)),
+                      escape(enough_words(requirement)), escape(counts_text(requirement)));
   const std::string next = next_step(requirement);
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
   body += figures({requirement_plot(requirement)});
   body += candidate_table(requirement) + limits_list(requirement);
   body += folded("How this was judged", how_judged(requirement));
-  return page(requirement.name, body);
+  return page(question, body);
 }
 
 std::string requirement_text(const Requirement& requirement) {
