@@ -8,6 +8,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,34 @@ std::vector<std::string> misplaced_tests(const std::vector<Source>& tests, const
   return found;
 }
 
+/// Types that two files define in one namespace: their members' inline functions share one symbol, of which the linker
+/// takes any. Unnamed namespaces are each file's own.
+std::vector<std::string> defined_twice(const std::vector<Source>& sources) {
+  static const std::regex kNamespace(R"(namespace ?([\w:]*) ?\{)");
+  static const std::regex kType(R"((?:struct|class|union|enum|enum class) (\w+)(?: final)?(?: :[^:].*)? \{.*)");
+  std::map<std::string, std::vector<std::string>> files_of;
+  for (const Source& source : sources) {
+    std::vector<std::string> spaces;
+    std::istringstream lines(source.text);
+    std::string line;
+    std::smatch match;
+    while (std::getline(lines, line)) {
+      if (std::regex_match(line, match, kNamespace)) {
+        spaces.push_back(match[1]);
+      } else if (line.starts_with("}  // namespace") && !spaces.empty()) {
+        spaces.pop_back();
+      } else if (std::find(spaces.begin(), spaces.end(), "") == spaces.end() && std::regex_match(line, match, kType)) {
+        files_of[fmt::format("{}::{}", fmt::join(spaces, "::"), match[1].str())].push_back(source.path.string());
+      }
+    }
+  }
+  std::vector<std::string> found;
+  for (const auto& [type, files] : files_of) {
+    if (files.size() > 1) found.push_back(fmt::format("{} in {}", type, fmt::join(files, ", ")));
+  }
+  return found;
+}
+
 /// Rooms and tests; the examples are programs of their own.
 std::vector<Source> all_sources() {
   std::vector<std::string> folders = kRooms;
@@ -152,6 +181,23 @@ TEST_CASE("no two files have one name") {
   CHECK(named_twice({{"core/a/x.h", ""}, {"core/a/x.cpp", ""}, {"core/b/y.h", ""}}).empty());
   CHECK(named_twice({{"core/a/x.h", ""}, {"core/b/x.h", ""}}) == std::vector<std::string>{"x in core/a, core/b"});
   CHECK(named_twice({{"core/a/x.h", ""}, {"report/x.cpp", ""}}).size() == 1);
+}
+
+TEST_CASE("no type of a namespace is defined by two files") {
+  CHECK(defined_twice(all_sources()) == std::vector<std::string>{});
+  const std::string open = "namespace glidelab::core {\n", close = "}  // namespace glidelab::core\n";
+  const Source one{"core/a.h", open + "struct Part {\n  int a;\n};\nclass Solver : public Base {\n};\n" + close};
+  CHECK(defined_twice({one, {"core/b.h", open + "struct Part;\nstruct Whole {\n  struct Part {};\n};\n" + close}})
+            .empty());
+  CHECK(
+      defined_twice({one, {"core/b.cpp", open + "namespace {\nstruct Part {\n};\n}  // namespace\n" + close}}).empty());
+  CHECK(
+      defined_twice({one, {"sim/b.h", "namespace glidelab::sim {\nstruct Part {\n};\n}  // namespace glidelab::sim\n"}})
+          .empty());
+  CHECK(defined_twice({one, {"core/b.h", open + "struct Part {\n  double b;\n};\n" + close}}) ==
+        std::vector<std::string>{"glidelab::core::Part in core/a.h, core/b.h"});
+  CHECK(defined_twice({one, {"core/b.cpp", open + "namespace {\n}  // namespace\nclass Solver {\n};\n" + close}}) ==
+        std::vector<std::string>{"glidelab::core::Solver in core/a.h, core/b.cpp"});
 }
 
 TEST_CASE("every source has the header of its name, unless it is an item of a list") {

@@ -33,7 +33,7 @@ MotionParts::MotionParts(const SmoothingInput& of) : input(of) {
   double span = 0.0, steps = 0.0;
   for (const SeriesPart& of_points : parts_of(input)) {
     const double from = input.t_s[of_points.first], to = input.t_s[of_points.first + of_points.count - 1];
-    MotionPart part{of_points, {}, {}, 0};
+    SmoothedPart part{of_points, {}, {}, 0};
     while (a < input.at_s.size() && input.at_s[a] < from) ++a;
     part.first_at = a;
     for (; a < input.at_s.size() && input.at_s[a] <= to; ++a) part.at_s.push_back(input.at_s[a]);
@@ -54,10 +54,10 @@ MotionParts::MotionParts(const SmoothingInput& of) : input(of) {
 }
 
 bool MotionParts::breaks() const {
-  return std::any_of(parts.begin(), parts.end(), [](const MotionPart& part) { return !part.breaks_s.empty(); });
+  return std::any_of(parts.begin(), parts.end(), [](const SmoothedPart& part) { return !part.breaks_s.empty(); });
 }
 
-bool MotionParts::breaks_stand(const MotionPart& part) const {
+bool MotionParts::breaks_stand(const SmoothedPart& part) const {
   const auto begin = input.t_s.begin() + static_cast<std::ptrdiff_t>(part.points.first);
   const auto end = begin + static_cast<std::ptrdiff_t>(part.points.count);
   auto from = begin;
@@ -75,7 +75,7 @@ PartedMotion<N>::PartedMotion(const MotionParts& parts) : parts_(parts) {
   const double rounding = std::numeric_limits<double>::epsilon() * parts.range_m;
   least_variance_ = std::max(rounding * rounding, std::numeric_limits<double>::min());
   const SmoothingInput& input = parts.input;
-  for (const MotionPart& part : parts.parts) {
+  for (const SmoothedPart& part : parts.parts) {
     const std::span factor = input.noise_factor.empty()
                                  ? std::span<const double>()
                                  : std::span(input.noise_factor).subspan(part.points.first, part.points.count);
@@ -109,7 +109,7 @@ double PartedMotion<N>::minus_two_log_likelihood(const Smoothness& how) const {
   double value = all.minus_two_log_likelihood(noise_variance(all));
   double unknown = static_cast<double>(parts_.parts.size());
   if (std::isinf(how.jump_1_s2)) {
-    for (const MotionPart& part : parts_.parts) unknown += static_cast<double>(part.breaks_s.size());
+    for (const SmoothedPart& part : parts_.parts) unknown += static_cast<double>(part.breaks_s.size());
   }
   double size = kSize * parts_.range_m / parts_.longest_s;
   for (int d = 2; d < N; ++d) {
@@ -142,7 +142,7 @@ template <int N>
 double refine_breaks(const std::vector<ChainPosterior<N>>& posteriors, MotionParts& parts) {
   double farthest = 0.0;
   for (std::size_t p = 0; p < parts.parts.size(); ++p) {
-    MotionPart& part = parts.parts[p];
+    SmoothedPart& part = parts.parts[p];
     for (double& at : part.breaks_s) {
       const std::optional<double> turn = turn_near(posteriors[p], at);
       if (!turn) continue;

@@ -12,7 +12,7 @@
 namespace glidelab::core {
 
 /// One part with its own breaks and the times that are wanted in it.
-struct MotionPart {
+struct SmoothedPart {
   SeriesPart points;
   std::vector<double> breaks_s;
   std::vector<double> at_s;
@@ -25,10 +25,10 @@ struct MotionParts {
 
   bool breaks() const;
   /// Whether every side of the part's breaks has kFewestSmoothed positions.
-  bool breaks_stand(const MotionPart& part) const;
+  bool breaks_stand(const SmoothedPart& part) const;
 
   const SmoothingInput& input;
-  std::vector<MotionPart> parts;
+  std::vector<SmoothedPart> parts;
   double step_s = 0.0;     ///< the mean one
   double longest_s = 0.0;  ///< part
   double range_m = 0.0;    ///< of all positions

@@ -224,7 +224,7 @@ KernelRow with_rate(const KernelRow& row, const Eigen::Array3d& by_rate, const s
 
 /// Of every so many points of a part.
 template <int N>
-void fill_rows(const ChainPosterior<N>& posterior, const MotionPart& part, std::size_t every,
+void fill_rows(const ChainPosterior<N>& posterior, const SmoothedPart& part, std::size_t every,
                std::vector<std::optional<KernelRow>>& rows) {
   std::vector<std::size_t> nodes, points;
   for (std::size_t k = 0; k < posterior.size(); ++k) {
@@ -345,7 +345,7 @@ class WienerSmoother final : public Smoother {
     const double most_rows = std::max(kMostRows, kRowsOfParameter * sums.trace);
     const std::size_t every = std::max<std::size_t>(1, static_cast<std::size_t>(parts.points / most_rows));
     for (std::size_t p = 0; p < parts.parts.size(); ++p) {
-      const MotionPart& part = parts.parts[p];
+      const SmoothedPart& part = parts.parts[p];
       strength.breaks_s.insert(strength.breaks_s.end(), part.breaks_s.begin(), part.breaks_s.end());
       fill(posteriors[p], sd[p], part, made.points, made.at);
       if (parts.input.rows) fill_rows(posteriors[p], part, every, made.rows);
@@ -370,7 +370,7 @@ class WienerSmoother final : public Smoother {
   }
 
   template <int N>
-  static void fill(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& sd, const MotionPart& part,
+  static void fill(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& sd, const SmoothedPart& part,
                    std::vector<std::optional<SmoothedState>>& points,
                    std::vector<std::optional<SmoothedState>>& times) {
     std::size_t a = part.first_at;
@@ -393,7 +393,7 @@ class WienerSmoother final : public Smoother {
 
   template <int N>
   static void add_rate(const ChainPosterior<N>& posterior, const std::vector<Eigen::Array3d>& by_rate,
-                       const std::vector<double>& point_gain, const MotionPart& part, SmoothedSeries& made) {
+                       const std::vector<double>& point_gain, const SmoothedPart& part, SmoothedSeries& made) {
     for (std::size_t k = 0; k < posterior.size(); ++k) {
       const ChainNode& node = posterior.node(k);
       if (!node.point) continue;
