@@ -160,8 +160,9 @@ double like_bandwidth(const std::vector<ChainPosterior<N>>& posteriors, double s
       at = k;
     }
   }
+  const std::vector<KernelRow> rows = best->rows({at});
   double squares = 0.0;
-  for (const double w : best->rows({at}).front().weights->a) squares += w * w;
+  for (const double w : rows.front().weights->a) squares += w * w;
   return std::pow(kGaussianA.variance * step_s / squares, 0.2);
 }
 
