@@ -12,6 +12,7 @@
 #include "core/characterize/flat_field_folder.h"
 #include "core/characterize/photon_transfer.h"
 #include "report/characterize/camera_report.h"
+#include "report/characterize/camera_toml.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::app {
@@ -36,7 +37,7 @@ void characterize(const CharacterizeOptions& options) {
   ProgressDisplay display(options.common.quiet, options.common.verbose);
   const core::CameraMeasurement camera = core::measure_camera(folder, display.callback());
   const std::string json = report::camera_json(camera);
-  base::write_file(staged.dir() / "camera.toml", core::camera_toml(camera));
+  base::write_file(staged.dir() / "camera.toml", report::camera_toml(camera));
   base::write_file(staged.dir() / "characterize.json", json);
   report::write_page(staged.dir(), "report.html", report::camera_report(camera));
   throw_if_interrupted();

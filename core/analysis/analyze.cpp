@@ -52,26 +52,15 @@ void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipS
   }
 }
 
-/// What a file on its own does not say and nobody states.
-std::string assumption(const TrackFileOptions& stated, double mass_kg) {
-  const bool mass = !stated.mass_kg && stated.masses_kg.empty(), incline = !stated.incline_deg;
-  if (!mass && !incline) return {};
-  const std::string of_mass = fmt::format("a mass of {:g} kg", mass_kg), of_incline = "an inclination of 0°";
-  return fmt::format(
-      "{} assumed, for nobody states {} ({}): K/m, µ and α come from the motion and do not "
-      "depend on that",
-      mass && incline ? of_mass + " and " + of_incline + " are" : (mass ? of_mass : of_incline) + " is",
-      mass && incline ? "them" : "it", mass && incline ? "--mass, --incline" : (mass ? "--mass" : "--incline"));
-}
-
 void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetup>& setups,
                       const std::vector<const Experiment*>& experiment_of,
                       std::vector<ConfigurationResult>& configurations) {
   for (ConfigurationResult& configuration : configurations) {
     for (std::size_t i = 0; i < setups.size(); ++i) {
       if (setups[i].name != configuration.clips.front() || !is_bare_track(experiment_of[i]->file)) continue;
-      const std::string assumed = assumption(stated, setups[i].mass_kg);
-      if (!assumed.empty()) configuration.notes.push_back(assumed);
+      AssumedStatements assumed{{}, !stated.incline_deg};
+      if (!stated.mass_kg && stated.masses_kg.empty()) assumed.mass_kg = setups[i].mass_kg;
+      if (assumed.mass_kg || assumed.level) configuration.notes.emplace_back(assumed);
       break;
     }
   }

@@ -66,10 +66,7 @@ std::vector<MarkerLook> looks_of(const TrackedMarker& marker, const std::vector<
 void put_even(SeenClip& seen) {
   std::optional<EvenTimes> even = even_times(seen.frame_t_s);
   if (!even) return;
-  seen.notes.push_back(
-      fmt::format("the container's time stamps are whole multiples of {:.4g} ms, and frames at an even distance of "
-                  "{:.6g} ms (to {:.0f} parts in a million) explain them all: those times are used",
-                  even->tick_s * 1e3, even->step_s * 1e3, std::ceil(even->half_width_s / even->step_s * 1e6)));
+  seen.notes.emplace_back(EvenStamps{even->tick_s, even->step_s, even->half_width_s});
   seen.frame_t_s = std::move(even->t_s);
 }
 
@@ -144,7 +141,6 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
   seen.predicted = source->facts().predicts;
   if (experiment.camera->time == TimeSource::container) put_even(seen);
   if (scene) finish_record(source->facts(), *scene, seen);
-  seen.notes.insert(seen.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
   return seen;
 }
 
@@ -181,8 +177,6 @@ SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const Cam
     const double others = bright && moves(bright->marker) ? static_cast<double>(bright->marker.sightings.size()) : 0.0;
     if (well_seen(seen.marker) && static_cast<double>(seen.marker.sightings.size()) > kFarBetter * others) {
       seen.dark_marker = true;
-      seen.notes.emplace_back(
-          "the marker is darker than its surroundings; set color = \"#101010\" in [marker] to look for a dark one");
       return seen;
     }
   } catch (const base::InputError&) {
@@ -231,11 +225,6 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   const auto better = [&](SeenClip& first) {
     auto marker = look_again(first.marker, again, background, shape_at);
     if (!marker) return false;
-    const std::vector<std::string>& as_disc = first.marker.notes;
-    std::erase_if(first.notes, [&](const std::string& note) {
-      return std::find(as_disc.begin(), as_disc.end(), note) != as_disc.end();
-    });
-    first.notes.insert(first.notes.end(), marker->notes.begin(), marker->notes.end());
     first.marker = *std::move(marker);
     if (first.pictures) first.pictures->marker = looks_of(first.marker, first.frame_t_s);
     return true;
@@ -282,6 +271,8 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   track.frame_rate_hz = camera.frame_rate_hz;
   track.frame_t_s = seen.frame_t_s;
   track.notes = seen.notes;
+  track.notes.insert(track.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
+  if (seen.dark_marker) track.notes.emplace_back(DarkMarker{});
   track.pictures = seen.pictures;
   track.dark_marker = seen.dark_marker;
   for (const PlanePoint& point : points) {
@@ -295,17 +286,14 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
     track.sightings.push_back(point.sighting);
   }
   const std::size_t lost = seen.marker.sightings.size() - points.size();
-  if (lost > 0) {
-    track.notes.push_back(fmt::format("{} sightings lie where the lens model has no ray and are left out", lost));
-  }
+  if (lost > 0) track.notes.emplace_back(NoRay{lost});
   track.scale_sd_relative = restitution.relative_scale_sd();
   return track;
 }
 
-void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<std::string>& notes) {
+void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<Note>& notes) {
   if (has_pattern && std::abs(axis.angle_to_x_rad()) > kSlantedRad) {
-    notes.push_back(fmt::format("the line of motion makes {:.0f} degrees with the pattern's X axis",
-                                axis.angle_to_x_rad() * base::kDegreesPerRad));
+    notes.emplace_back(SlantedLine{axis.angle_to_x_rad() * base::kDegreesPerRad});
   }
 }
 
@@ -395,10 +383,10 @@ class GroupTracks {
         along_y ? "\"+X\" (to the right) or \"-X\"" : "\"+Y\" (towards the image's lower edge) or \"-Y\""});
   }
 
-  void add_notes(const MotionAxis& axis, std::vector<std::string>& notes) const {
+  void add_notes(const MotionAxis& axis, std::vector<Note>& notes) const {
     note_axis(axis, experiment_.calibration.has_value(), notes);
     if (experiment_.scale && experiment_.scale->px_per_m_sd == 0.0) {
-      notes.emplace_back("the scale is taken as exact (px_per_m_sd is 0 or not given)");
+      notes.emplace_back(ExactScale{});
     }
   }
 
@@ -433,10 +421,7 @@ void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenCli
     track.shared_m.resize(results.modes);
     for (const auto& mode : drag->error_m) track.shared_m.push_back(mode[k]);
     if (drag->log_evidence < kBeyondDoubt) continue;
-    track.notes.push_back(
-        fmt::format("the codec draws the marker towards displacements of parts of a pixel a frame, by {:.2g} px (root "
-                    "mean square): that is taken off, and the intervals allow for what is not known of it",
-                    drag->rms_px));
+    track.notes.emplace_back(CodecDragSubtracted{drag->rms_px});
   }
   results.modes += drag->error_m.size();
 }

@@ -26,9 +26,9 @@ namespace glidelab::core {
 /// What one clip's images show, in pixels: the marker in every frame, the frames' times, and anything else of note.
 struct SeenClip {
   TrackedMarker marker;
-  std::vector<double> frame_t_s;  ///< of all frames
-  cv::Size size;                  ///< of the images
-  std::vector<std::string> notes;
+  std::vector<double> frame_t_s;            ///< of all frames
+  cv::Size size;                            ///< of the images
+  std::vector<Note> notes;                  ///< of the file; those of the marker are its own
   std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
   bool dark_marker = false;                 ///< seen as darker than its surroundings, without a colour that says so
   std::optional<bool> predicted;  ///< by a lossy codec, out of the images before; nothing where it is not known

@@ -1,5 +1,5 @@
-/// A measured camera, the result of photon transfer, as plain data and as a file with the keys of a scenario's
-/// [sensor]. report/ writes it as JSON, table and page.
+/// A measured camera, the result of photon transfer, as plain data. report/ writes it as a file with the keys of a
+/// scenario's [sensor], as JSON, table and page.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/characterize/camera_note.h"
 #include "core/characterize/flat_field_folder.h"
 
 namespace glidelab::core {
@@ -56,16 +57,7 @@ struct CameraMeasurement {
   std::vector<TransferPoint> curve;     ///< by rising mean
   std::optional<double> intercept_dn2;  ///< of the line, at the dark level
   double saturation_dn = 0.0;           ///< above dark; the 70 % refer to it
-  std::vector<std::string> notes;       ///< what a reader should know
+  std::vector<CameraNote> notes;        ///< what a reader should know
 };
-
-/// A measured camera as a file: the keys of a scenario's [sensor], each with its standard deviation in a comment. TOML
-/// 1.0. Numbers have no more digits than their standard deviations support.
-///
-/// A number that was not measured but has a limit is written as that limit, so that a rehearsal with the file errs on
-/// the side of caution; the comment says so. A number without a limit is written as nan, which no reader accepts:
-/// whoever uses the file has to decide. A dark signal that was not measured is left out; at exposures of milliseconds
-/// it does not matter.
-std::string camera_toml(const CameraMeasurement& camera);
 
 }  // namespace glidelab::core

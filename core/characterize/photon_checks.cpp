@@ -214,77 +214,46 @@ std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quali
 
 namespace {
 
-std::string flicker_note(const Evidence& evidence) {
-  double most = 0.0;
-  std::size_t levels = 0;
+std::optional<Flicker> flicker_of(const Evidence& evidence) {
+  Flicker flicker;
   for (const FlatFieldStack& flat : evidence.flats) {
     const auto [low, high] = std::minmax_element(flat.frame_means_dn.begin(), flat.frame_means_dn.end());
     const double change = (*high - *low) / (flat.all.mean_dn - evidence.darks.front().all.mean_dn);
     if (!(change > kFlickerNoted) || *high - *low < 0.5) continue;  // half a code: the dark level moves by as much
-    most = std::max(most, change);
-    ++levels;
+    flicker.part = std::max(flicker.part, change);
+    ++flicker.levels;
   }
-  if (levels == 0) return {};
-  return fmt::format(
-      "The light changes from frame to frame by up to {:.1f} %, in {} of {} levels: the lamp flickers, or the exposure "
-      "is automatic. The gain is not affected.",
-      100.0 * most, levels, evidence.flats.size());
+  if (flicker.levels == 0) return std::nullopt;
+  flicker.of_levels = evidence.flats.size();
+  return flicker;
 }
 
-std::string correlation_note(const FlatFieldStack& bright) {
-  const double correlation = neighbour_correlation(bright);
-  if (correlation <= std::max(kCorrelationNoted, kLevelSignificance / std::sqrt(bright.all.pixels))) return {};
-  return fmt::format(
-      "The noise of neighbouring pixels is correlated by {:.3f}: the gain may be too small by a few per cent.",
-      correlation);
+/// Whether the noise of neighbouring pixels is correlated by more than `limit`, and than chance makes.
+bool is_correlated(const FlatFieldStack& level, double limit) {
+  return neighbour_correlation(level) > std::max(limit, kLevelSignificance / std::sqrt(level.all.pixels));
 }
 
 }  // namespace
 
-std::vector<std::string> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,
-                                         const Measured& linearity, bool gain_known) {
+std::vector<CameraNote> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,
+                                        const Measured& linearity, bool gain_known) {
   const Evidence& evidence = gathered.evidence;
   const FlatFieldStack& dark = evidence.darks.front();
-  std::vector<std::string> notes;
-  const auto note = [&](std::string text) {
-    if (!text.empty()) notes.push_back(std::move(text));
-  };
-  if (gathered.mosaic) {
-    note(
-        "The pixels of the 2 x 2 mosaic differ in brightness: these are raw codes of a colour sensor. PRNU is measured "
-        "for each colour.");
-  }
+  std::vector<CameraNote> notes;
+  if (gathered.mosaic) notes.emplace_back(ColourMosaic{});
   if (gain_known) {
     const FlatFieldStack& bright = evidence.flats[*gathered.middle_level];
-    if (quality.bend > kBendNoted) {
-      note(fmt::format(
-          "The variance departs from a straight line over the mean by up to {:.1f} %: the sensor is not quite "
-          "linear, or the light is not constant.",
-          100.0 * quality.bend));
-    }
-    if (linearity.value && *linearity.value > kLinearityNoted) {
-      note(fmt::format(
-          "The mean departs from a straight line over the exposure by {:.1f} %: if a tone curve causes this, and "
-          "not the lamp or the shutter, the gain is wrong by several times as much.",
-          100.0 * *linearity.value));
-    }
-    note(correlation_note(bright));
+    if (quality.bend > kBendNoted) notes.emplace_back(BentVariance{quality.bend});
+    if (linearity.value && *linearity.value > kLinearityNoted) notes.emplace_back(BentMean{*linearity.value});
+    if (is_correlated(bright, kCorrelationNoted)) notes.emplace_back(CorrelatedPixels{neighbour_correlation(bright)});
     if (bright.successive_ratio && *bright.successive_ratio < kSuccessiveNoted) {
-      note(fmt::format("Differences of successive frames have {:.1f} % of the variance of frames two apart.",
-                       100.0 * *bright.successive_ratio));
+      notes.emplace_back(SuccessiveFramesAlike{*bright.successive_ratio});
     }
   }
-  note(flicker_note(evidence));
-  if (neighbour_correlation(dark) > std::max(kCorrelationRefused, kLevelSignificance / std::sqrt(dark.all.pixels))) {
-    note(
-        fmt::format("The noise of the dark frames is correlated by {:.2f} between neighbouring pixels: rows or columns "
-                    "have readout noise of their own.",
-                    neighbour_correlation(dark)));
-  }
+  if (const auto flicker = flicker_of(evidence)) notes.emplace_back(*flicker);
+  if (is_correlated(dark, kCorrelationRefused)) notes.emplace_back(CorrelatedDark{neighbour_correlation(dark)});
   if (static_cast<double>(gathered.outlying_pixels) > 0.01 * gathered.grid.size().area()) {
-    note(
-        "More than 1 % of the pixels are outliers: the fixed patterns are not normally distributed, and PRNU and DSNU "
-        "describe their cores.");
+    notes.emplace_back(ManyOutlyingPixels{});
   }
   return notes;
 }

@@ -9,6 +9,7 @@
 
 #include "core/characterize/camera_evidence.h"
 #include "core/characterize/camera_measurement.h"
+#include "core/characterize/camera_note.h"
 #include "core/characterize/flat_field_folder.h"
 #include "core/characterize/photon_numbers.h"
 
@@ -49,7 +50,7 @@ std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quali
                         const Measured& linearity);
 
 /// What a reader should know about how the images were taken.
-std::vector<std::string> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,
-                                         const Measured& linearity, bool gain_known);
+std::vector<CameraNote> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,
+                                        const Measured& linearity, bool gain_known);
 
 }  // namespace glidelab::core

@@ -157,8 +157,7 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
     });
     if (found == factors.end())
       break;  // a marker found in no size in one clip is hardly found in the others, and each try takes time
-    attempts[i].track.notes.push_back("a marker of the stated diameter_m is not found: " +
-                                      std::exchange(attempts[i].failure, {}));
+    attempts[i].track.notes.emplace_back(NotOfStatedSize{std::exchange(attempts[i].failure, {})});
     std::rotate(factors.begin(), found, found + 1);
   }
   return attempts;

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/result/analysis_note.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -38,10 +39,11 @@ enum class Topic {
 struct Finding {
   Severity severity = Severity::note;
   std::string about;   ///< "pattern", "masses", "plumb line", or clips' names
-  std::string found;   ///< "the marker is 4.1 px wide"
+  std::string found;   ///< "the marker is 4.1 px wide"; empty where a note says it
   std::string advice;  ///< "move closer or use a bigger one"; empty if nothing is to be done
   Topic topic = Topic::other;
-  std::vector<std::string> follow = {};  ///< findings that follow from this one, which is their root cause
+  std::optional<Note> note = {};     ///< what is found, where the analysis notes the same
+  std::vector<Finding> follow = {};  ///< findings that follow from this one, which is their root cause
 };
 
 struct PixelPlace {
@@ -140,7 +142,7 @@ struct ClipCheck {
   double inside_pattern = 1.0;                  ///< share of the sightings within the outline of all corners seen
   std::vector<PixelPlace> path;                 ///< at most 200 positions
   std::vector<MarkerSighting> sightings;
-  std::vector<std::string> notes;  ///< from reading the clip
+  std::vector<Note> notes;  ///< from reading the clip
 };
 
 struct RecordingCheck {
@@ -176,6 +178,7 @@ class FindingBook {
   void add(Severity severity, std::string found, std::string advice = {}, Topic topic = Topic::other) {
     findings_.push_back({severity, about_, std::move(found), std::move(advice), topic});
   }
+  void add(Note note) { findings_.push_back({Severity::note, about_, {}, {}, Topic::other, std::move(note)}); }
 
  private:
   std::vector<Finding>& findings_;

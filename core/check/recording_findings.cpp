@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 #include "base/math/angles.h"
 #include "core/check/motion_look.h"
@@ -67,8 +68,8 @@ void judge_pattern(const PatternCheck& pattern, FindingBook book) {
                          camera.plane_rms_px, camera.plane_expected_px),
              "retake the plane view with the same focus, zoom and image size as all others, the board flat and still");
   }
-  for (const std::string& note : camera.notes) {
-    if (!note.starts_with("no pattern in sight")) book.add(Severity::note, note);  // reported above, with advice
+  for (const Note& note : camera.notes) {
+    if (!std::holds_alternative<NoPatternInSight>(note)) book.add(note);  // reported above, with advice
   }
 }
 
@@ -274,21 +275,23 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change,
              fmt::format("the track has {} points", clip.seen), "record at a higher rate");
   }
-  for (const std::string& note : clip.notes) {
-    const bool reported = note.find("identical to the frame before") != std::string::npos ||
-                          (note.starts_with("the marker looks ") && size_disagrees(clip));  // above, with advice
-    if (!reported) book.add(Severity::note, note);
+  for (const Note& note : clip.notes) {
+    const bool reported =
+        std::holds_alternative<RepeatedFrames>(note) ||
+        (std::holds_alternative<MarkerOfOtherSize>(note) && size_disagrees(clip));  // above, with advice
+    if (!reported) book.add(note);
   }
 }
 
-/// A finding that several clips share is reported once.
+/// A finding that several clips share is reported once; of notes, report/ says which read the same.
 std::vector<Finding> merged(std::vector<Finding> findings) {
   std::vector<Finding> once;
   std::vector<std::vector<std::string>> about;
   for (Finding& finding : findings) {
     const auto same = std::find_if(once.begin(), once.end(), [&](const Finding& before) {
-      return std::tie(before.severity, before.found, before.advice) ==
-             std::tie(finding.severity, finding.found, finding.advice);
+      return !before.note && !finding.note &&
+             std::tie(before.severity, before.found, before.advice) ==
+                 std::tie(finding.severity, finding.found, finding.advice);
     });
     if (same != once.end()) {
       about[static_cast<std::size_t>(same - once.begin())].push_back(finding.about);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -190,13 +191,8 @@ std::vector<Finding> with_root_causes(const Experiment& experiment, const Record
     const auto follows = [&](const Finding& finding) {
       return std::find(root.explains.begin(), root.explains.end(), finding.topic) != root.explains.end();
     };
-    for (const Finding& finding : findings) {
-      if (follows(finding)) root.finding.follow.push_back(finding.about + ": " + finding.found);
-    }
+    std::copy_if(findings.begin(), findings.end(), std::back_inserter(root.finding.follow), follows);
     std::erase_if(findings, follows);
-    if (const std::size_t many = root.finding.follow.size(); many > 0) {
-      root.finding.found += fmt::format(": {} finding{} follow{}", many, many == 1 ? "" : "s", many == 1 ? "s" : "");
-    }
     result.push_back(std::move(root.finding));
   }
   result.insert(result.end(), std::make_move_iterator(findings.begin()), std::make_move_iterator(findings.end()));

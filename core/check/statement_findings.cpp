@@ -133,11 +133,13 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
     for (const auto& [group, worst] : *worst_of) {
       if (worst_of == &by_plumb && by_key.contains(group)) continue;  // reported above
       findings.push_back({worst.contradiction.gross ? Severity::unusable : Severity::change,
-                          first_names(worst.configuration->clips), worst.contradiction.sentence,
+                          first_names(worst.configuration->clips),
+                          {},
                           fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}",
                                       worst_of == &by_key ? "incline_deg" : "the plumb line", lengths_of(experiment),
                                       experiment.camera ? ", frame_rate_hz (its square enters)" : ""),
-                          Topic::incline});
+                          Topic::incline,
+                          worst.contradiction});
     }
   }
 }

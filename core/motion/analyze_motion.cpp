@@ -122,14 +122,11 @@ void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput inp
     input.k_start_1_s = start != ordinary.end() ? start->k_over_m_1_s.value : 0.0;
     auto line = fit_line_gls(direction, motion, pieces, input);
     if (line) {
-      clip.notes.push_back(
-          fmt::format("v {} 0: the line is fitted to {} positions of free motion, up to its ends and reversals",
-                      direction > 0 ? ">" : "<", line->points));
+      clip.notes.emplace_back(GeneralisedLine{direction, line->points});
       if (start != ordinary.end()) line->r2 = start->r2;  // of the diagram as it is shown
       clip.segments.push_back(std::move(*line));
     } else if (start != ordinary.end()) {
-      clip.notes.push_back(fmt::format("v {} 0: the generalised least squares did not converge; there is no line",
-                                       direction > 0 ? ">" : "<"));
+      clip.notes.emplace_back(NoGeneralisedLine{direction});
     }
   }
 }
@@ -238,54 +235,32 @@ ClipSetup later(ClipSetup setup, const std::vector<LostFrames>& lost, double ste
   return setup;
 }
 
-void note_lost_frames(const std::vector<LostFrames>& lost, LostFrameTimes times, std::vector<std::string>& notes) {
+void note_lost_frames(const std::vector<LostFrames>& lost, LostFrameTimes times, std::vector<Note>& notes) {
   if (lost.empty()) return;
-  std::size_t frames = 0;
-  std::vector<std::string> places;
+  FramesMissing missing;
+  missing.put_right = times == LostFrameTimes::put_right;
   for (const LostFrames& gap : lost) {
-    frames += gap.count;
-    places.push_back(fmt::format("{:.3f} s", gap.after_s));
+    missing.frames += gap.count;
+    missing.after_s.push_back(gap.after_s);
   }
-  constexpr std::size_t kNamed = 6;
-  const bool more = places.size() > kNamed;
-  places.resize(std::min(places.size(), kNamed));
-  notes.push_back(fmt::format(
-      "{} frame{} missing without a gap in the times (after {}{}): the motion jumps there by the distance of whole "
-      "frames; {}",
-      frames, frames == 1 ? " is" : "s are", fmt::join(places, ", "), more ? ", …" : "",
-      times == LostFrameTimes::put_right ? "the later times are corrected" : "the times are left as they are"));
+  notes.emplace_back(std::move(missing));
 }
 
 void note_findings(const Motion& motion, std::size_t outliers, const std::vector<double>& factors, LineMethod lines,
                    ClipResult& clip) {
   const std::vector<double>& covariance_m2 = clip.noise_autocovariance_m2;
-  if (outliers > 0) {
-    clip.notes.push_back(
-        fmt::format("{} of {} positions lie off the motion and are left out", outliers, outliers + motion.t_s.size()));
-  }
-  if (covariance_m2.size() > 1) {
-    clip.notes.push_back(
-        fmt::format("the noise of neighbouring positions is correlated ({:.2f}); the intervals allow for it",
-                    covariance_m2[1] / covariance_m2[0]));
-  }
+  if (outliers > 0) clip.notes.emplace_back(OutliersLeftOut{outliers, outliers + motion.t_s.size()});
+  if (covariance_m2.size() > 1) clip.notes.emplace_back(CorrelatedNoise{covariance_m2[1] / covariance_m2[0]});
   for (const LineFit& line : clip.segments) {
     if (std::isinf(line.parts.degrees)) continue;
-    clip.notes.push_back(
-        fmt::format("v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; "
-                    "the intervals are widened",
-                    line.direction > 0 ? ">" : "<", line.parts.scatter));
+    clip.notes.emplace_back(LineScatters{line.direction, line.parts.scatter});
   }
   if (!factors.empty()) {
     const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
-    clip.notes.push_back(
-        fmt::format("the noise of a position grows with the speed: {} mm at the slowest, {} mm at the fastest; the "
-                    "lines' intervals allow for it",
-                    base::digits_text(1e3 * *least * clip.position_noise_m, 2),
-                    base::digits_text(1e3 * *most * clip.position_noise_m, 2)));
+    clip.notes.emplace_back(NoiseGrowsWithSpeed{*least * clip.position_noise_m, *most * clip.position_noise_m});
   }
   if (clip.rounding_m && lines == LineMethod::ordinary) {
-    clip.notes.push_back(
-        fmt::format("positions are rounded to {:.3g} m and often repeat: the noise is not random", *clip.rounding_m));
+    clip.notes.emplace_back(CoarseRounding{*clip.rounding_m, false});
   }
 }
 
@@ -322,7 +297,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   const FreeMotion free = find_free_motion(motion, setup);
   clip.forced = motion.forced;
   clip.against_launch = free.against_launch;
-  if (free.against_launch) clip.notes.push_back(sentence(*free.against_launch));
+  if (free.against_launch) clip.notes.emplace_back(*free.against_launch);
 
   const BandwidthChoice choice = bandwidth_of(motion, free, options);
   clip.bandwidth_s = choice.bandwidth_s;
@@ -352,10 +327,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
                             noise_factors(motion, free.stretches, choice.bandwidth_s)};
   clip.segments = ordinary_lines(smoothed, setup, weights, whole ? &*whole : nullptr);
   if (options.lines == LineMethod::generalised && clip.rounding_m) {
-    clip.notes.push_back(fmt::format(
-        "positions are rounded to {:.3g} m and often repeat: the rounding error persists over frames, and generalised "
-        "lines, which weight points by the covariance of random noise, are not fitted; ordinary lines take their place",
-        *clip.rounding_m));
+    clip.notes.emplace_back(CoarseRounding{*clip.rounding_m, true});
   } else if (options.lines == LineMethod::generalised) {
     generalise_lines(motion, free, gls_input(smoothed, setup, weights), clip);
   }

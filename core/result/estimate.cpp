@@ -3,19 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/math/angles.h"
+#include "base/math/distributions.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
 
 double student_t975(double degrees) {
   if (!std::isfinite(degrees)) return kNormal95;
-  return boost::math::quantile(boost::math::students_t(degrees), 0.975);
+  return base::student_t_quantile(degrees, 0.975);
 }
 
 Estimate estimate(double value, double sd, double degrees) {
@@ -59,15 +59,6 @@ struct FoundIncline {
   int bound = 0;  ///< -1: at most this, +1: at least this
 };
 
-std::string with_sd(double deg, double sd_deg) {
-  return fmt::format("{:.3g} ± {:.2g}°", deg + 0.0, sd_deg);  // + 0.0: no "-0"
-}
-
-std::string text_of(const StatedIncline& stated) {
-  return fmt::format("{} says {}", stated.by,
-                     stated.sd_deg ? with_sd(stated.deg, *stated.sd_deg) : fmt::format("{:.3g}°", stated.deg + 0.0));
-}
-
 std::optional<FoundIncline> found_incline(const ConfigurationResult& found, double gravity_m_s2) {
   if (found.alpha_deg.estimate) return FoundIncline{found.alpha_deg.estimate->value, found.alpha_deg.estimate->sd};
   if (found.lines.size() != 1) return std::nullopt;
@@ -93,10 +84,13 @@ std::optional<double> beyond_gravity(const ConfigurationResult& found, double gr
 std::optional<InclineContradiction> incline_contradiction(const ConfigurationResult& found, double gravity_m_s2,
                                                           const StatedIncline& stated) {
   if (const auto mean_m_s2 = beyond_gravity(found, gravity_m_s2)) {
-    return InclineContradiction{
-        fmt::format("the acceleration, {:.3g} m/s² without friction, is more than gravity_m_s2 = {:.6g}; {}",
-                    *mean_m_s2, gravity_m_s2, text_of(stated)),
-        std::numeric_limits<double>::infinity(), true};
+    InclineContradiction beyond;
+    beyond.stated = stated;
+    beyond.beyond_gravity = mean_m_s2;
+    beyond.gravity_m_s2 = gravity_m_s2;
+    beyond.off_deg = std::numeric_limits<double>::infinity();
+    beyond.gross = true;
+    return beyond;
   }
   const auto incline = found_incline(found, gravity_m_s2);
   if (!incline) return std::nullopt;
@@ -106,10 +100,7 @@ std::optional<InclineContradiction> incline_contradiction(const ConfigurationRes
   const double sd_deg = std::hypot(incline->sd_deg, stated.sd_deg.value_or(0.0));
   if (off_deg < std::max(kOffDeg, kOffSds * sd_deg)) return std::nullopt;
   const bool gross = off_deg > std::max({kGrossDeg, kGrossShare * std::abs(stated.deg), kGrossSds * sd_deg});
-  const char* bound = incline->bound == 0 ? "" : incline->bound < 0 ? "at most " : "at least ";
-  return InclineContradiction{fmt::format("the acceleration makes the inclination {}{}, {}", bound,
-                                          with_sd(incline->deg, incline->sd_deg), text_of(stated)),
-                              off_deg, gross};
+  return InclineContradiction{stated, incline->deg, incline->sd_deg, incline->bound, {}, gravity_m_s2, off_deg, gross};
 }
 
 StatedIncline stated_incline(const ConfigurationResult& configuration) {
@@ -122,24 +113,15 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
   for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
   for (ConfigurationResult& result : results) {
     if (result.mass_kg >= kMassRatio * least_kg) {
-      result.notes.push_back(
-          fmt::format("mass_kg = {:.6g}, but {:.6g} for the lightest glider: masses are in kilograms, and one of these "
-                      "looks like grams",
-                      result.mass_kg, least_kg));
+      result.notes.emplace_back(MassInGrams{result.mass_kg, least_kg});
     }
     // A mass that stands out against the lightest is said to be one of two; here all may be in grams.
     if (result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
-      result.notes.push_back(
-          fmt::format("mass_kg = {:.6g}: masses are in kilograms, and this one looks like grams ({:.6g} kg)",
-                      result.mass_kg, result.mass_kg / 1000.0));
+      result.notes.emplace_back(MassInGrams{result.mass_kg, {}});
     }
     if (!states_incline(result)) continue;
     const auto contradiction = incline_contradiction(result, gravity_m_s2, stated_incline(result));
-    if (contradiction && contradiction->gross) {
-      result.notes.push_back(
-          contradiction->sentence +
-          ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)");
-    }
+    if (contradiction && contradiction->gross) result.notes.emplace_back(*contradiction);
   }
 }
 

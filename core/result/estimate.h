@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/result/analysis_note.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -34,19 +35,6 @@ std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view
 /// A glider of a laboratory is lighter; grams for kilograms are not.
 inline constexpr double kLargestMass_kg = 20.0;
 inline constexpr double kMassRatio = 100.0;  ///< gliders of one track differ by less; grams for kilograms make 1000
-
-/// An angle that somebody states, in degrees.
-struct StatedIncline {
-  double deg = 0.0;
-  std::optional<double> sd_deg;
-  std::string_view by;  ///< "incline_deg", "the plumb line"
-};
-
-struct InclineContradiction {
-  std::string sentence;  ///< "the acceleration makes the inclination 0.42 ± 0.13°, incline_deg says 4.3 ± 0.3°"
-  double off_deg = 0.0;  ///< infinite where no inclination has the acceleration that was found
-  bool gross = false;    ///< more than a track that was set up carelessly explains; see incline_contradiction()
-};
 
 /// The stated inclination against that of the lines a = a0 - (K/m) v:
 ///

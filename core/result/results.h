@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/result/analysis_note.h"
 #include "core/result/strength.h"
 
 namespace glidelab::core {
@@ -175,15 +176,6 @@ struct FreeBlock {
   RecordedForce force;                        ///< over these points; empty where none was recorded
 };
 
-/// Motion against the stated direction of the launch, before any along it (free_motion.h).
-struct AgainstLaunch {
-  int direction = 0;  ///< in which it moves
-  std::optional<double>
-      until_s;             ///< where motion as launched begins; without a value there is none, and nothing is left out
-  double share = 0.0;      ///< of the points that move freely
-  bool at_a_turn = false;  ///< it turns into motion as launched with neither a rest nor a push between
-};
-
 /// "motion towards +x before 0.542 s is left out as the hand's: the launch was towards -x"
 std::string sentence(const AgainstLaunch& against);
 
@@ -208,7 +200,7 @@ struct ClipResult {
   std::vector<Stretch> stretches;
   std::vector<LeftOutInterval> left_out;
   std::optional<AgainstLaunch> against_launch;
-  std::vector<std::string> notes;  ///< what a reader should know: a container's other rate, gaps, …
+  std::vector<Note> notes;  ///< what a reader should know: a container's other rate, gaps, …
   std::vector<MotionPoint> motion;
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of every frame of `motion`; 0 without a marker
   std::vector<MarkerSighting> sightings;      ///< empty for a track
@@ -230,7 +222,7 @@ struct ConfigurationResult {
   Quantity v_lim_m_s;
   /// Of the fit of the whole motion: root mean square residual over the noise, where that is more than chance makes.
   std::optional<double> scatter = {};
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 struct CornerCell {
@@ -259,8 +251,8 @@ struct CalibrationResult {
   double plane_rms_px = 0.0;          ///< the same in the image, of one coordinate
   double plane_expected_px = 0.0;     ///< the part that the corners' noise explains
   std::size_t views_used = 0;
-  CornerMap rests;                 ///< what the camera's fit leaves of the corners, over the image
-  std::vector<std::string> notes;  ///< views without a visible pattern, …
+  CornerMap rests;          ///< what the camera's fit leaves of the corners, over the image
+  std::vector<Note> notes;  ///< views without a visible pattern, …
 };
 
 struct PlumbResult {

@@ -24,10 +24,6 @@ struct TrackFileOptions {
   std::vector<double> masses_kg = {};  ///< of these runs, one each; empty: mass_kg of all
 };
 
-/// The note on a track without a stated mass.
-inline constexpr const char* kMassAssumed =
-    "no mass is stated: 1 kg is assumed (K/m, \xC2\xB5 and \xCE\xB1 do not depend on it)";
-
 /// A regular file that is not experiment.toml.
 bool is_bare_track(const std::filesystem::path& path);
 

@@ -122,7 +122,7 @@ double slant_deg(const Path& path) {
 }
 
 /// x or y: along which of them the body moves.
-std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<std::string>& notes) {
+std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<Note>& notes) {
   const Path path = path_of(table.columns[x], table.columns[y]);
   if (path.x_m.size() < kFewestOfPath) return x;
   const double bend = sagitta_of(path);
@@ -135,17 +135,17 @@ std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, s
   const double way_x = range_of(path.x_m), way_y = range_of(path.y_m);
   const bool upright = way_y > kOtherAxis * way_x;
   if (upright) {
-    notes.push_back(
-        fmt::format("y covers {:.3g} m and x only {:.2g} m: the motion is taken along y (--column says "
-                    "otherwise)",
-                    way_y, way_x));
+    notes.emplace_back(
+        AboutFile{fmt::format("y covers {:.3g} m and x only {:.2g} m: the motion is taken along y (--column says "
+                              "otherwise)",
+                              way_y, way_x)});
   }
   const double off_deg = upright ? 90.0 - slant_deg(path) : slant_deg(path);
   if (off_deg > kSlanted_deg) {
-    notes.push_back(
-        fmt::format("the path runs at {:.1f}° to the {} axis: along it distances are {:.3g} times as long. "
-                    "Turn the axes along the track and export again",
-                    off_deg, upright ? "y" : "x", 1.0 / std::cos(off_deg / base::kDegreesPerRad)));
+    notes.emplace_back(
+        AboutFile{fmt::format("the path runs at {:.1f}° to the {} axis: along it distances are {:.3g} times as long. "
+                              "Turn the axes along the track and export again",
+                              off_deg, upright ? "y" : "x", 1.0 / std::cos(off_deg / base::kDegreesPerRad))});
   }
   return upright ? y : x;
 }
@@ -168,7 +168,7 @@ std::size_t asked_column(const ColumnTable& table, const std::string& asked) {
                      "one of the " + columns_text(table));
 }
 
-std::size_t place_column(const ColumnTable& table, std::vector<std::string>& notes) {
+std::size_t place_column(const ColumnTable& table, std::vector<Note>& notes) {
   if (!table.has_header && table.columns.size() == 2) return 1;
   const std::vector<std::size_t> found = columns_that(table, is_place_column),
                                  heights = columns_that(table, is_height_column);
@@ -202,9 +202,9 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
 }
 
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),
-                 const char* kind, const char* standard, std::vector<std::string>& notes) {
+                 const char* kind, const char* standard, std::vector<Note>& notes) {
   if (column.unit.empty()) {
-    notes.push_back(fmt::format("\"{}\" states no unit and is taken as {}", column.text, standard));
+    notes.emplace_back(AboutFile{fmt::format("\"{}\" states no unit and is taken as {}", column.text, standard)});
     return 1.0;
   }
   const auto value = factor(column.unit);
@@ -214,31 +214,32 @@ double factor_of(const ColumnTable& table, const TableColumn& column, std::optio
 
 }  // namespace
 
-ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<std::string>& notes) {
+ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes) {
   ChosenColumns chosen;
   chosen.place = asked.empty() ? place_column(table, notes) : asked_column(table, asked);
   chosen.time = time_column(table, chosen.place);
   chosen.is_height = asked.empty() && is_height_column(table.columns[chosen.place]);
   if (chosen.is_height) {
-    notes.push_back(fmt::format("x is \"{}\", a height: state an inclination of 90° if this is a fall (--incline 90)",
-                                table.columns[chosen.place].text));
+    notes.emplace_back(
+        AboutFile{fmt::format("x is \"{}\", a height: state an inclination of 90° if this is a fall (--incline 90)",
+                              table.columns[chosen.place].text)});
   }
   for (const TableColumn& column : table.columns) {
     if (column.unit != "N" && lower(column.name) != "force") continue;
-    notes.push_back(
-        fmt::format("\"{}\" is not used: a force along x that was recorded with it stands under force_n in a "
-                    "table with the header t_s,x_m,force_n",
-                    column.text));
+    notes.emplace_back(
+        AboutFile{fmt::format("\"{}\" is not used: a force along x that was recorded with it stands under force_n in a "
+                              "table with the header t_s,x_m,force_n",
+                              column.text)});
     break;
   }
   return chosen;
 }
 
-double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<std::string>& notes) {
+double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {
   return factor_of(table, column, metres_per, "m, dm, cm, mm, um, km, in or ft", "metres", notes);
 }
 
-double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<std::string>& notes) {
+double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {
   return factor_of(table, column, seconds_per, "s, ms, us or min", "seconds", notes);
 }
 

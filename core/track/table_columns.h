@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/result/analysis_note.h"
 #include "core/track/column_table.h"
 
 namespace glidelab::core {
@@ -24,11 +25,11 @@ struct ChosenColumns {
 };
 
 /// InputError: no or several columns that x or t may be, a curved path.
-ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<std::string>& notes);
+ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes);
 
 /// Metres for the numbers of a column, or seconds; a note where it states no unit. InputError for another unit.
-double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<std::string>& notes);
-double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<std::string>& notes);
+double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
+double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
 
 /// Whether at least half of the steps go up: else they are no times, and not times with a mistake among them.
 bool rises_mostly(const TableColumn& times);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/result/analysis_note.h"
 #include "core/result/picture_record.h"
 #include "core/result/results.h"
 
@@ -35,7 +36,7 @@ struct TrackData {
   std::vector<MarkerSighting> sightings;          ///< empty for a track from a file
   std::shared_ptr<const PictureRecord> pictures;  ///< where they were asked for
   bool dark_marker = false;  ///< seen as darker than its surroundings, without a colour that says so
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 /// Every point of a track from a file is a frame in which the object was seen; the frame rate is one over the median

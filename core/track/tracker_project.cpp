@@ -174,7 +174,7 @@ const TrackerAxes& axes_at(const TrackerProject& project, long frame) {
 }
 
 std::vector<Place> places_of(const TrackerProject& project, const TrackerMass& mass, double metres,
-                             std::vector<std::string>& notes) {
+                             std::vector<Note>& notes) {
   std::vector<Place> places;
   const std::vector<bool> is_filled = filled_in(mass);
   std::size_t filled = 0, outside = 0;
@@ -196,12 +196,12 @@ std::vector<Place> places_of(const TrackerProject& project, const TrackerMass& m
     places.push_back({since / project.step, metres * (u * cosine + w * sine), metres * (w * cosine - u * sine)});
   }
   if (outside > 0) {
-    notes.push_back(
-        fmt::format("{} positions that are not among the steps of the project's clip are left out", outside));
+    notes.emplace_back(AboutFile{
+        fmt::format("{} positions that are not among the steps of the project's clip are left out", outside)});
   }
   if (filled > 0) {
-    notes.push_back(
-        fmt::format("{} positions that Tracker filled in on a straight line between two marks are left out", filled));
+    notes.emplace_back(AboutFile{
+        fmt::format("{} positions that Tracker filled in on a straight line between two marks are left out", filled)});
   }
   return places;
 }
@@ -238,9 +238,9 @@ double angle_to_line(const std::vector<Place>& places, bool along_y) {
   return along_y ? 0.5 * std::numbers::pi - from_x : from_x;
 }
 
-double metres_of(const fs::path& file, const TrackerProject& project, std::vector<std::string>& notes) {
+double metres_of(const fs::path& file, const TrackerProject& project, std::vector<Note>& notes) {
   if (project.length_unit.empty()) {
-    notes.emplace_back("the project states no unit of length: metres are assumed");
+    notes.emplace_back(AboutFile{"the project states no unit of length: metres are assumed"});
     return 1.0;
   }
   if (const auto metres = metres_per(project.length_unit)) return *metres;
@@ -300,17 +300,18 @@ TrackData read_tracker_project(const fs::path& file, std::optional<Downhill> dow
   for (const Place& place : places) track.x_m.push_back(sign * (along_y ? place.Y : place.X));
   take_steps_as_frames(project, places, track);
   const char axis = along_y ? 'Y' : 'X';
-  track.notes.push_back(fmt::format("x is the {} of point mass \"{}\" in the project's axes, positive towards {}{}",
-                                    axis, chosen.full_name, name_of(down),
-                                    downhill  ? ""
-                                    : along_y ? ": it moves most along Y, and that is down in the image"
-                                              : ": it moves most along X, and downhill is not stated"));
+  track.notes.emplace_back(
+      AboutFile{fmt::format("x is the {} of point mass \"{}\" in the project's axes, positive towards {}{}", axis,
+                            chosen.full_name, name_of(down),
+                            downhill  ? ""
+                            : along_y ? ": it moves most along Y, and that is down in the image"
+                                      : ": it moves most along X, and downhill is not stated")});
   const double off = angle_to_line(places, along_y);
   if (off > kSlantedRad) {
-    track.notes.push_back(
-        fmt::format("the mass moves along a line that makes {:.0f} degrees with {}, so x is {:.1f} % short: "
-                    "turn the axes in Tracker to lie along the motion",
-                    off * base::kDegreesPerRad, axis, 100.0 * (1.0 - std::cos(off))));
+    track.notes.emplace_back(
+        AboutFile{fmt::format("the mass moves along a line that makes {:.0f} degrees with {}, so x is {:.1f} % short: "
+                              "turn the axes in Tracker to lie along the motion",
+                              off * base::kDegreesPerRad, axis, 100.0 * (1.0 - std::cos(off)))});
   }
   return track;
 }

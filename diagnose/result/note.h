@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/result/analysis_note.h"
+
 namespace glidelab::diagnose {
 
 // Which part of the data was used.
@@ -99,7 +101,7 @@ struct ContradictedIncline {
 /// grossly.
 struct ContradictedReading {
   double mass_kg = 0.0;
-  std::string sentence;  ///< core::InclineContradiction's
+  core::InclineContradiction contradiction;
 };
 
 // Of a table of lines.

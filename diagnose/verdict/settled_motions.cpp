@@ -63,7 +63,7 @@ void note_readings(const core::AnalysisResults& results, TrackSet& set) {
     if (found.incline_sd_deg) continue;
     auto contradiction = core::incline_contradiction(found, results.gravity_m_s2, core::stated_incline(found));
     if (!contradiction || !contradiction->gross) continue;
-    set.notes.emplace_back(ContradictedReading{found.mass_kg, std::move(contradiction->sentence)});
+    set.notes.emplace_back(ContradictedReading{found.mass_kg, *contradiction});
   }
 }
 

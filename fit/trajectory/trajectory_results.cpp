@@ -80,16 +80,11 @@ Eigen::Vector3d start_of(const core::ConfigurationResult& result) {
 
 void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::ConfigurationResult& result) {
   if (options.robust) {
-    result.notes.push_back(fmt::format("robust: {} of {} positions are off the motion and left out", fit.left_out,
-                                       fit.points + fit.left_out));
+    result.notes.emplace_back(core::RobustFit{fit.left_out, fit.points + fit.left_out});
   }
   if (std::isfinite(fit.degrees)) {
     result.scatter = fit.scatter;
-    result.notes.push_back(
-        fmt::format("the positions scatter {} times as far about the fitted motion as their noise, or one part of "
-                    "the motion disagrees with others by more than it explains: the intervals are widened ({:.0f} "
-                    "degrees of freedom)",
-                    base::number_text(fit.scatter, 3), fit.degrees));
+    result.notes.emplace_back(core::FitScatters{fit.scatter, fit.degrees});
   }
 }
 

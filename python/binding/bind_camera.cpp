@@ -17,6 +17,7 @@
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
 #include "python/binding/watched_work.h"
+#include "report/analysis/note_words.h"
 
 namespace glidelab::python {
 
@@ -83,7 +84,7 @@ py::dict as_dict(const core::Calibration& calibration) {
   found["rms_px"] = calibration.rms_px;
   found["model"] = calibration.model;
   found["views_used"] = calibration.views_used;
-  found["notes"] = calibration.notes;
+  found["notes"] = report::notes_words(calibration.notes);
   return found;
 }
 

@@ -98,7 +98,7 @@ GivenTracks read_given(std::vector<GivenTrack> given) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
       continue;
     }
-    if (!track.mass_kg) read.tracks.back().notes.emplace_back(core::kMassAssumed);
+    if (!track.mass_kg) read.tracks.back().notes.emplace_back(core::AssumedMass{});
   }
   core::name_groups(read.setups);
   check_readings(given, read.setups, issues);

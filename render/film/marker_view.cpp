@@ -3,26 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
+#include "base/math/extent.h"
 #include "render/film/truth_files.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scene.h"
 
 namespace glidelab::render {
-namespace {
-
-/// The range of some numbers; 0 of none.
-struct Range {
-  double least = std::numeric_limits<double>::infinity(), largest = -least;
-  void include(double value) {
-    least = std::min(least, value);
-    largest = std::max(largest, value);
-  }
-  double length() const { return largest > least ? largest - least : 0.0; }
-};
-
-}  // namespace
 
 std::vector<ClipView> views_of(const Scenario& scenario) {
   const Scenario seen_by = as_in_clips(scenario);
@@ -32,7 +19,7 @@ std::vector<ClipView> views_of(const Scenario& scenario) {
     for (const sim::MotionSetup& motion : configuration.motions) {
       ClipView view;
       view.clip = motion.name;
-      Range moved, seen;
+      base::Extent moved, seen;
       const auto visit = [&](const FrameMotion& frame) {
         ++view.frames;
         moved.include(frame.middle.x_m);

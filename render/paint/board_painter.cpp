@@ -6,25 +6,17 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
+#include "base/math/extent.h"
 #include "render/paint/static_painter.h"
 
 namespace glidelab::render {
 namespace {
 
-struct Interval {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  void include(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-};
-
 /// Times t in [0, last] at which from + t along may be within [-half, half] on an axis, for any of the starts and
 /// directions.
-Interval times_within(const Interval& from, const Interval& along, double half, double last) {
-  Interval times{0.0, last};
+base::Extent times_within(const base::Extent& from, const base::Extent& along, double half, double last) {
+  base::Extent times{0.0, last};
   // from.low + t along.low <= half, and from.high + t along.high >= -half
   const auto require = [&times](double constant, double slope) {  // constant + t slope >= 0
     if (slope == 0.0) {
@@ -45,12 +37,12 @@ Interval times_within(const Interval& from, const Interval& along, double half, 
 template <typename Starts, typename Directions>
 bool may_meet(const StaticBox& box, const Starts& starts_W, const Directions& directions_W, double last) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(-box.turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  Interval times{0.0, last};
+  base::Extent times{0.0, last};
   for (int axis = 0; axis < 3; ++axis) {
-    Interval from, along;
+    base::Extent from, along;
     for (const Eigen::Vector3d& start : starts_W) from.include(turn.row(axis).dot(start - box.center_W));
     for (const Eigen::Vector3d& direction : directions_W) along.include(turn.row(axis).dot(direction));
-    const Interval here = times_within(from, along, box.half_m[axis], last);
+    const base::Extent here = times_within(from, along, box.half_m[axis], last);
     times = {std::max(times.low, here.low), std::min(times.high, here.high)};
   }
   return times.low <= times.high;

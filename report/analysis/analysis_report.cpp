@@ -1,16 +1,17 @@
 #include "report/analysis/analysis_report.h"
 
 #include <fmt/format.h>
-#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "base/math/distributions.h"
 #include "base/text/number_text.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/fitted_curve.h"
 #include "report/analysis/motion_plots.h"
+#include "report/analysis/note_words.h"
 #include "report/analysis/sections.h"
 #include "report/html/folded.h"
 #include "report/html/html.h"
@@ -81,8 +82,7 @@ std::string damping_sentence(const core::AnalysisResults& results) {
     chi2 += std::pow((one.k_n_s_m - mean) / one.sd_n_s_m, 2);
     widest = std::max(widest, std::abs(one.k_n_s_m / mean - 1.0));
   }
-  const boost::math::chi_squared of_chance(static_cast<double>(all.size() - 1));
-  if (chi2 <= quantile(complement(of_chance, kChance))) {
+  if (chi2 <= base::chi2_upper_quantile(static_cast<double>(all.size() - 1), kChance)) {
     return fmt::format("<p>The damping constant is the same for all masses within its errors: K = {} N s/m.</p>\n",
                        base::value_and_sd_text(mean, 1.0 / std::sqrt(weight)));
   }
@@ -194,8 +194,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
       rows.push_back({configuration_name(results, c), std::string(name.symbol),
                       base::value_text(quantity->estimate->value - correction, sd), base::error_text(-correction, sd)});
     }
-    for (const std::string& note : c.notes) {
-      notes += fmt::format("{}: {}\n", printable(configuration_name(results, c)), printable(note));
+    for (const core::Note& note : c.notes) {
+      notes += fmt::format("{}: {}\n", printable(configuration_name(results, c)), printable(note_words(note)));
     }
   }
   if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));

@@ -12,6 +12,7 @@
 #include "core/result/quantity.h"
 #include "core/result/results.h"
 #include "report/analysis/motion_plots.h"
+#include "report/analysis/note_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
@@ -170,7 +171,7 @@ Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
                                   {"frames", interval.frames},
                                   {"reason", core::describe(interval.reason)}});
   }
-  object["notes"] = clip.notes;
+  object["notes"] = notes_words(clip.notes);
   object["phase_file"] = phase_file;
   return object;
 }
@@ -185,7 +186,7 @@ Json configuration_json(const core::ConfigurationResult& configuration) {
     put(object, std::string(quantity.key).c_str(), core::value_of(configuration, quantity.which));
   }
   object["lines"] = lines_json(configuration.lines);
-  object["notes"] = configuration.notes;
+  object["notes"] = notes_words(configuration.notes);
   return object;
 }
 
@@ -202,7 +203,7 @@ Json calibration_json(const core::CalibrationResult& calibration) {
   put(object, "plane_rms_px", calibration.plane_rms_px);
   put(object, "plane_expected_px", calibration.plane_expected_px);
   object["views_used"] = calibration.views_used;
-  object["notes"] = calibration.notes;
+  object["notes"] = notes_words(calibration.notes);
   return object;
 }
 

@@ -11,6 +11,7 @@
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
+#include "report/analysis/note_words.h"
 #include "report/analysis/result_files.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
@@ -127,7 +128,7 @@ Html clip_html(const core::ClipResult& clip, std::size_t index, const std::strin
                              : fmt::format("{} frames, the marker found in {},", clip.frames, clip.detected),
       base::number_text(clip.frame_rate_hz, 5), used, noise_text(clip.position_noise_m * 1e3, used),
       smoothing_text(clip), escape(phase_file), escape(motion_file));
-  text += notes_html(clip.notes);
+  text += notes_html(notes_words(clip.notes));
   if (preview != nullptr) text += pictures(clip, *preview);
   text += figures(motion_plots(clip));
   text += left_out_table(clip);
@@ -209,7 +210,7 @@ Html camera_section(const core::AnalysisResults& results) {
          calibration_plots(calibration.rests, results.calibrations.size() > 1 ? calibration.experiment : "")) {
       plots.push_back(std::move(plot));
     }
-    text += notes_html(calibration.notes);
+    text += notes_html(notes_words(calibration.notes));
   }
   for (Plot& plot : pixel_phase_plot(phase_points(results), false)) plots.push_back(std::move(plot));
   text += figures(plots);
@@ -276,8 +277,8 @@ std::string recovered_section(const core::AnalysisResults& results) {
   if (in_doubt) text += fmt::format("<p class=\"note\">* {}</p>\n", kIfItHeld);
   std::vector<std::string> notes;
   for (const core::ConfigurationResult& c : results.configurations) {
-    for (const std::string& note : c.notes)
-      notes.push_back(fmt::format("{}: {}", configuration_name(results, c), note));
+    for (const core::Note& note : c.notes)
+      notes.push_back(fmt::format("{}: {}", configuration_name(results, c), note_words(note)));
   }
   text += notes_html(notes) + corrections_html(results);
   text += "<p class=\"soft\">± is one standard deviation. α is the inclination as the motion itself shows it.</p>\n";

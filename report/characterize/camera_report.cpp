@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
+#include "report/characterize/camera_note_words.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
@@ -88,7 +89,7 @@ std::string camera_json(const core::CameraMeasurement& camera) {
   put(document, "saturation_dn", camera.saturation_dn);
   put(document, "line_intercept_dn2", camera.intercept_dn2, "there is no line: " + camera.gain_dn_per_e.why);
   document["photon_transfer"] = curve_json(camera);
-  document["notes"] = camera.notes;
+  document["notes"] = notes_words(camera.notes);
   return json_text(document);
 }
 
@@ -106,7 +107,7 @@ std::string camera_text(const core::CameraMeasurement& camera) {
   text += fmt::format("\nOutlying pixels: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
                       camera.outlying_pixels);
   if (!below.empty()) text += "\n" + below;
-  for (const std::string& note : camera.notes) text += "note: " + note + "\n";
+  for (const core::CameraNote& note : camera.notes) text += "note: " + note_words(note) + "\n";
   return text;
 }
 
@@ -222,7 +223,7 @@ Page camera_report(const core::CameraMeasurement& camera) {
                             camera.hot_pixels, camera.dead_pixels, camera.outlying_pixels);
   if (!camera.notes.empty()) {
     body += "<div class=\"note\"><ul>";
-    for (const std::string& note : camera.notes) body += fmt::format("<li>{}</li>", escape(note));
+    for (const core::CameraNote& note : camera.notes) body += fmt::format("<li>{}</li>", escape(note_words(note)));
     body += "</ul></div>\n";
   }
   std::vector<Plot> plots = {transfer_plot(camera)};

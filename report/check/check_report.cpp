@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <optional>
+#include <tuple>
+#include <utility>
+#include <variant>
 
 #include "base/text/number_text.h"
+#include "report/analysis/note_words.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
@@ -53,7 +57,7 @@ Json clip_json(const core::ClipCheck& clip) {
   put(json, "way_m", clip.distance_m);
   put(json, "top_speed_m_s", clip.top_speed_m_s);
   put(json, "position_noise_m", clip.position_noise_m, "too few points");
-  json["notes"] = clip.notes;
+  json["notes"] = notes_words(clip.notes);
   if (!clip.pictures) return json;
   json["spanned"] = clip.spanned;
   json["first_seen"] = clip.first;
@@ -103,13 +107,57 @@ std::string name_of(core::Severity severity) {
   return "";
 }
 
+namespace {
+
+/// The finding with its note and what follows from it as texts.
+struct WordedFinding {
+  core::Severity severity = core::Severity::note;
+  std::string about, found, advice;
+  std::vector<std::string> follow = {};
+};
+
+std::string found_words(const core::Finding& finding) {
+  if (!finding.note) return finding.found;
+  const auto* const incline = std::get_if<core::InclineContradiction>(&*finding.note);
+  return incline != nullptr ? contradiction_words(*incline) : note_words(*finding.note);
+}
+
+/// In words; notes that read the same are one, of all that they are about.
+std::vector<WordedFinding> worded(const std::vector<core::Finding>& findings) {
+  std::vector<WordedFinding> all;
+  std::vector<std::vector<std::string>> about;  // of each
+  for (const core::Finding& finding : findings) {
+    WordedFinding words{finding.severity, finding.about, found_words(finding), finding.advice};
+    const auto same = std::find_if(all.begin(), all.end(), [&](const WordedFinding& before) {
+      return finding.note && std::tie(before.severity, before.found, before.advice) ==
+                                 std::tie(words.severity, words.found, words.advice);
+    });
+    if (same != all.end()) {
+      about[static_cast<std::size_t>(same - all.begin())].push_back(finding.about);
+      continue;
+    }
+    for (const core::Finding& one : finding.follow) words.follow.push_back(one.about + ": " + found_words(one));
+    if (const std::size_t many = words.follow.size(); many > 0) {
+      words.found += fmt::format(": {} finding{} follow{}", many, many == 1 ? "" : "s", many == 1 ? "s" : "");
+    }
+    about.push_back({finding.about});
+    all.push_back(std::move(words));
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (about[i].size() > 1) all[i].about = core::first_names(about[i]);
+  }
+  return all;
+}
+
+}  // namespace
+
 std::string check_json(const core::RecordingCheck& check) {
   Json json;
   json["format"] = 1;
   json["name"] = check.name;
   json["usable"] = check.usable;
   json["findings"] = Json::array();
-  for (const core::Finding& finding : check.findings) {
+  for (const WordedFinding& finding : worded(check.findings)) {
     json["findings"].push_back({{"severity", name_of(finding.severity)},
                                 {"about", finding.about},
                                 {"found", finding.found},
@@ -129,9 +177,10 @@ std::string share_cell(double share) {
 }
 
 std::string verdict_of(const core::RecordingCheck& check) {
+  const std::vector<WordedFinding> findings = worded(check.findings);
   const auto count = [&](core::Severity severity) {
-    return std::count_if(check.findings.begin(), check.findings.end(),
-                         [&](const core::Finding& finding) { return finding.severity == severity; });
+    return std::count_if(findings.begin(), findings.end(),
+                         [&](const WordedFinding& finding) { return finding.severity == severity; });
   };
   const auto worst = count(core::Severity::unusable), changes = count(core::Severity::change);
   if (worst > 0) {
@@ -159,7 +208,7 @@ std::string word_of(core::Severity severity) {
 }
 
 /// What was found, and folded what follows from it. HTML.
-std::string found_html(const core::Finding& finding) {
+std::string found_html(const WordedFinding& finding) {
   if (finding.follow.empty()) return escape(finding.found);
   std::string list;
   for (const std::string& one : finding.follow) list += "<li>" + escape(one) + "</li>";
@@ -170,7 +219,7 @@ std::string findings_section(const core::RecordingCheck& check) {
   std::string text = "<h2>What was found, and what to do</h2>\n";
   if (check.findings.empty()) return text + "<p>Nothing needs to change.</p>\n";
   HtmlTable table({"", "about", "found", "advice"}, 4);
-  for (const core::Finding& finding : check.findings) {
+  for (const WordedFinding& finding : worded(check.findings)) {
     const char* mark = finding.severity == core::Severity::unusable ? "bad" : "soft";
     table.row({fmt::format("<span class=\"{}\">{}</span>", mark, word_of(finding.severity)), escape(finding.about),
                found_html(finding), escape(finding.advice)});
@@ -363,7 +412,7 @@ Page check_report(const core::RecordingCheck& check, const std::vector<core::Pre
 
 std::string check_text(const core::RecordingCheck& check) {
   std::string text = verdict_of(check) + ".\n";
-  for (const core::Finding& finding : check.findings) {
+  for (const WordedFinding& finding : worded(check.findings)) {
     text += fmt::format("{}: {}: {}{}{}.\n", word_of(finding.severity), finding.about, finding.found,
                         finding.advice.empty() ? "" : "; ", finding.advice);
   }

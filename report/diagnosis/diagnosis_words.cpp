@@ -8,6 +8,7 @@
 
 #include "base/math/angles.h"
 #include "base/text/number_text.h"
+#include "report/analysis/note_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -149,7 +150,7 @@ struct Sentence {
   }
   std::string operator()(const diagnose::ContradictedReading& of) const {
     return fmt::format("With {:.6g} kg {}: an angle, a length, the frame rate or gravity_m_s2 is wrong.", of.mass_kg,
-                       of.sentence);
+                       contradiction_words(of.contradiction));
   }
   std::string operator()(const diagnose::NegativeLoss& of) const {
     const bool drag = of.of == diagnose::NegativeLoss::Of::drag;

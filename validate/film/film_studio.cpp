@@ -132,7 +132,7 @@ class RenderedFrames : public core::FrameSource {
     return frame;
   }
   std::size_t stated_frames() const override { return frames_; }
-  std::vector<std::string> notes() const override { return {}; }
+  std::vector<core::Note> notes() const override { return {}; }
 
  private:
   template <typename Code>

@@ -1,11 +1,12 @@
 #include "core/motion/smoothing/smoothing_ensemble.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "base/math/distributions.h"
 
 namespace glidelab::core {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr double kNormal = 1.959964;  // its 97.5 % quantile
 
 double student_quantile(double freedom, double p) {
-  return std::isinf(freedom) ? kNormal : boost::math::quantile(boost::math::students_t(freedom), p);
+  return std::isinf(freedom) ? kNormal : base::student_t_quantile(freedom, p);
 }
 
 /// exp(-u^2 / 2), or what it is on the mean over a variance that is estimated.
@@ -24,7 +25,7 @@ double tail(double u2, double freedom) {
 /// P(z > u).
 double beyond(double u, double freedom) {
   if (std::isinf(freedom)) return 0.5 * std::erfc(u / std::numbers::sqrt2);
-  return boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), u));
+  return base::student_t_tail(freedom, u);
 }
 
 /// What the crossings of one side need between two nodes, but for c.

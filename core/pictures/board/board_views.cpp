@@ -102,9 +102,7 @@ KeptViews without_outliers(const std::vector<const BoardView*>& views, const std
     const bool is_off = !(errors_px[i] <= limit_px);
     if (!is_off || !enough) kept.views.push_back(views[i]);
     if (!is_off) continue;
-    kept.notes.push_back(fmt::format("{} departs from the fitted camera by {:.3g} px and is {}",
-                                     views[i]->file.filename().string(), errors_px[i],
-                                     enough ? "left out" : "kept all the same: fewer than three views would be left"));
+    kept.notes.emplace_back(OutlyingView{views[i]->file.filename().string(), errors_px[i], enough});
   }
   return kept;
 }

@@ -12,6 +12,7 @@
 #include "base/long_work.h"
 #include "core/experiment/permissions.h"
 #include "core/pictures/board/chessboard.h"
+#include "core/result/analysis_note.h"
 
 namespace glidelab::core {
 
@@ -45,7 +46,7 @@ std::vector<const BoardView*> checked_views(const BoardViews& boards);
 /// The views to calibrate with, and notes on the outlying ones.
 struct KeptViews {
   std::vector<const BoardView*> views;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 /// Drops views whose error is above 0.2 px and above five times the median (one outlier pulls all parameters), unless

@@ -200,30 +200,23 @@ bool follows_badly(const CornerNoise& noise) {
   return noise.correlated_px > std::max(2.0 * kLeastCorrelatedPx, 0.5 * noise.white_px);
 }
 
-std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
-                                        const Calibration& calibration) {
-  std::vector<std::string> notes;
+std::vector<Note> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
+                                 const Calibration& calibration) {
+  std::vector<Note> notes;
   if (!boards.without.empty()) {
-    notes.push_back("no pattern in sight in " + names_of(boards.without));
+    NoPatternInSight none;
+    for (const std::filesystem::path& file : boards.without) none.files.push_back(file.filename().string());
+    notes.emplace_back(std::move(none));
   }
   std::size_t unrefined = 0;
   for (const BoardView* view : used) unrefined += view->corners.unrefined;
-  if (unrefined > 0) {
-    notes.push_back(unrefined == 1
-                        ? "one corner could not be refined and keeps the detector's position"
-                        : fmt::format("{} corners could not be refined and keep the detector's position", unrefined));
-  }
+  if (unrefined > 0) notes.emplace_back(UnrefinedCorners{unrefined});
   if (follows_badly(calibration.noise)) {
-    notes.push_back(fmt::format(
-        "neighbouring corners share an error of {:.2g} px (each has {:.2g} px of its own): the pattern is bent, or "
-        "the model does not describe the lens; the uncertainties allow for it",
-        calibration.noise.correlated_px, calibration.noise.white_px));
+    notes.emplace_back(CornersErrTogether{calibration.noise.correlated_px, calibration.noise.white_px});
   }
   const double sd_fx = std::sqrt(calibration.covariance(0, 0));
   if (sd_fx > kMostRelativeFocalSd * calibration.camera.fx) {
-    notes.push_back(
-        fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
-                    calibration.camera.fx, sd_fx));
+    notes.emplace_back(UncertainFocalLength{calibration.camera.fx, sd_fx});
   }
   return notes;
 }
@@ -254,7 +247,7 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   calibration.model = fit.model;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();
-  for (std::string& note : notes_on_views(boards, used, calibration)) calibration.notes.push_back(std::move(note));
+  for (Note& note : notes_on_views(boards, used, calibration)) calibration.notes.push_back(std::move(note));
   return calibration;
 }
 
@@ -417,7 +410,7 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     calibration.covariance.topLeftCorner(free_terms, free_terms) = uncertainty.covariance;
     calibration.views_used = views.size();
     calibration.notes = std::move(kept.notes);
-    for (std::string& note : notes_on_views(boards, views, calibration)) calibration.notes.push_back(std::move(note));
+    for (Note& note : notes_on_views(boards, views, calibration)) calibration.notes.push_back(std::move(note));
     calibration.model = fmt::format("fisheye: {}", fixed == 4   ? std::string("no terms")
                                                    : fixed == 3 ? std::string("k1")
                                                                 : fmt::format("k1 to k{}", 4 - fixed));
@@ -435,9 +428,7 @@ Calibration calibrate_any_lens(const BoardViews& boards, double square_m) {
   if (!fisheye || fisheye->views_used < found.views_used) return found;
   const double coordinates = 2.0 * static_cast<double>(found.views_used * boards.views.front().corners.points.size());
   if (coordinates * 2.0 * std::log(found.rms_px / fisheye->rms_px) < kDecisive) return found;
-  fisheye->notes.push_back(fmt::format(
-      "the lens is modelled as a fisheye (equidistant): corners fit to {:.2g} px, to {:.2g} px with Brown-Conrady",
-      fisheye->rms_px, found.rms_px));
+  fisheye->notes.emplace_back(FisheyeFitsBetter{fisheye->rms_px, found.rms_px});
   return std::move(*fisheye);
 }
 

@@ -11,6 +11,7 @@
 #include "core/pictures/board/board_views.h"
 #include "core/pictures/board/corner_errors.h"
 #include "core/pictures/camera/camera_model.h"
+#include "core/result/analysis_note.h"
 
 namespace glidelab::core {
 
@@ -43,7 +44,7 @@ struct Calibration {
   std::string model;    ///< the terms of the distortion, and the tests of those considered
   double rms_px = 0.0;  ///< per corner (distance), over the views used
   std::size_t views_used = 0;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 /// Whether neighbouring corners share larger errors than their own noise explains: a bent pattern, or a lens that the
@@ -51,8 +52,8 @@ struct Calibration {
 bool follows_badly(const CornerNoise& noise);
 
 /// What a reader should know about the views used and how well they fit.
-std::vector<std::string> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
-                                        const Calibration& calibration);
+std::vector<Note> notes_on_views(const BoardViews& boards, const std::vector<const BoardView*>& used,
+                                 const Calibration& calibration);
 
 /// The camera with a pinhole lens and its distortion (camera_model.h), by least squares over all corners (Zhang 2000;
 /// cv::calibrateCamera).

@@ -214,17 +214,13 @@ PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& v
   return fit;
 }
 
-std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
-                                        const std::string& group) {
+std::optional<PlaneViewsDisagree> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
+                                               const std::string& group) {
   constexpr double kOff = 3.0, kLeastOffPx = 0.05;
   // Of one coordinate; every view's pose takes its share out of the residuals, in the plane as in the camera's fit.
   const double expected_px = std::hypot(noise.white_px, noise.correlated_px);
   if (fit.rms_px <= std::max(kLeastOffPx, kOff * expected_px)) return {};
-  return fmt::format(
-      "the plane {} of group \"{}\" {} not agree with the camera: the pattern's corners lie {:.2g} px (rms) from where "
-      "the camera and {} plane place them; their noise explains {:.2g} px",
-      views == 1 ? "view" : "views", group, views == 1 ? "does" : "do", fit.rms_px, views == 1 ? "a" : "one",
-      expected_px);
+  return PlaneViewsDisagree{group, fit.rms_px, expected_px, views};
 }
 
 PlanePose refit_pose(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,

@@ -17,6 +17,7 @@
 #include "core/pictures/board/chessboard.h"
 #include "core/pictures/board/corner_errors.h"
 #include "core/pictures/camera/camera_model.h"
+#include "core/result/analysis_note.h"
 
 namespace glidelab::core {
 
@@ -39,11 +40,11 @@ struct PlaneFit {
 PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
                    double correlated_px = 0.0);
 
-/// A sentence if the corners of the plane views lie further from where the camera and one plane place them than three
+/// A note if the corners of the plane views lie further from where the camera and one plane place them than three
 /// times their own noise (views differ in sharpness and tilt, and so in noise) and than 0.05 px (less is harmless);
 /// `group` names the views.
-std::optional<std::string> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
-                                        const std::string& group);
+std::optional<PlaneViewsDisagree> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
+                                               const std::string& group);
 
 /// The pose for another camera: the views of `start` fitted again from there.
 PlanePose refit_pose(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,

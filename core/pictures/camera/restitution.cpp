@@ -305,7 +305,7 @@ CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPat
     result.plane_rms_px = std::max(result.plane_rms_px, fit.rms_px);
     result.plane_expected_px = std::hypot(calibration.noise.white_px, calibration.noise.correlated_px);
     const auto warning = disagreement(fit, corners.size(), calibration.noise, name);
-    if (warning) result.notes.push_back(*warning);
+    if (warning) result.notes.emplace_back(*warning);
   }
   result.restitution_rms_m = std::sqrt(sum / count);
   setting.calibration = std::move(result);

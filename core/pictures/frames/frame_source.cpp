@@ -42,12 +42,9 @@ void RepeatCounter::operator()(const cv::Mat& grey) {
   ++count_;
 }
 
-void RepeatCounter::tell(std::vector<std::string>& notes) const {
+void RepeatCounter::tell(std::vector<Note>& notes) const {
   if (repeated_ == 0) return;
-  notes.push_back(
-      fmt::format("{} of {} frames are identical to the frame before: duplicates (a camera or converter that repeats "
-                  "frames), or a scene at rest without any noise",
-                  repeated_, count_));
+  notes.emplace_back(RepeatedFrames{repeated_, count_});
 }
 
 bool RepeatCounter::same_bits(const cv::Mat& grey) const {
@@ -111,9 +108,9 @@ class FolderFrames final : public FrameSource {
 
   std::size_t stated_frames() const override { return files_.size(); }
 
-  std::vector<std::string> notes() const override {
+  std::vector<Note> notes() const override {
     if (others_ == 0) return {};
-    return {fmt::format("{} files in the folder of frames are not images and are skipped", others_)};
+    return {AboutFile{fmt::format("{} files in the folder of frames are not images and are skipped", others_)}};
   }
 
  private:
@@ -202,25 +199,25 @@ class VideoFrames final : public FrameSource {
 
   std::size_t stated_frames() const override { return stated_; }
 
-  std::vector<std::string> notes() const override {
-    std::vector<std::string> notes;
+  std::vector<Note> notes() const override {
+    std::vector<Note> notes;
     if (stated_rate_hz_ > 0.0 && std::abs(stated_rate_hz_ / camera_.frame_rate_hz - 1.0) > kRateRounding) {
-      notes.push_back(fmt::format("the container states {:.6g} frames per second, experiment.toml {:.6g}; {}",
-                                  stated_rate_hz_, camera_.frame_rate_hz,
-                                  camera_.time == TimeSource::rate
-                                      ? "the rate in experiment.toml is used"
-                                      : "the container's time stamps are used, as requested"));
+      notes.emplace_back(AboutFile{
+          fmt::format("the container states {:.6g} frames per second, experiment.toml {:.6g}; {}", stated_rate_hz_,
+                      camera_.frame_rate_hz,
+                      camera_.time == TimeSource::rate ? "the rate in experiment.toml is used"
+                                                       : "the container's time stamps are used, as requested")});
     }
     if (unstamped_ > 0 && camera_.time == TimeSource::container) {
-      notes.emplace_back("the last frames have no time stamp and are left out");
+      notes.emplace_back(AboutFile{"the last frames have no time stamp and are left out"});
     }
     repeats_.tell(notes);
     if (irregular_ > 0) {
-      notes.push_back(fmt::format(
+      notes.emplace_back(AboutFile{fmt::format(
           "the container's time stamps are irregular: {} of {} steps differ from the median step of {:.4g} ms, the "
           "longest is {:.4g} ms{}",
           irregular_, stamps_s_.size() - 1, median_step_s_ * 1e3, longest_step_s_ * 1e3,
-          camera_.time == TimeSource::rate ? " (frames may be missing; the rate in experiment.toml is used)" : ""));
+          camera_.time == TimeSource::rate ? " (frames may be missing; the rate in experiment.toml is used)" : "")});
     }
     return notes;
   }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/experiment/experiment.h"
+#include "core/result/analysis_note.h"
 
 namespace glidelab::core {
 
@@ -64,7 +65,7 @@ class FrameSource {
 
   /// What a reader should know, once the end is reached: a container with another rate, irregular stamps,
   /// repeated frames.
-  virtual std::vector<std::string> notes() const = 0;
+  virtual std::vector<Note> notes() const = 0;
 
   /// Complete once the end is reached.
   virtual FileFacts facts() const { return {}; }
@@ -90,7 +91,7 @@ class RepeatCounter {
  public:
   void operator()(const cv::Mat& grey);
   std::size_t repeated() const { return repeated_; }
-  void tell(std::vector<std::string>& notes) const;
+  void tell(std::vector<Note>& notes) const;
 
  private:
   bool same_bits(const cv::Mat& grey) const;

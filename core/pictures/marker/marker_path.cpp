@@ -169,9 +169,9 @@ class Choice {
  private:
   TrackedMarker undisturbed(const MarkerPath& path) const;
   bool is_place_of_another(const MarkerPath& path, const MarkerSeen& sighting) const;
-  std::size_t choose_path(std::vector<std::string>& notes) const;
+  std::size_t choose_path(std::vector<Note>& notes) const;
   std::size_t path_at_start() const;
-  std::size_t resting_path(std::vector<std::string>& notes) const;
+  std::size_t resting_path(std::vector<Note>& notes) const;
   base::Issue issue(std::string found, std::string expected) const {
     return {clip_.string(), 0, "marker", std::move(found), std::move(expected)};
   }
@@ -230,7 +230,7 @@ std::size_t Choice::path_at_start() const {
 }
 
 /// Where nothing moves: the one thing of the right size that is there all the time.
-std::size_t Choice::resting_path(std::vector<std::string>& notes) const {
+std::size_t Choice::resting_path(std::vector<Note>& notes) const {
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     const double ratio = paths_[i].size_ratio();
@@ -243,11 +243,11 @@ std::size_t Choice::resting_path(std::vector<std::string>& notes) const {
               "a marker of the stated diameter, brighter or darker than its surroundings (or of the stated colour), or "
               "start_px"));
   }
-  notes.emplace_back("the marker does not move in this clip");
+  notes.emplace_back(MarkerAtRest{});
   return candidates.front();
 }
 
-std::size_t Choice::choose_path(std::vector<std::string>& notes) const {
+std::size_t Choice::choose_path(std::vector<Note>& notes) const {
   if (marker_.start_px) return path_at_start();
   const std::size_t fewest = std::min(kFewestMoving, std::max<std::size_t>(frames_ / 2, 2));
   std::vector<std::size_t> movers;
@@ -327,22 +327,13 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
     tracked.sightings.push_back({path.seen[i].frame, fit.centre.x, fit.centre.y, fit.sd_px, fit.radius_px});
     tracked.fits.push_back(fit);
   }
-  if (hidden > 0) {
-    tracked.notes.push_back(fmt::format(
-        "in {} frames the marker cannot be distinguished from a similar object at rest and counts as not seen",
-        hidden));
-  }
-  if (dropped > 0) {
-    tracked.notes.push_back(
-        fmt::format("in {} frames the marker is partly hidden or disturbed (its size or the residuals differ) and "
-                    "counts as not seen",
-                    dropped));
-  }
+  if (hidden > 0) tracked.notes.emplace_back(MarkerConcealed{MarkerConcealed::By::similar, hidden});
+  if (dropped > 0) tracked.notes.emplace_back(MarkerConcealed{MarkerConcealed::By::disturbance, dropped});
   return tracked;
 }
 
 TrackedMarker Choice::marker() const {
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   const MarkerPath& path = paths_[choose_path(notes)];
   TrackedMarker tracked = undisturbed(path);
   tracked.method = path.method;
@@ -355,15 +346,13 @@ TrackedMarker Choice::marker() const {
     // A centroid has no covariance: its noise from the second differences (variance 1 + 4 + 1).
     const double sd = jitter_of(places).value_or(0.0) / std::sqrt(6.0);
     for (MarkerSighting& sighting : tracked.sightings) sighting.sd_px = sd;
-    tracked.notes.emplace_back("the marker is not a disc; the centroid of its colour is used");
+    tracked.notes.emplace_back(MarkerMeasuredBy{MarkerMeasuredBy::What::centroid});
   }
-  if (path.method == MarkerMethod::shaded)
-    tracked.notes.emplace_back("the marker is lit from one side; its shading is fitted");
+  if (path.method == MarkerMethod::shaded) {
+    tracked.notes.emplace_back(MarkerMeasuredBy{MarkerMeasuredBy::What::shading});
+  }
   const double ratio = path.size_ratio();
-  if (std::abs(std::log(ratio)) > 0.2) {
-    tracked.notes.push_back(fmt::format("the marker looks {:.0f} % {} than its diameter predicts",
-                                        100.0 * std::abs(ratio - 1.0), ratio > 1.0 ? "larger" : "smaller"));
-  }
+  if (std::abs(std::log(ratio)) > 0.2) tracked.notes.emplace_back(MarkerOfOtherSize{ratio});
   return tracked;
 }
 

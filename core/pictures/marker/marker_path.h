@@ -16,6 +16,7 @@
 #include "core/experiment/experiment.h"
 #include "core/pictures/marker/marker.h"
 #include "core/pictures/marker/marker_search.h"
+#include "core/result/analysis_note.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -90,7 +91,7 @@ class NoMarker : public base::InputError {
 struct TrackedMarker {
   std::vector<MarkerSighting> sightings;  ///< frames rise
   std::vector<MarkerFit> fits;            ///< of each sighting
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   MarkerMethod method = MarkerMethod::undecided;  ///< by which it was measured
 };
 

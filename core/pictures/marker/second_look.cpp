@@ -424,11 +424,8 @@ TrackedMarker SecondLook::tracked() const {
     tracked.sightings.push_back({look.frame, fit.centre.x, fit.centre.y, marker.sd_px, marker.radius_px});
     tracked.fits.push_back(marker);
   }
-  tracked.notes.push_back(
-      fmt::format("the marker is fitted as a {}, before {}: seen in {} frames, {} without",
-                  shared_.body == MarkerBody::sphere ? "sphere that is lit from one side" : "disc",
-                  shared_.behind == Behind::still ? "the background that other frames show" : "what moves with it",
-                  tracked.sightings.size(), first_.sightings.size()));
+  tracked.notes.emplace_back(MarkerFittedAgain{shared_.body == MarkerBody::sphere, shared_.behind == Behind::still,
+                                               tracked.sightings.size(), first_.sightings.size()});
   return tracked;
 }
 

@@ -57,7 +57,7 @@ class WatchedFrames final : public FrameSource {
     return frame;
   }
   std::size_t stated_frames() const override { return source_->stated_frames(); }
-  std::vector<std::string> notes() const override { return source_->notes(); }
+  std::vector<Note> notes() const override { return source_->notes(); }
   FileFacts facts() const override { return source_->facts(); }
 
  private:

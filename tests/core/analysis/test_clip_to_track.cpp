@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/small_clip.h"
 #include "tests/temp_dir.h"
 
@@ -113,9 +114,7 @@ TEST_CASE("a marker whose colour is not stated is found bright on dark and dark 
   CHECK(dark.dark_marker);
   CHECK(dark.sightings.size() >= 40);
   CHECK(worst_px(dark, {0.0, 0.0}) < 0.03);
-  CHECK(std::any_of(dark.notes.begin(), dark.notes.end(), [](const std::string& note) {
-    return note.find("darker than its surroundings") != std::string::npos;
-  }));
+  CHECK(tests::note_of<core::DarkMarker>(dark.notes) != nullptr);
   const core::TrackData bright = only_track(card_clip(dir, 30.0, {{{0.0, 0.0}, 200.0}}));
   CHECK(!bright.dark_marker);
   CHECK(worst_px(bright, {0.0, 0.0}) < 0.03);

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/real_data.h"
 
 using namespace glidelab;
@@ -18,8 +19,7 @@ TEST_CASE(
   for (const core::ClipResult& clip : results->clips) {
     INFO(clip.name);
     CHECK(clip.frame_rate_hz == 240.0);
-    CHECK(std::any_of(clip.notes.begin(), clip.notes.end(),
-                      [](const std::string& note) { return note.find("29.97") != std::string::npos; }));
+    CHECK(tests::says_of_file(clip.notes, "29.97"));
     REQUIRE(clip.segments.size() == 1);
     CHECK(clip.segments[0].direction == 1);
     double sum = 0.0;

@@ -159,8 +159,7 @@ TEST_CASE("what is found is said once, and in the words of the folder that it is
   clip.jumps = 1;
   clip.repeated = 20;
   clip.marker_px = 16.0;
-  clip.notes = {"20 of 264 frames are identical to the frame before: duplicates",
-                "the marker looks 33 % larger than its diameter predicts", "something else"};
+  clip.notes = {core::RepeatedFrames{20, 264}, core::MarkerOfOtherSize{1.33}, core::AboutFile{"something else"}};
   std::size_t notes = 0, once = 0, scale = 0, square = 0;
   for (const core::Finding& finding : findings(clip)) {
     notes += finding.severity == core::Severity::note;

@@ -9,6 +9,7 @@
 #include "core/track/read_track.h"
 #include "tests/catch.h"
 #include "tests/core/made_project.h"
+#include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -94,18 +95,23 @@ TEST_CASE("a bare track says which mass and inclination it assumed, and accuses 
   const auto notes_with = [&] {
     core::AnalysisOptions how;
     how.bare = options;
-    std::string all;
-    const core::AnalysisResults results = core::analyze({made.file}, how);
-    for (const std::string& note : results.configurations.front().notes) all += note + "\n";
-    return all;
+    return core::analyze({made.file}, how).configurations.front().notes;
   };
-  CHECK_THAT(notes_with(), Contains("a mass of 1 kg and an inclination of 0° are assumed"));
-  CHECK(notes_with().find("incline_deg says") == std::string::npos);
+  const std::vector<core::Note> bare = notes_with();
+  const auto* const assumed = tests::note_of<core::AssumedStatements>(bare);
+  REQUIRE(assumed != nullptr);
+  CHECK(assumed->mass_kg == 1.0);
+  CHECK(assumed->level);
+  CHECK(tests::note_of<core::InclineContradiction>(bare) == nullptr);
   for (const core::Finding& finding : core::check_recording(core::read_tracks(made.file, options), 1).findings) {
     CHECK(finding.topic != core::Topic::incline);
   }
   options.mass_kg = 400.0;
   options.incline_deg = 3.5;
-  CHECK(notes_with().find("assumed") == std::string::npos);
-  CHECK_THAT(notes_with(), Contains("mass_kg = 400") && Contains("looks like grams (0.4 kg)"));
+  const std::vector<core::Note> stated = notes_with();
+  CHECK(tests::note_of<core::AssumedStatements>(stated) == nullptr);
+  const auto* const grams = tests::note_of<core::MassInGrams>(stated);
+  REQUIRE(grams != nullptr);
+  CHECK(grams->mass_kg == 400.0);
+  CHECK_FALSE(grams->lightest_kg);
 }

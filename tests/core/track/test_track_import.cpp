@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -40,8 +41,7 @@ void check_motion(const core::TrackData& track) {
 }
 
 bool has_note(const core::TrackData& track, const std::string& part) {
-  return std::any_of(track.notes.begin(), track.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
+  return tests::says_of_file(track.notes, part);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/track/tracker_xml.h"
 #include "tests/catch.h"
 #include "tests/core/made_project.h"
+#include "tests/core/notes.h"
 #include "tests/core/real_data.h"
 #include "tests/temp_dir.h"
 
@@ -48,10 +49,7 @@ struct Folder {
 };
 
 bool has_note(const core::TrackData& track, const std::string& part) {
-  for (const std::string& note : track.notes) {
-    if (note.find(part) != std::string::npos) return true;
-  }
-  return false;
+  return tests::says_of_file(track.notes, part);
 }
 
 }  // namespace

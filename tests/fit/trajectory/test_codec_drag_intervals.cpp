@@ -64,7 +64,7 @@ class PaintedFrames final : public core::FrameSource {
     return frame;
   }
   std::size_t stated_frames() const override { return u_px_.size(); }
-  std::vector<std::string> notes() const override { return {}; }
+  std::vector<core::Note> notes() const override { return {}; }
   core::FileFacts facts() const override {
     core::FileFacts facts;
     facts.lossy = true;

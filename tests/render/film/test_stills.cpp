@@ -4,30 +4,12 @@
 #include <tuple>
 
 #include "tests/catch.h"
+#include "tests/render/tilted_camera.h"
 
 using namespace glidelab::render;
 
-namespace {
-
-Scenario tilted_camera() {
-  Scenario scenario;
-  scenario.camera.width_px = 800;
-  scenario.camera.height_px = 600;
-  scenario.camera.focal_px = {1200.0, 1200.0};
-  scenario.camera.center_px = {404.0, 296.0};
-  scenario.camera.lens = {-0.12, 0.06, 0.0, 0.0004, -0.0003};
-  scenario.camera.X_WC = look_at({0.14, 0.12, 2.4}, {0.0, 0.0, 0.0}, 0.012);
-  glidelab::sim::ConfigurationSetup configuration;
-  configuration.body.mass_kg = 0.335;
-  configuration.body.incline_rad = 0.07;
-  scenario.motion.configurations.push_back(configuration);
-  return scenario;
-}
-
-}  // namespace
-
 TEST_CASE("Every calibration view shows the whole board with its border, and together they fill the image") {
-  Scenario scenario = tilted_camera();
+  Scenario scenario = glidelab::tests::tilted_camera();
   for (const auto& [columns, rows, square] : {std::tuple{9, 6, 0.04}, {11, 8, 0.03}, {5, 4, 0.1}, {7, 7, 0.02}}) {
     scenario.pattern.inner_columns = columns;
     scenario.pattern.inner_rows = rows;
@@ -64,7 +46,7 @@ TEST_CASE("Every calibration view shows the whole board with its border, and tog
 }
 
 TEST_CASE("Calibration views are the same for one seed and others for another") {
-  const Scenario scenario = tilted_camera();
+  const Scenario scenario = glidelab::tests::tilted_camera();
   const auto first = calibration_boards(scenario, 1);
   const auto again = calibration_boards(scenario, 1);
   const auto other = calibration_boards(scenario, 2);

@@ -4,30 +4,12 @@
 
 #include "render/film/truth_files.h"
 #include "tests/catch.h"
+#include "tests/render/tilted_camera.h"
 
 using namespace glidelab::render;
 
-namespace {
-
-Scenario small_scenario() {
-  Scenario scenario;
-  scenario.camera.width_px = 800;
-  scenario.camera.height_px = 600;
-  scenario.camera.focal_px = {1200.0, 1200.0};
-  scenario.camera.center_px = {404.0, 296.0};
-  scenario.camera.lens = {-0.12, 0.06, 0.0, 0.0004, -0.0003};
-  scenario.camera.X_WC = look_at({0.14, 0.12, 2.4}, {0.0, 0.0, 0.0}, 0.012);
-  glidelab::sim::ConfigurationSetup configuration;
-  configuration.body.mass_kg = 0.335;
-  configuration.body.incline_rad = 0.07;
-  scenario.motion.configurations.push_back(configuration);
-  return scenario;
-}
-
-}  // namespace
-
 TEST_CASE("The plane board lies in z = 0, its X along the track up to its rotation, its Z away from the camera") {
-  Scenario scenario = small_scenario();
+  Scenario scenario = glidelab::tests::tilted_camera();
   scenario.pattern.plane_x_m = {0.1, -0.4};
   scenario.pattern.plane_rotation_rad = 0.02;
   for (std::size_t view = 0; view < 2; ++view) {
@@ -44,7 +26,7 @@ TEST_CASE("The plane board lies in z = 0, its X along the track up to its rotati
 }
 
 TEST_CASE("x counts downhill whichever way the track falls, and the pattern's origin is where its corner projects") {
-  Scenario scenario = small_scenario();
+  Scenario scenario = glidelab::tests::tilted_camera();
   for (const int downhill : {1, -1}) {
     scenario.track.downhill = downhill;
     const Eigen::Vector3d step = marker_position_W(scenario, 0.07, 1.0) - marker_position_W(scenario, 0.07, 0.0);
@@ -59,7 +41,7 @@ TEST_CASE("x counts downhill whichever way the track falls, and the pattern's or
 }
 
 TEST_CASE("The glider stands on its track with the marker before it, a weight more for each 100 g") {
-  Scenario scenario = small_scenario();
+  Scenario scenario = glidelab::tests::tilted_camera();
   scenario.marker.height_m = 0.015;
   const StaticScene track = empty_track(scenario, 0.07);
   glidelab::sim::Body body = scenario.motion.configurations.front().body;
@@ -76,7 +58,7 @@ TEST_CASE("The glider stands on its track with the marker before it, a weight mo
 }
 
 TEST_CASE("The plumb's region holds the line over the wall, where the camera sees it") {
-  Scenario scenario = small_scenario();
+  Scenario scenario = glidelab::tests::tilted_camera();
   CHECK_FALSE(plumb_region(scenario));
   scenario.plumb = PlumbSetup{};
   const PixelRect region = plumb_region(scenario).value();

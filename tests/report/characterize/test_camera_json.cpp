@@ -38,7 +38,7 @@ core::CameraMeasurement made_camera() {
                   {"flat-03", 0.2, 3600.0, 3600.0, 3.0, 0.1, 0.9, false}};
   camera.intercept_dn2 = 5.0;
   camera.saturation_dn = 3600.0;
-  camera.notes = {"The lamp flickers & more."};
+  camera.notes = {core::Flicker{0.021, 2, 12}};
   return camera;
 }
 
@@ -66,8 +66,9 @@ TEST_CASE("characterize.json holds values with their sd, and null with reason an
 
 TEST_CASE("the camera's table shows digits that the sd supports, limits as such, and reasons below") {
   const std::string text = report::camera_text(made_camera());
-  for (const char* part : {"0.4012  0.0017", "< 3.2", "> 5400", "1.010   0.020", "full well: no level reaches",
-                           "note: The lamp flickers & more.", "640 x 480"}) {
+  for (const char* part :
+       {"0.4012  0.0017", "< 3.2", "> 5400", "1.010   0.020", "full well: no level reaches",
+        "note: The light changes from frame to frame by up to 2.1 %, in 2 of 12 levels", "640 x 480"}) {
     INFO(part << "\n" << text);
     CHECK(contains(text, part));
   }
@@ -79,7 +80,7 @@ TEST_CASE("the camera's page holds both plots and escapes names") {
   CHECK_FALSE(contains(page, "a <b> camera"));
   CHECK(contains(page, "Photon transfer"));
   CHECK(contains(page, "Linearity"));
-  CHECK(contains(page, "flickers &amp; more"));
+  CHECK(contains(page, "in 2 of 12 levels: the lamp flickers"));
 }
 
 TEST_CASE("a camera without a gain still has a page, which says why") {

@@ -1,6 +1,7 @@
 #include "report/check/check_report.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tests/catch.h"
 
@@ -15,4 +16,30 @@ TEST_CASE("check.json says how far the glider goes in each clip, of pictures and
   const auto json = nlohmann::json::parse(report::check_json(check));
   CHECK(json["clips"][0]["way_m"] == 0.75);
   CHECK(json["clips"][1]["way_m"] == 1.25);
+}
+
+TEST_CASE("findings that are notes are in words, those that read the same are one, and what follows stands below") {
+  core::RecordingCheck check;
+  const auto note = [](const char* about, core::Note of) {
+    return core::Finding{core::Severity::note, about, {}, {}, core::Topic::other, std::move(of)};
+  };
+  core::Finding root{core::Severity::unusable, "pattern", "square_m = 40 looks like millimetres (0.04 m)", "state it"};
+  core::Finding angle{core::Severity::change, "up", {}, "one of these is wrong", core::Topic::incline};
+  angle.note = core::InclineContradiction{{4.3, 0.3, "incline_deg"}, 0.42, 0.13};
+  root.follow = {angle, {core::Severity::change, "down", "the glider runs 900 m", "measure again"}};
+  // 33.1 and 33.2 % read the same, 40 % does not.
+  check.findings = {root, note("up", core::MarkerOfOtherSize{1.331}), note("down", core::MarkerOfOtherSize{1.332}),
+                    note("late", core::MarkerOfOtherSize{1.40})};
+  const auto findings = nlohmann::json::parse(report::check_json(check)).at("findings");
+  REQUIRE(findings.size() == 3);
+  CHECK(findings[0]["found"] == "square_m = 40 looks like millimetres (0.04 m): 2 findings follow");
+  CHECK(findings[0]["follow"] ==
+        nlohmann::json({"up: the acceleration makes the inclination 0.42 ± 0.13°, incline_deg says 4.3 ± 0.3°",
+                        "down: the glider runs 900 m"}));
+  CHECK(findings[1]["about"] == "up, down");
+  CHECK(findings[1]["found"] == "the marker looks 33 % larger than its diameter predicts");
+  CHECK(findings[1]["severity"] == "note");
+  CHECK(findings[2]["about"] == "late");
+  const std::string text = report::check_text(check);
+  CHECK(text.find("note: up, down: the marker looks 33 % larger") != std::string::npos);
 }

@@ -29,21 +29,33 @@ using tests::kEvil;
 
 namespace {
 
+/// Every note that holds a text of a file.
+std::vector<core::Note> evil_notes() {
+  core::InclineContradiction contradiction;
+  contradiction.stated.by = kEvil;
+  return {core::AboutFile{kEvil},
+          core::OutlyingView{kEvil, 1.0, true},
+          core::NoPatternInSight{{kEvil, kEvil}},
+          core::PlaneViewsDisagree{kEvil, 1.0, 0.1, 2},
+          core::NotOfStatedSize{kEvil},
+          contradiction};
+}
+
 core::AnalysisResults evil_results() {
   core::AnalysisResults results = tests::made_results();
   for (core::ClipResult& clip : results.clips) {
     clip.name = clip.experiment = clip.bandwidth_method = kEvil;
-    clip.notes = {kEvil};
+    clip.notes = evil_notes();
   }
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.group = kEvil;
     configuration.clips = {kEvil};
     configuration.mu = {std::nullopt, kEvil};
-    configuration.notes = {kEvil};
+    configuration.notes = evil_notes();
   }
   core::CalibrationResult& calibration = results.calibrations[0];
   calibration.experiment = calibration.model = kEvil;
-  calibration.notes = {kEvil};
+  calibration.notes = evil_notes();
   calibration.rests = {800, 600, {{100.0, 100.0, 0.01, 0.02, 0.01, 9}, {500.0, 300.0, 0.01, 0.02, 0.01, 9}}, 0.01, 1.2};
   results.calibrations.push_back(calibration);  // of two folders each is named beside its plot
   core::PlumbResult plumb;
@@ -88,7 +100,7 @@ diagnose::Diagnosis evil_diagnosis() {
   of.limits.contradicted = {{kEvil, kEvil, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
   of.notes = {diagnose::NoFreeMotion{kEvil, 12},       diagnose::StatementsDisagree{kEvil, kEvil, kEvil, 7.0},
               diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
-              diagnose::LaunchedOtherWay{kEvil, true}, diagnose::ContradictedReading{0.3, kEvil},
+              diagnose::LaunchedOtherWay{kEvil, true}, diagnose::ContradictedReading{0.3, {}},
               of.limits.contradicted.front()};
   of.pictures = {{kEvil, diagnose::Stage::optics, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
   of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
@@ -133,6 +145,10 @@ TEST_CASE("the page of a check has every name from a file as text") {
   check.name = kEvil;
   check.usable = false;
   check.findings = {{core::Severity::unusable, kEvil, kEvil, kEvil}};
+  for (const core::Note& note : evil_notes()) {
+    check.findings.push_back({core::Severity::note, kEvil, {}, {}, core::Topic::other, note});
+  }
+  check.findings[0].follow = check.findings;
   core::PatternCheck pattern;
   pattern.views = {{kEvil, true, 0.1, 3.0, {{100.0, 100.0}}}};
   pattern.without = {kEvil};
@@ -142,7 +158,7 @@ TEST_CASE("the page of a check has every name from a file as text") {
   check.pattern = pattern;
   core::ClipCheck clip;
   clip.name = kEvil;
-  clip.notes = {kEvil};
+  clip.notes = evil_notes();
   check.clips = {clip, clip};
   check.clips[1].failure = kEvil;
   check.plumb_failure = kEvil;
@@ -288,7 +304,6 @@ TEST_CASE("the page of a measured camera has every name from a file as text") {
   camera.curve = {{kEvil, 0.001, 300.0, 300.0, 125.0, 0.5, 0.0, true},
                   {kEvil, 0.002, 600.0, 600.0, 245.0, 1.0, 0.0, false}};
   camera.saturation_dn = 3600.0;
-  camera.notes = {kEvil};
   check_is_text(report::camera_report(camera));
 }
 

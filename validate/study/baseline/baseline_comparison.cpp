@@ -1,21 +1,16 @@
 #include "validate/study/baseline/baseline_comparison.h"
 
 #include <fmt/format.h>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/errors.h"
+#include "base/math/distributions.h"
 #include "core/result/results.h"
 
 namespace glidelab::validate {
 namespace {
-
-using boost::math::cdf;
-using boost::math::complement;
-using boost::math::quantile;
 
 bool same(const ErrorRecord& a, const ErrorRecord& b) {
   return a.configuration == b.configuration && a.estimator == b.estimator && a.quantity == b.quantity;
@@ -38,7 +33,7 @@ double p_of_mean(const Side& then, const Side& now) {
   const double more = now.mean - then.mean;
   if (a + b == 0.0) return more > 0.0 ? 0.0 : 1.0;
   const double degrees = (a + b) * (a + b) / (a * a / (then.count - 1.0) + b * b / (now.count - 1.0));
-  return cdf(complement(boost::math::students_t(degrees), more / std::sqrt(a + b)));
+  return base::student_t_tail(degrees, more / std::sqrt(a + b));
 }
 
 double p_of_spread(const ErrorRecord& then, const ErrorRecord& now) {
@@ -59,7 +54,7 @@ double p_of_proportion(std::uint64_t then, std::uint64_t of_then, std::uint64_t 
   const double variance = pooled * (1.0 - pooled) * (1.0 / n + 1.0 / m);
   if (variance == 0.0) return 1.0;
   const double fewer = static_cast<double>(then) / n - static_cast<double>(now) / m;
-  return cdf(complement(boost::math::normal(), fewer / std::sqrt(variance)));
+  return base::normal_tail(fewer / std::sqrt(variance));
 }
 
 [[noreturn]] void reject(const std::string& key, const std::string& found, const std::string& expected) {
@@ -127,8 +122,7 @@ void compare_smoothing(const SmoothingRecord& then, const SmoothingRecord& now, 
         then.log_bandwidth, now.log_bandwidth);
   const double sd = then.log_bandwidth_sd * std::sqrt(1.0 / n + 1.0 / m);
   if (!(sd > 0.0)) return;
-  const boost::math::normal normal;
-  const double power = cdf(normal, std::log(2.0) / sd - quantile(complement(normal, 0.5 * level_of(comparison))));
+  const double power = base::normal_cdf(std::log(2.0) / sd - base::normal_upper_quantile(0.5 * level_of(comparison)));
   comparison.power_doubled = std::min(comparison.power_doubled, power);
 }
 
@@ -136,13 +130,12 @@ void compare_smoothing(const SmoothingRecord& then, const SmoothingRecord& now, 
 void tell_power(double runs_then, double runs_now, BaselineComparison& comparison) {
   if (!(runs_now > 2.0 && runs_then > 2.0)) return;
   constexpr double kLarger = 1.5, kBias = 0.5;
-  const boost::math::normal normal;
-  const double needed = quantile(complement(normal, level_of(comparison)));
+  const double needed = base::normal_upper_quantile(level_of(comparison));
   // Of |z|, z standard normal: mean sqrt(2/pi), standard deviation sqrt(1 - 2/pi).
   constexpr double kMean = 0.7978845608, kSd = 0.6028102750;
-  comparison.power_spread =
-      cdf(normal, (kLarger - 1.0) * kMean / (kSd * std::sqrt(kLarger * kLarger / runs_now + 1.0 / runs_then)) - needed);
-  comparison.power_bias = cdf(normal, kBias / std::sqrt(1.0 / runs_now + 1.0 / runs_then) - needed);
+  comparison.power_spread = base::normal_cdf(
+      (kLarger - 1.0) * kMean / (kSd * std::sqrt(kLarger * kLarger / runs_now + 1.0 / runs_then)) - needed);
+  comparison.power_bias = base::normal_cdf(kBias / std::sqrt(1.0 / runs_now + 1.0 / runs_then) - needed);
 }
 
 }  // namespace
@@ -167,7 +160,7 @@ BaselineComparison compare_baselines(const Baseline& then, const Baseline& now) 
 namespace {
 
 double z_above(double part) {
-  return boost::math::quantile(boost::math::complement(boost::math::normal(), part));
+  return base::normal_upper_quantile(part);
 }
 
 /// The factor f of the header, the larger root of its square; nothing if no factor is large enough.

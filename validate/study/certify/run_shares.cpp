@@ -1,12 +1,12 @@
 #include "validate/study/certify/run_shares.h"
 
 #include <algorithm>
-#include <boost/math/distributions/beta.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "base/math/distributions.h"
 
 namespace glidelab::validate {
 namespace {
@@ -48,9 +48,8 @@ RunShare share_of(const std::vector<RunCount>& runs, double confidence) {
   }
   independent = std::max(1.0, independent);
   const double k = result.share * independent, tail = 0.5 * (1.0 - confidence);
-  using boost::math::beta_distribution;
-  if (result.holds > 0) result.low = quantile(beta_distribution<>(k, independent - k + 1.0), tail);
-  if (result.holds < result.of) result.high = quantile(beta_distribution<>(k + 1.0, independent - k), 1.0 - tail);
+  if (result.holds > 0) result.low = base::beta_quantile(k, independent - k + 1.0, tail);
+  if (result.holds < result.of) result.high = base::beta_quantile(k + 1.0, independent - k, 1.0 - tail);
   return result;
 }
 
@@ -85,7 +84,7 @@ RunFall fall_of(const std::vector<std::vector<double>>& before, const std::vecto
   std::vector<double> without;
   for (std::size_t r = 0; r < runs; ++r) without.push_back(ratio(r));
   const double value = ratio(runs), sd = jackknife_sd(without);
-  const double t = quantile(boost::math::students_t(static_cast<double>(runs) - 1.0), 0.5 * (1.0 + confidence));
+  const double t = base::student_t_quantile(static_cast<double>(runs) - 1.0, 0.5 * (1.0 + confidence));
   return {-std::expm1(value), -std::expm1(value + t * sd), -std::expm1(value - t * sd)};
 }
 

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <random>
 
 #include "base/errors.h"
 #include "base/long_work.h"
 #include "base/math/angles.h"
+#include "base/math/distributions.h"
 #include "core/math/quantile.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/estimate.h"
@@ -211,19 +210,17 @@ CoverageBand band_of(double level, std::size_t n) {
 }
 
 double arm_ratio(double level, double half95, double sd) {
-  using boost::math::quantile;
-  using boost::math::students_t;
   const double wanted = half95 / sd, upper = 0.5 * (1.0 + level);
   constexpr double kMost = 1e6;  // degrees: as good as normal
   if (!(wanted > core::student_t975(kMost))) {
-    return quantile(boost::math::normal(), upper) / core::kNormal95;
+    return base::normal_quantile(upper) / core::kNormal95;
   }
   double low = 1.0, high = kMost;  // t falls with the degrees
   while (high - low > 1e-9 * high) {
     const double middle = std::sqrt(low * high);
     (core::student_t975(middle) > wanted ? low : high) = middle;
   }
-  return quantile(students_t(low), upper) / quantile(students_t(low), 0.975);
+  return base::student_t_quantile(low, upper) / base::student_t_quantile(low, 0.975);
 }
 
 namespace {

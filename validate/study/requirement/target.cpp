@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/math/distributions.h"
 #include "base/text/nearest_word.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
@@ -77,13 +76,13 @@ void set_limits(const std::vector<double>& sizes, Measure of, double confidence,
     for (const double size : sizes) square += size * size;
     const double normal = (of == Measure::error95 ? core::kNormal95 : 1.0) * std::sqrt(square / n);
     const double low = std::isfinite(normal) ? normal : measure.value;
-    measure.low = std::min(measure.value, low * std::sqrt(n / chi2_quantile(n, confidence)));
-    measure.high = std::max(measure.value, normal * std::sqrt(n / chi2_quantile(n, 1.0 - confidence)));
+    measure.low = std::min(measure.value, low * std::sqrt(n / base::chi2_quantile(n, confidence)));
+    measure.high = std::max(measure.value, normal * std::sqrt(n / base::chi2_quantile(n, 1.0 - confidence)));
     return;
   }
-  const double wider = normal_quantile(confidence) / normal_quantile(kConfidence);
+  const double wider = base::normal_quantile(confidence) / base::normal_quantile(kConfidence);
   const double reach =
-      (of == Measure::bias ? core::student_t975(n - 1.0) * wider : normal_quantile(confidence)) * measure.sd;
+      (of == Measure::bias ? core::student_t975(n - 1.0) * wider : base::normal_quantile(confidence)) * measure.sd;
   measure.low = std::isfinite(reach) ? std::max(0.0, measure.value - reach) : measure.value;
   measure.high = measure.value + reach;
 }
@@ -131,14 +130,6 @@ Target parse_target(const std::string& text) {
                    : measure == "bias" ? Target::Measure::bias
                                        : Target::Measure::error95;
   return target;
-}
-
-double chi2_quantile(double n, double p) {
-  return quantile(boost::math::chi_squared(n), p);
-}
-
-double normal_quantile(double p) {
-  return quantile(boost::math::normal(), p);
 }
 
 ErrorMeasure measure_errors(std::span<const double> errors, const Target& target, double confidence) {

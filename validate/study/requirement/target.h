@@ -59,10 +59,4 @@ struct ErrorMeasure {
 /// Two errors or more (asserted), and a confidence of more than a half.
 ErrorMeasure measure_errors(std::span<const double> errors, const Target& target, double confidence = kConfidence);
 
-/// The value that chi² of n degrees of freedom is below with the probability p.
-double chi2_quantile(double n, double p);
-
-/// The value below which a normal deviate is with the probability p.
-double normal_quantile(double p);
-
 }  // namespace glidelab::validate

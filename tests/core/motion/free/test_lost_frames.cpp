@@ -4,6 +4,7 @@
 
 #include "core/motion/analyze_motion.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
 
 using namespace glidelab;
@@ -129,13 +130,14 @@ TEST_CASE("a clip with lost frames is analysed with its times put right, and say
     return std::abs(clip.segments[0].k_over_m_1_s.value - kLaw.k_1_s) / clip.segments[0].k_over_m_1_s.sd;
   };
   CHECK(off(right) < 4.0);  // fixed seed
-  const auto says = [](const ClipResult& clip, const char* what) {
-    return std::any_of(clip.notes.begin(), clip.notes.end(),
-                       [&](const std::string& note) { return note.find(what) != std::string::npos; });
-  };
-  CHECK(says(right, "3 frames are missing"));
-  CHECK(says(right, "corrected"));
-  CHECK(says(kept, "left as they are"));
+  const auto* const of_right = tests::note_of<FramesMissing>(right.notes);
+  const auto* const of_kept = tests::note_of<FramesMissing>(kept.notes);
+  REQUIRE(of_right != nullptr);
+  REQUIRE(of_kept != nullptr);
+  CHECK(of_right->frames == 3);
+  CHECK(of_right->after_s.size() == 3);
+  CHECK(of_right->put_right);
+  CHECK_FALSE(of_kept->put_right);
   // The end that a person reads off the file's times goes with them: three lost frames are 50 ms.
   CHECK(right.motion.back().t_s == Approx(track.t_s.back() + 3.0 / 60.0).margin(1e-12));  // sums of eps
 }

@@ -4,6 +4,7 @@
 
 #include "core/motion/analyze_motion.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
 
 using namespace glidelab;
@@ -86,14 +87,15 @@ TEST_CASE("a recording that is rounded coarsely keeps its ordinary lines, and sa
   REQUIRE(rounded.rounding_m);
   CHECK(std::abs(*rounded.rounding_m - 0.01) < 1e-12);  // a difference of two sums of 1e-16
   CHECK(rounded.segments.size() == 2);                  // the ordinary lines
-  const auto says = [](const ClipResult& clip) {
-    return std::any_of(clip.notes.begin(), clip.notes.end(),
-                       [](const std::string& note) { return note.find("rounded to 0.01 m") != std::string::npos; });
-  };
-  CHECK(says(rounded));
+  const auto* const instead = tests::note_of<CoarseRounding>(rounded.notes);
+  REQUIRE(instead != nullptr);
+  CHECK(instead->rounding_m == *rounded.rounding_m);
+  CHECK(instead->instead_of_generalised);
   const ClipResult plain = analyze_motion(setup, tests::film(motion, how), MotionOptions{});
   CHECK(plain.segments.size() == 2);
-  CHECK(says(plain));
+  const auto* const said = tests::note_of<CoarseRounding>(plain.notes);
+  REQUIRE(said != nullptr);
+  CHECK_FALSE(said->instead_of_generalised);
   how.rounding_m = 1e-5;  // a tenth of the noise
   CHECK_FALSE(analyze_motion(setup, tests::film(motion, how), MotionOptions{}).rounding_m);
 }

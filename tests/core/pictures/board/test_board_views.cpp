@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 
 using namespace glidelab;
 using Catch::Matchers::Contains;
@@ -28,14 +29,19 @@ TEST_CASE("a view that is off the camera is left out and named, where three othe
   const core::KeptViews kept = kept_of({0.05, 0.06, 2.0, 0.05});
   CHECK(kept.views.size() == 3);
   REQUIRE(kept.notes.size() == 1);
-  CHECK_THAT(kept.notes[0], Contains("view-2.png") && Contains("2 px") && EndsWith("left out"));
+  const auto* const dropped = tests::note_of<core::OutlyingView>(kept.notes);
+  REQUIRE(dropped != nullptr);
+  CHECK(dropped->file == "view-2.png");
+  CHECK(dropped->error_px == 2.0);
+  CHECK(dropped->left_out);
 }
 
 TEST_CASE("a view that is off a camera of three stays, and its note says so") {
   const core::KeptViews kept = kept_of({0.05, 0.06, 2.0});
   CHECK(kept.views.size() == 3);
   REQUIRE(kept.notes.size() == 1);
-  CHECK_THAT(kept.notes[0], Contains("kept all the same"));
+  REQUIRE(tests::note_of<core::OutlyingView>(kept.notes) != nullptr);
+  CHECK_FALSE(tests::note_of<core::OutlyingView>(kept.notes)->left_out);
 }
 
 TEST_CASE("views that are all alike, or all within the corners' noise, are no outliers of each other") {

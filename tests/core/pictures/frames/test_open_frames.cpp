@@ -10,6 +10,7 @@
 #include "core/experiment/file_names.h"
 #include "core/pictures/frames/read_image.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/small_clip.h"
 #include "tests/temp_dir.h"
 
@@ -116,7 +117,7 @@ TEST_CASE("a folder of 16-bit frames comes out bit by bit in the order that peop
   }
   CHECK_FALSE(source->next());
   REQUIRE(source->notes().size() == 1);
-  CHECK(contains(source->notes()[0], "1 files"));
+  CHECK(tests::says_of_file(source->notes(), "1 files"));
 }
 
 TEST_CASE("names are ordered as people number files") {
@@ -137,8 +138,8 @@ TEST_CASE("a container that plays at another rate is noted, and the stated rate 
   while (source->next()) {
   }
   REQUIRE(source->notes().size() == 1);
-  CHECK(contains(source->notes()[0], "29.97"));
-  CHECK(contains(source->notes()[0], "200"));
+  CHECK(tests::says_of_file(source->notes(), "29.97"));
+  CHECK(tests::says_of_file(source->notes(), "200"));
 }
 
 TEST_CASE("the container's time stamps count where that is asked") {
@@ -166,7 +167,11 @@ TEST_CASE("frames that are written twice are reported, and frames that are not a
   while (source->next()) {
   }
   REQUIRE(source->notes().size() == 1);
-  CHECK_THAT(source->notes()[0], Catch::Contains("3 of 40 frames") && Catch::Contains("duplicates"));
+  const std::vector<core::Note> notes = source->notes();
+  const auto* const repeated = tests::note_of<core::RepeatedFrames>(notes);
+  REQUIRE(repeated != nullptr);
+  CHECK(repeated->repeated == 3);
+  CHECK(repeated->frames == 40);
 }
 
 TEST_CASE("stamps with dropped frames give their own times, and are reported") {
@@ -195,7 +200,10 @@ TEST_CASE("stamps with dropped frames give their own times, and are reported") {
     CHECK(std::abs(times[k] - expected) < 1.1e-3);  // Matroska's millisecond
   }
   bool told = false;
-  for (const std::string& note : source->notes()) told |= contains(note, "irregular") && contains(note, "2 of ");
+  for (const core::Note& note : source->notes()) {
+    const auto* const said = std::get_if<core::AboutFile>(&note);
+    told |= said != nullptr && contains(said->text, "irregular") && contains(said->text, "2 of ");
+  }
   CHECK(told);
 }
 

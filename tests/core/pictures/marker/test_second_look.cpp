@@ -33,7 +33,7 @@ class MadeClip : public core::FrameSource {
     return frame;
   }
   std::size_t stated_frames() const override { return frames_.size(); }
-  std::vector<std::string> notes() const override { return {}; }
+  std::vector<core::Note> notes() const override { return {}; }
 
  private:
   const std::vector<cv::Mat>& frames_;

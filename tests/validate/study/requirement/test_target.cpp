@@ -112,18 +112,6 @@ TEST_CASE("the limits of few errors are those of a normal distribution") {
   CHECK(within.high == Approx(1.959964 * few.high));
 }
 
-TEST_CASE("quantiles of chi² and of the normal distribution are those of the tables") {
-  // Of two degrees of freedom -2 ln(1 - p); of others by the tables.
-  for (const double p : {1e-4, 0.01, 0.5, 0.99}) {
-    CHECK(validate::chi2_quantile(2.0, p) == Approx(-2.0 * std::log1p(-p)).epsilon(1e-9));
-  }
-  CHECK(validate::chi2_quantile(8.0, 0.01) == Approx(1.6465).epsilon(1e-4));
-  CHECK(validate::chi2_quantile(20.0, 0.99) == Approx(37.566).epsilon(1e-4));
-  CHECK(validate::chi2_quantile(7.0, 0.05) == Approx(2.1673).epsilon(1e-4));
-  CHECK(validate::normal_quantile(0.95) == Approx(1.6448536269514722).epsilon(1e-9));
-  CHECK(validate::normal_quantile(0.01) == Approx(-2.3263478740408408).epsilon(1e-9));
-}
-
 TEST_CASE("a camera judged after every look is wrongly said to reach or to miss in less than one case of twenty") {
   // Errors whose 95 % quantile is the target itself, so that either verdict is wrong: by normal ones, in looks after 2,
   // 4, 8, 16 and 20. Of 4000 at 5 % on either side, a standard deviation of 0.35 % each; three of it.

@@ -1,7 +1,6 @@
 #include "validate/study/sweep/design/sweep.h"
 
 #include <fmt/format.h>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/random/sobol.hpp>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "base/math/distributions.h"
 #include "render/random/random_numbers.h"
 
 namespace glidelab::validate {
@@ -39,10 +39,6 @@ std::uint64_t words(std::uint64_t key, std::uint64_t index, std::uint32_t axis, 
 /// In [0, 1), 53 bits.
 double unit(std::uint64_t word) {
   return static_cast<double>(word >> 11) * 0x1p-53;
-}
-
-double normal_quantile(double p) {
-  return boost::math::quantile(boost::math::normal(), p);
 }
 
 double sobol(std::size_t axis, std::size_t axes, std::uint64_t point, std::uint64_t shift) {
@@ -105,9 +101,9 @@ base::TomlScalar value_at(const AxisSource& source, double u) {
       return source.whole ? std::round(value) : value;
     }
     case Kind::normal:
-      return source.mean + source.sd * normal_quantile(std::max(u, 0x1p-54));
+      return source.mean + source.sd * base::normal_quantile(std::max(u, 0x1p-54));
     case Kind::log_normal:
-      return source.mean * std::exp(source.sd * normal_quantile(std::max(u, 0x1p-54)));
+      return source.mean * std::exp(source.sd * base::normal_quantile(std::max(u, 0x1p-54)));
   }
   return 0.0;  // not reached: all kinds are above
 }

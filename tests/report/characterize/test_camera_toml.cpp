@@ -1,4 +1,4 @@
-#include "core/characterize/camera_measurement.h"
+#include "report/characterize/camera_toml.h"
 
 #include <cmath>
 
@@ -30,7 +30,7 @@ core::CameraMeasurement made_camera() {
 }  // namespace
 
 TEST_CASE("a camera file is strict TOML with the keys of a scenario's sensor") {
-  const std::string text = core::camera_toml(made_camera());
+  const std::string text = report::camera_toml(made_camera());
   const base::TomlFile file = base::TomlFile::parse(text, "camera.toml");
   const base::TomlTable sensor = file.root().table("sensor");
   CHECK(sensor.integer("bit_depth", 8, 16) == 10);
@@ -54,7 +54,7 @@ TEST_CASE("a number that was not measured is nan, which a strict reader refuses 
   core::CameraMeasurement camera = made_camera();
   camera.gain_dn_per_e = {{}, 0.0, {}, "the codes are not linear", {}};
   camera.dark_signal_e_s = {{}, 0.0, {}, "it needs dark frames", {}};
-  const std::string text = core::camera_toml(camera);
+  const std::string text = report::camera_toml(camera);
   CHECK(text.find("# dark_signal_e_s: not measured: it needs dark frames") != std::string::npos);
   const base::TomlFile file = base::TomlFile::parse(text, "camera.toml");
   const base::TomlTable sensor = file.root().table("sensor");
@@ -73,6 +73,6 @@ TEST_CASE("a number that was not measured is nan, which a strict reader refuses 
 TEST_CASE("a dark signal below zero is written as none seen") {
   core::CameraMeasurement camera = made_camera();
   camera.dark_signal_e_s = {-0.2, 0.3, {}, {}, {}};
-  const std::string text = core::camera_toml(camera);
+  const std::string text = report::camera_toml(camera);
   CHECK(text.find("dark_signal_e_s = 0.0  # measured as -0.2, sd 0.3: not significant") != std::string::npos);
 }

@@ -1,11 +1,13 @@
-#include "core/characterize/camera_measurement.h"
+#include "report/characterize/camera_toml.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace glidelab::core {
+#include "report/characterize/camera_note_words.h"
+
+namespace glidelab::report {
 namespace {
 
 /// The text on one line of a comment.
@@ -31,7 +33,7 @@ std::string line(const std::string& key, const std::string& value, const std::st
   return fmt::format("{} = {}  # {}\n", key, value, in_comment(comment));
 }
 
-std::string entry(const std::string& key, const Measured& measured) {
+std::string entry(const std::string& key, const core::Measured& measured) {
   if (measured.value) {
     std::string comment = fmt::format("measured, sd {:.2g}", measured.sd);
     if (!measured.how.empty()) comment += "; " + measured.how;
@@ -43,15 +45,15 @@ std::string entry(const std::string& key, const Measured& measured) {
   return line(key, "nan", "NOT measured: " + measured.why);
 }
 
-std::string dark_signal(const Measured& measured) {
+std::string dark_signal(const core::Measured& measured) {
   if (!measured.value) return fmt::format("# dark_signal_e_s: not measured: {}\n", in_comment(measured.why));
   if (*measured.value > 0.0) return entry("dark_signal_e_s", measured);
   return line("dark_signal_e_s", "0.0",
               fmt::format("measured as {:.2g}, sd {:.2g}: not significant", *measured.value, measured.sd));
 }
 
-std::string head(const CameraMeasurement& camera) {
-  const FlatFieldFolder& folder = camera.folder;
+std::string head(const core::CameraMeasurement& camera) {
+  const core::FlatFieldFolder& folder = camera.folder;
   std::string text = fmt::format("# {}\n# Measured by photon transfer (EMVA 1288) on {} frames of {} x {} pixels.\n",
                                  in_comment(folder.name), camera.frames, camera.width_px, camera.height_px);
   if (folder.frame_rate_hz) text += fmt::format("# Frame rate: {:.6g} Hz\n", *folder.frame_rate_hz);
@@ -59,14 +61,14 @@ std::string head(const CameraMeasurement& camera) {
   if (!folder.price_class.empty()) text += fmt::format("# Price class: {}\n", in_comment(folder.price_class));
   text += fmt::format("# Outlying pixels: {} hot, {} dead, {} in all.\n", camera.hot_pixels, camera.dead_pixels,
                       camera.outlying_pixels);
-  for (const std::string& note : camera.notes) text += fmt::format("# Note: {}\n", in_comment(note));
+  for (const core::CameraNote& note : camera.notes) text += fmt::format("# Note: {}\n", in_comment(note_words(note)));
   text += "# No quantum efficiency: it requires a calibrated light.\n";
   return text;
 }
 
 }  // namespace
 
-std::string camera_toml(const CameraMeasurement& camera) {
+std::string camera_toml(const core::CameraMeasurement& camera) {
   std::string text = head(camera) + "\n[sensor]\n";
   text += fmt::format("bit_depth = {}\n", camera.folder.bit_depth);
   text += entry("full_well_e", camera.full_well_e);
@@ -79,4 +81,4 @@ std::string camera_toml(const CameraMeasurement& camera) {
   return text;
 }
 
-}  // namespace glidelab::core
+}  // namespace glidelab::report

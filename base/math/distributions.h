@@ -1,0 +1,20 @@
+/// Quantiles and tails of the usual distributions (Boost.Math, whose templates are compiled here once). Degrees of
+/// freedom are finite and above 0, probabilities lie in (0, 1).
+#pragma once
+
+namespace glidelab::base {
+
+double normal_cdf(double z);
+double normal_tail(double z);  ///< P(> z)
+double normal_quantile(double p);
+double normal_upper_quantile(double p);  ///< exceeded with the probability p
+
+double student_t_tail(double degrees, double t);  ///< P(> t)
+double student_t_quantile(double degrees, double p);
+
+double chi2_quantile(double degrees, double p);
+double chi2_upper_quantile(double degrees, double p);  ///< exceeded with the probability p
+
+double beta_quantile(double a, double b, double p);
+
+}  // namespace glidelab::base

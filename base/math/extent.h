@@ -1,0 +1,19 @@
+/// The interval that some numbers span.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+namespace glidelab::base {
+
+/// Of no number: low above high.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void include(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  double length() const { return high > low ? high - low : 0.0; }  ///< 0 of none
+};
+
+}  // namespace glidelab::base

@@ -1,0 +1,228 @@
+#include "report/analysis/note_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text/number_text.h"
+#include "core/result/results.h"
+
+namespace glidelab::report {
+namespace {
+
+const char* sign_of(int direction) {
+  return direction > 0 ? ">" : "<";
+}
+
+std::string with_sd(double deg, double sd_deg) {
+  return fmt::format("{:.3g} ± {:.2g}°", deg + 0.0, sd_deg);  // + 0.0: no "-0"
+}
+
+/// A sentence for every kind; a kind without one does not compile.
+struct AnalysisSentence {
+  std::string operator()(const core::AboutFile& of) const { return of.text; }
+  std::string operator()(const core::RepeatedFrames& of) const {
+    return fmt::format(
+        "{} of {} frames are identical to the frame before: duplicates (a camera or converter that repeats frames), or "
+        "a scene at rest without any noise",
+        of.repeated, of.frames);
+  }
+  std::string operator()(const core::EvenStamps& of) const {
+    return fmt::format(
+        "the container's time stamps are whole multiples of {:.4g} ms, and frames at an even distance of {:.6g} ms (to "
+        "{:.0f} parts in a million) explain them all: those times are used",
+        of.tick_s * 1e3, of.step_s * 1e3, std::ceil(of.half_width_s / of.step_s * 1e6));
+  }
+  std::string operator()(const core::AssumedStatements& of) const {
+    const std::string mass = fmt::format("a mass of {:g} kg", of.mass_kg.value_or(0.0));
+    const std::string level = "an inclination of 0°";
+    const bool both = of.mass_kg && of.level;
+    return fmt::format(
+        "{} assumed, for nobody states {} ({}): K/m, µ and α come from the motion and do not depend on that",
+        both ? mass + " and " + level + " are" : (of.mass_kg ? mass : level) + " is", both ? "them" : "it",
+        both ? "--mass, --incline" : (of.mass_kg ? "--mass" : "--incline"));
+  }
+  std::string operator()(const core::AssumedMass&) const {
+    return "no mass is stated: 1 kg is assumed (K/m, µ and α do not depend on it)";
+  }
+
+  std::string operator()(const core::OutlyingView& of) const {
+    return fmt::format("{} departs from the fitted camera by {:.3g} px and is {}", of.file, of.error_px,
+                       of.left_out ? "left out" : "kept all the same: fewer than three views would be left");
+  }
+  std::string operator()(const core::NoPatternInSight& of) const {
+    return fmt::format("no pattern in sight in {}", fmt::join(of.files, ", "));
+  }
+  std::string operator()(const core::UnrefinedCorners& of) const {
+    if (of.corners == 1) return "one corner could not be refined and keeps the detector's position";
+    return fmt::format("{} corners could not be refined and keep the detector's position", of.corners);
+  }
+  std::string operator()(const core::CornersErrTogether& of) const {
+    return fmt::format(
+        "neighbouring corners share an error of {:.2g} px (each has {:.2g} px of its own): the pattern is bent, or the "
+        "model does not describe the lens; the uncertainties allow for it",
+        of.shared_px, of.own_px);
+  }
+  std::string operator()(const core::UncertainFocalLength& of) const {
+    return fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
+                       of.focal_px, of.sd_px);
+  }
+  std::string operator()(const core::FisheyeFitsBetter& of) const {
+    return fmt::format(
+        "the lens is modelled as a fisheye (equidistant): corners fit to {:.2g} px, to {:.2g} px with Brown-Conrady",
+        of.rms_px, of.brown_conrady_rms_px);
+  }
+  std::string operator()(const core::PlaneViewsDisagree& of) const {
+    const bool one = of.views == 1;
+    return fmt::format(
+        "the plane {} of group \"{}\" {} not agree with the camera: the pattern's corners lie {:.2g} px (rms) from "
+        "where the camera and {} plane place them; their noise explains {:.2g} px",
+        one ? "view" : "views", of.group, one ? "does" : "do", of.rms_px, one ? "a" : "one", of.expected_px);
+  }
+
+  std::string operator()(const core::MarkerAtRest&) const { return "the marker does not move in this clip"; }
+  std::string operator()(const core::MarkerConcealed& of) const {
+    return fmt::format("in {} frames the marker {} and counts as not seen", of.frames,
+                       of.by == core::MarkerConcealed::By::similar
+                           ? "cannot be distinguished from a similar object at rest"
+                           : "is partly hidden or disturbed (its size or the residuals differ)");
+  }
+  std::string operator()(const core::MarkerMeasuredBy& of) const {
+    return of.what == core::MarkerMeasuredBy::What::centroid
+               ? "the marker is not a disc; the centroid of its colour is used"
+               : "the marker is lit from one side; its shading is fitted";
+  }
+  std::string operator()(const core::MarkerOfOtherSize& of) const {
+    return fmt::format("the marker looks {:.0f} % {} than its diameter predicts", 100.0 * std::abs(of.ratio - 1.0),
+                       of.ratio > 1.0 ? "larger" : "smaller");
+  }
+  std::string operator()(const core::MarkerFittedAgain& of) const {
+    return fmt::format("the marker is fitted as a {}, before {}: seen in {} frames, {} without",
+                       of.sphere ? "sphere that is lit from one side" : "disc",
+                       of.still_background ? "the background that other frames show" : "what moves with it", of.seen,
+                       of.seen_before);
+  }
+  std::string operator()(const core::DarkMarker&) const {
+    return "the marker is darker than its surroundings; set color = \"#101010\" in [marker] to look for a dark one";
+  }
+  std::string operator()(const core::NotOfStatedSize& of) const {
+    return "a marker of the stated diameter_m is not found: " + of.failure;
+  }
+
+  std::string operator()(const core::NoRay& of) const {
+    return fmt::format("{} sightings lie where the lens model has no ray and are left out", of.sightings);
+  }
+  std::string operator()(const core::SlantedLine& of) const {
+    return fmt::format("the line of motion makes {:.0f} degrees with the pattern's X axis", of.angle_deg);
+  }
+  std::string operator()(const core::ExactScale&) const {
+    return "the scale is taken as exact (px_per_m_sd is 0 or not given)";
+  }
+  std::string operator()(const core::CodecDragSubtracted& of) const {
+    return fmt::format(
+        "the codec draws the marker towards displacements of parts of a pixel a frame, by {:.2g} px (root mean "
+        "square): that is taken off, and the intervals allow for what is not known of it",
+        of.rms_px);
+  }
+
+  std::string operator()(const core::FramesMissing& of) const {
+    constexpr std::size_t kNamed = 6;
+    std::vector<std::string> places;
+    for (const double t_s : of.after_s) places.push_back(fmt::format("{:.3f} s", t_s));
+    const bool more = places.size() > kNamed;
+    places.resize(std::min(places.size(), kNamed));
+    return fmt::format(
+        "{} frame{} missing without a gap in the times (after {}{}): the motion jumps there by the distance of whole "
+        "frames; {}",
+        of.frames, of.frames == 1 ? " is" : "s are", fmt::join(places, ", "), more ? ", …" : "",
+        of.put_right ? "the later times are corrected" : "the times are left as they are");
+  }
+  std::string operator()(const core::OutliersLeftOut& of) const {
+    return fmt::format("{} of {} positions lie off the motion and are left out", of.outliers, of.positions);
+  }
+  std::string operator()(const core::CorrelatedNoise& of) const {
+    return fmt::format("the noise of neighbouring positions is correlated ({:.2f}); the intervals allow for it",
+                       of.neighbours);
+  }
+  std::string operator()(const core::LineScatters& of) const {
+    return fmt::format(
+        "v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; the intervals are "
+        "widened",
+        sign_of(of.direction), of.ratio);
+  }
+  std::string operator()(const core::NoiseGrowsWithSpeed& of) const {
+    return fmt::format(
+        "the noise of a position grows with the speed: {} mm at the slowest, {} mm at the fastest; the lines' "
+        "intervals allow for it",
+        base::digits_text(1e3 * of.slowest_m, 2), base::digits_text(1e3 * of.fastest_m, 2));
+  }
+  std::string operator()(const core::CoarseRounding& of) const {
+    return fmt::format("positions are rounded to {:.3g} m and often repeat: {}", of.rounding_m,
+                       of.instead_of_generalised
+                           ? "the rounding error persists over frames, and generalised lines, which weight points by "
+                             "the covariance of random noise, are not fitted; ordinary lines take their place"
+                           : "the noise is not random");
+  }
+  std::string operator()(const core::GeneralisedLine& of) const {
+    return fmt::format("v {} 0: the line is fitted to {} positions of free motion, up to its ends and reversals",
+                       sign_of(of.direction), of.positions);
+  }
+  std::string operator()(const core::NoGeneralisedLine& of) const {
+    return fmt::format("v {} 0: the generalised least squares did not converge; there is no line",
+                       sign_of(of.direction));
+  }
+  std::string operator()(const core::AgainstLaunch& of) const { return core::sentence(of); }
+
+  std::string operator()(const core::MassInGrams& of) const {
+    if (of.lightest_kg) {
+      return fmt::format(
+          "mass_kg = {:.6g}, but {:.6g} for the lightest glider: masses are in kilograms, and one of these looks like "
+          "grams",
+          of.mass_kg, *of.lightest_kg);
+    }
+    return fmt::format("mass_kg = {:.6g}: masses are in kilograms, and this one looks like grams ({:.6g} kg)",
+                       of.mass_kg, of.mass_kg / 1000.0);
+  }
+  std::string operator()(const core::InclineContradiction& of) const {
+    return contradiction_words(of) +
+           ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)";
+  }
+  std::string operator()(const core::RobustFit& of) const {
+    return fmt::format("robust: {} of {} positions are off the motion and left out", of.left_out, of.positions);
+  }
+  std::string operator()(const core::FitScatters& of) const {
+    return fmt::format(
+        "the positions scatter {} times as far about the fitted motion as their noise, or one part of the motion "
+        "disagrees with others by more than it explains: the intervals are widened ({:.0f} degrees of freedom)",
+        base::number_text(of.ratio, 3), of.degrees);
+  }
+};
+
+}  // namespace
+
+std::string contradiction_words(const core::InclineContradiction& of) {
+  const core::StatedIncline& stated = of.stated;
+  const std::string says =
+      fmt::format("{} says {}", stated.by,
+                  stated.sd_deg ? with_sd(stated.deg, *stated.sd_deg) : fmt::format("{:.3g}°", stated.deg + 0.0));
+  if (of.beyond_gravity) {
+    return fmt::format("the acceleration, {:.3g} m/s² without friction, is more than gravity_m_s2 = {:.6g}; {}",
+                       *of.beyond_gravity, of.gravity_m_s2, says);
+  }
+  const char* bound = of.bound == 0 ? "" : of.bound < 0 ? "at most " : "at least ";
+  return fmt::format("the acceleration makes the inclination {}{}, {}", bound, with_sd(of.deg, of.sd_deg), says);
+}
+
+std::string note_words(const core::Note& note) {
+  return std::visit(AnalysisSentence{}, note);
+}
+
+std::vector<std::string> notes_words(const std::vector<core::Note>& notes) {
+  std::vector<std::string> sentences;
+  for (const core::Note& note : notes) sentences.push_back(note_words(note));
+  return sentences;
+}
+
+}  // namespace glidelab::report

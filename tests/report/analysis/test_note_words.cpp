@@ -1,0 +1,83 @@
+#include "report/analysis/note_words.h"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+TEST_CASE("every kind of note of an analysis has words, with its data in the units that people read") {
+  using By = core::MarkerConcealed::By;
+  using What = core::MarkerMeasuredBy::What;
+  core::InclineContradiction one_way{{10.0, {}, "the plumb line"}, 4.712, 0.013};
+  one_way.bound = -1;
+  core::InclineContradiction beyond{{4.3, 0.3, "incline_deg"}};
+  beyond.beyond_gravity = 12.34;
+  beyond.gravity_m_s2 = 9.80665;
+  const std::vector<std::pair<core::Note, std::string>> notes = {
+      {core::AboutFile{"\"t\" states no unit"}, "\"t\" states no unit"},
+      {core::RepeatedFrames{3, 40}, "3 of 40 frames are identical to the frame before"},
+      {core::EvenStamps{0.001, 1.0 / 240.0, 1e-7}, "multiples of 1 ms, and frames at an even distance of 4.16667 ms"},
+      {core::AssumedStatements{1.0, true}, "a mass of 1 kg and an inclination of 0° are assumed"},
+      {core::AssumedStatements{1.0, false}, "a mass of 1 kg is assumed, for nobody states it (--mass)"},
+      {core::AssumedStatements{{}, true}, "an inclination of 0° is assumed, for nobody states it (--incline)"},
+      {core::AssumedMass{}, "1 kg is assumed"},
+      {core::OutlyingView{"view-2.png", 2.0, true},
+       "view-2.png departs from the fitted camera by 2 px and is left out"},
+      {core::OutlyingView{"view-2.png", 2.0, false}, "kept all the same"},
+      {core::NoPatternInSight{{"a.png", "b.png"}}, "in a.png, b.png"},
+      {core::UnrefinedCorners{1}, "one corner"},
+      {core::UnrefinedCorners{7}, "7 corners"},
+      {core::CornersErrTogether{0.31, 0.02}, "share an error of 0.31 px (each has 0.02 px"},
+      {core::UncertainFocalLength{812.3, 41.0}, "(812.3 px, sd 41 px)"},
+      {core::FisheyeFitsBetter{0.1, 2.5}, "corners fit to 0.1 px, to 2.5 px with Brown-Conrady"},
+      {core::PlaneViewsDisagree{"level", 1.5, 0.05, 1}, "the plane view of group \"level\" does not agree"},
+      {core::PlaneViewsDisagree{"level", 1.5, 0.05, 2}, "the plane views of group \"level\" do not agree"},
+      {core::MarkerAtRest{}, "does not move"},
+      {core::MarkerConcealed{By::similar, 4}, "in 4 frames the marker cannot be distinguished"},
+      {core::MarkerConcealed{By::disturbance, 5}, "in 5 frames the marker is partly hidden"},
+      {core::MarkerMeasuredBy{What::centroid}, "centroid of its colour"},
+      {core::MarkerMeasuredBy{What::shading}, "shading is fitted"},
+      {core::MarkerOfOtherSize{1.25}, "25 % larger"},
+      {core::MarkerOfOtherSize{0.75}, "25 % smaller"},
+      {core::MarkerFittedAgain{true, false, 260, 200}, "sphere that is lit from one side, before what moves with it"},
+      {core::DarkMarker{}, "darker than its surroundings"},
+      {core::NotOfStatedSize{"no marker"}, "is not found: no marker"},
+      {core::NoRay{12}, "12 sightings"},
+      {core::SlantedLine{17.2}, "17 degrees"},
+      {core::ExactScale{}, "taken as exact"},
+      {core::CodecDragSubtracted{0.12}, "by 0.12 px"},
+      {core::FramesMissing{1, {0.5}, true}, "1 frame is missing without a gap in the times (after 0.500 s)"},
+      {core::FramesMissing{9, std::vector<double>(7, 0.25), false}, "0.250 s, …): the motion jumps"},
+      {core::OutliersLeftOut{3, 203}, "3 of 203 positions"},
+      {core::CorrelatedNoise{0.314}, "(0.31)"},
+      {core::LineScatters{1, 2.34}, "v > 0: the points scatter 2.3 times"},
+      {core::NoiseGrowsWithSpeed{1e-4, 2.5e-4}, "0.10 mm at the slowest, 0.25 mm at the fastest"},
+      {core::CoarseRounding{0.01, false}, "rounded to 0.01 m and often repeat: the noise is not random"},
+      {core::CoarseRounding{0.01, true}, "ordinary lines take their place"},
+      {core::GeneralisedLine{-1, 80}, "v < 0: the line is fitted to 80 positions"},
+      {core::NoGeneralisedLine{1}, "v > 0: the generalised least squares did not converge"},
+      {core::AgainstLaunch{1, 0.542, 0.3, false}, "motion towards +x before 0.542 s"},
+      {core::MassInGrams{335.0, 0.335}, "mass_kg = 335, but 0.335 for the lightest glider"},
+      {core::MassInGrams{400.0, {}}, "looks like grams (0.4 kg)"},
+      {one_way, "the acceleration makes the inclination at most 4.71 ± 0.013°, the plumb line says 10°: an angle"},
+      {beyond, "12.3 m/s² without friction, is more than gravity_m_s2 = 9.80665; incline_deg says 4.3 ± 0.3°"},
+      {core::RobustFit{4, 400}, "robust: 4 of 400 positions"},
+      {core::FitScatters{1.234, 17.0}, "scatter 1.23 times"}};
+  std::vector<bool> seen(std::variant_size_v<core::Note>, false);
+  for (const auto& [note, part] : notes) {
+    const std::string words = report::note_words(note);
+    INFO(words);
+    CHECK(words.find(part) != std::string::npos);
+    seen[note.index()] = true;
+  }
+  for (std::size_t kind = 0; kind < seen.size(); ++kind) {
+    INFO("kind " << kind);
+    CHECK(seen[kind]);
+  }
+  CHECK(report::notes_words({core::MarkerAtRest{}, core::ExactScale{}}).size() == 2);
+}
