@@ -106,6 +106,12 @@ struct MarkerFittedAgain {
   std::size_t seen = 0, seen_before = 0;
 };
 
+/// Sightings that keep what a mosaic or a tone curve does to them: the windows around them take too much memory, or
+/// their fit with the pixels' answer does not converge.
+struct PixelsAnswerLeft {
+  std::size_t kept = 0, sightings = 0;
+};
+
 struct DarkMarker {};
 
 /// A marker of the stated diameter is not found; one of another size is.
@@ -216,12 +222,12 @@ struct FitScatters {
   double ratio = 1.0, degrees = 0.0;
 };
 
-using Note =
-    std::variant<AboutFile, RepeatedFrames, EvenStamps, AssumedStatements, AssumedMass, OutlyingView, NoPatternInSight,
-                 UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyeFitsBetter, PlaneViewsDisagree,
-                 MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, DarkMarker,
-                 NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut,
-                 CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine,
-                 AgainstLaunch, MassInGrams, InclineContradiction, RobustFit, FitScatters>;
+using Note = std::variant<AboutFile, RepeatedFrames, EvenStamps, AssumedStatements, AssumedMass, OutlyingView,
+                          NoPatternInSight, UnrefinedCorners, CornersErrTogether, UncertainFocalLength,
+                          FisheyeFitsBetter, PlaneViewsDisagree, MarkerAtRest, MarkerConcealed, MarkerMeasuredBy,
+                          MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, NotOfStatedSize, NoRay,
+                          SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise,
+                          LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine,
+                          AgainstLaunch, MassInGrams, InclineContradiction, RobustFit, FitScatters>;
 
 }  // namespace glidelab::core

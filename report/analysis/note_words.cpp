@@ -104,6 +104,12 @@ struct AnalysisSentence {
                        of.still_background ? "the background that other frames show" : "what moves with it", of.seen,
                        of.seen_before);
   }
+  std::string operator()(const core::PixelsAnswerLeft& of) const {
+    return fmt::format(
+        "in {} of {} frames the marker's place is not corrected for how the camera's pixels answer to an edge; a "
+        "shorter clip, or a smaller marker, is corrected in full",
+        of.kept, of.sightings);
+  }
   std::string operator()(const core::DarkMarker&) const {
     return "the marker is darker than its surroundings; set color = \"#101010\" in [marker] to look for a dark one";
   }

@@ -22,7 +22,6 @@ constexpr std::size_t kRestFrames = 12;             // after which a path that h
 constexpr std::size_t kMovingFrames = 10;           // in which five radii are a motion
 constexpr std::size_t kFewestSightings = 5;         // fewer in a row are noise
 constexpr double kSmallestRadiusPx = 1.2;
-constexpr std::size_t kMostWindowBytes = 1 << 26;   // of windows around sightings
 constexpr std::size_t kFewestResponseWindows = 16;  // that say how the pixels answer,
 constexpr std::size_t kResponsePixels = 8000;       // and about so many pixels
 
@@ -100,7 +99,7 @@ void MarkerTracker::keep(const Signal& signal, std::size_t frame, const Found& f
   const cv::Point middle(cvRound(found.fit.centre.x), cvRound(found.fit.centre.y));
   const cv::Rect box = cv::Rect(middle.x - reach, middle.y - reach, 2 * reach + 1, 2 * reach + 1) &
                        cv::Rect(0, 0, signal.values.cols, signal.values.rows);
-  if (kept_bytes_ + box.area() * signal.values.elemSize() > kMostWindowBytes) return;
+  if (kept_bytes_ + box.area() * signal.values.elemSize() > most_window_bytes_) return;
   kept_bytes_ += box.area() * signal.values.elemSize();
   signal.see(box);
   MarkerGuess guess = found.guess;
@@ -144,10 +143,14 @@ void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
   }
   const std::optional<EdgeResponse> response = marker_response(sampled, surface, kind_ == SignalKind::bright);
   if (!response) return;
+  std::size_t left = 0;
   for (std::size_t i = 0; i < windows.size(); ++i) {
-    if (windows[i] == nullptr) continue;
-    const std::optional<MarkerFit> found = fit_marker(*windows[i], surface, *response);
-    if (!found) continue;
+    const std::optional<MarkerFit> found =
+        windows[i] != nullptr ? fit_marker(*windows[i], surface, *response) : std::nullopt;
+    if (!found) {
+      ++left;
+      continue;
+    }
     const cv::Point2d centre = found->centre + cv::Point2d(windows[i]->corner);
     MarkerFit& fit = tracked.fits[i];
     fit.light_px += fit.centre - centre;
@@ -158,6 +161,7 @@ void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
     sighting.v_px = centre.y;
     sighting.sd_px = found->sd_px;
   }
+  if (left > 0) tracked.notes.emplace_back(PixelsAnswerLeft{left, windows.size()});
 }
 
 void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) {

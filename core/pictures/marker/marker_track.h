@@ -34,6 +34,10 @@ class MarkerTracker {
   static MarkerTracker of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
                                     std::optional<double> start_s = {});
 
+  /// Windows around sightings take so much memory at most (128 MB); sightings beyond keep what a mosaic or a tone curve
+  /// does to them, and a note says how many.
+  void limit_windows(std::size_t bytes) { most_window_bytes_ = bytes; }
+
   /// Takes the next frame. InputError where a hue is to be looked for in a grey clip.
   void add(const Frame& frame);
 
@@ -83,7 +87,7 @@ class MarkerTracker {
   std::vector<Path> paths_;
   std::deque<Past> past_;  ///< since the last search of the whole image
   std::vector<Kept> kept_;
-  std::size_t kept_bytes_ = 0;
+  std::size_t kept_bytes_ = 0, most_window_bytes_ = std::size_t{1} << 27;
   std::size_t searched_ = 0;
   double searched_s_ = 0.0;
   std::size_t frames_ = 0;

@@ -6,6 +6,7 @@
 #include "tests/catch.h"
 #include "tests/core/lit_scene.h"
 #include "tests/core/mosaic.h"
+#include "tests/core/notes.h"
 #include "tests/core/painter.h"
 #include "tests/core/small_clip.h"
 
@@ -345,31 +346,60 @@ TEST_CASE("the lit part of a sphere is followed where it need not look like a di
   }
 }
 
-TEST_CASE("a colour mosaic and a tone curve do not move a small sharp marker") {
-  // 1.04 px a frame, so that what repeats with the pixels becomes a wave of 25 frames. Without the pixels' answer taken
-  // off, the centre is off by 0.017 and 0.021 px (rms); noise of 1 code and a bit leaves 0.005 px.
-  constexpr double kSmall = 3.7;
-  const cv::Size size(200, 48);
-  const auto centre = [](std::size_t k) {
-    return cv::Point2d(20.3 + 1.04 * static_cast<double>(k), 17.4 + 0.073 * static_cast<double>(k));
-  };
-  for (const int interpolation : {cv::COLOR_BayerRG2BGR, cv::COLOR_BayerRG2BGR_EA}) {
+namespace {
+
+/// A small sharp disc that moves 1.04 px a frame behind a mosaic and a tone curve: what repeats with the pixels becomes
+/// a wave of 25 frames.
+struct MosaicClip {
+  static constexpr double kSmall = 3.7;
+  static constexpr std::size_t kCount = 150;
+  int interpolation = cv::COLOR_BayerRG2BGR;
+
+  static cv::Point2d centre(std::size_t k) {
+    return {20.3 + 1.04 * static_cast<double>(k), 17.4 + 0.073 * static_cast<double>(k)};
+  }
+  core::TrackedMarker tracked(std::optional<std::size_t> most_bytes = {}) const {
     core::MarkerTracker tracker("clip.mkv", marker(), [&](cv::Point2d) { return kSmall; });
-    constexpr std::size_t kCount = 150;
+    if (most_bytes) tracker.limit_windows(*most_bytes);
     for (std::size_t k = 0; k < kCount; ++k) {
       const cv::Point2d c = centre(k);
       const cv::Mat light = tests::paint(
-          size, [&](double u, double v) { return std::hypot(u - c.x, v - c.y) < kSmall ? 190.0 : 50.0; }, 12, 0.0);
+          cv::Size(200, 48), [&](double u, double v) { return std::hypot(u - c.x, v - c.y) < kSmall ? 190.0 : 50.0; },
+          12, 0.0);
       core::Frame frame;
       frame.index = k;
       frame.grey = tests::through_mosaic(light, interpolation, true, 1.0, 500 + static_cast<unsigned>(k));
       tracker.add(frame);
     }
-    const core::TrackedMarker tracked = tracker.finish();
+    return tracker.finish();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("sightings that are not corrected for the pixels' answer are counted in a note") {
+  const MosaicClip clip;
+  CHECK(tests::note_of<core::PixelsAnswerLeft>(clip.tracked().notes) == nullptr);
+  // Windows of 17 x 17 floats at most, (2 (1.25 x 3.7 + 2.5 rounded up + 1) + 1)² with 3.7 px of radius and up to 4.3.
+  constexpr std::size_t kWindows = 60, kLargest = 21 * 21 * sizeof(float), kSmallest = 17 * 17 * sizeof(float);
+  const core::TrackedMarker limited = clip.tracked(kWindows * kSmallest);
+  const auto* note = tests::note_of<core::PixelsAnswerLeft>(limited.notes);
+  REQUIRE(note != nullptr);
+  CHECK(note->sightings == MosaicClip::kCount);
+  CHECK(note->kept >= MosaicClip::kCount - kWindows);
+  CHECK(note->kept <= MosaicClip::kCount - kWindows * kSmallest / kLargest);
+}
+
+TEST_CASE("a colour mosaic and a tone curve do not move a small sharp marker") {
+  // Without the pixels' answer taken off, the centre is off by 0.017 and 0.021 px (rms); noise of 1 code and a bit
+  // leaves 0.005 px.
+  constexpr std::size_t kCount = MosaicClip::kCount;
+  for (const int interpolation : {cv::COLOR_BayerRG2BGR, cv::COLOR_BayerRG2BGR_EA}) {
+    const core::TrackedMarker tracked = MosaicClip{interpolation}.tracked();
     REQUIRE(tracked.sightings.size() == kCount);
     double sum = 0.0, squares = 0.0;
     for (const core::MarkerSighting& seen : tracked.sightings) {
-      const double off = seen.u_px - centre(seen.frame).x;
+      const double off = seen.u_px - MosaicClip::centre(seen.frame).x;
       sum += off;
       squares += off * off;
     }
