@@ -2,8 +2,10 @@
 #include <vector>
 
 #include "diagnose/model/track_model.h"
+#include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/verdict/diagnose.h"
+#include "diagnose/weigh/hypothesis.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
@@ -87,4 +89,19 @@ TEST_CASE("of very many positions some are weighed, spread over every motion") {
       CHECK(motion.sd_of(i) == Approx(motion.sd_m * (1.0 + 3.0 * static_cast<double>(i))));
     }
   }
+}
+
+TEST_CASE("a wrong mass is a wrong scale of the force on a level track, and another thing on an incline") {
+  // m (1 + e) v' = F and m v' = F/(1 + e) are one law; with m g sin(alpha) beside F they are two.
+  const auto are_one = [](double incline_deg) {
+    const std::vector<tests::MadeLaunch> launches = {{0.4, incline_deg, -0.2, 0.3}, {0.4, incline_deg, 0.1, -0.4}};
+    const auto made = tests::made_experiment(launches, {.recorded = pull_n}, 5, 2e-5, 150, 200.0);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+    const diagnose::ScoreSpace space(set, nominal);
+    const std::vector<std::size_t> alike = diagnose::alike_in(space, diagnose::scan_effects(space, {}, 2));
+    return alike[diagnose::effect_index("mass_error")] == alike[diagnose::effect_index("force_gain")];
+  };
+  CHECK(are_one(0.0));
+  CHECK_FALSE(are_one(10.0));
 }
