@@ -107,8 +107,9 @@ std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<Eff
   const auto has_direction = [](const EffectScan& scan) { return scan.visible && scan.direction.rest.size() > 0; };
   std::vector<std::size_t> alike(effect_list().size());
   for (std::size_t e = 0; e < alike.size(); ++e) {
-    alike[e] = first_alike(e, space.set().pictures);
-    if (alike[e] != e || !has_direction(scans[e])) continue;
+    const std::size_t first = first_alike(e, space.set().pictures);  // it comes before
+    alike[e] = first != e ? alike[first] : e;
+    if (first != e || !has_direction(scans[e])) continue;
     const EffectScan& scan = scans[e];
     for (std::size_t other = 0; other < e; ++other) {
       if (alike[other] != other || !has_direction(scans[other])) continue;

@@ -88,9 +88,9 @@ const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>
 
 /// For each of effect_list(), the first effect that does the same to these motions, or itself. Besides those that no
 /// experiment tells apart (first_alike()), two are alike whose directions differ by so little that the log likelihood
-/// at the size that is seen differs by less than a half: a stated mass that is wrong and a force that is recorded too
-/// small are one cause on a level track with one mass, and two on an incline. `space` is the neighbourhood of the
-/// nominal fit.
+/// at the size that is seen differs by less than a half: masses that are wrong by a common factor and a force that is
+/// recorded too small are one cause, and with one mass an inertia without weight is the same again on a level track.
+/// `space` is the neighbourhood of the nominal fit.
 std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<EffectScan>& scans);
 
 /// Whether an effect is scatter of single positions or times (Search::noise), which makes no gap.

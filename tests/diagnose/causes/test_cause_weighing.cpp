@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <random>
 #include <string>
 #include <string_view>
@@ -173,24 +172,32 @@ TEST_CASE("without a gap nothing stands as well as a cause, where small imperfec
   CHECK(evidence_of_nothing(0.33) > 10.0);
 }
 
-TEST_CASE("a shaking camera and a shaking table have the same evidence in tracks, whatever their phases") {
-  // On a level track without a reversal x = A sin(2 pi f t + phase) is the table's acceleration of a certain phase: the
-  // two differ in nothing but where phases are counted from.
+namespace {
+
+/// A shaking table on a level track, its phase in each clip another, and a spring; no motion turns round.
+diagnose::WeighedCauses weighed_shaking(double spring_n_m) {
   const double phases[] = {0.3, 2.9, 4.4, 1.2, 5.8};
   std::size_t clip = 0;
   double before = 1.0;
   tests::MadeEffect shaking;
-  shaking.force = [&](double m, double, double, double t) {
+  shaking.force = [&](double m, double x, double, double t) {
     if (t < before - 0.1) ++clip;
     before = t;
-    return m * 0.15 * std::sin(2.0 * std::acos(-1.0) * 3.0 * t + phases[(clip - 1) % 5]);
+    return m * 0.15 * std::sin(2.0 * std::acos(-1.0) * 3.0 * t + phases[(clip - 1) % 5]) - spring_n_m * x;
   };
   std::vector<tests::MadeLaunch> launches;
   for (const double v : {1.0, 1.2, 1.4, 1.1, 1.3}) launches.push_back({0.4, 0.0, -0.5, v});
   const auto made = tests::made_experiment(launches, shaking, 11, 2e-4, 50, 60.0);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  const diagnose::WeighedCauses weighed =
-      diagnose::weigh_causes(set, diagnose::compare_hypotheses(set), {}, 2, nullptr, [](double) {});
+  return diagnose::weigh_causes(set, diagnose::compare_hypotheses(set), {}, 2, nullptr, [](double) {});
+}
+
+}  // namespace
+
+TEST_CASE("a shaking camera and a shaking table have the same evidence in tracks, whatever their phases") {
+  // On a level track without a reversal x = A sin(2 pi f t + phase) is the table's acceleration of a certain phase: the
+  // two differ in nothing but where phases are counted from.
+  const diagnose::WeighedCauses weighed = weighed_shaking(0.0);
   const auto evidence_of = [&](std::string_view id) {
     const diagnose::Hypothesis* one = diagnose::find(weighed.comparison, {diagnose::effect_index(id)});
     REQUIRE(one != nullptr);
@@ -200,23 +207,11 @@ TEST_CASE("a shaking camera and a shaking table have the same evidence in tracks
   CHECK(evidence_of("camera_motion") == Approx(evidence_of("base_vibration")).margin(0.3));
 }
 
-TEST_CASE("of two laws that are one in the data neither has a function without a name to itself") {
-  // With one mass on a level track a spring along all of it is a bow of the track; pixels pull the marker.
-  tests::MadeEffect effect;
-  effect.force = [](double, double x, double, double) { return -0.04 * (x + 1.5); };
-  effect.seen = [](double x, double) { return x + 2e-4 * std::sin(2.0 * std::acos(-1.0) * x / 0.05); };
-  std::vector<tests::MadeLaunch> launches;
-  for (const double v : {0.6, 0.8, 1.0, 1.2}) {
-    launches.push_back({0.4, 0.0, -0.5, v});
-    launches.push_back({0.4, 0.0, 0.5, -v});
-  }
-  const auto made = tests::made_experiment(launches, effect, 7, 1e-4, 80, 60.0, 0.2);
-  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
-  REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
-  std::map<std::string, double> sums;
-  for (const diagnose::RankedExplanation& one : diagnosis.ranking) {
-    for (const std::string& id : one.explanation.effects) sums[id] += one.probability;
-  }
-  CHECK(sums["track_bow"] > 0.2);
-  CHECK(sums["tether"] > 0.05);
+TEST_CASE("of pairs that do as well none has a function without a name to itself") {
+  // Camera or table, beside whatever stands for the spring.
+  const diagnose::WeighedCauses weighed = weighed_shaking(0.25);
+  const auto& all = weighed.comparison.all;
+  const auto pairs = std::count_if(
+      all.begin(), all.end(), [](const diagnose::Hypothesis& one) { return one.unnamed && one.effects.size() == 2; });
+  CHECK(pairs > 1);
 }
