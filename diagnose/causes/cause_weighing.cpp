@@ -27,8 +27,10 @@ constexpr double kDecades = 9.2;       // ln of 10^4: over which sizes are unifo
 constexpr double kLeastSeen = 2.0;     // standard deviations: a smaller size is not told from none
 constexpr double kFamilies = 3.0;      // ln of some twenty functions without a name, of which the likeliest is taken
 constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their own
-constexpr double kRemainderCost = 3.0;  // log evidence that a remainder has against it, its sizes being unknown
-constexpr double kNotWeighed = 1e3;     // log evidence that what was not fitted is behind
+constexpr double kRemainderCost = 3.0;   // log evidence that a remainder has against it, its sizes being unknown
+constexpr double kNearlyAsLikely = 0.1;  // over the likeliest explanation's probability
+constexpr std::size_t kMostBeside = 8;   // explanations beside which a function without a name is weighed
+constexpr double kNotWeighed = 1e3;      // log evidence that what was not fitted is behind
 
 /// Sizes of one kind, drawn from one normal distribution whose width is uniform in its logarithm; -n log(width) and
 /// what their squares and the width itself cost. `sd`, how well the data tell each.
@@ -52,6 +54,10 @@ constexpr EffectSlot kPush = slot_of(ids::late_release, 1);
 
 const EffectParameter* parameter_of(EffectSlot slot) {
   return &effect_list()[slot.effect].parameters[slot.parameter];
+}
+
+bool is_phase(const EffectParameter* parameter) {
+  return effect_list()[parameter->slot.effect].search == Search::wave;
 }
 
 constexpr double kAnyPushes = 0.1;   // of hands that let go late: pushes of any size and sign, each clip its own
@@ -129,6 +135,11 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
       const double size = fit.at.own[i][o], seen = std::abs(size) * norm;
       if (own[static_cast<std::size_t>(o - 2)] == parameter_of(kPush)) {
         if (norm > 0.0) pushes.add(size * way_of(fit.motions[i]), 1.0 / norm);
+        continue;
+      }
+      if (is_phase(own[static_cast<std::size_t>(o - 2)])) {
+        // Any phase is as likely as any other, wherever time is counted from.
+        log += root - std::log(std::max(2.0 * std::numbers::pi * norm, std::exp(root)));
         continue;
       }
       log += root - std::log(std::max(seen, kLeastSeen) * kDecades);
@@ -240,9 +251,11 @@ std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) 
   return joined;
 }
 
-/// Nothing, the two likeliest single effects and the likeliest pair: beside these a function without a name is weighed.
-/// Beside scatter of single positions, which makes no gap, it would be the one beside nothing once more.
-std::vector<Hypothesis> beside(const Comparison& comparison) {
+/// Nothing, the two single effects and the pair with the most evidence, and what is nearly as likely as the likeliest:
+/// beside these a function without a name is weighed. Of two explanations that do as well, one by itself must not have
+/// the evidence of such a function and leave the other behind. Beside scatter of single positions, which makes no gap,
+/// it would be the one beside nothing once more.
+std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<double>& excess, double unnamed_excess) {
   std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
   for (const std::size_t many : {2, 1}) {
     std::size_t left = many;
@@ -251,6 +264,19 @@ std::vector<Hypothesis> beside(const Comparison& comparison) {
       result.push_back(one);
       --left;
     }
+  }
+  Comparison so_far;
+  so_far.all = comparison.all;
+  weigh_by_share_left(excess, unnamed_excess, so_far);
+  double likeliest = 0.0;
+  for (const Hypothesis& one : so_far.all) {  // by falling probability
+    if (one.fit <= 0 || one.unnamed || std::any_of(one.effects.begin(), one.effects.end(), is_scatter)) continue;
+    likeliest = std::max(likeliest, one.probability);
+    if (one.probability < kNearlyAsLikely * likeliest || result.size() >= kMostBeside) break;
+    const bool known =
+        std::any_of(result.begin(), result.end(), [&](const auto& other) { return other.fit == one.fit; });
+    const Hypothesis* pure = known ? nullptr : pure_of(comparison, one.fit);
+    if (pure != nullptr) result.push_back(*pure);
   }
   return result;
 }
@@ -350,12 +376,19 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
                            : profile - nothing + std::exchange(one.unnamed_log_evidence, 0.0);
   }
   std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed; });
-  for (const Hypothesis& named : beside(comparison)) {
+  const double excess_beside_unnamed = unnamed_excess(set, first);
+  const std::vector<Hypothesis> leaders = beside(comparison, excess, excess_beside_unnamed);
+  std::vector<std::vector<UnnamedFamily>> found(leaders.size());
+  std::vector<std::optional<double>> logs(leaders.size());
+  base::for_each_parallel(leaders.size(), jobs, [&](std::size_t k) {
+    const auto fit = static_cast<std::size_t>(leaders[k].fit);
+    found[k] = fit == 0 ? comparison.unnamed : unnamed_families(ScoreSpace(weighed.set, comparison.fits[fit]));
+    logs[k] = unnamed_profile(set, weighed.set, noise_alone[fit], found[k], profiles[fit].best.sizes);
+  });
+  for (std::size_t k = 0; k < leaders.size(); ++k) {
+    const Hypothesis& named = leaders[k];
     const auto fit = static_cast<std::size_t>(named.fit);
-    const std::vector<UnnamedFamily> families =
-        fit == 0 ? comparison.unnamed : unnamed_families(ScoreSpace(weighed.set, comparison.fits[fit]));
-    const std::optional<double> log =
-        unnamed_profile(set, weighed.set, noise_alone[fit], families, profiles[fit].best.sizes);
+    const std::optional<double>& log = logs[k];
     if (!log) continue;
     Hypothesis both = named;
     both.unnamed = true;
@@ -364,10 +397,10 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     comparison.all.push_back(both);
     if (fit > 0 && comparison.beside_fit == 0) {
       comparison.beside_fit = comparison.left_fit = named.fit;
-      comparison.unnamed_left = families;
+      comparison.unnamed_left = std::move(found[k]);
     }
   }
-  weigh_by_share_left(excess, unnamed_excess(set, first), comparison);
+  weigh_by_share_left(excess, excess_beside_unnamed, comparison);
   weighed.fits.resize(comparison.fits.size());
   for (const std::size_t f : worth) {
     if (std::isfinite(profiles[f].log_evidence)) {

@@ -44,23 +44,6 @@ bool leaves_as_little(const Hypothesis& other, const Hypothesis& best) {
   return other.left.value_or(0.0) < best.left.value_or(0.0) + kSameLeft;
 }
 
-std::vector<std::string> equivalents(const Comparison& comparison, const Hypothesis& best, std::size_t effect) {
-  std::vector<std::string> ids;
-  for (std::size_t e = 0; e < effect_list().size(); ++e) {
-    if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
-    for (const Hypothesis& other : comparison.all) {
-      if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
-      // Scatter of single positions is no other name for what moves them all.
-      const bool as_likely = other.log_evidence > best.log_evidence - kSameEvidence && leaves_as_little(other, best) &&
-                             is_scatter(e) == is_scatter(effect);
-      if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain)
-        ids.emplace_back(effect_list()[e].id);
-      break;
-    }
-  }
-  return ids;
-}
-
 std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Comparison& comparison,
                                               const PictureEvidence& pictures, const Hypothesis& hypothesis,
                                               std::size_t effect) {
@@ -189,6 +172,24 @@ std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone*
 
 }  // namespace
 
+std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypothesis& best, std::size_t effect,
+                                        bool filmed) {
+  std::vector<std::size_t> others;
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
+    for (const Hypothesis& other : comparison.all) {
+      if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
+      // Scatter of single positions is no other name for what moves them all.
+      const bool same_cause = first_alike(e, filmed) == first_alike(effect, filmed);  // evidence tells them by chance
+      const bool as_likely = (same_cause || other.log_evidence > best.log_evidence - kSameEvidence) &&
+                             leaves_as_little(other, best) && is_scatter(e) == is_scatter(effect);
+      if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain) others.push_back(e);
+      break;
+    }
+  }
+  return others;
+}
+
 std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison& comparison,
                                           const NoiseAlone* noise_alone) {
   std::vector<RankedExplanation> ranking;
@@ -242,8 +243,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     if (best->fit >= 0) fit = &comparison.fits[static_cast<std::size_t>(best->fit)];
     for (const std::size_t e : named_effects(*best, noise_alone)) {
       const EffectInfo& info = effect_list()[e];
+      std::vector<std::string> alike;
+      for (const std::size_t other : not_told_apart(comparison, *best, e, set.pictures))
+        alike.emplace_back(effect_list()[other].id);
       diagnosis.effects.push_back({std::string(info.id), info.stage, std::string(info.words),
-                                   comparison.effect_probability[e], equivalents(comparison, *best, e),
+                                   comparison.effect_probability[e], std::move(alike),
                                    parameters_of(set, comparison, pictures, *best, e)});
     }
     if (noise_alone == nullptr) {  // else they stand by the share that they take

@@ -18,6 +18,10 @@ struct NoiseAlone {
   const MotionFit& best;  ///< with what the verdict names
 };
 
+/// What takes the place of one of an explanation's effects as well: as much evidence, as little left of the gap.
+std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypothesis& best, std::size_t effect,
+                                        bool filmed);
+
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {},
                      const NoiseAlone* noise_alone = nullptr);
 

@@ -28,9 +28,10 @@ constexpr double kLeft = 0.5;    // probability of something without a name from
 constexpr double kDoubt = 0.05;  // of names by the noise alone
 constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 
-constexpr double kLeastNamed = 0.1;   // of the excess: beside a remainder less is part of it
-constexpr double kNotMeasured = 0.5;  // a gap below which the noise is not that of the positions
-constexpr double kSureScatter = 0.9;  // the probability of scatter without a gap from which on it is the verdict
+constexpr double kLeastNamed = 0.1;       // of the excess: beside a remainder less is part of it
+constexpr double kClearlyLikelier = 0.1;  // of a probability: less is no reason to name another cause
+constexpr double kNotMeasured = 0.5;      // a gap below which the noise is not that of the positions
+constexpr double kSureScatter = 0.9;      // the probability of scatter without a gap from which on it is the verdict
 
 double probability_of_scatter(const Comparison& comparison) {
   double sum = 0.0;
@@ -84,21 +85,38 @@ void order_by_share(Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
-/// Where not all of several causes take their part, the one that is likeliest is to keep its name, and not the one that
-/// takes most in the place of both: its explanation by itself. Null where the sequence names it, or no fit has it
-/// alone.
-const Hypothesis* without_the_lesser(const Comparison& comparison, const Hypothesis& best,
+/// The probability of a cause or of what takes its place in the explanation as well.
+double probability_of(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
+  std::vector<std::size_t> any = not_told_apart(comparison, best, effect, filmed);
+  any.push_back(effect);
+  double sum = 0.0;
+  for (const Hypothesis& one : comparison.all) {
+    const bool has = std::any_of(any.begin(), any.end(), [&](std::size_t e) {
+      return std::find(one.effects.begin(), one.effects.end(), e) != one.effects.end();
+    });
+    if (!one.unnamed && has) sum += one.probability;
+  }
+  return sum;
+}
+
+/// Where not all of several causes take their part, the one that is clearly likelier is to keep its name, and not the
+/// one that takes most in the place of both: its explanation by itself. Null where the sequence names it, or no fit has
+/// it alone.
+const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
                                      const CauseSequence& sequence) {
   if (!sequence.is_gap || best.effects.size() < 2) return nullptr;
-  const std::size_t likeliest =
-      *std::max_element(best.effects.begin(), best.effects.end(), [&](std::size_t a, std::size_t b) {
-        return comparison.effect_probability[a] < comparison.effect_probability[b];
-      });
   const std::vector<std::size_t>& named = sequence.named.effects;
-  if (!shows_in_motion(effect_list()[likeliest].search) ||
-      std::find(named.begin(), named.end(), likeliest) != named.end()) {
-    return nullptr;
+  std::size_t likeliest = best.effects.front();
+  double most = 0.0, of_named = 0.0;
+  for (const std::size_t e : best.effects) {
+    const bool keeps = std::find(named.begin(), named.end(), e) != named.end();
+    const double probability = probability_of(comparison, best, e, filmed);
+    if (keeps) of_named = std::max(of_named, probability);
+    if (keeps || probability <= most) continue;
+    likeliest = e;
+    most = probability;
   }
+  if (most <= of_named + kClearlyLikelier || !shows_in_motion(effect_list()[likeliest].search)) return nullptr;
   const Hypothesis* alone = find(comparison, {likeliest});
   return alone != nullptr && alone->fit > 0 ? alone : nullptr;
 }
@@ -197,9 +215,13 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   };
   const double least_named = weighed ? kLeastNamed : kLeastShare;
   CauseSequence sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
-  if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, best, sequence) : nullptr) {
-    best = *alone;
-    sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
+  if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.pictures, best, sequence) : nullptr) {
+    CauseSequence likelier = sequence_of(set, nominal, with, fit_of(*alone), without, least_named);
+    // It takes its part of the gap in the other's place, or there is nothing to keep its name for.
+    if (likelier.named_share >= kHalfOfGap || sequence.named_share < kHalfOfGap) {
+      best = *alone;
+      sequence = std::move(likelier);
+    }
   }
   const MotionFit& fit = fit_of(best);
   const bool in_images = found != nullptr && shows_in_images(*found);

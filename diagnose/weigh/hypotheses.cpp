@@ -136,6 +136,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   const ScoreSpace space(set, nominal);
   work.look();
   comparison.scans = scan_effects(space, left_out, jobs);
+  comparison.alike = alike_in(space, comparison.scans);
   work.at(0.1).look();
   comparison.unnamed = unnamed_families(space);
   Hypothesis unnamed;

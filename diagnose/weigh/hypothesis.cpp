@@ -10,7 +10,13 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWorthFitting = 1.0;  // log likelihood that a scan must gain to be fitted in full
+constexpr double kWorthFitting = 1.0;    // log likelihood that a scan must gain to be fitted in full
+constexpr double kSameDirection = 1e-3;  // of sin²: more is another law, however small the effect
+constexpr double kSameGain = 0.5;        // log likelihood
+
+std::size_t alike_of(const Comparison& comparison, std::size_t effect, bool filmed) {
+  return comparison.alike.empty() ? first_alike(effect, filmed) : comparison.alike[effect];
+}
 
 }  // namespace
 
@@ -97,6 +103,28 @@ void set_probabilities(Comparison& comparison) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
+std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<EffectScan>& scans) {
+  const auto has_direction = [](const EffectScan& scan) { return scan.visible && scan.direction.rest.size() > 0; };
+  std::vector<std::size_t> alike(effect_list().size());
+  for (std::size_t e = 0; e < alike.size(); ++e) {
+    const std::size_t first = first_alike(e, space.set().pictures);  // it comes before
+    alike[e] = first != e ? alike[first] : e;
+    if (first != e || !has_direction(scans[e])) continue;
+    const EffectScan& scan = scans[e];
+    for (std::size_t other = 0; other < e; ++other) {
+      if (alike[other] != other || !has_direction(scans[other])) continue;
+      const ScoreColumn &a = scan.direction, &b = scans[other].direction;
+      const double ab = space.dot(a, b), both = space.dot(a, a) * space.dot(b, b);
+      if (!(both > 0.0)) continue;
+      const double sine2 = std::max(0.0, 1.0 - ab * ab / both);
+      if (sine2 > kSameDirection || std::max(scan.gain, scans[other].gain) * sine2 > kSameGain) continue;
+      alike[e] = other;
+      break;
+    }
+  }
+  return alike;
+}
+
 bool is_scatter(std::size_t effect) {
   return effect_list()[effect].search == Search::noise;
 }
@@ -112,7 +140,7 @@ const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) 
   std::map<std::size_t, double> of_cause;
   const auto causes = [&](const Hypothesis& hypothesis) {
     Causes same;
-    for (const std::size_t e : hypothesis.effects) same.insert(first_alike(e, set.pictures));
+    for (const std::size_t e : hypothesis.effects) same.insert(alike_of(comparison, e, set.pictures));
     return same;
   };
   const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };

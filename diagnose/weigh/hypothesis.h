@@ -40,6 +40,8 @@ struct Comparison {
   std::set<std::size_t> in_pictures;        ///< effects that the pictures speak for or against
   double none = 0.0, unknown = 0.0;
   std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another
+  /// Of each of effect_list(), the first one that these data cannot tell from it (alike_in()); empty: first_alike().
+  std::vector<std::size_t> alike;
 };
 
 /// How many fits run at a time, and a callback for the progress of the comparison; an exception from it ends the
@@ -84,6 +86,13 @@ inline constexpr double kAnyPower = 0.4;
 /// One explanation among those fitted; null: none.
 const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects);
 
+/// For each of effect_list(), the first effect that does the same to these motions, or itself. Besides those that no
+/// experiment tells apart (first_alike()), two are alike whose directions differ by so little that the log likelihood
+/// at the size that is seen differs by less than a half: masses that are wrong by a common factor and a force that is
+/// recorded too small are one cause, and with one mass an inertia without weight is the same again on a level track.
+/// `space` is the neighbourhood of the nominal fit.
+std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<EffectScan>& scans);
+
 /// Whether an effect is scatter of single positions or times (Search::noise), which makes no gap.
 bool is_scatter(std::size_t effect);
 
@@ -93,9 +102,9 @@ bool is_scatter_alone(const Hypothesis& hypothesis);
 /// The hypothesis that a verdict would name, or null: of those with the likeliest cause the likeliest. A cause may be
 /// the likeliest by far and have its probability shared out among many second ones; a pair that has neither of the
 /// likely causes is then no answer, even where no other pair is as likely (the median probability model of Barbieri and
-/// Berger, Annals of Statistics 32, 870, 2004). Causes that no experiment of tracks tells apart count together
-/// (first_alike()), so that two names for one cause are not beaten by a less likely one with a single name. Scatter of
-/// single positions is a cause only by itself.
+/// Berger, Annals of Statistics 32, 870, 2004). Causes that no experiment of tracks tells apart
+/// (first_alike()), or not these (`alike`), count together, so that several names for one cause are not beaten by a
+/// less likely one with a single name. Scatter of single positions is a cause only by itself.
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);
 
 }  // namespace glidelab::diagnose

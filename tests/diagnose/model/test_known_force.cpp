@@ -1,9 +1,12 @@
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "diagnose/model/track_model.h"
+#include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/verdict/diagnose.h"
+#include "diagnose/weigh/hypothesis.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
@@ -87,4 +90,20 @@ TEST_CASE("of very many positions some are weighed, spread over every motion") {
       CHECK(motion.sd_of(i) == Approx(motion.sd_m * (1.0 + 3.0 * static_cast<double>(i))));
     }
   }
+}
+
+TEST_CASE("a wrong mass and a wrong scale of the force are one cause, and a drag is another") {
+  // m (1 + e) v' = F - K v and m v' = F/(1 + e) - K' v are one law, with K' = K/(1 + e); with one mass on a level track
+  // (m + m_w) v' = F - K v is the same again.
+  const std::vector<tests::MadeLaunch> launches = {{0.4, 0.0, -0.2, 0.2}, {0.4, 0.0, -0.2, 0.5}};
+  const tests::MadeEffect pulled{.recorded = [](double t) { return 0.3 + 0.15 * std::sin(9.0 * t); }};
+  const auto made = tests::made_experiment(launches, pulled, 5, 2e-5, 150, 200.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const diagnose::ScoreSpace space(set, nominal);
+  const std::vector<std::size_t> alike = diagnose::alike_in(space, diagnose::scan_effects(space, {}, 2));
+  const auto first = [&](std::string_view id) { return alike[diagnose::effect_index(id)]; };
+  CHECK(first("mass_error") == first("force_gain"));
+  CHECK(first("rotational_inertia") == first("force_gain"));
+  CHECK(first("quadratic_drag") != first("force_gain"));
 }

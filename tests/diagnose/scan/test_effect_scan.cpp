@@ -1,6 +1,7 @@
 #include "diagnose/scan/effect_scan.h"
 
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "tests/catch.h"
@@ -41,4 +42,28 @@ TEST_CASE("a drag that brakes is seen, and one that would drive is no drag") {
   CHECK(driving.quadratic.gain == 0.0);
   CHECK(driving.quadratic.log_evidence < -1.0);
   CHECK(driving.quadratic.values.front() > 0.0);
+}
+
+namespace {
+
+bool is_visible(const std::vector<tests::MadeLaunch>& launches, std::string_view id) {
+  const auto made = tests::made_experiment(launches, {}, 3, 5e-5, 60);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  return diagnose::scan_effect(diagnose::ScoreSpace(set, nominal), diagnose::effect_index(id)).visible;
+}
+
+}  // namespace
+
+TEST_CASE("two clips have no trend: one of them always has more friction than the other") {
+  const tests::MadeLaunch up{0.4, 4.0, 0.3, -1.1}, down{0.4, 4.0, -0.6, 1.2};
+  CHECK_FALSE(is_visible({up, down}, "friction_drift"));
+  CHECK(is_visible({up, down, up}, "friction_drift"));
+}
+
+TEST_CASE("what falls has no track that could be bowed") {
+  const tests::MadeLaunch fall{0.4, 90.0, 0.0, 0.1}, heavier{0.8, 90.0, 0.0, 0.1}, slope{0.4, 60.0, 0.0, 0.1};
+  CHECK_FALSE(is_visible({fall, heavier, fall}, "track_bow"));
+  CHECK(is_visible({fall, heavier, fall}, "quadratic_drag"));
+  CHECK(is_visible({slope, slope, slope}, "track_bow"));
 }

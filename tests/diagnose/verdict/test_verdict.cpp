@@ -55,3 +55,16 @@ TEST_CASE("the likeliest cause leads, where its probability is shared out among 
   CHECK(first(tracks, {of({"heavy_tailed_noise"}, 0.7), of({"heavy_tailed_noise", "stribeck"}, 0.3)}) ==
         "heavy_tailed_noise");
 }
+
+TEST_CASE("several names that these data cannot tell apart count together against one name for another cause") {
+  const diagnose::TrackSet tracks;
+  diagnose::Comparison comparison;
+  // A wrong mass by either name is in 0.52 of all, the drag in 0.48.
+  for (std::size_t e = 0; e < diagnose::effect_list().size(); ++e) comparison.alike.push_back(e);
+  comparison.alike[diagnose::effect_index("force_gain")] = diagnose::effect_index("mass_error");
+  comparison.all = {of({"quadratic_drag", "stribeck"}, 0.3), of({"mass_error"}, 0.27), of({"force_gain"}, 0.25),
+                    of({"quadratic_drag"}, 0.18)};
+  CHECK(diagnose::best_named(tracks, comparison)->effects == of({"mass_error"}, 0.0).effects);
+  comparison.alike.clear();
+  CHECK(diagnose::best_named(tracks, comparison)->effects == of({"quadratic_drag", "stribeck"}, 0.0).effects);
+}
