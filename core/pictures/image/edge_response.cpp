@@ -54,7 +54,10 @@ Columns columns_of(const FittedWindow& window, double narrower_px2) {
     mask[0] = 0.5 * (light(-1, 0) + light(1, 0)) - middle.light;
     mask[1] = 0.5 * (light(0, -1) + light(0, 1)) - middle.light;
     mask[2] = 0.25 * (light(-1, -1) + light(1, -1) + light(-1, 1) + light(1, 1)) - middle.light;
-    columns.terms(i, EdgeResponse::kTerms - 1) = window.contrast * middle.bright * (1.0 - middle.bright);
+    const double bright = window.bright.empty() ? middle.bright : window.bright[static_cast<std::size_t>(i)];
+    const double bend = window.contrast * bright * (1.0 - bright);
+    columns.terms(i, EdgeResponse::kCurvature) = bend;
+    columns.terms(i, EdgeResponse::kTwist) = bend * (2.0 * bright - 1.0);
     columns.sharp[i] = middle.light;
   }
   return columns;
@@ -110,11 +113,15 @@ std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeRespo
     if (!window) continue;
     const Eigen::VectorXd rest = (window->light - window->model) / window->contrast;
     learnt.plain += rest.cwiseAbs2().dot(window->weight);
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(*window, columns_of(*window, kNarrower_px2[k]));
+    if (window->bright.empty()) {
+      for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(*window, columns_of(*window, kNarrower_px2[k]));
+    } else {
+      sums.front().add(*window, columns_of(*window, 0.0));
+    }
   }
   std::size_t best = 0;
   for (std::size_t k = 1; k < sums.size(); ++k) {
-    if (sums[k].left() < sums[best].left()) best = k;
+    if (sums[k].weight() > 0.0 && sums[k].left() < sums[best].left()) best = k;
   }
   if (!(sums[best].weight() > kFewestPixels)) return std::nullopt;
   learnt.response = {sums[best].terms(), kNarrower_px2[best], tone};
