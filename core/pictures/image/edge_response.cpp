@@ -17,7 +17,7 @@ constexpr double kMostLeft = 0.93;       // of the residuals' squares: noise alo
 constexpr double kFarLess = 0.7;         // left by the curve's light: the noise of bright pixels weighs other there
 constexpr double kCurved = 0.2;          // t of codes that follow a curve: 0.3 to 0.5 for BT.709
 constexpr double kStraight = 0.5;        // of that, left by the curve's light
-constexpr double kHeld = 1e-4;           // of the best seen term: what no window shows stays out
+constexpr double kHeld = 1e-3;           // of the best seen term: what the windows hardly show stays out
 
 /// What a window's light is compared with.
 struct Columns {
