@@ -80,15 +80,17 @@ class Sums {
     products_ += products.bottomRightCorner(kAll, kAll) -
                  across.transpose() * products.topLeftCorner(own, own).ldlt().solve(across);
   }
-  EdgeResponse::Terms terms() const {
+  /// Held at those of the round before: what is well seen gets there, what hardly is stays.
+  EdgeResponse::Terms terms(const EdgeResponse::Terms& before) const {
     Eigen::MatrixXd held = products_.topLeftCorner(kTerms, kTerms);
-    held.diagonal().array() += kHeld * held.diagonal().maxCoeff();
-    return held.ldlt().solve(products_.topRightCorner(kTerms, 1));
+    const double weight = kHeld * held.diagonal().maxCoeff();
+    held.diagonal().array() += weight;
+    return held.ldlt().solve(products_.topRightCorner(kTerms, 1) + weight * before);
   }
   /// The sum of squares with the terms.
-  double left() const {
+  double left(const EdgeResponse::Terms& before) const {
     Eigen::VectorXd with(kAll);
-    with << -terms(), 1.0;
+    with << -terms(before), 1.0;
     return with.dot(products_ * with);
   }
   double weight() const { return weight_; }
@@ -119,13 +121,14 @@ std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeRespo
       sums.front().add(*window, columns_of(*window, 0.0));
     }
   }
+  const EdgeResponse::Terms before = known != nullptr ? known->terms : EdgeResponse::Terms(EdgeResponse::Terms::Zero());
   std::size_t best = 0;
   for (std::size_t k = 1; k < sums.size(); ++k) {
-    if (sums[k].weight() > 0.0 && sums[k].left() < sums[best].left()) best = k;
+    if (sums[k].weight() > 0.0 && sums[k].left(before) < sums[best].left(before)) best = k;
   }
   if (!(sums[best].weight() > kFewestPixels)) return std::nullopt;
-  learnt.response = {sums[best].terms(), kNarrower_px2[best], tone};
-  learnt.left = sums[best].left();
+  learnt.response = {sums[best].terms(before), kNarrower_px2[best], tone};
+  learnt.left = sums[best].left(before);
   return learnt;
 }
 
