@@ -5,8 +5,10 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <map>
+#include <string_view>
 #include <utility>
 
 #include "base/errors.h"
@@ -41,28 +43,15 @@ cv::Mat image_of(const py::array& pixels, const std::string& name) {
 
 core::BoardViews views_of(const std::vector<cv::Mat>& images, cv::Size inner_corners, int jobs,
                           const base::Progress& progress) {
-  std::vector<std::optional<core::BoardCorners>> corners(images.size());
-  std::atomic<std::size_t> done = 0;
-  base::for_each_parallel(images.size(), jobs, [&](std::size_t i) {
-    corners[i] = core::find_board(images[i], inner_corners);
-    progress("finding the pattern", static_cast<double>(++done) / static_cast<double>(images.size()));
-  });
-  core::BoardViews found;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const std::string name = fmt::format("images[{}]", i);
-    if (i == 0) found.image_size = images[0].size();
-    if (images[i].size() != found.image_size) {
-      throw base::InputError(
-          base::Issue{"", 0, name, fmt::format("{} x {} pixels", images[i].cols, images[i].rows),
-                      fmt::format("{} x {} pixels, as images[0]", found.image_size.width, found.image_size.height)});
-    }
-    if (corners[i]) {
-      found.views.push_back({name, std::move(*corners[i])});
-    } else {
-      found.without.emplace_back(name);
-    }
+  std::vector<std::filesystem::path> names;
+  std::map<std::filesystem::path, cv::Mat> named;
+  for (const cv::Mat& image : images) {
+    names.emplace_back(fmt::format("images[{}]", names.size()));
+    named[names.back()] = image;
   }
-  return found;
+  const core::GreyReader read = [&](const std::filesystem::path& name) { return named.at(name); };
+  const base::Progress told = [&](std::string_view, double part) { progress("finding the pattern", part); };
+  return core::find_board_views(names, inner_corners, jobs, read, told);
 }
 
 py::dict as_dict(const core::Calibration& calibration) {

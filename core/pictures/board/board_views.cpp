@@ -50,14 +50,26 @@ BoardViews find_board_views(const std::vector<fs::path>& files, cv::Size inner_c
   }
   std::vector<std::optional<BoardCorners>> corners(unique.size());
   std::vector<cv::Size> sizes(unique.size());
+  std::vector<std::optional<BoardImage>> images(unique.size());
   std::atomic<std::size_t> done = 0;
   const auto tell = [&] { progress("pattern", static_cast<double>(done.load()) / static_cast<double>(unique.size())); };
   base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
     tell();
     const cv::Mat grey = read(unique[i]);
     sizes[i] = grey.size();
-    corners[i] = find_board(grey, inner_corners, BoardDetector::any, tell);
+    const std::vector<cv::Point2f> seen = search_board(grey, inner_corners, BoardDetector::any, tell);
+    if (!seen.empty()) images[i] = cut_board(grey, orient_board(grey, inner_corners, seen));
     ++done;
+  });
+  // One camera took them all.
+  std::vector<BoardImage> with_board;
+  for (const std::optional<BoardImage>& image : images) {
+    if (image) with_board.push_back(*image);
+  }
+  const std::optional<EdgeResponse> response = board_response(with_board);
+  base::for_each_parallel(unique.size(), jobs, [&](std::size_t i) {
+    tell();
+    if (images[i]) corners[i] = refine_board(*images[i], response);
   });
   BoardViews found;
   for (std::size_t i = 0; i < unique.size(); ++i) {

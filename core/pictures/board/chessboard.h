@@ -15,33 +15,10 @@
 #include <vector>
 
 #include "core/pictures/board/board_search.h"
+#include "core/pictures/board/corner_fit.h"
+#include "core/pictures/image/edge_response.h"
 
 namespace glidelab::core {
-
-/// What is known of a corner before the fit.
-struct CornerSurroundings {
-  double window_px = 0.0;  ///< radius of the pixels used, short of the nearest edge of another corner
-  double angle_x = 0.0;    ///< directions of its two edges, radians from u towards v
-  double angle_y = 0.0;
-};
-
-struct FittedCorner {
-  cv::Point2d point;
-  double sd_px = 0.0;  ///< of one coordinate, from the fit's residuals
-};
-
-/// One corner of a chessboard, by a least-squares fit of two crossing edges to the pixels around it.
-///
-///     I(p) = (1 + h . d) (b + a (2 E1 - 1) (2 E2 - 1)),   d = p - c,   Ei = pixel_edge(ni . d, ni, s)
-///
-/// with the corner c, the edges' normals n1, n2, the lens's blur s, and the light's slope h. The pixel's square is
-/// averaged over exactly for each edge alone (core/pictures/image/pixel_signal.h), so that a sharp image does not pull
-/// the corner towards certain phases of the pixels; where both edges cross one pixel it is exact to second order for
-/// right angles. A blur of another shape keeps the image point-symmetric about c and so does not move it.
-///
-/// `grey` has 8 or 16 bits. Nothing if the window is smaller than 2.5 px, or the fit does not converge, moves by half
-/// the window or 3 px, or leaves residuals of a quarter of the contrast.
-std::optional<FittedCorner> fit_corner(const cv::Mat& grey, cv::Point2d start, const CornerSurroundings& around);
 
 struct BoardCorners {
   cv::Size grid;  ///< columns (the longer row), rows
@@ -61,7 +38,25 @@ std::optional<BoardCorners> find_board(const cv::Mat& grey, cv::Size inner_corne
 /// The order at the head of this file, for corners that run row by row from any corner of the board in any direction.
 BoardCorners orient_board(const cv::Mat& grey, cv::Size inner_corners, const std::vector<cv::Point2f>& corners);
 
-/// Refines each corner with fit_corner(). If the fit fails, the corner stays and is counted in `unrefined`.
-BoardCorners refine_board(const cv::Mat& grey, BoardCorners board);
+/// The part of an image that holds a board, with the corners as they were found. It begins at an even column and row,
+/// so that its pixels keep their places in a mosaic.
+struct BoardImage {
+  cv::Mat part;
+  cv::Point first;     ///< the part's first pixel in the image
+  BoardCorners board;  ///< in the part
+};
+
+BoardImage cut_board(const cv::Mat& grey, BoardCorners board);
+
+/// How the pixels of the camera that took these images answer to an edge, from corners of all of them. A board that
+/// lies along the rows shows each edge at few places between the pixels, where an answer of its own and a displacement
+/// of its corners look alike; tilted boards show all.
+std::optional<EdgeResponse> board_response(const std::vector<BoardImage>& images);
+
+/// Refines each corner with fit_corner(); in the whole image. If the fit fails, the corner stays and is counted in
+/// `unrefined`. An image that the response does not suit (turned, or from another camera) is fitted with its own.
+BoardCorners refine_board(const BoardImage& image, const std::optional<EdgeResponse>& response);
+/// The same with the response that this image alone shows.
+BoardCorners refine_board(const cv::Mat& grey, const BoardCorners& board);
 
 }  // namespace glidelab::core

@@ -17,7 +17,7 @@ constexpr double kMostLeft = 0.93;       // of the residuals' squares: noise alo
 constexpr double kFarLess = 0.7;         // left by the curve's light: the noise of bright pixels weighs other there
 constexpr double kCurved = 0.2;          // t of codes that follow a curve: 0.3 to 0.5 for BT.709
 constexpr double kStraight = 0.5;        // of that, left by the curve's light
-constexpr double kHeld = 1e-4;           // of the best seen term: what no window shows stays out
+constexpr double kHeld = 1e-3;           // of the best seen term: what the windows hardly show stays out
 
 /// What a window's light is compared with.
 struct Columns {
@@ -54,7 +54,10 @@ Columns columns_of(const FittedWindow& window, double narrower_px2) {
     mask[0] = 0.5 * (light(-1, 0) + light(1, 0)) - middle.light;
     mask[1] = 0.5 * (light(0, -1) + light(0, 1)) - middle.light;
     mask[2] = 0.25 * (light(-1, -1) + light(1, -1) + light(-1, 1) + light(1, 1)) - middle.light;
-    columns.terms(i, EdgeResponse::kTerms - 1) = window.contrast * middle.bright * (1.0 - middle.bright);
+    const double bright = window.bright.empty() ? middle.bright : window.bright[static_cast<std::size_t>(i)];
+    const double bend = window.contrast * bright * (1.0 - bright);
+    columns.terms(i, EdgeResponse::kCurvature) = bend;
+    columns.terms(i, EdgeResponse::kTwist) = bend * (2.0 * bright - 1.0);
     columns.sharp[i] = middle.light;
   }
   return columns;
@@ -77,15 +80,17 @@ class Sums {
     products_ += products.bottomRightCorner(kAll, kAll) -
                  across.transpose() * products.topLeftCorner(own, own).ldlt().solve(across);
   }
-  EdgeResponse::Terms terms() const {
+  /// Held at those of the round before: what is well seen gets there, what hardly is stays.
+  EdgeResponse::Terms terms(const EdgeResponse::Terms& before) const {
     Eigen::MatrixXd held = products_.topLeftCorner(kTerms, kTerms);
-    held.diagonal().array() += kHeld * held.diagonal().maxCoeff();
-    return held.ldlt().solve(products_.topRightCorner(kTerms, 1));
+    const double weight = kHeld * held.diagonal().maxCoeff();
+    held.diagonal().array() += weight;
+    return held.ldlt().solve(products_.topRightCorner(kTerms, 1) + weight * before);
   }
   /// The sum of squares with the terms.
-  double left() const {
+  double left(const EdgeResponse::Terms& before) const {
     Eigen::VectorXd with(kAll);
-    with << -terms(), 1.0;
+    with << -terms(before), 1.0;
     return with.dot(products_ * with);
   }
   double weight() const { return weight_; }
@@ -110,15 +115,20 @@ std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeRespo
     if (!window) continue;
     const Eigen::VectorXd rest = (window->light - window->model) / window->contrast;
     learnt.plain += rest.cwiseAbs2().dot(window->weight);
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(*window, columns_of(*window, kNarrower_px2[k]));
+    if (window->bright.empty()) {
+      for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(*window, columns_of(*window, kNarrower_px2[k]));
+    } else {
+      sums.front().add(*window, columns_of(*window, 0.0));
+    }
   }
+  const EdgeResponse::Terms before = known != nullptr ? known->terms : EdgeResponse::Terms(EdgeResponse::Terms::Zero());
   std::size_t best = 0;
   for (std::size_t k = 1; k < sums.size(); ++k) {
-    if (sums[k].left() < sums[best].left()) best = k;
+    if (sums[k].weight() > 0.0 && sums[k].left(before) < sums[best].left(before)) best = k;
   }
   if (!(sums[best].weight() > kFewestPixels)) return std::nullopt;
-  learnt.response = {sums[best].terms(), kNarrower_px2[best], tone};
-  learnt.left = sums[best].left();
+  learnt.response = {sums[best].terms(before), kNarrower_px2[best], tone};
+  learnt.left = sums[best].left(before);
   return learnt;
 }
 

@@ -7,13 +7,17 @@
 /// corner by 0.04 px, in a pattern that repeats with the pixels and that a motion, or the rows of a board, turn into
 /// slow waves. With I the model's image before all that (its edges sharper), and for place q of the mosaic
 ///
-///     light = I + s_q D_side I + u_q D_upright I + c_q D_corner I + t C E (1 - E)
+///     light = I + s_q D_side I + u_q D_upright I + c_q D_corner I + C E (1 - E) (t + w (2 E - 1))
 ///
 /// D_side I is the mean of the left and right neighbours minus the pixel, and so on: any symmetric mask of 3 x 3
-/// pixels. C is the contrast and E how much of the pixel the bright side covers. `light` is the code, or its light by
-/// the sRGB curve (which differs from ITU-R BT.709 by less than the term t takes up). The thirteen terms are the same
-/// in all windows and follow from them by least squares, together with the windows' own parameters. Nothing is assumed
-/// of the camera: not which mosaic or interpolation, nor that there is one.
+/// pixels. C is the contrast and E how much of the pixel the bright side covers, after the mosaic where the window was
+/// fitted with a response. `light` is the code, or its light by the sRGB curve (which differs from ITU-R BT.709 by what
+/// t and w take up). The fourteen terms are the same in all windows and follow from them by least squares, together
+/// with the windows' own parameters. Nothing is assumed of the camera: not which mosaic or interpolation, nor that
+/// there is one.
+///
+/// A window is fitted without what a known response adds (added_by()) to a model of its own, or by a model that has the
+/// response in it: FittedWindow says which.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,14 +34,15 @@ namespace glidelab::core {
 
 struct EdgeResponse {
   static constexpr int kMaskTerms = 3, kPlaces = 4;
-  static constexpr int kTerms = kMaskTerms * kPlaces + 1;
+  static constexpr int kCurvature = kMaskTerms * kPlaces, kTwist = kCurvature + 1, kTerms = kTwist + 1;
   using Terms = Eigen::Matrix<double, kTerms, 1>;
 
   Terms terms = Terms::Zero();
   double narrower_px2 = 0.0;           ///< by how much the square of the edges' blur is smaller in I than in the model
   ToneCurve tone = ToneCurve::linear;  ///< the fits are those of the light by it
 
-  double curvature() const { return terms[kTerms - 1]; }  ///< t
+  double curvature() const { return terms[kCurvature]; }  ///< t
+  double twist() const { return terms[kTwist]; }          ///< w
 };
 
 /// What a model gives a pixel.
@@ -54,6 +59,8 @@ struct FittedWindow {
   Eigen::VectorXd model;     ///< as the fit has it
   Eigen::MatrixXd jacobian;  ///< of the model by the fit's own parameters; a row for each pixel. Empty where not needed
   double contrast = 0.0;     ///< C
+  /// E as the mosaic leaves it, where the model has the known response in it (and its blur is that of I); else empty.
+  std::vector<double> bright;
   /// The model at a pixel of the image, the square of its edges' blur being smaller by this (px²).
   std::function<ModelPixel(cv::Point pixel, double narrower_px2)> at;
 };

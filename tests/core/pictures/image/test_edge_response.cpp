@@ -52,7 +52,8 @@ core::FittedWindow window_of(const Edge& edge, const EdgeResponse& truth, double
     window.light[i] = light + mask[0] * (0.5 * (at(-1, 0) + at(1, 0)) - light) +
                       mask[1] * (0.5 * (at(0, -1) + at(0, 1)) - light) +
                       mask[2] * (0.25 * (at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1)) - light) +
-                      truth.curvature() * kContrast * bright * (1.0 - bright) + noise(engine);
+                      kContrast * bright * (1.0 - bright) * (truth.curvature() + truth.twist() * (2.0 * bright - 1.0)) +
+                      noise(engine);
   }
   return window;
 }
@@ -77,7 +78,7 @@ std::optional<EdgeResponse> found_in(const std::vector<core::FittedWindow>& wind
 
 TEST_CASE("the masks of a mosaic and a curved tone are found, and taken off to the last code") {
   EdgeResponse truth;
-  truth.terms << 0.59, 0.0, 0.11, 0.3, 0.11, 0.0, 0.11, 0.3, 0.0, 0.59, 0.0, 0.3, 0.4;
+  truth.terms << 0.59, 0.0, 0.11, 0.3, 0.11, 0.0, 0.11, 0.3, 0.0, 0.59, 0.0, 0.3, 0.4, 0.1;
   const std::vector<core::FittedWindow> windows = windows_with(truth, 0.0);
   const auto found = found_in(windows);
   REQUIRE(found);
@@ -93,6 +94,7 @@ TEST_CASE("the masks of a mosaic and a curved tone are found, and taken off to t
   }
   CHECK(largest < 0.05);
   CHECK(std::abs(found->curvature() - 0.4) < 0.04);
+  CHECK(std::abs(found->twist() - 0.1) < 0.04);
 }
 
 TEST_CASE("pixels that answer as the model says have no response") {
