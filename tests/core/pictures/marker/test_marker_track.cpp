@@ -380,8 +380,8 @@ struct MosaicClip {
 TEST_CASE("sightings that are not corrected for the pixels' answer are counted in a note") {
   const MosaicClip clip;
   CHECK(tests::note_of<core::PixelsAnswerLeft>(clip.tracked().notes) == nullptr);
-  // Windows of 17 x 17 floats at most, (2 (1.25 x 3.7 + 2.5 rounded up + 1) + 1)² with 3.7 px of radius and up to 4.3.
-  constexpr std::size_t kWindows = 60, kLargest = 21 * 21 * sizeof(float), kSmallest = 17 * 17 * sizeof(float);
+  // Codes of one byte, 2 (1.25 r + 2.5, rounded up, + 1) + 1 pixels wide: 17 for r = 3.2, 21 for r = 4.3 px.
+  constexpr std::size_t kWindows = 60, kLargest = 21 * 21, kSmallest = 17 * 17;
   const core::TrackedMarker limited = clip.tracked(kWindows * kSmallest);
   const auto* note = tests::note_of<core::PixelsAnswerLeft>(limited.notes);
   REQUIRE(note != nullptr);
