@@ -77,14 +77,10 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   if (set.disputed > 0 && (comparison.all.front().unnamed || is_misfit(set, best_fit(comparison)))) {
     // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, set.disputed)) {
+      set = std::move(*trimmed);
       progress("weighing explanations", 0.5);
-      settle_noise(pictures, *trimmed);
-      Comparison of_rest = compare_hypotheses(*trimmed, without, options.jobs, &pictures, weighed(0.5, 0.9));
-      // Small imperfections leave as much of the frames in dispute as of all others.
-      if (!fits_more_frames(set, best_fit(comparison), *trimmed, best_fit(of_rest))) {
-        set = std::move(*trimmed);
-        comparison = std::move(of_rest);
-      }
+      settle_noise(pictures, set);
+      comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.5, 0.9));
     }
   }
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(pictures), without, options.jobs, progress);

@@ -181,8 +181,7 @@ GivenCauses fit_given_causes(core::AnalysisResults results, const std::vector<co
   if (of.set.disputed > 0 && is_misfit(of.set, of.fit)) {
     // The causes do not explain the hand and the stops: they are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, of.set.disputed)) {
-      WithCauses of_rest = fits_of(std::move(*trimmed), pictures, effects, option, progress);
-      if (!fits_more_frames(of.set, of.fit, of_rest.set, of_rest.fit)) of = std::move(of_rest);
+      of = fits_of(std::move(*trimmed), pictures, effects, option, progress);
     }
   }
   progress("measuring the gap", 0.9);

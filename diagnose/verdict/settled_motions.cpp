@@ -30,7 +30,6 @@ constexpr double kLatestLaunch_s = 0.2;       // a motion that begins later is n
 constexpr std::size_t kFirstPoints = 8;       // that show which way it begins,
 constexpr double kOtherWay = 10.0;            // by so many standard deviations of a position
 constexpr double kMisfit = 1.5;               // chi² per point from which on the motion counts as not explained
-constexpr double kSameMisfit = 2.0;           // chi² per point, over another's, up to which it is about the same
 
 std::size_t points_of(const TrackSet& set) {
   std::size_t points = 0;
@@ -213,12 +212,6 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
   cut_driven_motions(set, kFewestPoints);
   set.notes.emplace_back(HandLeftOut{disputed});
   return set;
-}
-
-bool fits_more_frames(const TrackSet& more, const MotionFit& of_more, const TrackSet& fewer,
-                      const MotionFit& of_fewer) {
-  const auto points = static_cast<double>(points_of(fewer)), added = static_cast<double>(points_of(more)) - points;
-  return of_more.cost - of_fewer.cost <= kSameMisfit * std::max(1.0, of_fewer.cost / points) * added;
 }
 
 bool is_misfit(const TrackSet& set, const MotionFit& fit) {

@@ -1,8 +1,8 @@
 /// The motions of an analysis as every fit of a diagnosis uses them, and the noise of their positions.
 ///
 /// The noise comes from neighbouring positions alone. Where the analysis took part of the motion for a hand or a stop,
-/// all of it is tried first (a push that lasts, a cable that tightens look like that); where a fit leaves more of the
-/// part in dispute than of the rest, it is left out, and a note says so.
+/// all of it is tried first (a push that lasts, a cable that tightens look like that); where a fit leaves too much of
+/// it, the part in dispute is left out, and a note says so.
 #pragma once
 
 #include <cstddef>
@@ -30,10 +30,6 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
 /// Finds the noise of every position, from what single frames and a codec's images show of it, and sets aside what is
 /// not noise. Missing frames are corrected first: a jump is neither noise nor an outlier.
 void settle_noise(const PictureEvidence& pictures, TrackSet& set);
-
-/// Whether a fit of more frames leaves of those that it has more about as much, frame by frame, as the fit of the
-/// others leaves of these: at most twice the chi² per point, and none if that is below 1.
-bool fits_more_frames(const TrackSet& more, const MotionFit& of_more, const TrackSet& fewer, const MotionFit& of_fewer);
 
 /// Whether a fit leaves so much that the motion counts as not explained: chi² above 1.5 per point.
 bool is_misfit(const TrackSet& set, const MotionFit& fit);

@@ -6,7 +6,6 @@
 #include "base/errors.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/verdict/diagnose.h"
-#include "diagnose/verdict/settled_motions.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
@@ -269,22 +268,4 @@ TEST_CASE("a camera's sway is stated in pixels where they are known and of one s
   CHECK(std::abs(derived[0].sd - 0.004) < 1e-12);
   pictures.clips.back().px_per_m = 500.0;
   CHECK(diagnose::derived_parameters(set, fit, sway, pictures, known).empty());
-}
-
-TEST_CASE("frames in dispute stay where a fit leaves as much of them as of the others, small imperfections or none") {
-  const auto set_of = [](std::size_t points) {
-    diagnose::TrackSet set;
-    set.motions.emplace_back().t_s.resize(points);
-    return set;
-  };
-  const auto stay = [&](double of_more, double of_fewer) {
-    diagnose::MotionFit more, fewer;
-    more.cost = of_more;
-    fewer.cost = of_fewer;
-    return diagnose::fits_more_frames(set_of(110), more, set_of(100), fewer);
-  };
-  CHECK(stay(330.0, 300.0));        // 3 a frame of each
-  CHECK_FALSE(stay(400.0, 300.0));  // 10 a frame
-  CHECK(stay(65.0, 50.0));          // noise: what is below 1 counts as 1
-  CHECK_FALSE(stay(75.0, 50.0));
 }
