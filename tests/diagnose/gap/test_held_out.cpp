@@ -167,9 +167,9 @@ TEST_CASE("a clip held out by one step of Newton's has the chi² that a fit to t
 }
 
 TEST_CASE("what an unknown leaves of the positions is what its likeliest curve leaves") {
-  // A magnet at one place: 0.03 N, and no name for it.
+  // A magnet at one place: 0.04 N, and no name for it.
   const tests::MadeEffect magnet{
-      .force = [](double, double x, double, double) { return 0.03 * std::exp(-std::pow((x - 0.1) / 0.06, 2)); }};
+      .force = [](double, double x, double, double) { return 0.04 * std::exp(-std::pow((x - 0.1) / 0.06, 2)); }};
   const auto made = tests::made_experiment(tests::made_launches(), magnet, 4, 2e-5, 150, 150.0);
   const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
   REQUIRE(diagnosis.verdict == diagnose::Verdict::unknown);
