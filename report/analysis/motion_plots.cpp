@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "base/math/normal95.h"
-#include "core/math/quantile.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
@@ -336,7 +335,10 @@ double usual_bar(const std::vector<PlotData>& data) {
       if (row.size() > kHalf && std::isfinite(row[kHalf])) halves.push_back(row[kHalf]);
     }
   }
-  return halves.empty() ? 0.0 : core::median_of(std::move(halves));
+  if (halves.empty()) return 0.0;
+  const auto middle = halves.begin() + static_cast<std::ptrdiff_t>(halves.size() / 2);
+  std::nth_element(halves.begin(), middle, halves.end());
+  return *middle;
 }
 
 /// The range of the points and the lines, for the band of a line that is hardly known runs out of it, and the labels of
