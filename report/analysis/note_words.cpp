@@ -106,8 +106,9 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::PixelsAnswerLeft& of) const {
     return fmt::format(
-        "in {} of {} frames the marker's place is not corrected for how the camera's pixels answer to an edge; a "
-        "shorter clip, or a smaller marker, is corrected in full",
+        "in {} of {} frames the marker's place is not corrected for how the camera's pixels answer to an edge: the "
+        "clip is "
+        "too long for so large a marker, or the fit with that answer fails",
         of.kept, of.sightings);
   }
   std::string operator()(const core::DarkMarker&) const {
