@@ -48,11 +48,20 @@ Eigen::Matrix<double, N, N> transition(double h, double rate) {
   return f;
 }
 
+/// The upper triangle R of a matrix Q R, with a positive diagonal: no sign depends on the rate. Of any size, since one of
+/// each fixed size takes the compiler five seconds.
+Eigen::MatrixXd upper_factor(const Eigen::MatrixXd& rows) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
+  const Eigen::MatrixXd upper = qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
+  const Eigen::VectorXd sign = upper.diagonal().array().sign();
+  return sign.asDiagonal() * upper;
+}
+
 /// The root for h = 1.
 template <int N>
 Eigen::Matrix<double, N, N> unit_root(double rate) {
   using Rule = boost::math::quadrature::gauss<double, kNodes>;
-  Eigen::Matrix<double, kNodes, N> rows;  // the last state first: its root is lower, and upper once it is turned back
+  Eigen::MatrixXd rows(kNodes, N);  // the last state first: its root is lower, and upper once it is turned back
   int filled = 0;
   const auto add = [&](double at, double weight) {
     const Eigen::Matrix<double, N, 1> f = phi<N>(-rate * at);
@@ -65,11 +74,7 @@ Eigen::Matrix<double, N, N> unit_root(double rate) {
     add(0.5 * (1.0 + off), weight);
     if (off != 0.0) add(0.5 * (1.0 - off), weight);
   }
-  const Eigen::HouseholderQR<Eigen::Matrix<double, kNodes, N>> qr(rows);
-  const Eigen::Matrix<double, N, N> upper = qr.matrixQR().template topRows<N>().template triangularView<Eigen::Upper>();
-  // Signs that do not depend on the rate.
-  const Eigen::Matrix<double, N, 1> sign = upper.diagonal().array().sign();
-  return (sign.asDiagonal() * upper).transpose().reverse();
+  return upper_factor(rows).transpose().reverse();
 }
 
 /// The root for h = 1 as a polynomial of k h, for |k h| up to kSmall: times that are not even need it at every step.
@@ -80,14 +85,13 @@ class SmallRoot {
   static constexpr double kSmall = 0.1;
 
   SmallRoot() {
-    Eigen::Matrix<double, kTerms, kTerms> powers;
-    Eigen::Matrix<double, kTerms, N * N> values;
+    Eigen::MatrixXd powers(kTerms, kTerms), values(kTerms, N * N);
     for (int i = 0; i < kTerms; ++i) {
       const double at = std::cos(std::numbers::pi * (i + 0.5) / kTerms);
       for (int j = 0; j < kTerms; ++j) powers(i, j) = std::pow(at, j);
       values.row(i) = unit_root<N>(kSmall * at).reshaped().transpose();
     }
-    const Eigen::Matrix<double, kTerms, N* N> solved = powers.partialPivLu().solve(values);
+    const Eigen::MatrixXd solved = powers.partialPivLu().solve(values);
     for (int j = 0; j < kTerms; ++j) coefficient_[j] = solved.row(j).reshaped(N, N);
   }
 
