@@ -62,6 +62,14 @@ Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b) {
   return a.colPivHouseholderQr().solve(b);
 }
 
+Eigen::MatrixXd upper_factor(const MatrixView& a) {
+  require_fit(a.rows() >= a.cols(), "upper_factor", a, a);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(a);
+  const Eigen::MatrixXd upper = qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>();
+  const Eigen::VectorXd sign = upper.diagonal().array().sign();
+  return sign.asDiagonal() * upper;
+}
+
 Eigen::MatrixXd orthonormal_columns(const MatrixView& a, double alike) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(a);
   factor.setThreshold(alike);

@@ -32,6 +32,9 @@ Eigen::MatrixXd solve_lower(const MatrixView& lower, const MatrixView& b);
 /// X that minimises |A X - B|, by Householder's QR with column pivoting.
 Eigen::MatrixXd least_squares(const MatrixView& a, const MatrixView& b);
 
+/// The upper triangle R of A = Q R, with a positive diagonal; A has at least as many rows as columns.
+Eigen::MatrixXd upper_factor(const MatrixView& a);
+
 /// An orthonormal basis of the span of A's columns, by the same QR; a column whose remainder is below `alike` times the
 /// longest adds nothing. As many rows as A, and as many columns as its rank.
 Eigen::MatrixXd orthonormal_columns(const MatrixView& a, double alike);

@@ -59,7 +59,7 @@ void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetu
     for (std::size_t i = 0; i < setups.size(); ++i) {
       if (setups[i].name != configuration.clips.front() || !is_bare_track(experiment_of[i]->file)) continue;
       AssumedStatements assumed{{}, !stated.incline_deg};
-      if (!stated.mass_kg && stated.masses_kg.empty()) assumed.mass_kg = setups[i].mass_kg;
+      if (setups[i].mass_assumed) assumed.mass_kg = setups[i].mass_kg;
       if (assumed.mass_kg || assumed.level) configuration.notes.emplace_back(assumed);
       break;
     }

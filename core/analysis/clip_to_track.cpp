@@ -439,6 +439,10 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
     if (clip.file.empty()) {
       const std::optional<Downhill> downhill = downhill_of(experiment, clip.group);
       results.tracks[i] = read_track(clip.track, downhill, clip.column);
+      if (clip.mass_assumed && !results.tracks[i].force_n.empty()) {
+        throw base::InputError(base::Issue{clip.track.string(), 0, "--mass", "none, beside a recorded force (force_n)",
+                                           "the moving mass in kilograms: the force accelerates it by F/m"});
+      }
       // A fall goes down, whether a sensor above it or below it measures the distance.
       if (!downhill && std::abs(clip.incline_rad) >= kSurelyAFall_rad) count_along_motion(results.tracks[i]);
     } else {

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "base/math/angles.h"
+#include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 
@@ -45,7 +46,7 @@ Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_
     const double t = t_s[static_cast<std::size_t>(i)] - middle;
     design.row(i) << 1.0, t, 0.5 * t * t;
   }
-  return design.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(x_m.data(), design.rows()));
+  return base::least_squares(design, Eigen::Map<const Eigen::VectorXd>(x_m.data(), design.rows()));
 }
 
 /// The median of |a| of parabolas through `size` points each; none where it is not above their noise.
@@ -145,7 +146,7 @@ double bend_of(std::span<const MarkerSighting> sightings) {
     design.row(i) << 1.0, s, s * s;
     across[i] = (dv * along_u - du * along_v) / length;
   }
-  const Eigen::VectorXd fit = design.colPivHouseholderQr().solve(across);
+  const Eigen::VectorXd fit = base::least_squares(design, across);
   return std::abs(fit[2]) / 4.0 / length;  // sagitta of c s² over the unit length of s
 }
 

@@ -262,7 +262,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
         Severity::unusable, clip.failure,
         clip.pictures
             ? "check that the file plays, that the marker is in the image and moves, and that [marker] describes it"
-            : "repair the file, or say which of its columns is x",
+            : "repair the file, or state what it lacks",
         Topic::failure);
     return;
   }
@@ -321,10 +321,11 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
   }
   for (const ClipSetup& setup : experiment.clips) {
     if (setup.launched != Launched::unknown) continue;
-    findings.push_back({Severity::note, setup.name,
-                        fmt::format("a single file: its mass is taken as {:.6g} kg and its inclination as {:.4g}°",
-                                    setup.mass_kg, setup.incline_rad * base::kDegreesPerRad + 0.0),
-                        "--mass and --incline state others; K/m, µ and α do not depend on them"});
+    findings.push_back(
+        {Severity::note, setup.name,
+         fmt::format("a single file: its mass is taken as {:.6g} kg and its inclination as {:.4g}°", setup.mass_kg,
+                     setup.incline_rad * base::kDegreesPerRad + 0.0),
+         "--mass and --incline state others; where no force is recorded, K/m, µ and α do not depend on them"});
   }
   findings = with_root_causes(experiment, check, std::move(findings));
   if (!check.plumb_failure.empty()) findings.push_back({Severity::unusable, "plumb line", check.plumb_failure, {}});

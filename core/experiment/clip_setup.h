@@ -53,7 +53,8 @@ struct ClipSetup {
       {};  ///< of an exported table the column that is x, of a project the point mass: name or number; empty: found
   double mass_kg = 0.0;
   double mass_sd_kg = 0.0;
-  double incline_rad = 0.0;  ///< as stated
+  bool mass_assumed = false;  ///< of a file on its own: mass_kg stands for what nobody states
+  double incline_rad = 0.0;   ///< as stated
   std::optional<double> incline_sd_rad;
   Launched launched = Launched::released;
   std::optional<double> start_s;

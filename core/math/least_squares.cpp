@@ -1,9 +1,11 @@
 #include "core/math/least_squares.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 namespace glidelab::core {
 namespace {
@@ -58,6 +60,23 @@ std::vector<double> OrthogonalPolynomials::derivatives(double u, int highest) co
     }
   }
   return all;
+}
+
+Eigen::VectorXd damped_step(const Eigen::Ref<const Eigen::MatrixXd>& jtj, const Eigen::Ref<const Eigen::VectorXd>& jtr,
+                            double damping) {
+  Eigen::MatrixXd damped = jtj;
+  damped.diagonal() *= 1.0 + damping;
+  damped.diagonal().array() += 1e-12 * jtj.diagonal().maxCoeff();
+  return -damped.ldlt().solve(jtr);
+}
+
+std::optional<Eigen::MatrixXd> inverse_of_equations(const Eigen::Ref<const Eigen::MatrixXd>& jtj) {
+  // What has no inverse, as FullPivLU says it: of a matrix without negative eigenvalues both take the same pivots.
+  const Eigen::LDLT<Eigen::MatrixXd> factor(jtj);
+  const auto pivots = factor.vectorD().cwiseAbs();
+  const auto size = static_cast<double>(jtj.rows());
+  if (!(pivots.minCoeff() > size * std::numeric_limits<double>::epsilon() * pivots.maxCoeff())) return {};
+  return factor.solve(Eigen::MatrixXd::Identity(jtj.rows(), jtj.cols()));
 }
 
 }  // namespace glidelab::core

@@ -2,13 +2,11 @@
 /// method for small dense problems.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -113,6 +111,14 @@ struct NormalEquations {
   void complete() { jtj.template triangularView<Eigen::StrictlyUpper>() = jtj.transpose(); }
 };
 
+/// The step -(J^T W J + D)^-1 J^T W r, D a part `damping` of the diagonal and 1e-12 of its largest: of any size,
+/// compiled once.
+Eigen::VectorXd damped_step(const Eigen::Ref<const Eigen::MatrixXd>& jtj, const Eigen::Ref<const Eigen::VectorXd>& jtr,
+                            double damping);
+
+/// (J^T W J)^-1; nothing where it has none to rounding.
+std::optional<Eigen::MatrixXd> inverse_of_equations(const Eigen::Ref<const Eigen::MatrixXd>& jtj);
+
 template <int N>
 struct LeastSquaresFit {
   Eigen::Matrix<double, N, 1> parameters;
@@ -172,10 +178,7 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
       return trial;
     }
     ++fit.iterations;
-    Eigen::Matrix<double, N, N> damped = from.equations.jtj;
-    damped.diagonal() *= 1.0 + damping;
-    damped.diagonal().array() += 1e-12 * from.equations.jtj.diagonal().maxCoeff();
-    const Vector delta = -damped.ldlt().solve(from.equations.jtr);
+    const Vector delta = damped_step(from.equations.jtj, from.equations.jtr, damping);
     if (!delta.allFinite()) return trial;
     const Vector to = from.parameters + delta;
     trial.is_small = (delta.array().abs() < step.array()).all();
@@ -206,14 +209,12 @@ LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matr
     return fit;
   }
   fit.rms = std::sqrt(here.equations.cost / freedom);
-  // What has no inverse, as FullPivLU says it: of a matrix without negative eigenvalues both take the same pivots.
-  const Eigen::LDLT<Eigen::Matrix<double, N, N>> factor(here.equations.jtj);
-  const auto pivots = factor.vectorD().cwiseAbs();
-  if (!(pivots.minCoeff() > N * std::numeric_limits<double>::epsilon() * pivots.maxCoeff())) {
+  const std::optional<Eigen::MatrixXd> inverse = inverse_of_equations(here.equations.jtj);
+  if (!inverse) {
     fit.stop = base::FitStop::singular;
     return fit;
   }
-  fit.covariance = factor.solve(Eigen::Matrix<double, N, N>::Identity()) * (fit.rms * fit.rms);
+  fit.covariance = *inverse * (fit.rms * fit.rms);
   return fit;
 }
 

@@ -222,12 +222,24 @@ struct FitScatters {
   double ratio = 1.0, degrees = 0.0;
 };
 
-using Note = std::variant<AboutFile, RepeatedFrames, EvenStamps, AssumedStatements, AssumedMass, OutlyingView,
-                          NoPatternInSight, UnrefinedCorners, CornersErrTogether, UncertainFocalLength,
-                          FisheyeFitsBetter, PlaneViewsDisagree, MarkerAtRest, MarkerConcealed, MarkerMeasuredBy,
-                          MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, NotOfStatedSize, NoRay,
-                          SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise,
-                          LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine,
-                          AgainstLaunch, MassInGrams, InclineContradiction, RobustFit, FitScatters>;
+using AnyNote =
+    std::variant<AboutFile, RepeatedFrames, EvenStamps, AssumedStatements, AssumedMass, OutlyingView, NoPatternInSight,
+                 UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyeFitsBetter, PlaneViewsDisagree,
+                 MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain,
+                 PixelsAnswerLeft, DarkMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
+                 FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
+                 GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, RobustFit,
+                 FitScatters>;
+
+/// One remark. What copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not wherever results
+/// are.
+struct Note : AnyNote {
+  using AnyNote::AnyNote;
+  Note(const Note&);
+  Note(Note&&) noexcept;
+  Note& operator=(const Note&);
+  Note& operator=(Note&&) noexcept;
+  ~Note();
+};
 
 }  // namespace glidelab::core

@@ -240,16 +240,29 @@ struct CornerMap {
   double excess = 0.0;            ///< 0 where no cell has two corners, or nothing scatters
 };
 
+/// The χ² of a lens's terms, all at zero, and what it must exceed to keep them.
+struct TermTest {
+  std::string term;
+  double statistic = 0.0, limit = 0.0;
+};
+
+/// The terms of a lens's distortion that the views support.
+struct LensTerms {
+  bool fisheye = false;           ///< else Brown and Conrady's
+  std::vector<std::string> kept;  ///< "k1", "p1, p2"
+  std::vector<TermTest> tests;
+};
+
 struct CalibrationResult {
   std::string experiment;
   double rms_px = 0.0;
   std::vector<double> camera_matrix;  ///< 9 numbers, row by row
   std::vector<double> distortion;     ///< k1, k2, p1, p2, k3; a fisheye's k1 to k4
   std::vector<double> sd;             ///< of fx, fy, cx, cy, then `distortion`; 0 for a term that is fixed
-  std::string model;                  ///< which terms the views support, and why
-  double restitution_rms_m = 0.0;     ///< of the plane views' corners, restituted, against the pattern
-  double plane_rms_px = 0.0;          ///< the same in the image, of one coordinate
-  double plane_expected_px = 0.0;     ///< the part that the corners' noise explains
+  LensTerms lens;
+  double restitution_rms_m = 0.0;  ///< of the plane views' corners, restituted, against the pattern
+  double plane_rms_px = 0.0;       ///< the same in the image, of one coordinate
+  double plane_expected_px = 0.0;  ///< the part that the corners' noise explains
   std::size_t views_used = 0;
   CornerMap rests;          ///< what the camera's fit leaves of the corners, over the image
   std::vector<Note> notes;  ///< views without a visible pattern, …

@@ -106,6 +106,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   clip.track = path;
   clip.column = options.column;
   clip.mass_kg = options.mass_kg.value_or(1.0);
+  clip.mass_assumed = !options.mass_kg && options.masses_kg.empty();
   clip.incline_rad = options.incline_deg.value_or(0.0) * base::kRadPerDegree;
   clip.launched = Launched::unknown;
   clip.group = "all";

@@ -14,8 +14,9 @@ namespace glidelab::core {
 
 /// What the analysis needs beside a track's file that is given on its own.
 struct TrackFileOptions {
-  std::string column;                 ///< of x in a table, or a point mass (read_track.h); empty: found
-  std::optional<double> mass_kg;      ///< K/m, mu and alpha do not depend on it; 1 kg stands for what is not stated
+  std::string column;  ///< of x in a table, or a point mass (read_track.h); empty: found
+  std::optional<double>
+      mass_kg;  ///< 1 kg stands for what is not stated; K/m, mu and alpha depend on it under a recorded force
   std::optional<double> incline_deg;  ///< as stated; level where it is not. It names the configuration, no more
   Permissions permitted = {};         ///< of a folder
   /// Which of the runs (or masses) of the file become clips: "all", or their numbers from 1 on, "1,3". Empty: the file

@@ -122,9 +122,19 @@ struct TableOfLines {
   std::size_t lines = 0;
 };
 
-using Note = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
-                          QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps,
-                          LaunchedOtherWay, NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity,
-                          MeanIncline, TableOfLines, OnlyFalls>;
+using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside,
+                             PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
+                             SplitSetUps, LaunchedOtherWay, NegativeLoss, ContradictedIncline, ContradictedReading,
+                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls>;
+
+/// One note; what copies, moves and destroys it is compiled once (note.cpp), as of core::Note.
+struct Note : AnyNote {
+  using AnyNote::AnyNote;
+  Note(const Note&);
+  Note(Note&&) noexcept;
+  Note& operator=(const Note&);
+  Note& operator=(Note&&) noexcept;
+  ~Note();
+};
 
 }  // namespace glidelab::diagnose

@@ -71,7 +71,7 @@ py::dict as_dict(const core::Calibration& calibration) {
   found["sd"] = vector_of(sd);
   found["size_px"] = py::make_tuple(camera.size.width, camera.size.height);
   found["rms_px"] = calibration.rms_px;
-  found["model"] = calibration.model;
+  found["model"] = report::lens_words(calibration.lens);
   found["views_used"] = calibration.views_used;
   found["notes"] = report::notes_words(calibration.notes);
   return found;

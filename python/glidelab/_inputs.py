@@ -35,7 +35,8 @@ class Track:
     x_m : array_like, shape (n,)
         Positions in metres.
     mass_kg : float, optional
-        Of the glider. Without it 1 kg is assumed, on which K/m, mu and alpha do not depend.
+        Of the glider. Without it 1 kg is assumed, on which K/m, mu and alpha do not depend; needed with a recorded
+        force.
     incline_deg : float
         As stated, in degrees. It names the configuration; the inclination itself is measured.
     name : str

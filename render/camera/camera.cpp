@@ -123,7 +123,7 @@ Polynomial sum(const Polynomial& a, double factor, const Polynomial& b) {
   return out;
 }
 
-/// The positive real zeros, rising: eigenvalues of the companion matrix.
+/// The positive real zeros, rising: eigenvalues of the companion matrix, which is Hessenberg's as it stands.
 std::vector<double> positive_zeros(Polynomial p) {
   while (!p.empty() && p.back() == 0.0) p.pop_back();
   if (p.size() < 2) return {};
@@ -135,10 +135,24 @@ std::vector<double> positive_zeros(Polynomial p) {
   }
   constexpr double kReal = 1e-6;  // a double zero splits by the root of the rounding
   std::vector<double> zeros;
-  const Eigen::VectorXcd all = Eigen::EigenSolver<Eigen::MatrixXd>(companion, false).eigenvalues();
-  for (Eigen::Index i = 0; i < all.size(); ++i) {
-    const std::complex<double> z = all[i];
+  Eigen::RealSchur<Eigen::MatrixXd> schur(degree);
+  schur.computeFromHessenberg(companion, Eigen::MatrixXd(), false);
+  const Eigen::MatrixXd& t = schur.matrixT();
+  const auto keep = [&](std::complex<double> z) {
     if (z.real() > 0.0 && std::abs(z.imag()) <= kReal * std::abs(z)) zeros.push_back(z.real());
+  };
+  for (Eigen::Index i = 0; i < degree; ++i) {
+    if (i + 1 == degree || t(i + 1, i) == 0.0) {
+      keep(t(i, i));
+      continue;
+    }
+    // A block of two that is left holds a conjugate pair.
+    const double half = 0.5 * (t(i, i) - t(i + 1, i + 1));
+    const std::complex<double> root = std::sqrt(std::complex<double>(half * half + t(i, i + 1) * t(i + 1, i)));
+    const double middle = 0.5 * (t(i, i) + t(i + 1, i + 1));
+    keep(middle + root);
+    keep(middle - root);
+    ++i;
   }
   std::sort(zeros.begin(), zeros.end());
   return zeros;

@@ -222,6 +222,18 @@ std::string contradiction_words(const core::InclineContradiction& of) {
   return fmt::format("the acceleration makes the inclination {}{}, {}", bound, with_sd(of.deg, of.sd_deg), says);
 }
 
+std::string lens_words(const core::LensTerms& lens) {
+  const std::string kept = fmt::format("{}", fmt::join(lens.kept, ", "));
+  if (lens.fisheye) return "fisheye: " + (kept.empty() ? "no terms" : kept);
+  std::vector<std::string> tests;
+  for (const core::TermTest& test : lens.tests) {
+    tests.push_back(
+        fmt::format("{}: {} of {}", test.term, base::number_text(test.statistic, 3), base::number_text(test.limit, 3)));
+  }
+  return fmt::format("distortion: {} (χ² of each term tested, and the threshold to keep it: {})",
+                     kept.empty() ? "none" : kept, fmt::join(tests, "; "));
+}
+
 std::string note_words(const core::Note& note) {
   return std::visit(AnalysisSentence{}, note);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/result/analysis_note.h"
+#include "core/result/results.h"
 
 namespace glidelab::report {
 
@@ -14,5 +15,8 @@ std::vector<std::string> notes_words(const std::vector<core::Note>& notes);
 
 /// "the acceleration makes the inclination 0.42 ± 0.13°, incline_deg says 4.3 ± 0.3°"
 std::string contradiction_words(const core::InclineContradiction& contradiction);
+
+/// "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.2 of 9; …)", "fisheye: k1, k2"
+std::string lens_words(const core::LensTerms& lens);
 
 }  // namespace glidelab::report

@@ -198,7 +198,7 @@ Json calibration_json(const core::CalibrationResult& calibration) {
   object["lens"] = lens_of(calibration);
   object["distortion"] = calibration.distortion;
   object["sd"] = calibration.sd;
-  object["model"] = calibration.model;
+  object["model"] = lens_words(calibration.lens);
   put(object, "restitution_rms_m", calibration.restitution_rms_m);
   put(object, "plane_rms_px", calibration.plane_rms_px);
   put(object, "plane_expected_px", calibration.plane_expected_px);

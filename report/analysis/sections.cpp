@@ -183,7 +183,7 @@ Html camera_section(const core::AnalysisResults& results) {
         "<p>In the image the corners of the plane view are {} px (rms) from where the camera model puts them; their "
         "noise explains {} px. {}.</p>\n",
         base::number_text(calibration.plane_rms_px, 2), base::number_text(calibration.plane_expected_px, 2),
-        as_sentence(calibration.model));
+        as_sentence(lens_words(calibration.lens)));
     HtmlTable table({"parameter", "value"});
     const std::vector<double>& m = calibration.camera_matrix;
     const auto sd_of = [&](std::size_t k) { return k < calibration.sd.size() ? calibration.sd[k] : 0.0; };

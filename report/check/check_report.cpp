@@ -28,7 +28,7 @@ Json pattern_json(const core::PatternCheck& pattern) {
     put(json, "rms_px", pattern.calibration->rms_px);
     put(json, "plane_rms_px", pattern.calibration->plane_rms_px);
     put(json, "plane_expected_px", pattern.calibration->plane_expected_px);
-    json["model"] = pattern.calibration->model;
+    json["model"] = lens_words(pattern.calibration->lens);
   } else {
     json["failure"] = pattern.failure;
   }

@@ -1,6 +1,6 @@
 #include "core/motion/free/lost_frames.h"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ struct CubicFit {
   double distance = 0.0;  ///< in one frame, behind the pair
 };
 
-using Design = Eigen::Matrix<double, Eigen::Dynamic, 5, 0, kMostPoints, 5>;
+using Design = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostPoints, 5>;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostPoints, 1>;
 using Parameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 5, 1>;
 
@@ -97,8 +97,8 @@ CubicFit cubic_through(const Window& window, int lost) {
       const double at = u[static_cast<std::size_t>(r)], beyond = turn ? std::max(0.0, at - *turn) : 0.0;
       design.row(r) << 1.0, at, at * at, at * at * at, 0.5 * beyond * beyond;
     }
-    const auto used = design.leftCols(many).eval();
-    const Eigen::HouseholderQR<std::remove_cv_t<decltype(used)>> qr(used);
+    const Design used = design.leftCols(many);
+    const Eigen::HouseholderQR<Design> qr(used);
     const Parameters cubic = qr.solve(y);
     for (Eigen::Index r = 0; r < n; ++r) {
       const auto i = static_cast<std::size_t>(r);
@@ -143,7 +143,7 @@ int lost_between(const Window& window, double noise_m) {
 bool is_smooth(const Motion& motion, const std::vector<double>& t_s, std::size_t i, double step_s) {
   const std::size_t before = std::min(i, kBefore), behind = std::min(kBehind, t_s.size() - i - 1), first = i - before;
   const auto n = static_cast<Eigen::Index>(before + 1 + behind);
-  Eigen::Matrix<double, Eigen::Dynamic, 4, 0, kMostPoints, 4> design(n, 4);
+  Design design(n, 4);
   Points y(n);
   for (Eigen::Index r = 0; r < n; ++r) {
     const std::size_t point = first + static_cast<std::size_t>(r);
@@ -151,7 +151,7 @@ bool is_smooth(const Motion& motion, const std::vector<double>& t_s, std::size_t
     design.row(r) << 1.0, u, u * u, u * u * u;
     y[r] = motion.y_m[point] - motion.y_m[i];
   }
-  const Eigen::HouseholderQR<decltype(design)> qr(design);
+  const Eigen::HouseholderQR<Design> qr(design);
   y.applyOnTheLeft(qr.householderQ().adjoint());
   return y.tail(n - 4).squaredNorm() < kEvidence * motion.noise_m * motion.noise_m;
 }

@@ -1,11 +1,12 @@
 #include "core/motion/free/motion_events.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/local_polynomial.h"
@@ -133,7 +134,7 @@ class RunFinder {
     const PointRange middle{range.from + cut, range.to - cut};
     const auto count = static_cast<Eigen::Index>(middle.size());
     const double half_s = 0.5 * span_s(middle), centre_s = motion_.t_s[middle.from] + half_s;
-    Eigen::MatrixX3d design(count, 3);
+    Eigen::MatrixXd design(count, 3);
     Eigen::VectorXd x(count);
     for (Eigen::Index r = 0; r < count; ++r) {
       const std::size_t i = middle.from + static_cast<std::size_t>(r);
@@ -141,7 +142,7 @@ class RunFinder {
       design.row(r) << 1.0, u, u * u;
       x[r] = motion_.x_m[i] - motion_.x_m[middle.from];
     }
-    const Eigen::Vector3d fit = (design.transpose() * design).ldlt().solve(design.transpose() * x);
+    const Eigen::Vector3d fit = base::least_squares(design, x);
     // fit[1] is the distance over half the range, fit[2] how far its ends lie off: next to none is a fifth of the speed
     // that counts as still, or what a position's noise covers.
     const double little = std::max(0.2 * kStillShare * pilot_.top_speed_m_s * half_s, kRestGrowth * motion_.noise_m);
@@ -290,7 +291,7 @@ Fit linear_fit(const std::vector<double>& u, const std::vector<double>& x, doubl
   }
   fit.normal(1, 1) = 1.0;  // t* is held
   pin(fit.normal, kind);
-  fit.parameters = fit.normal.ldlt().solve(right);
+  fit.parameters = base::solve_positive(fit.normal, right);
   fit.parameters[1] = at;
   for (std::size_t i = 0; i < u.size(); ++i) {
     const double off = x[i] - place_at(fit.parameters, u[i] - at, kind);
@@ -340,7 +341,7 @@ std::optional<EventTime> estimate_event(std::span<const double> t_s, std::span<c
       right += d * (x[i] - place_at(here.p, u[i] - here.p[1], kind));
     }
     pin(normal, kind);
-    const Vector6 change = normal.ldlt().solve(right);
+    const Vector6 change = base::solve_positive(normal, right);
     base::FitTrial<Point> trial;
     if (!change.allFinite()) return trial;
     const Vector6 next = here.p + change;
@@ -358,7 +359,7 @@ std::optional<EventTime> estimate_event(std::span<const double> t_s, std::span<c
   const bool right_signs = kind == EventKind::stops ? p[2] != 0.0 : p[2] * p[4] > 0.0;
   if (!right_signs) return {};
   const double variance = sum_over_lags(autocovariance);
-  const Matrix6 inverse = found.normal.ldlt().solve(Matrix6::Identity());
+  const Matrix6 inverse = base::inverse_positive(found.normal);
   EventTime event;
   event.t_s = near_s + window_s * p[1];
   event.sd_s = window_s * std::sqrt(std::max(0.0, variance * inverse(1, 1)));

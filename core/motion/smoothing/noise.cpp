@@ -1,11 +1,12 @@
 #include "core/motion/smoothing/noise.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/math/dense.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
@@ -98,7 +99,7 @@ Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, d
     }
     design(lag, 1) = sum;
   }
-  Eigen::Vector2d part = design.colPivHouseholderQr().solve(seen);
+  Eigen::Vector2d part = base::least_squares(design, seen);
   for (int i = 0; i < 2; ++i) {
     if (part[i] >= 0.0) continue;
     part[i] = 0.0;

@@ -1,11 +1,13 @@
 #include "core/motion/smoothing/process_step.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "base/math/dense.h"
 
 namespace glidelab::core {
 namespace {
@@ -48,15 +50,6 @@ Eigen::Matrix<double, N, N> transition(double h, double rate) {
   return f;
 }
 
-/// The upper triangle R of a matrix Q R, with a positive diagonal: no sign depends on the rate. Of any size, since one of
-/// each fixed size takes the compiler five seconds.
-Eigen::MatrixXd upper_factor(const Eigen::MatrixXd& rows) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
-  const Eigen::MatrixXd upper = qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
-  const Eigen::VectorXd sign = upper.diagonal().array().sign();
-  return sign.asDiagonal() * upper;
-}
-
 /// The root for h = 1.
 template <int N>
 Eigen::Matrix<double, N, N> unit_root(double rate) {
@@ -74,7 +67,7 @@ Eigen::Matrix<double, N, N> unit_root(double rate) {
     add(0.5 * (1.0 + off), weight);
     if (off != 0.0) add(0.5 * (1.0 - off), weight);
   }
-  return upper_factor(rows).transpose().reverse();
+  return base::upper_factor(rows).transpose().reverse();
 }
 
 /// The root for h = 1 as a polynomial of k h, for |k h| up to kSmall: times that are not even need it at every step.
@@ -91,7 +84,7 @@ class SmallRoot {
       for (int j = 0; j < kTerms; ++j) powers(i, j) = std::pow(at, j);
       values.row(i) = unit_root<N>(kSmall * at).reshaped().transpose();
     }
-    const Eigen::MatrixXd solved = powers.partialPivLu().solve(values);
+    const Eigen::MatrixXd solved = base::least_squares(powers, values);
     for (int j = 0; j < kTerms; ++j) coefficient_[j] = solved.row(j).reshaped(N, N);
   }
 

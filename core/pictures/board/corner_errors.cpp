@@ -1,9 +1,11 @@
 #include "core/pictures/board/corner_errors.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
+
+#include "base/math/dense.h"
 
 namespace glidelab::core {
 namespace {
@@ -63,8 +65,8 @@ void add_view(const ViewResiduals& view, Moments& moments) {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   const Eigen::MatrixXd p = view.by_pose;
   const Eigen::MatrixXd kp = times_k(view.grid, p), wp = times_w(view.grid, p);
-  const Matrix6 g = (p.transpose() * p).inverse();
-  const Matrix6 pkp = p.transpose() * kp, pwp = p.transpose() * wp;
+  const Matrix6 g = base::inverse_positive(base::transposed_product(p, p));
+  const Matrix6 pkp = base::transposed_product(p, kp), pwp = base::transposed_product(p, wp);
   const auto coordinates = static_cast<double>(view.residual.size());
   const double pairs = 2.0 * ((view.grid.width - 1.0) * view.grid.height + (view.grid.height - 1.0) * view.grid.width);
   moments.squares += view.residual.squaredNorm();

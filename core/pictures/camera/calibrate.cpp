@@ -140,7 +140,7 @@ double believed(const Term& term, double variance, const OpenCvCalibration& foun
 struct SupportedFit {
   OpenCvCalibration found;
   Uncertainty uncertainty;  // with what terms that were left out may still do
-  std::string model;
+  LensTerms lens;
 };
 
 /// The terms that the views determine, from all five backwards (see the header).
@@ -154,7 +154,6 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
   fit.found = run_opencv(views, size, square_m, flags);
   fit.uncertainty = uncertainty_of(fit.found, views, square_m);
   Eigen::Matrix<double, 9, 9> left_out = Eigen::Matrix<double, 9, 9>::Zero();
-  std::vector<std::string> tests;
   bool radial = true;  // the next radial term may be tested
   for (const Term& term : terms) {
     const bool is_radial = term.places.size() == 1;
@@ -170,8 +169,7 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
     const double part = is_radial ? believed(term, own(0, 0), fit.found, size) : 1.0;
     const double statistic = part * value.dot(weighted);
     const double limit = count == 1 ? kSignificantOne : kSignificantPair;
-    tests.push_back(
-        fmt::format("{}: {} of {}", term.name, base::number_text(statistic, 3), base::number_text(limit, 3)));
+    fit.lens.tests.push_back({term.name, statistic, limit});
     if (statistic > limit) {
       if (is_radial) radial = false;
       continue;
@@ -185,12 +183,9 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
     fit.uncertainty = uncertainty_of(fit.found, views, square_m);
   }
   fit.uncertainty.covariance += left_out;
-  std::vector<std::string> kept;
   for (const Term& term : terms) {
-    if ((flags & term.fixing) == 0) kept.insert(kept.begin(), term.name);
+    if ((flags & term.fixing) == 0) fit.lens.kept.insert(fit.lens.kept.begin(), term.name);
   }
-  fit.model = fmt::format("distortion: {} (χ² of each term tested, and the threshold to keep it: {})",
-                          kept.empty() ? "none" : fmt::format("{}", fmt::join(kept, ", ")), fmt::join(tests, "; "));
   return fit;
 }
 
@@ -244,7 +239,7 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
   calibration.covariance = fit.uncertainty.covariance;
   calibration.noise = fit.uncertainty.noise;
   calibration.rests = corner_map(boards.image_size, fit.uncertainty.rests);
-  calibration.model = fit.model;
+  calibration.lens = fit.lens;
   calibration.rms_px = found.rms_px;
   calibration.views_used = used.size();
   for (Note& note : notes_on_views(boards, used, calibration)) calibration.notes.push_back(std::move(note));
@@ -411,9 +406,8 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     calibration.views_used = views.size();
     calibration.notes = std::move(kept.notes);
     for (Note& note : notes_on_views(boards, views, calibration)) calibration.notes.push_back(std::move(note));
-    calibration.model = fmt::format("fisheye: {}", fixed == 4   ? std::string("no terms")
-                                                   : fixed == 3 ? std::string("k1")
-                                                                : fmt::format("k1 to k{}", 4 - fixed));
+    calibration.lens.fisheye = true;
+    for (int k = 1; k <= 4 - fixed; ++k) calibration.lens.kept.push_back(fmt::format("k{}", k));
     return calibration;
   }
 }

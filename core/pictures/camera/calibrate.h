@@ -39,9 +39,9 @@ struct Calibration {
   CameraModel camera;
   /// Of fx, fy, cx, cy, k1, k2, p1, p2, k3 (the views' poses are fitted with them); rows of fixed terms are 0.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
-  CornerNoise noise;    ///< of the corners, as the covariance assumes
-  CornerMap rests;      ///< residuals of the fit over the image
-  std::string model;    ///< the terms of the distortion, and the tests of those considered
+  CornerNoise noise;  ///< of the corners, as the covariance assumes
+  CornerMap rests;    ///< residuals of the fit over the image
+  LensTerms lens;
   double rms_px = 0.0;  ///< per corner (distance), over the views used
   std::size_t views_used = 0;
   std::vector<Note> notes;

@@ -289,7 +289,7 @@ CameraAndPlanes calibrated(const Experiment& experiment, int jobs, const SeenPat
   for (Eigen::Index k = 0; k < calibration.covariance.rows(); ++k) {
     result.sd.push_back(std::sqrt(calibration.covariance(k, k)));
   }
-  result.model = calibration.model;
+  result.lens = calibration.lens;
   result.views_used = calibration.views_used;
   result.rests = calibration.rests;
   result.notes = calibration.notes;

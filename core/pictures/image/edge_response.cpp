@@ -1,11 +1,13 @@
 #include "core/pictures/image/edge_response.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "base/math/dense.h"
 
 namespace glidelab::core {
 namespace {
@@ -75,17 +77,17 @@ class Sums {
     const Eigen::VectorXd size = all.leftCols(own).colwise().norm().transpose().cwiseMax(1e-300);
     all.leftCols(own) *= size.cwiseInverse().asDiagonal();
     // What the window's own parameters do not take up: Schur's complement.
-    const Eigen::MatrixXd products = all.transpose() * all;
+    const Eigen::MatrixXd products = base::transposed_product(all, all);
     const Eigen::MatrixXd across = products.topRightCorner(own, kAll);
     products_ += products.bottomRightCorner(kAll, kAll) -
-                 across.transpose() * products.topLeftCorner(own, own).ldlt().solve(across);
+                 base::transposed_product(across, base::solve_positive(products.topLeftCorner(own, own), across));
   }
   /// Held at those of the round before: what is well seen gets there, what hardly is stays.
   EdgeResponse::Terms terms(const EdgeResponse::Terms& before) const {
     Eigen::MatrixXd held = products_.topLeftCorner(kTerms, kTerms);
     const double weight = kHeld * held.diagonal().maxCoeff();
     held.diagonal().array() += weight;
-    return held.ldlt().solve(products_.topRightCorner(kTerms, 1) + weight * before);
+    return base::solve_positive(held, products_.topRightCorner(kTerms, 1) + weight * before);
   }
   /// The sum of squares with the terms.
   double left(const EdgeResponse::Terms& before) const {

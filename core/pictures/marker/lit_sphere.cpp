@@ -1,11 +1,12 @@
 #include "core/pictures/marker/lit_sphere.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/math/dense.h"
 #include "core/math/least_squares.h"
 #include "core/math/quantile.h"
 #include "core/pictures/image/pixel_signal.h"
@@ -210,7 +211,7 @@ SphereLight light_inside(const std::vector<SpherePixel>& pixels, const SphereGue
     lights.push_back(light);
   }
   if (guess.flat) return {{0.0, 0.0, 0.0}, quantile(std::move(lights), 0.5)};
-  const Eigen::Vector4d found = a.ldlt().solve(b);
+  const Eigen::Vector4d found = base::solve_positive(a, b);
   constexpr double kDarkest = 0.05;  // part of the pixels
   return {{found[0], found[1], found[2]}, quantile(std::move(lights), kDarkest)};
 }
@@ -257,8 +258,7 @@ std::optional<SphereFit> fit_lit_sphere(const std::vector<SpherePixel>& pixels, 
   const double freedom = fit.weight - kSphereParameters;
   if (!(freedom > 0.0)) return std::nullopt;
   fit.rms = std::sqrt(equations->cost / freedom);
-  const Eigen::LDLT<Equations::Matrix> factor(equations->jtj);
-  const Equations::Matrix inverse = factor.solve(Equations::Matrix::Identity());
+  const Equations::Matrix inverse = base::inverse_positive(equations->jtj);
   const double variance = fit.rms * fit.rms;
   fit.sd_px = std::sqrt(0.5 * variance * (inverse(kCentreU, kCentreU) + inverse(kCentreV, kCentreV)));
   const double held = guess.noise / guess.log_size_sd;

@@ -1,6 +1,6 @@
 #include "core/pictures/marker/marker.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/math/dense.h"
 #include "core/math/least_squares.h"
 #include "core/math/quantile.h"
 #include "core/pictures/image/pixel_signal.h"
@@ -406,7 +407,7 @@ double least_centre_sd_px(const DiscImage& disc, double reach_px) {
       information += slope * slope.transpose() / (disc.noise_sd * disc.noise_sd);
     }
   }
-  const Eigen::Matrix<double, kDiscParameters, kDiscParameters> bound = information.inverse();
+  const Eigen::MatrixXd bound = base::inverse_positive(information);
   return std::sqrt(0.5 * (bound(kDiscU, kDiscU) + bound(kDiscV, kDiscV)));
 }
 

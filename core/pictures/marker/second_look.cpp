@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "core/pictures/marker/lit_sphere.h"
 #include "core/pictures/marker/sphere_window.h"
@@ -71,7 +72,7 @@ std::optional<cv::Point2d> course(const std::vector<Place>& places, std::size_t 
     a += powers * powers.transpose();
     b += powers * Eigen::RowVector2d(place.at.x, place.at.y);
   }
-  const Eigen::Matrix<double, 3, 2> found = a.ldlt().solve(b);
+  const Eigen::Matrix<double, 3, 2> found = base::solve_positive(a, b);
   if (!found.allFinite()) return std::nullopt;
   return cv::Point2d(found(0, 0), found(0, 1));
 }

@@ -1,6 +1,6 @@
 #include "core/pictures/marker/sphere_window.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+
+#include "base/math/dense.h"
 
 namespace glidelab::core {
 namespace {
@@ -51,7 +53,7 @@ std::optional<Eigen::Vector3d> plane_through(const std::vector<Around>& around, 
       ++taken;
     }
     if (taken < kFewest) return std::nullopt;
-    plane = a.ldlt().solve(b);
+    plane = base::solve_positive(a, b);
     if (!plane.allFinite()) return std::nullopt;
   }
   return plane;

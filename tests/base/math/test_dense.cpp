@@ -74,6 +74,17 @@ TEST_CASE("a straight line through points off it has the closed form's slope and
   CHECK(std::abs(fit(1) - 0.5) < kRounding);
 }
 
+TEST_CASE("an upper factor is Cholesky's of A'A: triangular, of a positive diagonal, and it keeps lengths") {
+  Eigen::MatrixXd a(4, 3);
+  a << 1.0, -2.0, 0.5, 3.0, 0.25, -1.0, -0.5, 4.0, 2.0, 2.0, 1.0, 7.0;
+  const Eigen::MatrixXd r = upper_factor(a);
+  REQUIRE(r.rows() == 3);
+  CHECK((r - Eigen::MatrixXd(r.triangularView<Eigen::Upper>())).norm() == 0.0);
+  CHECK((r.diagonal().array() > 0.0).all());
+  CHECK((r.transpose() * r - a.transpose() * a).norm() < 1e-13 * a.squaredNorm());
+  CHECK_THROWS_AS(upper_factor(a.transpose()), std::invalid_argument);
+}
+
 TEST_CASE("eigenvalues come in ascending order with their vectors") {
   Eigen::MatrixXd a(2, 2);
   a << 2, 1, 1, 2;  // 1 and 3

@@ -160,3 +160,19 @@ TEST_CASE("progress is told up to the end, and may stop the work") {
   CHECK_THROWS_AS(analyze({folder}, {}, [](std::string_view, double) { throw base::Interrupted(); }),
                   base::Interrupted);
 }
+
+TEST_CASE("a file alone with a recorded force needs the mass that the force accelerates") {
+  const tests::TempDir temp;
+  std::ofstream file(temp / "driven.csv");
+  file << "t_s,x_m,force_n\n";
+  for (int i = 0; i < 200; ++i) {  // x'' = F/m, F = 3 N, m = 2 kg
+    const double t_s = 0.005 * i;
+    file << fmt::format("{},{},{}\n", t_s, 0.75 * t_s * t_s, 3.0);
+  }
+  file.close();
+  CHECK_THROWS_WITH(analyze({temp / "driven.csv"}, {}),
+                    Contains("driven.csv") && Contains("--mass") && Contains("recorded force"));
+  core::AnalysisOptions stated;
+  stated.bare.mass_kg = 2.0;
+  CHECK(analyze({temp / "driven.csv"}, stated).clips.at(0).forced);
+}

@@ -82,3 +82,15 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
   }
   CHECK(report::notes_words({core::MarkerAtRest{}, core::ExactScale{}}).size() == 2);
 }
+
+TEST_CASE("a lens is worded by its terms and by the tests that kept or dropped them") {
+  core::LensTerms lens;
+  lens.kept = {"k1", "k2"};
+  lens.tests = {{"k3", 1.234, 9.0}, {"p1, p2", 12345.0, 11.83}};
+  CHECK(report::lens_words(lens) ==
+        "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.23 of 9; p1, p2: 12345 of "
+        "11.8)");
+  CHECK(report::lens_words({false, {}, {{"k1", 2.0, 9.0}}}).starts_with("distortion: none ("));
+  CHECK(report::lens_words({true, {"k1"}, {}}) == "fisheye: k1");
+  CHECK(report::lens_words({true, {}, {}}) == "fisheye: no terms");
+}

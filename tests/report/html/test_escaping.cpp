@@ -54,7 +54,8 @@ core::AnalysisResults evil_results() {
     configuration.notes = evil_notes();
   }
   core::CalibrationResult& calibration = results.calibrations[0];
-  calibration.experiment = calibration.model = kEvil;
+  calibration.experiment = kEvil;
+  calibration.lens.kept = {kEvil};
   calibration.notes = evil_notes();
   calibration.rests = {800, 600, {{100.0, 100.0, 0.01, 0.02, 0.01, 9}, {500.0, 300.0, 0.01, 0.02, 0.01, 9}}, 0.01, 1.2};
   results.calibrations.push_back(calibration);  // of two folders each is named beside its plot

@@ -82,8 +82,7 @@ TEST_CASE("terms that the views do not determine are fixed to zero, and the mode
   CHECK(calibration.camera.distortion[2] == 0.0);
   CHECK(calibration.camera.distortion[3] == 0.0);
   CHECK(calibration.camera.distortion[4] == 0.0);
-  CHECK_THAT(calibration.model, Catch::Matchers::StartsWith("distortion: k1, k2 ("));
-  CHECK_THAT(calibration.model, !Catch::Matchers::Contains("e+"));  // χ² of thousands is written out
+  CHECK(calibration.lens.kept == std::vector<std::string>{"k1", "k2"});
 }
 
 TEST_CASE("a pair that the views do not support is left out beside a high term that they do") {
@@ -103,7 +102,7 @@ TEST_CASE("a lens without distortion gets no term of it") {
   cv::RNG random(4);
   const core::Calibration calibration = core::calibrate_camera(tests::known_views(known, 0.05, random), 0.04);
   for (const double term : calibration.camera.distortion) CHECK(term == 0.0);
-  CHECK_THAT(calibration.model, Catch::Matchers::StartsWith("distortion: none ("));
+  CHECK(calibration.lens.kept.empty());
   const double sd_fx = std::sqrt(calibration.covariance(0, 0));
   CHECK(std::abs(calibration.camera.fx - known.fx) <= 4.0 * sd_fx);
 }
@@ -158,7 +157,7 @@ TEST_CASE("noise that looks like a high term where the pattern was seen does not
   for (const double x : {-0.39, 0.39}) {
     const auto found = calibration.camera.to_normalised(known.project({x, 0.0, 1.0}));
     REQUIRE(found);
-    INFO(calibration.model << ", at " << x << " found " << found->x);
+    INFO(fmt::format("{}", fmt::join(calibration.lens.kept, ", ")) << ", at " << x << " found " << found->x);
     // k1 is known to 0.02 or so: 0.02 x^3 is 0.0012.
     CHECK(std::abs(found->x - x) < 0.004);
   }
