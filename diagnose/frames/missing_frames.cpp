@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/long_work.h"
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
@@ -142,13 +143,12 @@ Eigen::VectorXd sizes_together(const ScoreSpace& space, const std::vector<Place>
 
 /// One more loss in each motion where that raises the likelihood: each by itself, or all `together`. False where none
 /// does.
-bool add_hidden(const TrackSet& set, bool together, MissingFrames& found) {
+bool add_hidden(const TrackSet& set, bool together, int jobs, MissingFrames& found) {
   const ScoreSpace space(set, found.fit);
-  std::vector<Place> places;
-  for (std::size_t i = 0; i < set.motions.size(); ++i) {
-    Place place = best_place(space, i, found.count > 0, !together);
-    if (place.gain > kClear) places.push_back(std::move(place));
-  }
+  std::vector<Place> places(set.motions.size());
+  base::for_each_parallel(places.size(), jobs,
+                          [&](std::size_t i) { places[i] = best_place(space, i, found.count > 0, !together); });
+  std::erase_if(places, [](const Place& place) { return !(place.gain > kClear); });
   if (together && !places.empty()) {
     const Eigen::VectorXd sizes = sizes_together(space, places);
     std::size_t k = 0;
@@ -186,12 +186,12 @@ void place_anew(const TrackSet& set, MissingFrames& found) {
 }
 
 /// With those that only the whole fit shows.
-MissingFrames with_hidden(const TrackSet& set, MissingFrames all) {
+MissingFrames with_hidden(const TrackSet& set, MissingFrames all, int jobs) {
   for (int round = 0; round < kRounds; ++round) {
     const std::size_t before = all.count;
-    for (int more = 0; more < kMostMissing && add_hidden(set, false, all); ++more) {
+    for (int more = 0; more < kMostMissing && add_hidden(set, false, jobs, all); ++more) {
     }
-    if (all.count > 0) add_hidden(set, true, all);
+    if (all.count > 0) add_hidden(set, true, jobs, all);
     if (all.count > 0) place_anew(set, all);
     if (all.count == before) break;
   }
@@ -230,7 +230,7 @@ std::size_t missing_in(const TrackSet& set, const MotionFit& fit) {
   return count;
 }
 
-MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
+MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int jobs) {
   MissingFrames found;
   found.effect.effect = effect_index(ids::dropped_frames);
   found.fit = fit;
@@ -247,13 +247,13 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit) {
     seen.fit = fit_motions(set, fit.effects, fit.at, lost.late);
     seen.count = lost.count;
     if (!lowers(seen.fit, seen.count, nothing)) return;
-    MissingFrames more = with_hidden(set, seen);
+    MissingFrames more = with_hidden(set, seen, jobs);
     if (lowers(seen.fit, seen.count, found)) found = std::move(seen);
     if (lowers(more.fit, more.count, all)) all = std::move(more);
   };
   try_out(by_parabolas);
   if (by_analysis.late != by_parabolas.late) try_out(by_analysis);
-  if (found.count == 0) all = with_hidden(set, nothing);
+  if (found.count == 0) all = with_hidden(set, nothing, jobs);
   // What no single jump shows counts only where it leaves nothing: many a curve looks like a row of losses.
   if (all.fit.cost < kNothingLeft * points) found = std::move(all);
   if (found.count == 0) return found;
@@ -267,7 +267,7 @@ MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& wit
   known.fit = with_losses;
   known.count = missing_in(set, with_losses);
   const double points = points_of(set);
-  MissingFrames all = with_hidden(set, known);
+  MissingFrames all = with_hidden(set, known, 1);
   if (!lowers(all.fit, all.count, known) || all.fit.cost >= kNothingLeft * points) all = known;
   describe(0.5 * (with_losses.cost - all.fit.cost), penalty_of(all.count, points) - penalty_of(known.count, points),
            points, all);

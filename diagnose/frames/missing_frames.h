@@ -22,7 +22,8 @@ struct MissingFrames {
   std::size_t count = 0;
   MotionFit fit;
 };
-MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit);
+/// Found by `jobs` threads: the same for any number.
+MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int jobs = 1);
 
 /// Losses that a fit with at least one loss in its times hides: its own and these. The effect's gain and evidence are
 /// what the further ones add.

@@ -11,6 +11,7 @@
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
 #include "diagnose/fit/fit_model.h"
+#include "diagnose/model/turning_waves.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -23,19 +24,18 @@ struct WavePart {
   double ss = 0.0, sc = 0.0, cc = 0.0, rs = 0.0, rc = 0.0;
 };
 
-std::vector<WavePart> wave_parts(const ScoreSpace& space, double f) {
+/// Waves over the times of each motion.
+std::vector<TurningWaves> waves_of(const TrackSet& set, double f, double step) {
+  std::vector<TurningWaves> waves;
+  for (const TrackedMotion& motion : set.motions) waves.emplace_back(motion.t_s, f, step);
+  return waves;
+}
+
+std::vector<WavePart> wave_parts(const ScoreSpace& space, const std::vector<TurningWaves>& waves) {
   std::vector<WavePart> parts;
-  for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
-    const auto& t = space.set().motions[i].t_s;
-    const auto n = static_cast<Eigen::Index>(t.size());
-    Eigen::VectorXd s(n), c(n);
-    for (Eigen::Index p = 0; p < n; ++p) {
-      s[p] = std::sin(kTurn * f * t[static_cast<std::size_t>(p)]);
-      c[p] = std::cos(kTurn * f * t[static_cast<std::size_t>(p)]);
-    }
-    s = space.own_rest(i, s);
-    c = space.own_rest(i, c);
-    const auto r = space.residual().rest.segment(space.offset(i), n);
+  for (std::size_t i = 0; i < waves.size(); ++i) {
+    const Eigen::VectorXd s = space.own_rest(i, waves[i].sin()), c = space.own_rest(i, waves[i].cos());
+    const auto r = space.residual().rest.segment(space.offset(i), s.size());
     parts.push_back({s.dot(s), s.dot(c), c.dot(c), s.dot(r), c.dot(r)});
   }
   return parts;
@@ -96,10 +96,13 @@ Wave find_wave(const ScoreSpace& space) {
   }
   const ParameterRange hz = range_of(set, effect_of(ids::base_vibration).parameters[1]);
   std::vector<double> logs;
-  for (double f = hz.low; f < hz.high; f += 0.3 / longest) {
-    const WaveEvidence at = weigh_wave(wave_parts(space, f), least_m);
+  const double step = 0.3 / longest;
+  std::vector<TurningWaves> waves = waves_of(set, hz.low, step);
+  for (double f = hz.low; f < hz.high; f += step) {
+    const WaveEvidence at = weigh_wave(wave_parts(space, waves), least_m);
     logs.push_back(at.log_evidence);
     if (at.gain > wave.gain) wave = {at.gain, 0.0, at.size_m, f};
+    for (TurningWaves& of_motion : waves) of_motion.turn();
   }
   if (!logs.empty()) wave.log_evidence = base::log_mean(logs);
   return wave;
@@ -118,7 +121,7 @@ EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& w
   const bool force = info.law.moves();  // else what is seen swings
   std::size_t i = 0;
   double amplitude = wave.size_m;
-  for (const WavePart& part : wave_parts(space, wave.f_hz)) {
+  for (const WavePart& part : wave_parts(space, waves_of(set, wave.f_hz, 0.0))) {
     const double det = std::max(part.ss * part.cc - part.sc * part.sc, 1e-12 * part.ss * part.cc + 1e-300);
     const double u = (part.cc * part.rs - part.sc * part.rc) / det, w = (part.ss * part.rc - part.sc * part.rs) / det;
     double phase = std::atan2(w, u);  // of u sin + w cos = A sin(wt + phase)

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "base/long_work.h"
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
 #include "diagnose/gap/held_out.h"
@@ -209,39 +211,45 @@ UnnamedFamily member_family(const ScoreSpace& space, GapVariable variable, GapKi
   return family;
 }
 
-}  // namespace
-
-void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families) {
+/// Families that differ between members: clips, masses or set-ups. `space` outlives the searches.
+void add_member_families(const ScoreSpace& space, std::vector<FamilySearch>& searches) {
   const TrackSet& set = space.set();
-  families.push_back(own_family(space, 0.5, 3, 5));
-  families.push_back(own_family(space, 0.2, 5, 12));
-  families.push_back(settling_family(space, false));
-  families.push_back(settling_family(space, true));
+  const auto add = [&](auto find) {
+    searches.emplace_back([find, &space](std::vector<UnnamedFamily>& families) { families.push_back(find(space)); });
+  };
+  const auto member = [&](GapVariable variable, GapKind what, std::size_t TrackedMotion::*of, std::size_t members,
+                          int kind) {
+    add([=](const ScoreSpace& around) { return member_family(around, variable, what, of, members, kind); });
+  };
+  add([](const ScoreSpace& around) { return own_family(around, 0.5, 3, 5); });
+  add([](const ScoreSpace& around) { return own_family(around, 0.2, 5, 12); });
+  add([](const ScoreSpace& around) { return settling_family(around, false); });
+  add([](const ScoreSpace& around) { return settling_family(around, true); });
   if (set.masses.size() > 1) {
-    families.push_back(
-        member_family(space, GapVariable::mass, GapKind::friction, &TrackedMotion::mass, set.masses.size(), 2));
-    families.push_back(
-        member_family(space, GapVariable::mass, GapKind::viscous_drag, &TrackedMotion::mass, set.masses.size(), 1));
+    member(GapVariable::mass, GapKind::friction, &TrackedMotion::mass, set.masses.size(), 2);
+    member(GapVariable::mass, GapKind::viscous_drag, &TrackedMotion::mass, set.masses.size(), 1);
   }
   if (set.groups.size() > 1) {
-    families.push_back(
-        member_family(space, GapVariable::set_up, GapKind::force, &TrackedMotion::group, set.groups.size(), 0));
-    families.push_back(
-        member_family(space, GapVariable::set_up, GapKind::friction, &TrackedMotion::group, set.groups.size(), 2));
+    member(GapVariable::set_up, GapKind::force, &TrackedMotion::group, set.groups.size(), 0);
+    member(GapVariable::set_up, GapKind::friction, &TrackedMotion::group, set.groups.size(), 2);
   }
   if (set.clips.size() > 1) {
-    families.push_back(
-        member_family(space, GapVariable::clip, GapKind::force, &TrackedMotion::clip, set.clips.size(), 0));
-    families.push_back(
-        member_family(space, GapVariable::clip, GapKind::viscous_drag, &TrackedMotion::clip, set.clips.size(), 1));
-    families.push_back(scale_family(space));
+    member(GapVariable::clip, GapKind::force, &TrackedMotion::clip, set.clips.size(), 0);
+    member(GapVariable::clip, GapKind::viscous_drag, &TrackedMotion::clip, set.clips.size(), 1);
+    add(scale_family);
   }
 }
 
-std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space) {
+}  // namespace
+
+std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space, int jobs) {
+  std::vector<FamilySearch> searches;
+  add_place_families(space, searches);
+  add_member_families(space, searches);
+  std::vector<std::vector<UnnamedFamily>> found(searches.size());
+  base::for_each_parallel(searches.size(), jobs, [&](std::size_t s) { searches[s](found[s]); });
   std::vector<UnnamedFamily> families;
-  add_place_families(space, families);
-  add_member_families(space, families);
+  for (auto& of_one : found) std::move(of_one.begin(), of_one.end(), std::back_inserter(families));
   // One size for each clip; curves of each clip by itself have many.
   for (UnnamedFamily& family : families) {
     if (family.variable == GapVariable::clip && family.columns.cols() > std::ssize(space.set().clips))

@@ -13,11 +13,8 @@
 
 namespace glidelab::diagnose {
 
-/// Families that differ between members: clips, masses or set-ups.
-void add_member_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families);
-
-/// All families around a fit.
-std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space);
+/// All families around a fit, found by `jobs` threads: the same for any number.
+std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space, int jobs = 1);
 
 /// The likeliest of those by which one clip says something about another; null: none. Their columns must be set.
 const UnnamedFamily* likeliest_shared(const std::vector<UnnamedFamily>& families);

@@ -2,6 +2,7 @@
 /// sizes.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -69,6 +70,9 @@ Tried try_one(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, 
 /// The stretches of `at` in which the size is significant, each with the largest of the sizes that are at least half as
 /// significant as its most significant one; members with names each by themselves.
 void name_regions(UnnamedFamily& family);
+
+/// Finds families, one or more, and adds them.
+using FamilySearch = std::function<void(std::vector<UnnamedFamily>&)>;
 
 /// The three shapes that a function over a grid may have: smooth anywhere, one bump, one step.
 void add_shapes(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, const Grid& grid,

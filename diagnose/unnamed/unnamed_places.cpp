@@ -9,6 +9,7 @@
 
 #include "base/math/log_sum.h"
 #include "core/math/quantile.h"
+#include "diagnose/model/turning_waves.h"
 #include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {
@@ -99,22 +100,23 @@ void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std:
              families);
 }
 
-/// sin and cos of 2 pi f x as changes of all positions.
-std::vector<ScoreColumn> swing_columns(const ScoreSpace& space, double f_1_m) {
-  std::vector<ScoreColumn> columns;
-  for (const double phase : {0.0, 0.25}) {
-    std::vector<Eigen::VectorXd> changes;
-    for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
-      const auto& at = space.modelled(i);
-      Eigen::VectorXd change(static_cast<Eigen::Index>(at.size()));
-      for (std::size_t p = 0; p < at.size(); ++p) {
-        change[static_cast<Eigen::Index>(p)] = std::sin(2.0 * std::numbers::pi * (f_1_m * at[p] + phase));
-      }
-      changes.push_back(std::move(change));
-    }
-    columns.push_back(space.project(changes));
+/// Waves over the places of each motion.
+std::vector<TurningWaves> swings_of(const ScoreSpace& space, double f_1_m, double step_1_m) {
+  std::vector<TurningWaves> waves;
+  for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
+    waves.emplace_back(space.modelled(i), f_1_m, step_1_m);
   }
-  return columns;
+  return waves;
+}
+
+/// sin and cos of 2 pi f x as changes of all positions.
+std::vector<ScoreColumn> swing_columns(const ScoreSpace& space, const std::vector<TurningWaves>& waves) {
+  std::vector<Eigen::VectorXd> sines, cosines;
+  for (const TurningWaves& of_motion : waves) {
+    sines.emplace_back(of_motion.sin());
+    cosines.emplace_back(of_motion.cos());
+  }
+  return {space.project(sines), space.project(cosines)};
 }
 
 /// Of many periods those in the middle: all of them would be drawn with too few points to be what they are.
@@ -214,15 +216,16 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const double step = 0.3 / range;
   const double highest = std::min(0.5 / std::max(core::median_of(std::move(ways)), 1e-9), kMostSwings * step);
   std::vector<double> logs;
-  const auto try_swing = [&](double f) {
+  const auto try_swing = [&](double f, const std::vector<TurningWaves>& waves) {
     SpreadEvidence evidence;
-    const Tried tried = try_one(space, swing_columns(space, f), family, evidence);
+    const Tried tried = try_one(space, swing_columns(space, waves), family, evidence);
     if (tried.better) draw_swing(x, f, evidence, family);
     return tried.log_evidence;
   };
   double f = kFewestSwings / range;
-  for (; f < highest; f += step) {
-    if (!swings_by_rounding(set, f, range)) logs.push_back(try_swing(f));
+  for (std::vector<TurningWaves> waves = swings_of(space, f, step); f < highest; f += step) {
+    if (!swings_by_rounding(set, f, range)) logs.push_back(try_swing(f, waves));
+    for (TurningWaves& of_motion : waves) of_motion.turn();
   }
   // Finer ones pass from frame to frame by more than a turn, each motion in steps of its own, and show by the place all
   // the same: the pixels, when a marker crosses some of them from frame to frame. Of films these are in the fit.
@@ -239,7 +242,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
       best_f = f;
       best = logs.size() - 1;
     }
-    if (best_f > 0.0) logs[best] = try_swing(best_f);
+    if (best_f > 0.0) logs[best] = try_swing(best_f, swings_of(space, best_f, 0.0));
   }
   if (!logs.empty()) family.log_evidence = base::log_mean(logs);
   name_everywhere(x, family);
@@ -277,29 +280,34 @@ UnnamedFamily pull_family(const ScoreSpace& space, const Grid& x) {
 
 }  // namespace
 
-void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families) {
+void add_place_families(const ScoreSpace& space, std::vector<FamilySearch>& searches) {
   const Ranges ranges = ranges_of(space);
   const bool more_masses = space.set().masses.size() > 1;
+  const auto force = [&](const Grid& grid, Place over, GapVariable variable, Force kind, Load load) {
+    searches.emplace_back(
+        [=, &space](auto& families) { add_force(space, grid, over, variable, kind, load, families); });
+  };
+  const auto displacement = [&](const Grid& grid, Seen seen) {
+    searches.emplace_back([=, &space](auto& families) { add_displacement(space, grid, seen, families); });
+  };
   for (const int bumps : {kSmooth, kCoarse, kFine}) {
     Grid v = ranges.v, x = ranges.x, t = ranges.t, speed = ranges.speed;
     v.bumps = x.bumps = t.bumps = speed.bumps = bumps;
-    add_force(space, v, Place::v, GapVariable::speed, Force::drive, Load::none, families);
-    add_force(space, speed, Place::v, GapVariable::speed, Force::friction, more_masses ? Load::either : Load::none,
-              families);
-    add_force(space, x, Place::x, GapVariable::position, Force::drive, more_masses ? Load::either : Load::mass,
-              families);
-    add_force(space, x, Place::x, GapVariable::position, Force::friction, Load::mass, families);
-    add_displacement(space, x, Seen::over_x, families);
-    add_displacement(space, t, Seen::over_t, families);
-    add_displacement(space, t, Seen::late, families);
+    force(v, Place::v, GapVariable::speed, Force::drive, Load::none);
+    force(speed, Place::v, GapVariable::speed, Force::friction, more_masses ? Load::either : Load::none);
+    force(x, Place::x, GapVariable::position, Force::drive, more_masses ? Load::either : Load::mass);
+    force(x, Place::x, GapVariable::position, Force::friction, Load::mass);
+    displacement(x, Seen::over_x);
+    displacement(t, Seen::over_t);
+    displacement(t, Seen::late);
     if (bumps == kFine) continue;
-    add_force(space, t, Place::t, GapVariable::time, Force::drive, more_masses ? Load::either : Load::mass, families);
-    add_force(space, t, Place::t, GapVariable::time, Force::friction, Load::mass, families);
-    add_force(space, x, Place::x, GapVariable::position, Force::drag, Load::none, families);
-    add_force(space, t, Place::t, GapVariable::time, Force::drag, Load::none, families);
+    force(t, Place::t, GapVariable::time, Force::drive, more_masses ? Load::either : Load::mass);
+    force(t, Place::t, GapVariable::time, Force::friction, Load::mass);
+    force(x, Place::x, GapVariable::position, Force::drag, Load::none);
+    force(t, Place::t, GapVariable::time, Force::drag, Load::none);
   }
-  families.push_back(swing_family(space, ranges.x));
-  families.push_back(pull_family(space, ranges.x));
+  searches.emplace_back([=, &space](auto& families) { families.push_back(swing_family(space, ranges.x)); });
+  searches.emplace_back([=, &space](auto& families) { families.push_back(pull_family(space, ranges.x)); });
 }
 
 }  // namespace glidelab::diagnose

@@ -7,6 +7,7 @@
 
 namespace glidelab::diagnose {
 
-void add_place_families(const ScoreSpace& space, std::vector<UnnamedFamily>& families);
+/// `space` outlives the searches.
+void add_place_families(const ScoreSpace& space, std::vector<FamilySearch>& searches);
 
 }  // namespace glidelab::diagnose

@@ -66,11 +66,11 @@ GapRemainder remainder_of(double gap_before, const std::vector<ExplainedCause>& 
 }
 
 /// Where the rest lies, beside the named causes; nowhere where nothing is left.
-std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence) {
+std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence, int jobs) {
   if (!(sequence.gap_after > 1.0 + kClearGap * sequence.standard_error)) return {};
   Diagnosis rest;
   rest.verdict = Verdict::unknown;
-  add_regions(set, sequence.named, unnamed_families(ScoreSpace(set, sequence.named)), rest);
+  add_regions(set, sequence.named, unnamed_families(ScoreSpace(set, sequence.named), jobs), rest);
   return rest.regions;
 }
 
@@ -280,7 +280,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   if (sequence.is_gap) {
     diagnosis.remainder = remainder_of(sequence.gap_before, diagnosis.explained, sizes, space.part_s());
     diagnosis.remainder->regions =
-        diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence) : diagnosis.regions;
+        diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence, jobs) : diagnosis.regions;
   }
   diagnosis.levels = levels_of(set, nominal, jobs);
   Explanations explanations{{&reported, sizes, 1.0}};

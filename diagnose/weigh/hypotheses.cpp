@@ -33,7 +33,7 @@ void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) 
     if (named.log_evidence < kLeads) continue;
     work.look();
     const ScoreSpace space(set, comparison.fits[static_cast<std::size_t>(named.fit)]);
-    std::vector<UnnamedFamily> families = unnamed_families(space);
+    std::vector<UnnamedFamily> families = unnamed_families(space, work.jobs);
     Hypothesis both = named;
     both.unnamed = true;
     both.unnamed_log_evidence = log_unnamed_evidence(families);
@@ -138,7 +138,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   comparison.scans = scan_effects(space, left_out, jobs);
   comparison.alike = alike_in(space, comparison.scans);
   work.at(0.1).look();
-  comparison.unnamed = unnamed_families(space);
+  comparison.unnamed = unnamed_families(space, jobs);
   Hypothesis unnamed;
   unnamed.unnamed = true;
   unnamed.unnamed_log_evidence = log_unnamed_evidence(comparison.unnamed);
@@ -157,7 +157,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   }
   if (const auto dropped = effect_index(ids::dropped_frames); !left_out.contains(dropped)) {
     work.at(0.4).look();
-    comparison.missing = find_missing_frames(set, nominal);
+    comparison.missing = find_missing_frames(set, nominal, jobs);
     if (comparison.missing.count > 0) {
       Found found;
       found.fit = comparison.missing.fit;

@@ -69,7 +69,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {beyond, "12.3 m/s² without friction, is more than gravity_m_s2 = 9.80665; incline_deg says 4.3 ± 0.3°"},
       {core::RobustFit{4, 400}, "robust: 4 of 400 positions"},
       {core::FitScatters{1.234, 17.0}, "scatter 1.23 times"}};
-  std::vector<bool> seen(std::variant_size_v<core::Note>, false);
+  std::vector<bool> seen(std::variant_size_v<core::AnyNote>, false);
   for (const auto& [note, part] : notes) {
     const std::string words = report::note_words(note);
     INFO(words);
@@ -86,9 +86,9 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
 TEST_CASE("a lens is worded by its terms and by the tests that kept or dropped them") {
   core::LensTerms lens;
   lens.kept = {"k1", "k2"};
-  lens.tests = {{"k3", 1.234, 9.0}, {"p1, p2", 12345.0, 11.83}};
+  lens.tests = {{"k3", 1.234, 9.0}, {"p1, p2", 12300.0, 11.83}};
   CHECK(report::lens_words(lens) ==
-        "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.23 of 9; p1, p2: 12345 of "
+        "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.23 of 9; p1, p2: 12300 of "
         "11.8)");
   CHECK(report::lens_words({false, {}, {{"k1", 2.0, 9.0}}}).starts_with("distortion: none ("));
   CHECK(report::lens_words({true, {"k1"}, {}}) == "fisheye: k1");

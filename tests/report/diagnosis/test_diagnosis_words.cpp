@@ -53,7 +53,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "stated at 4° corresponds to an inclination of 3.900°"},
       {diagnose::TableOfLines{12}, "The table of 12 lines"},
       {diagnose::OnlyFalls{}, "not determined"}};
-  std::vector<bool> seen(std::variant_size_v<diagnose::Note>, false);
+  std::vector<bool> seen(std::variant_size_v<diagnose::AnyNote>, false);
   for (const auto& [note, part] : notes) {
     const std::string words = report::note_words(note);
     INFO(words);
