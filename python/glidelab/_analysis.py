@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, Union
@@ -190,11 +191,15 @@ class Analysis(Result):
         In the order in which they were given.
     configurations : tuple of Configuration
         K/m, mu, alpha and the terminal velocity of each.
+    doubts : tuple of str
+        What the law (drag in proportion to the speed, dry friction, gravity) cannot explain, a sentence each; empty
+        where it fits. Where it does not, the standard deviations would hold only if it did.
     """
 
     estimator: str
     clips: tuple[Clip, ...]
     configurations: tuple[Configuration, ...]
+    doubts: tuple[str, ...]
 
     @property
     def configuration(self) -> Configuration:
@@ -232,12 +237,13 @@ class Analysis(Result):
         list of matplotlib.axes.Axes
             One for each clip.
         """
-        return [clip.plot(ax) for clip, ax in zip(self.clips, new_axes(len(self.clips), 4.0))]
+        return [clip.plot(ax) for clip, ax in zip(self.clips, new_axes(len(self.clips)))]
 
     def _repr_html_(self) -> str:
         rows = [[one.group, f"{one.mass_kg:g}", f"{one.incline_deg:g}", *(str(getattr(one, key)) for key in QUANTITIES)]
                 for one in self.configurations]
-        return html_table(["group", "mass (kg)", "stated α (°)", "K/m", "µ", "α", "terminal velocity"], rows)
+        table = html_table(["group", "mass (kg)", "stated α (°)", "K/m", "µ", "α", "terminal velocity"], rows)
+        return table + "".join(f"<p>{html.escape(doubt)}</p>" for doubt in self.doubts)
 
 
 def _line(found: Mapping[str, Any]) -> Line:
@@ -266,7 +272,7 @@ def analysis_of(outcome: _glidelab.Outcome, motions: Sequence[Mapping[str, Any]]
     document = Result(made).to_dict()
     return Analysis(made, document["estimator"],
                     tuple(_clip(clip, arrays) for clip, arrays in zip(document["clips"], motions)),
-                    tuple(_configuration(one) for one in document["configurations"]))
+                    tuple(_configuration(one) for one in document["configurations"]), tuple(document["doubts"]))
 
 
 def _choices(bandwidth: Union[float, str, None], estimator: str, robust: bool, jobs: Optional[int],

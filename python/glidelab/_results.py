@@ -179,8 +179,8 @@ def html_table(header: Sequence[str], rows: Sequence[Sequence[str]], caption: st
     return f"<table>{head}<thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def new_axes(count: int, width: float = 6.0, height: float = 4.0) -> list[Any]:
-    """`count` axes of matplotlib side by side, in a figure of their own.
+def new_axes(count: int) -> list[Any]:
+    """`count` axes of matplotlib, three in a row at most, in a figure of their own.
 
     Raises
     ------
@@ -188,5 +188,12 @@ def new_axes(count: int, width: float = 6.0, height: float = 4.0) -> list[Any]:
         matplotlib is not installed.
     """
     pyplot = importlib.import_module("matplotlib.pyplot")
-    _, axes = pyplot.subplots(1, count, figsize=(width * count, height), squeeze=False, layout="constrained")
-    return list(axes[0])
+    columns = max(1, min(count, 3))
+    rows = -(-count // columns)
+    width, height = (6.0, 4.0) if columns == 1 else (4.0, 3.2)
+    _, grid = pyplot.subplots(rows, columns, figsize=(width * columns, height * rows), squeeze=False,
+                              layout="constrained")
+    axes = list(grid.flat)
+    for unused in axes[count:]:
+        unused.set_axis_off()
+    return axes[:count]

@@ -216,7 +216,20 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
 
 @dataclass(frozen=True)
 class Candidate:
-    """One camera or setting of a sweep, as a requirement judges it."""
+    """One camera or setting of a sweep, as a requirement judges it.
+
+    Attributes
+    ----------
+    name, verdict : str
+        Of the sweep's point, and what is said of it.
+    reached : bool
+        Whether it reaches every target.
+    price_eur, frame_rate_hz, noise_m : float or None
+        What it costs, how it is set, and the noise of its positions.
+    errors, error_sds, bounds : tuple of (float or None)
+        Of each target, in the target's unit and measure: the error by runs with its standard deviation (None: not run),
+        and the least that noise and frame rate allow.
+    """
 
     name: str
     reached: bool
@@ -224,6 +237,9 @@ class Candidate:
     price_eur: Optional[float]
     frame_rate_hz: Optional[float]
     noise_m: Optional[float]
+    errors: tuple[Optional[float], ...] = ()
+    error_sds: tuple[Optional[float], ...] = ()
+    bounds: tuple[Optional[float], ...] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -236,10 +252,13 @@ class Requirement(Result):
         Of the sweep.
     candidates : tuple of Candidate
         The cheapest first.
+    targets : tuple of str
+        What was asked for, in words: "mu 95 % error 0.0001".
     """
 
     name: str
     candidates: tuple[Candidate, ...]
+    targets: tuple[str, ...] = ()
 
     @property
     def cheapest(self) -> Optional[Candidate]:
@@ -247,14 +266,29 @@ class Requirement(Result):
         return next((one for one in self.candidates if one.reached), None)
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a candidate."""
-        return frame_of({name: [getattr(one, name) for one in self.candidates] for name in (
-            "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")})
+        """A pandas.DataFrame, a row a candidate; of several targets the first target's error and bound."""
+        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in (
+            "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")}
+        columns["error"] = [one.errors[0] if one.errors else None for one in self.candidates]
+        columns["bound"] = [one.bounds[0] if one.bounds else None for one in self.candidates]
+        return frame_of(columns)
 
     def _repr_html_(self) -> str:
-        rows = [[one.name, one.verdict, "" if one.price_eur is None else f"{one.price_eur:g}"]
-                for one in self.candidates]
-        return html_table(["camera", "verdict", "price (EUR)"], rows)
+        header = ["camera", "price (EUR)", "verdict"]
+        for target in self.targets:
+            header += [f"error ({target})", "at best"]
+        rows = []
+        for one in self.candidates:
+            row = [one.name, "" if one.price_eur is None else f"{one.price_eur:g}", one.verdict]
+            for error, sd, bound in zip(one.errors, one.error_sds, one.bounds):
+                row += ["" if error is None else rounded_error(error, sd), "" if bound is None else f"{bound:.2g}"]
+            rows.append(row)
+        return html_table(header, rows)
+
+
+def rounded_error(error: float, sd: Optional[float]) -> str:
+    """"3.6e-06 ± 1.0e-06": errors are small numbers, of which two digits count."""
+    return f"{error:.2g}" if sd is None else f"{error:.2g} ± {sd:.1g}"
 
 
 def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks", runs: int = 12, track_runs: int = 200,
@@ -292,9 +326,12 @@ def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks",
                                   whole("track_runs", track_runs, 2, 1000000), checked_seed(seed), job_count(jobs),
                                   teller(progress)))
     found = Result(made).to_dict()
+    of_targets = [{name: tuple(target.get(name) for target in one["targets"])
+                   for name in ("found", "found_sd", "bound")} for one in found["candidates"]]
     return Requirement(made, found["name"], tuple(
         Candidate(one["name"], one["reached"], one["verdict"], one.get("price_eur"), one.get("frame_rate_hz"),
-                  one.get("noise_m")) for one in found["candidates"]))
+                  one.get("noise_m"), of["found"], of["found_sd"], of["bound"])
+        for one, of in zip(found["candidates"], of_targets)), tuple(found["targets"]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

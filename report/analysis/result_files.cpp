@@ -11,6 +11,7 @@
 #include "base/text/csv.h"
 #include "core/result/quantity.h"
 #include "core/result/results.h"
+#include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
 #include "report/text/display_text.h"
@@ -261,6 +262,7 @@ std::string results_json(const core::AnalysisResults& results, const Json& with)
     }
   }
   document["inclination"] = inclination_json(results);
+  document["doubts"] = doubts_about(results);
   if (!with.is_null()) document["with"] = with;
   return json_text(document);
 }

@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 
 import glidelab
-from tests.python.support import InFolder, damped, needs
+from tests.python.support import SOURCE, InFolder, damped, needs
 
 
 class AnalysisOfArrays(InFolder):
@@ -55,6 +55,12 @@ class AnalysisOfArrays(InFolder):
         self.assertIn("<table>", self.analysis._repr_html_())
         self.assertIn("K/m", self.analysis._repr_html_())
 
+    def test_a_notebook_shows_where_the_law_does_not_fit(self):
+        self.assertEqual(self.analysis.doubts, ())
+        rising = glidelab.analyze(*damped(k_1_s=-1.5, duration_s=1.2), mass_kg=0.335)  # what drives it grows with v
+        self.assertIn("below zero", rising.doubts[0])
+        self.assertIn("below zero", rising._repr_html_())
+
     @needs("pandas")
     def test_tables_have_units(self):
         table = self.analysis.to_frame()
@@ -72,6 +78,36 @@ class AnalysisOfArrays(InFolder):
         axes = self.analysis.plot()
         self.assertEqual(axes[0].get_xlabel(), "v (m/s)")
         self.assertEqual(len(axes[0].lines), 2 + len(self.analysis.clips[0].segments))
+
+    @needs("matplotlib")
+    def test_many_plots_stand_three_in_a_row(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        from glidelab._results import new_axes
+        axes = new_axes(7)
+        self.assertEqual(len(axes), 7)
+        places = [ax.get_subplotspec() for ax in axes]
+        self.assertEqual([(place.rowspan.start, place.colspan.start) for place in places],
+                         [(i // 3, i % 3) for i in range(7)])
+        self.assertEqual(len(axes[0].figure.axes), 9)
+        self.assertFalse(any(ax.axison for ax in axes[0].figure.axes[7:]))
+
+
+class RequirementOfTracks(InFolder):
+    def test_the_table_has_each_error_and_the_least_one(self):
+        scenario = SOURCE / "scenarios" / "paper" / "inclined.toml"
+        (self.folder / "two.toml").write_text(
+            f'format = 1\nname = "two"\nscenario = "{scenario}"\nlevel = "tracks"\nreplicates = 1\n'
+            '[[vary]]\nkey = "tracks.noise_m"\nvalues = [1e-5, 4e-5]\n')
+        answer = glidelab.require(self.folder / "two.toml", ["mu=0.001"], track_runs=20)
+        self.assertEqual(answer.targets, ("mu 95 % error 0.001",))
+        fine, coarse = answer.candidates
+        # The bound goes with the noise, and no error is far below its bound: 20 runs tell it to a sixth.
+        self.assertAlmostEqual(coarse.bounds[0] / fine.bounds[0], 4.0, places=3)
+        for one in answer.candidates:
+            self.assertTrue(one.reached)
+            self.assertGreater(one.errors[0], 0.5 * one.bounds[0])
+            self.assertIn(f"{one.bounds[0]:.2g}", answer._repr_html_())
 
 
 class Quantities(unittest.TestCase):

@@ -45,6 +45,15 @@ TEST_CASE("results.json has every key of its form, with the numbers that were pu
   CHECK(document.at("inclination").at("plumb_deg").at("value") == 4.1);
 }
 
+TEST_CASE("results.json says in words what the law cannot explain") {
+  core::AnalysisResults results = tests::made_results();
+  CHECK(json::parse(report::results_json(results)).at("doubts") == json::array());
+  results.configurations[0].k_over_m_1_s = tests::known(-0.367, 0.055);
+  const json doubts = json::parse(report::results_json(results)).at("doubts");
+  REQUIRE(doubts.size() > 0);
+  CHECK(doubts[0].get<std::string>().find("K/m = -0.367 ± 0.055 is below zero") != std::string::npos);
+}
+
 TEST_CASE("a quantity that the data do not determine is null, with the reason beside it") {
   core::AnalysisResults results = tests::made_results();
   results.configurations[0].mu = {std::nullopt, "all clips move one way"};
