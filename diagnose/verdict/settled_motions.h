@@ -19,7 +19,7 @@ namespace glidelab::diagnose {
 
 /// With what the analysis took for a hand or a stop; driven motions are cut into pieces, and notes say what a reader
 /// should know of the data. `setups` are all folders' clips in the results' order. InputError where there is too little
-/// motion for a fit (40 positions in all), or none that could be one of a glider (tracks/usable_motions.h).
+/// motion for a fit (25 positions in all), or none that could be one of a glider (tracks/usable_motions.h).
 TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups);
 
 /// The same without the `disputed` frames that the analysis took for a hand or a stop; nothing where too little is left
