@@ -179,7 +179,9 @@ std::string limits_list(const Requirement& requirement) {
     items += fmt::format("<li><b>{}</b>: {}</li>\n", escape(candidate.name), escape(limits));
   }
   if (items.empty()) return {};
-  return "<h3>What limits the others</h3>\n<ul>\n" + items + "</ul>\n";
+  return "<h3>What limits the others</h3>\n<p>How many times smaller the least error would be without each "
+         "limitation:</p>\n<ul>\n" +
+         items + "</ul>\n";
 }
 
 std::string judged_by_text(const Requirement& requirement) {
@@ -229,7 +231,7 @@ std::string how_judged(const Requirement& requirement) {
 }  // namespace
 
 Page requirement_report(const Requirement& requirement) {
-  const std::string question = fmt::format("Which of these reaches {}?", targets_text(requirement));
+  const std::string question = fmt::format("Which of these is good enough: {}?", targets_text(requirement));
   Html body = question_heading(requirement.name, question);
   body += fmt::format("<p><b>{}</b> {}</p>\n<p>{}</p>\n", escape(requirement_answer(requirement)),
                       escape(enough_words(requirement)), escape(counts_text(requirement)));
