@@ -26,8 +26,8 @@ struct Estimator {
   bool of_lines = true;                                 ///< the lines give the quantities, so the result depends on the
                                                         ///< smoothing
   bool takes_robust = false;
-  bool judged = false;  ///< validate, require and a baseline use it; a sweep runs it if none is named The quantities of
-  /// all configurations, from an analysis with `lines`.
+  bool judged = false;  ///< validate, require and a baseline use it; a sweep runs it if none is named
+  /// The quantities of all configurations, from an analysis with `lines`.
   core::AnalysisResults (*estimate)(core::AnalysisResults of_lines, const EstimateOptions& options) = nullptr;
 };
 

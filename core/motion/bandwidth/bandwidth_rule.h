@@ -48,7 +48,8 @@ struct BandwidthPick {
 struct BandwidthRule {
   std::string_view name;     ///< in options and files
   std::string_view words;    ///< what the rule does: "leave-one-out cross-validation of x"
-  std::string_view assumes;  ///< "white noise" Empty if the motion is too short for any bandwidth.
+  std::string_view assumes;  ///< "white noise"
+  /// Empty if the motion is too short for any bandwidth.
   std::optional<BandwidthPick> (*choose)(const BandwidthProblem& problem) = nullptr;
 };
 
