@@ -12,9 +12,9 @@ namespace glidelab::base {
 
 /// One thing that is wrong with an input: its place, what was found, and what is allowed there.
 struct Issue {
-  std::string file;      ///< as the user named it; empty where the input is not a file
-  int line = 0;          ///< 1-based; 0 where there is none
-  std::string key;       ///< "camera.frame_rate_hz", "column 'x_m'", "frame 12"; empty where there is none
+  std::string file;      ///< as the user named it; empty if the input is not a file
+  int line = 0;          ///< 1-based; 0 if there is none
+  std::string key;       ///< "camera.frame_rate_hz", "column 'x_m'", "frame 12"; empty if there is none
   std::string found;     ///< "-3", "text \"abc\"", "nothing"
   std::string expected;  ///< "a number above 0"
 };

@@ -86,7 +86,7 @@ TemporaryFolder::TemporaryFolder(const std::string& purpose) {
 }
 
 TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;  // a destructor has nobody to tell
+  std::error_code ignored;  // a destructor cannot report errors
   fs::remove_all(path_, ignored);
   forget_passing_folder(path_);
 }
@@ -176,7 +176,7 @@ namespace {
 std::atomic<int> next_staging_number{0};
 
 /// Identifies the machine, its boot and the process-number namespace of a process: only within these does a process
-/// number tell whether the process still runs. Zero where the system does not say.
+/// number tell whether the process still runs. Zero if the system does not say.
 std::size_t place_of_processes() {
   std::error_code error;
   std::ifstream boot("/proc/sys/kernel/random/boot_id");
@@ -297,7 +297,7 @@ StagedOutput::StagedOutput(fs::path final_dir)
 
 StagedOutput::~StagedOutput() {
   try {
-    std::error_code ignored;  // a destructor has nobody to tell
+    std::error_code ignored;  // a destructor cannot report errors
     fs::remove_all(staging_, ignored);
     forget_passing_folder(staging_);
   } catch (const std::bad_alloc&) {  // the next run to the same output removes it

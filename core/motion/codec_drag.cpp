@@ -28,7 +28,7 @@ constexpr double kFewestPoints = 60.0;
 constexpr std::size_t kNeighbours = 3;  // frames to each side that determine a displacement
 constexpr int kPasses = 200;            // of expectation maximisation
 constexpr double kLeast_px = 1e-7;      // p; below it there is no drag
-// Of H.264 at 1 to 2 bits a pixel, both grey and behind a colour mosaic, p is 0.014 to 0.02. This knowledge has the
+// For H.264 at 1 to 2 bits per pixel, both grey and behind a colour mosaic, p is 0.014 to 0.02. This knowledge has the
 // weight of four waves.
 constexpr double kExpected_px = 0.02, kExpectedCounts = 4.0;
 

@@ -21,8 +21,8 @@ namespace glidelab::core {
 struct TableColumn {
   std::string text;                           ///< the header as written; "column 2" if there is none
   std::string name;                           ///< without unit and run
-  std::string unit;                           ///< empty where none is stated
-  std::string run;                            ///< empty where none is stated
+  std::string unit;                           ///< empty if none is stated
+  std::string run;                            ///< empty if none is stated
   std::vector<std::optional<double>> values;  ///< one for each data line; empty if the field is empty or NaN
 };
 

@@ -38,7 +38,7 @@ struct TrackerMass {
 struct TrackerProject {
   std::string shown_as;     ///< the file and, within an archive, the entry, for messages
   std::string name;         ///< name of the entry of an archive, without its folders
-  std::string length_unit;  ///< empty where none is stated
+  std::string length_unit;  ///< empty if none is stated
   double start_ms = 0.0;    ///< of the first frame
   double frame_ms = 0.0;    ///< from one frame to the next
   long first_frame = 0, step = 1;

@@ -60,7 +60,7 @@ double fold_radius(const Lens& lens);
 /// inside the fold radius.
 std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted);
 
-/// The same with `largest_radius` in place of the fold radius, for a caller who asks many times.
+/// The same with `largest_radius` in place of the fold radius, for repeated calls.
 std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted, double largest_radius);
 
 struct Camera {
@@ -78,7 +78,7 @@ std::optional<Eigen::Vector2d> undistorted_at(const Camera& camera, const Eigen:
 /// The pixel at which undistorted coordinates appear; also outside the image. Empty beyond the fold radius.
 std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vector2d& undistorted);
 
-/// The same with `largest_radius` in place of the fold radius, for a caller who asks many times.
+/// The same with `largest_radius` in place of the fold radius, for repeated calls.
 std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vector2d& undistorted,
                                         double largest_radius);
 

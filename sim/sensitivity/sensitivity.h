@@ -87,7 +87,7 @@ struct SensitiveState {
 
 /// A motion, and how it changes with every parameter of its law and with its initial state: S is integrated together
 /// with (x, v) by Adams formulas. From (x0, v0) at t = 0, at each of `times_s` (rising, not negative). A law with more
-/// than (kMostComponents - 2) / 2 - 2 parameters is a std::logic_error; NumericalError where CVODES fails. A glider
+/// than (kMostComponents - 2) / 2 - 2 parameters is a std::logic_error; NumericalError if CVODES fails. A glider
 /// that sticks stays: the law does not depend on time.
 std::vector<SensitiveState> simulate_sensitive(const MotionLaw& law, double x0_m, double v0_m_s,
                                                std::span<const double> times_s,
@@ -105,7 +105,7 @@ std::vector<SensitiveState> simulate_sensitive(const MotionLaw& law, double x0_m
 /// 0). All formulas go over into k = 0.
 ///
 /// By k, d, f, x0, v0, in this order, at each of `times_s` (rising, not negative). From v0 = 0 the glider sticks or
-/// moves with the drive. NumericalError where a number is not finite.
+/// moves with the drive. NumericalError if a number is not finite.
 std::vector<SensitiveState> track_motion_sensitive(double k_1_s, double drive_m_s2, double friction_m_s2, double x0_m,
                                                    double v0_m_s, std::span<const double> times_s);
 

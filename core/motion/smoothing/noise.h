@@ -22,7 +22,7 @@ double rounding_step(std::span<const double> x_m);
 /// rounding a slow motion).
 struct PositionNoise {
   double sd_m = 0.0;
-  std::vector<double> autocovariance;  ///< at lags of 0, 1, … points; a single number where the noise is white
+  std::vector<double> autocovariance;  ///< at lags of 0, 1, … points; a single number if the noise is white
 };
 
 /// The sum of the autocovariance over all lags, of both signs: the variance of the white noise that would have the same

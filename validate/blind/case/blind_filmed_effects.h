@@ -22,7 +22,7 @@
 namespace glidelab::validate {
 
 /// The effects of effects.md that are in the images alone. Each function puts one into the scene with about the wanted
-/// gain (down to 0.64 of it where the camera cannot do more), and nothing where that scene cannot show it.
+/// gain (down to 0.64 of it where the camera cannot do more), and returns an empty value if that scene cannot show it.
 std::optional<BlindCause> long_exposure(double wanted, BlindScene& scene, BlindRandom& random);
 std::optional<BlindCause> hidden_rolling(double wanted, BlindScene& scene, BlindRandom& random);
 std::optional<BlindCause> flicker(double wanted, BlindScene& scene, BlindRandom& random);

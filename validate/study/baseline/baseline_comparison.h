@@ -15,7 +15,7 @@ namespace glidelab::validate {
 /// What became worse, in words and numbers.
 struct Worse {
   std::string configuration, estimator,
-      quantity;      ///< of smoothing: the clip, the default estimator, "a" or "bandwidth"
+      quantity;      ///< for smoothing: the clip, the default estimator, "a" or "bandwidth"
   std::string what;  ///< "spread", "bias", "coverage", "answers"; "rms error", "mean"
   double then = 0.0, now = 0.0;
   double p = 0.0;  ///< of one test, not corrected for the number of tests
@@ -59,7 +59,7 @@ inline constexpr double kSmallFactor = 1.1, kSmallDetection = 0.95;
 /// The smallest worsening of one quantity that a comparison with a baseline detects.
 struct Detectable {
   std::string configuration, estimator,
-      quantity;                      ///< of smoothing: the clip, the default estimator, "a" or "bandwidth"
+      quantity;                      ///< for smoothing: the clip, the default estimator, "a" or "bandwidth"
   std::optional<double> factor;      ///< errors this many times as large; empty if these runs detect no factor at all
   std::optional<double> bias;        ///< in the quantity's unit; empty for smoothing
   std::uint64_t runs_for_weak = 0;   ///< number of runs, then and now, needed to detect a factor of kWeakFactor

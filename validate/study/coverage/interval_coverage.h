@@ -35,7 +35,7 @@ struct CoverageOptions {
 /// Intervals of one level; `determined` of its row is n.
 struct LevelCount {
   double level = 0.95;
-  std::size_t covered = 0;  ///< that hold the truth
+  std::size_t covered = 0;  ///< number that contain the truth
   double coverage = 0.0;
   double low95 = 0.0, high95 = 0.0;  ///< exact binomial interval of the coverage (Clopper and Pearson 1934)
   double p_value = 1.0;              ///< of a count at least as far from the level, two-sided

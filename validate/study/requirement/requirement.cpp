@@ -178,7 +178,7 @@ Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions
 
 /// Approximate cost of a scenario's stills and of rendering and reading its clips, in nanoseconds of one core.
 double work_of(const render::Scenario& scenario) {
-  constexpr double kStill = 25.0, kLossless = 1.5, kLossy = 20.0;  // ns a pixel
+  constexpr double kStill = 25.0, kLossless = 1.5, kLossy = 20.0;  // ns per pixel
   constexpr double kAnalysis = 3e8;                                // ns
   const double pixels = static_cast<double>(scenario.camera.width_px) * scenario.camera.height_px;
   return kAnalysis + pixels * (kStill * static_cast<double>(render::count_stills(scenario)) +
@@ -188,7 +188,7 @@ double work_of(const render::Scenario& scenario) {
 
 /// Cost of drawing the static scene, once per camera; likewise.
 double stage_work_of(const render::Scenario& scenario) {
-  constexpr double kStage = 700.0;  // ns a pixel
+  constexpr double kStage = 700.0;  // ns per pixel
   return kStage * static_cast<double>(scenario.camera.width_px) * scenario.camera.height_px;
 }
 

@@ -91,7 +91,7 @@ struct SweepSummary {
   /// further kinds.
   std::vector<std::string> failures;
   double cpu_s = 0.0;                                ///< wall time of all runs on their threads
-  std::vector<Series> overall;                       ///< each of one group
+  std::vector<Series> overall;                       ///< one group each
   std::vector<ConfigurationSummary> configurations;  ///< by their names; empty if the scenario has one
   std::vector<AxisSummary> axes;
   std::vector<AccelerationError> accelerations;
