@@ -10,11 +10,11 @@
 
 namespace glidelab::base {
 
-/// One thing that is wrong with an input: where it stands, what was found, and what is allowed there.
+/// One thing that is wrong with an input: its place, what was found, and what is allowed there.
 struct Issue {
-  std::string file;      ///< as the user named it; empty where the input is not a file
-  int line = 0;          ///< 1-based; 0 where there is none
-  std::string key;       ///< "camera.frame_rate_hz", "column 'x_m'", "frame 12"; empty where there is none
+  std::string file;      ///< as the user named it; empty if the input is not a file
+  int line = 0;          ///< 1-based; 0 if there is none
+  std::string key;       ///< "camera.frame_rate_hz", "column 'x_m'", "frame 12"; empty if there is none
   std::string found;     ///< "-3", "text \"abc\"", "nothing"
   std::string expected;  ///< "a number above 0"
 };
@@ -43,8 +43,8 @@ class NumericalError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What was asked to hold does not: a baseline, a target, a coverage (exit status 4). The results are written all the
-/// same.
+/// A requested condition does not hold: a baseline, a target, a coverage (exit status 4). The results are still
+/// written.
 class NotMet : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -12,8 +12,8 @@
 
 namespace glidelab::base {
 
-/// Called with what is being done and how much of it (0 to 1). May be called from several threads at once.
-/// May throw Interrupted, which ends the work and cleans up.
+/// Called with the current stage and the fraction done (0 to 1). May be called from several threads at once. May throw
+/// Interrupted, which ends the work and cleans up.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 /// Reports nothing and never stops.
@@ -35,7 +35,7 @@ class FlagOnThrow {
 };
 
 /// Runs `worker(next)` on up to `jobs` threads, this one among them; each worker calls next() for the number of its
-/// next piece until that says `count`. Errors are thrown where the work was started: of the pieces that failed, the
+/// next piece until it returns `count`. Errors are thrown where the work was started: of the pieces that failed, the
 /// exception of the one with the smallest number is rethrown. Once one has failed, no new piece is begun.
 template <typename Worker>
 void in_parallel(int jobs, std::size_t count, const Worker& worker) {
@@ -43,7 +43,7 @@ void in_parallel(int jobs, std::size_t count, const Worker& worker) {
   if (threads == 0) return;
   std::atomic<std::size_t> taken{0};
   std::atomic<bool> failed{false};
-  std::vector<std::size_t> at(threads, count);  // the piece that each thread has in work
+  std::vector<std::size_t> at(threads, count);  // the piece on which each thread works
   const auto run = [&](std::size_t thread) {
     const FlagOnThrow flag(failed);
     worker([&] { return at[thread] = failed ? count : std::min(count, taken.fetch_add(1)); });

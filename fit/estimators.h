@@ -2,7 +2,7 @@
 /// list.
 ///
 /// All start from an analysis of the clips with one of core's two methods of fitting lines. The lines give the
-/// quantities themselves, or serve as the start of another fit.
+/// quantities themselves or serve as the starting point of another fit.
 #pragma once
 
 #include <functional>
@@ -22,10 +22,11 @@ struct Estimator {
   std::string_view name;    ///< in options and files
   std::string_view title;   ///< on pages: "fit of the whole motion"
   std::string_view method;  ///< in help, after the name: "fits the whole motion to the positions"
-  core::LineMethod lines = core::LineMethod::ordinary;  ///< that it starts from
-  bool of_lines = true;                                 ///< the lines give the quantities: they are what was smoothed
+  core::LineMethod lines = core::LineMethod::ordinary;  ///< the line method it starts from
+  bool of_lines = true;                                 ///< the lines give the quantities, so the result depends on the
+                                                        ///< smoothing
   bool takes_robust = false;
-  bool judged = false;  ///< validate, require and a baseline use it; a sweep runs it where none is named
+  bool judged = false;  ///< validate, require and a baseline use it; a sweep runs it if none is named
   /// The quantities of all configurations, from an analysis with `lines`.
   core::AnalysisResults (*estimate)(core::AnalysisResults of_lines, const EstimateOptions& options) = nullptr;
 };
@@ -36,11 +37,12 @@ inline const Estimator& default_estimator() {
   return estimators().front();
 }
 std::vector<Estimator> judged_estimators();
-/// Null where there is none of that name.
+/// Null if there is none of that name.
 const Estimator* find_estimator(std::string_view name);
 std::vector<std::string> estimator_names();
 
-/// The results of each of `wanted` for one experiment; `analyze` is called once for each method that they start from.
+/// The results of each estimator in `wanted` for one experiment; `analyze` is called once for each line method that
+/// they start from.
 std::vector<core::AnalysisResults> estimate_each(const std::vector<Estimator>& wanted,
                                                  const std::function<core::AnalysisResults(core::LineMethod)>& analyze);
 

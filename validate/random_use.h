@@ -1,9 +1,9 @@
-/// What validate/ draws random numbers for: the words that keep one use's numbers apart from another's of the same
+/// The uses of random numbers in validate/: the words that separate one use's numbers from another's with the same
 /// seed.
 ///
-/// Every engine is std::mt19937_64. It is seeded by a seed sequence of the seed's two halves and, where there are such,
-/// a number (which track, which case) and the use's word; what is drawn of a seed therefore stays as it is for as long
-/// as these stay.
+/// Every engine is std::mt19937_64. It is seeded by a seed sequence of the seed's two halves and, if present, a number
+/// (of the track or case) and the use's word. The draws for a given seed therefore stay the same as long as these stay
+/// the same.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace glidelab::validate {
 enum class RandomUse : std::uint32_t {
   by_number = 0,                ///< no word: the noise of a track (made_tracks.h) and a clean blind case (blind_case.h)
   clock_rate = 0xC10C,          ///< no number: the clock of one replicate (interval_coverage.h)
-  bootstrap = 0xB007,           ///< no seed of a user's: resampled errors of a requirement (target.h)
+  bootstrap = 0xB007,           ///< no user seed: resampled errors of a requirement (target.h)
   everyday_case = 0x65767279,   ///< "evry" (everyday_case.h)
   filmed_case = 0x66696C6D,     ///< "film" (blind_filmed_case.h)
   challenge = 0x63686C67,       ///< "chlg" (challenge_case.h)
@@ -22,7 +22,7 @@ enum class RandomUse : std::uint32_t {
   twin_explanation = 0x74776578,  ///< "twex": no number (recording_twin.h)
 };
 
-/// {seed low, seed high, number}, and the use's word behind it where it has one.
+/// {seed low, seed high, number}, followed by the use's word if it has one.
 inline std::mt19937_64 random_engine(RandomUse use, std::uint64_t seed, std::uint64_t number) {
   const auto low = static_cast<std::uint32_t>(seed), high = static_cast<std::uint32_t>(seed >> 32);
   const auto which = static_cast<std::uint32_t>(number), word = static_cast<std::uint32_t>(use);
@@ -41,7 +41,7 @@ inline std::mt19937_64 random_engine(RandomUse use, std::uint64_t seed) {
   return std::mt19937_64(sequence);
 }
 
-/// The seed of replicate or film `number` of a seed: those of neighbouring seeds meet after a million numbers only.
+/// The seed of replicate or film `number` of a seed: those of neighbouring seeds coincide only after a million numbers.
 constexpr std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t number) {
   return 1000003 * seed + number;
 }

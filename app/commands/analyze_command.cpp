@@ -1,5 +1,5 @@
-/// glidelab analyze EXPERIMENT…: experiment folders or files of tracks in; results.json, report.html, phase-<clip>.csv
-/// and motion-<clip>.csv out.
+/// glidelab analyze EXPERIMENT…: experiment folders or track files in; results.json, report.html, phase-<clip>.csv and
+/// motion-<clip>.csv out.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -45,7 +45,7 @@ struct AnalyzeOptions {
   core::TrackFileOptions bare;
 };
 
-/// A checked text: a number of seconds or the name of a rule.
+/// Reads a checked text: a number of seconds or the name of a rule.
 void read_bandwidth(const std::string& text, core::AnalysisOptions& how) {
   double value = 0.0;
   if (text == core::kLinesRule) return;
@@ -62,7 +62,7 @@ std::string title_of(const std::vector<fs::path>& folders, const core::TrackFile
 
 constexpr const char* kWith = "--with";
 
-/// The fit with causes in the model, of the motions as the analysis took them; nothing where none is named.
+/// The fit with causes in the model, to the motions as used in the analysis; empty if none is named.
 std::optional<diagnose::GivenCauses> with_causes(const AnalyzeOptions& options, const std::vector<fs::path>& folders,
                                                  const core::AnalysisResults& results, const base::Progress& progress) {
   if (options.with.empty()) return {};
@@ -76,7 +76,7 @@ std::optional<diagnose::GivenCauses> with_causes(const AnalyzeOptions& options, 
   return diagnose::fit_given_causes(results, setups, cameras, options.with, kWith, progress);
 }
 
-/// A smoother that finds its own strength has no bandwidth, and lines that are fitted to local cubics have no other.
+/// A smoother that finds its own strength has no bandwidth, and lines fitted to local cubics need one.
 void check_smoother(const AnalyzeOptions& options, const fit::Estimator& estimator) {
   if (core::find_smoother(options.smoother)->takes_bandwidth()) return;
   const std::string expected = fmt::format("--smoother {}", core::kLocalPolynomial);

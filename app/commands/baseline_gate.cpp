@@ -35,7 +35,7 @@ std::string table(const validate::Baseline& baseline) {
   return report::text_table(rows, 3);
 }
 
-/// What would have to become worse to be found, and where that is much.
+/// Prints how large a worsening must be to be detected, and where that is large.
 void say_power(const CommonOptions& common, const validate::Baseline& then, const validate::Baseline& now,
                const validate::BaselineComparison& comparison) {
   std::vector<std::vector<std::string>> rows = {{"configuration", "estimator", "quantity",
@@ -68,7 +68,7 @@ void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, co
   if (!gate.write.empty()) {
     check_file_writable(gate.write);
     check_own_file(gate.write, "--write-baseline", "{");
-    std::error_code error;  // of a file that is not there
+    std::error_code error;  // of a file that does not exist
     if (!gate.compare.empty() && fs::equivalent(gate.compare, gate.write, error)) {
       throw base::InputError(base::Issue{gate.write, 0, "--write-baseline", "the file of --baseline",
                                          "another file: the baseline of the comparison is not overwritten"});

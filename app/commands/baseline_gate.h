@@ -18,7 +18,7 @@ struct BaselineGate {
   bool wanted() const { return !compare.empty() || !write.empty(); }
 };
 
-/// NotMet if something is worse. Where there is an outside estimator, it alone is judged.
+/// NotMet if something is worse. If there is an outside estimator, it alone is judged.
 void run_baseline_gate(const BaselineGate& gate, const CommonOptions& common, const std::string& scenario_file,
                        const std::optional<fit::OutsideEstimator>& outside);
 

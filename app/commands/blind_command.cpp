@@ -23,7 +23,7 @@ struct BlindCommand {
   validate::BlindOptions blind;
 };
 
-/// This program's own file, started anew: that process knows the folder and nothing else.
+/// Starts this program's own executable again: that process knows the folder and nothing else.
 std::string diagnose_apart(const fs::path& folder, const fs::path& out, const std::vector<std::string>& without) {
   std::vector<std::string> arguments = {"diagnose", folder.string(), "-o",       out.string(), "--jobs",
                                         "1",        "--quiet",       "--no-page"};
@@ -37,7 +37,7 @@ std::string diagnose_apart(const fs::path& folder, const fs::path& out, const st
   return how.empty() ? "" : fmt::format("{}: {}", how, said);
 }
 
-/// The same of the renderer, which knows the scenario and nothing of the diagnosis.
+/// The same for the renderer, which knows the scenario and nothing about the diagnosis.
 std::string render_apart(const fs::path& scenario, const fs::path& folder) {
   const fs::path log = folder.parent_path() / "log.txt";
   const std::string how = base::how_it_failed(base::run_program(

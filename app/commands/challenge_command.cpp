@@ -1,4 +1,4 @@
-/// glidelab challenge make|run|score FOLDER: cases with a sealed truth, answers to them, and who is better.
+/// glidelab challenge make|run|score FOLDER: cases with a sealed truth, answers to them, and a ranking.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -60,7 +60,7 @@ void make(const ChallengeCommand& options) {
                                                  options.cases, folder.string(), truth.string()));
 }
 
-/// One of Glidelab's own.
+/// The answer of one of Glidelab's own estimators.
 validate::ChallengeAnswer solved(const fit::Estimator& estimator, const fs::path& folder) {
   const auto start = std::chrono::steady_clock::now();
   validate::ChallengeAnswer answer;
@@ -126,7 +126,7 @@ void score(const ChallengeCommand& options) {
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 
-/// What an action needs, and what it has no use for.
+/// Checks which options an action needs and which it does not use.
 void check_use(const CLI::App& command, const ChallengeCommand& options) {
   const auto given = [&](const char* name) { return command.get_option(name)->count() > 0; };
   const auto only_for = [&](const char* action, std::initializer_list<const char*> names) {

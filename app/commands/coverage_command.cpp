@@ -1,4 +1,4 @@
-/// glidelab coverage SCENARIO.toml [--noise-m SD]: do the stated intervals hold the truth as often as they say?
+/// glidelab coverage SCENARIO.toml [--noise-m SD]: do the stated intervals contain the truth as often as stated?
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ std::string check_level(const std::string& text) {
 
 void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool noise_given) {
   const std::optional<fit::OutsideEstimator> outside = options.outside.estimator();
-  // With a noise that is given no camera looks on: it need not see the motions.
+  // With a given noise there is no camera, so it need not see the motions.
   const render::Scenario scenario =
       render::read_scenario(base::read_file(options.scenario), options.scenario,
                             noise_given ? render::ScenarioChecks::values : render::ScenarioChecks::all);
@@ -84,7 +84,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
     throw base::NotMet(fmt::format("{}: with --bandwidth {} the phase diagram finds no value in any replicate",
                                    options.scenario, options.bandwidth_s));
   }
-  // Of a row that fails at several levels one.
+  // A row that fails at several levels is reported once.
   std::set<std::string> failing;
   for (const validate::CoverageFailure& one : validate::too_narrow(coverage)) {
     failing.insert(one.row.configuration + "\n" + one.row.estimator + "\n" + one.row.quantity);

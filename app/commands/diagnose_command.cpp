@@ -1,4 +1,4 @@
-/// glidelab diagnose EXPERIMENT…: which unmodelled effect makes the gap between the motion and its model.
+/// glidelab diagnose EXPERIMENT…: which unmodelled effect causes the gap between the motion and its model.
 #include <CLI/CLI.hpp>
 
 #include <fmt/format.h>
@@ -44,13 +44,13 @@ struct DiagnoseCommand {
   core::TrackFileOptions bare;
 };
 
-/// A plan of folders that were recorded, and not of a scenario.
+/// Whether the plan is for recorded folders and not for a scenario.
 bool of_recordings(const DiagnoseCommand& options) {
-  std::error_code ignored;  // what cannot be looked at is read as a scenario, which says what is wrong
+  std::error_code ignored;  // an unreadable path is treated as a scenario, whose reader reports the error
   return fs::is_directory(options.experiments.front(), ignored);
 }
 
-/// What no file need be read for.
+/// Checks that need no file.
 void check_plan(const DiagnoseCommand& options) {
   if (of_recordings(options)) {
     if (!options.noise_m) return;
@@ -68,7 +68,7 @@ void check_plan(const DiagnoseCommand& options) {
   }
 }
 
-/// What is planned: a scenario's motions with noise, or folders that were recorded.
+/// The plan: for a scenario's motions with noise, or for recorded folders.
 diagnose::Plan planned(const DiagnoseCommand& options, const base::Progress& progress) {
   const fs::path first = options.experiments.front();
   if (of_recordings(options)) {

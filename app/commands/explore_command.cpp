@@ -1,4 +1,4 @@
-/// glidelab explore: the page on which friction's parameters are chosen by hand, for class.
+/// glidelab explore: the page for class on which the friction parameters are chosen by hand.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-/// glidelab laws scenarios/laws: one page of the laws of friction, to be shown in a lecture.
+/// glidelab laws scenarios/laws: one page on the laws of friction, for a lecture.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

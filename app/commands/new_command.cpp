@@ -24,7 +24,7 @@ struct NewOptions {
 };
 
 void check_free(const fs::path& folder) {
-  std::error_code failure;  // what cannot be looked at says so when it is made
+  std::error_code failure;  // a folder that cannot be read fails when it is made
   if (!fs::exists(fs::symlink_status(folder, failure))) return;
   if (fs::is_directory(folder) && fs::is_empty(folder)) return;
   throw base::InputError(base::Issue{folder.string(), 0, "",
@@ -46,7 +46,7 @@ void make_new(const NewOptions& options) {
   check_free(folder);
   const std::string name = folder.filename().string();
   const std::string toml = core::experiment_template(name);
-  base::TomlFile::parse(toml, folder.string());  // a name that is no text (not UTF-8) shows here
+  base::TomlFile::parse(toml, folder.string());  // a name that is not UTF-8 text fails here
   base::StagedOutput staged(folder);
   base::write_file(staged.dir() / "experiment.toml", toml);
   base::write_file(staged.dir() / "README.md", core::experiment_readme(name));

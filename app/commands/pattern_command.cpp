@@ -36,7 +36,7 @@ std::pair<int, int> corners_of(const std::string& text) {
   const auto [middle, error] = std::from_chars(text.data(), end, first);
   if (error == std::errc{} && middle != end && *middle == 'x') {
     const auto [last, second_error] = std::from_chars(middle + 1, end, second);
-    // From 3 to 100, as experiment.toml takes them.
+    // From 3 to 100, as accepted by experiment.toml.
     const bool counts = std::min(first, second) >= 3 && std::max(first, second) <= 100;
     if (second_error == std::errc{} && last == end && counts) return {std::max(first, second), std::min(first, second)};
   }

@@ -1,4 +1,4 @@
-/// glidelab render SCENARIO.toml: an experiment folder, and the truth in the folder beside it.
+/// glidelab render SCENARIO.toml: an experiment folder, and the truth in a folder beside it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -45,7 +45,7 @@ void render_command(const RenderCommandOptions& options) {
   throw_if_interrupted();
   base::list_made_files(staged_truth.dir());
   base::list_made_files(staged_experiment.dir());
-  check_replaceable(out, truth);  // what came there meanwhile
+  check_replaceable(out, truth);  // files may have appeared there in the meantime
   staged_truth.publish_whole();
   try {
     staged_experiment.publish_whole();

@@ -24,7 +24,7 @@ struct RequireOptions {
   CommonOptions common;
   std::string sweep;
   std::vector<std::string> targets;
-  std::string confirm;  // empty: rendered where the sweep has images
+  std::string confirm;  // empty: rendered if the sweep has images
   std::uint64_t runs = 20, track_runs = 200;
 };
 

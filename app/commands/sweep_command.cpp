@@ -1,4 +1,4 @@
-/// glidelab sweep SWEEP.toml: many scenarios, one database; run again, it goes on where it stopped.
+/// glidelab sweep SWEEP.toml: many scenarios, one database; a repeated run continues where the last one stopped.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -42,7 +42,7 @@ struct SweepOptions {
 
 constexpr std::uint64_t kMostShards = 1000000000;
 
-/// "2/8"; nothing of any other text.
+/// Reads "2/8"; empty for any other text.
 std::optional<validate::Shard> read_shard(const std::string& text) {
   validate::Shard shard;
   const char* const end = text.data() + text.size();
@@ -99,7 +99,7 @@ void check_size(const SweepOptions& options, const validate::Sweep& sweep) {
 void finish(const SweepOptions& options, const validate::Sweep& sweep, validate::SweepDatabase& database,
             const fs::path& out, const base::Progress& progress, ProgressDisplay& display) {
   const validate::SweepSummary summary = validate::summarize(sweep, database.database());
-  // The shards of a job array share a folder: a page is of the whole.
+  // The shards of a job array share a folder; a page covers all of them.
   const bool page = options.shard.empty();
   if (page) {
     base::StagedOutput staged(out);
@@ -112,7 +112,7 @@ void finish(const SweepOptions& options, const validate::Sweep& sweep, validate:
   if (page) say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 
-/// For work whose progress nobody wants to see.
+/// For work whose progress is not shown.
 void only_interrupts(std::string_view, double) {
   throw_if_interrupted();
 }
@@ -138,14 +138,14 @@ std::string database_name(const validate::Shard& shard) {
   return shard.count == 1 ? "sweep.sqlite" : fmt::format("sweep-{}-of-{}.sqlite", shard.index, shard.count);
 }
 
-/// Nothing is written: where there is no database yet the size is that of an empty one elsewhere.
+/// Nothing is written: if there is no database yet, the size is that of an empty one elsewhere.
 void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const validate::Shard& shard,
              const fs::path& out) {
   const base::TemporaryFolder elsewhere("dry-run");
   const bool there = fs::exists(out / database_name(shard));
   validate::SweepDatabase database((there ? out : elsewhere.path()) / database_name(shard), sweep, GLIDELAB_VERSION,
                                    shard);
-  fs::path disk = out, made = out;  // the first folder that is there, and what would be made in it
+  fs::path disk = out, made = out;  // the nearest existing folder, and what would be made in it
   for (; !fs::exists(disk) && disk.has_relative_path(); disk = disk.parent_path()) made = disk;
   if (disk == out) {
     check_writable(out);
@@ -158,7 +158,7 @@ void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const va
   say_size(options, estimate);
 }
 
-/// Where nothing was there before, a merge that fails leaves nothing.
+/// If nothing was there before, a failed merge leaves nothing.
 void merge(const SweepOptions& options, const validate::Sweep& sweep, const fs::path& out) {
   std::vector<fs::path> others;
   for (const std::string& other : options.merge) others.push_back(fs::absolute(other));
@@ -167,13 +167,13 @@ void merge(const SweepOptions& options, const validate::Sweep& sweep, const fs::
   try {
     validate::SweepDatabase(file, sweep, GLIDELAB_VERSION, {}).merge_runs_of(others);
   } catch (...) {
-    std::error_code ignored;  // what is wrong with the merge is what is said
+    std::error_code ignored;  // the error of the merge is the one to report
     if (!was_there) fs::remove(file, ignored);
     throw;
   }
 }
 
-/// What is missing, and the page.
+/// Runs what is missing and writes the page.
 void fill(const SweepOptions& options, const validate::Sweep& sweep, const validate::Shard& shard,
           validate::SweepDatabase& database, const fs::path& out, const base::Progress& progress,
           ProgressDisplay& display) {

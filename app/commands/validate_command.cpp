@@ -1,4 +1,4 @@
-/// glidelab validate SCENARIO.toml: the closed loop, from a scenario to recovered values beside their truth.
+/// glidelab validate SCENARIO.toml: the closed loop, from a scenario to recovered values compared with their truth.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -31,7 +31,7 @@ struct ValidateOptions {
   OutsideOptions outside;
 };
 
-/// The trajectories also stand beside the other results, as `simulate` writes them.
+/// Copies the trajectories, as `simulate` writes them, next to the other results.
 void copy_trajectories(const fs::path& truth, const fs::path& dir) {
   for (const fs::directory_entry& entry : fs::directory_iterator(truth)) {
     const std::string name = entry.path().filename().string();
@@ -74,7 +74,7 @@ void validate_command(const ValidateOptions& options) {
       staged.dir(), "report.html",
       report::validation_report(scenario.motion.name, result.results, result.comparison, previews, progress));
   throw_if_interrupted();
-  check_replaceable(out / "experiment", out / "experiment.truth");  // what came there meanwhile
+  check_replaceable(out / "experiment", out / "experiment.truth");  // files may have appeared there in the meantime
   staged.publish_files();
   display.clear();
 

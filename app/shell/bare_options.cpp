@@ -14,7 +14,7 @@ namespace {
 std::string check_incline(const std::string& text) {
   constexpr double kSteepest_deg = 90.0;  // a fall
   double value_deg = 0.0;
-  if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // NaN is not
+  if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // false for NaN
   return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}{2}", text, kSteepest_deg,
                      decimal_point_for(text));
 }

@@ -28,7 +28,7 @@
 namespace glidelab::app {
 namespace {
 
-/// CLI11's, but for the words of an option that takes one of many.
+/// CLI11's formatter, except for the words of an option that takes one of many.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override {
@@ -46,7 +46,7 @@ constexpr int kEnvironmentFailed = 3;
 constexpr int kNotMet = 4;
 constexpr int kInterrupted = kInterruptedStatus;
 
-/// Colours are for people: on a terminal that has some, and where NO_COLOR (no-color.org) is not set.
+/// Colours are for people: on a terminal that supports them, and if NO_COLOR (no-color.org) is not set.
 bool in_colour() {
   const char* const refused = ::getenv("NO_COLOR");
   const char* const terminal = ::getenv("TERM");
@@ -69,7 +69,7 @@ int fail(int status, std::string_view message) {
 /// Runs the command; the only place where an exception becomes a status.
 int run_command(const Command& command) {
   try {
-    throw_if_interrupted();  // since the program began
+    throw_if_interrupted();  // if a signal came since the program began
     command();
     return kDone;
   } catch (const InterruptedKeeping& interrupt) {
@@ -77,7 +77,7 @@ int run_command(const Command& command) {
   } catch (const base::Interrupted&) {
     return fail(kInterrupted, "interrupted; nothing was written");
   } catch (const std::exception&) {
-    // What an interrupt tears down on its way (a child process, a read) is not the error to report.
+    // An error caused by the interrupt (of a child process, a read) is not the one to report.
     if (interrupted()) return fail(kInterrupted, "interrupted; nothing was written");
     try {
       throw;
@@ -96,7 +96,7 @@ int run_command(const Command& command) {
     } catch (const std::bad_alloc&) {
       return fail(kEnvironmentFailed, "out of memory");
     } catch (const cv::Exception& error) {
-      // OpenCV refuses images that no check before it has caught.
+      // OpenCV may refuse images that passed all earlier checks.
       return fail(error.code == cv::Error::StsNoMem ? kEnvironmentFailed : kWrongInput,
                   fmt::format("an image cannot be processed: {}", error.what()));
     } catch (const std::exception& error) {
@@ -105,8 +105,8 @@ int run_command(const Command& command) {
   }
 }
 
-/// An option's value that is none of its words, with the word that was meant; empty if there is none. What takes a
-/// number or a word ("SECONDS|RULE") says it itself.
+/// An option's value that is not one of its words, with the word that may have been meant; empty if there is none.
+/// Options that take a number or a word ("SECONDS|RULE") report this themselves.
 std::string misspelt_value(const CLI::App& command, const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::size_t equals = arguments[i].find('=');
@@ -123,8 +123,8 @@ std::string misspelt_value(const CLI::App& command, const std::vector<std::strin
   return {};
 }
 
-/// What stands where a command is wanted: an option that only commands take, or none at all; empty if it is the
-/// program's own, or may be misspelt.
+/// The error if there is no command where one is expected: an option that only commands take, or nothing; empty for the
+/// program's own options, or for a word that may be misspelt.
 std::string before_command(const CLI::App& app, const std::string& word) {
   if (app.get_option_no_throw(word) != nullptr) return {};
   const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
@@ -137,8 +137,8 @@ std::string before_command(const CLI::App& app, const std::string& word) {
                                 : fmt::format("unknown option \"{}\"; glidelab --help lists them", word);
 }
 
-/// CLI11 says of a misspelt command that one is missing, of a misspelt option that it was not expected; this says which
-/// word it was and which was meant. Empty if it is none of these, nor an option's value.
+/// For a misspelt command CLI11 says that one is missing, for a misspelt option that it was not expected; this names
+/// the word and the one that was meant. Empty if it is neither of these nor an option's value.
 std::string misspelt(const CLI::App& app, const std::vector<std::string>& arguments) {
   if (arguments.empty()) return {};
   const std::string& first = arguments.front();
@@ -198,7 +198,7 @@ int run_words(int argc, char** argv) {
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Show this help");
   app.set_version_flag("--version", version_text(), "Show the version, and the libraries it was built with");
-  std::string text;  // in place of a command's result
+  std::string text;  // instead of a command's result
   const auto print_and_leave = [&](const std::string& wanted) {
     text = wanted;
     throw CLI::Success();
@@ -260,9 +260,9 @@ int run_words(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   try {
-    catch_interrupts();  // first: from here on every command ends in one way
+    catch_interrupts();  // first: from here on every command ends in the same way
     return run_words(argc, argv);
-  } catch (const std::bad_alloc&) {  // before a command runs; of a command's own run_command() tells
+  } catch (const std::bad_alloc&) {  // before a command runs; run_command() reports those of a command
     std::fputs("glidelab: error: out of memory\n", stderr);
     return kEnvironmentFailed;
   }

@@ -1,4 +1,4 @@
-/// The program: it reads the command line, runs one command, and turns what that throws into an exit status.
+/// The program: it reads the command line, runs one command, and turns its exceptions into an exit status.
 ///
 ///     0 done, 1 wrong input, 2 wrong command line, 3 the environment failed, 4 a requirement is not met,
 ///     130 interrupted

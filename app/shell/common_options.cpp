@@ -69,7 +69,7 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
 fs::path named_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
   const fs::path wanted = options.out.empty() ? fs::path("glidelab-out") / fmt::format("{}-{}", command, name_of(input))
                                               : fs::path(options.out);
-  std::error_code error;  // what cannot be resolved (a file in the way) shows where the folder is made
+  std::error_code error;  // a path that cannot be resolved (a file in the way) fails when the folder is made
   const fs::path resolved = fs::weakly_canonical(fs::absolute(wanted), error);
   const fs::path folder = error ? fs::absolute(wanted).lexically_normal() : resolved;
   return folder.has_filename() ? folder : folder.parent_path();
@@ -78,7 +78,7 @@ fs::path named_folder(const CommonOptions& options, std::string_view command, co
 fs::path output_folder(const CommonOptions& options, std::string_view command, const fs::path& input) {
   const fs::path folder = named_folder(options, command, input);
   for (const char* const recording : {"experiment.toml", "characterize.toml"}) {
-    std::error_code ignored;  // what cannot be looked into shows where the folder is written
+    std::error_code ignored;  // a folder that cannot be read fails when it is written
     if (!fs::exists(folder / recording, ignored)) continue;
     throw CommandLineError(base::describe({folder.string(), 0, "--out", fmt::format("a recording ({})", recording),
                                            "another folder, or a new one inside it"}));
@@ -153,7 +153,7 @@ void write_whole(const fs::path& file, std::string_view text) {
     base::write_file(part, text);
     fs::rename(part, file);
   } catch (...) {
-    std::error_code ignored;  // what is wrong with the file is what is said
+    std::error_code ignored;  // the error of the file is the one to report
     fs::remove(part, ignored);
     throw;
   }
@@ -177,7 +177,7 @@ std::string check_above_0(const std::string& text) {
 std::string check_noise_m(const std::string& text) {
   constexpr double kLeast_m = 1e-9, kMost_m = 1.0;
   double value = 0.0;
-  if (CLI::detail::lexical_cast(text, value) && value >= kLeast_m && value <= kMost_m) return {};  // NaN is neither
+  if (CLI::detail::lexical_cast(text, value) && value >= kLeast_m && value <= kMost_m) return {};  // false for NaN
   return fmt::format("\"{}\" is not a number of metres from {} to {}", text, kLeast_m, kMost_m);
 }
 
@@ -192,7 +192,7 @@ void say(const CommonOptions& options, std::string_view line) {
 
 namespace {
 
-/// "a scenario", "a sweep", or empty: another file, or none that can be read.
+/// "a scenario", "a sweep", or empty: another file, or one that cannot be read.
 std::string sort_of(const std::filesystem::path& path) {
   std::error_code ignored;
   if (path.extension() != ".toml" || path.filename() == "experiment.toml") return {};
@@ -202,7 +202,7 @@ std::string sort_of(const std::filesystem::path& path) {
     if (file.root().has("configuration")) return "a scenario";
     return file.root().has("scenario") && file.root().has("vary") ? "a sweep" : "";
   } catch (const base::InputError&) {
-    return {};  // said by who reads it
+    return {};  // reported by the code that reads it
   }
 }
 

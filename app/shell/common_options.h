@@ -1,6 +1,5 @@
-/// Options that every command takes, those that the commands that take recordings (analyze, check, diagnose,
-/// certify) have in
-/// common, and how a command writes: files, tables and JSON.
+/// Options of every command, options common to the commands that take recordings (analyze, check, diagnose, certify),
+/// and how a command writes: files, tables and JSON.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +20,7 @@ class App;
 
 namespace glidelab::app {
 
-/// A mistake on the command line that shows only after it was parsed (exit status 2).
+/// A mistake on the command line that shows only after parsing (exit status 2).
 class CommandLineError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -61,12 +60,12 @@ std::filesystem::path output_folder(const CommonOptions& options, std::string_vi
 /// "name.truth" beside "name".
 std::filesystem::path truth_beside(const std::filesystem::path& experiment);
 
-/// InputError if the experiment folder or its truth hold anything that `render` did not write or that was changed since
-/// (base/files/file_io.h): the two are replaced as a whole, and no file of the user's own may be lost.
+/// InputError if the experiment folder or its truth contains anything that `render` did not write or that has since
+/// been changed (base/files/file_io.h): the two are replaced as a whole, and no file of the user's own may be lost.
 void check_replaceable(const std::filesystem::path& experiment, const std::filesystem::path& truth);
 
-/// InputError if the file that `option` names exists and does not begin with `head`, as this program's file would:
-/// a foreign file is not replaced.
+/// InputError if the file that `option` names exists and does not begin with `head`, as this program's file does: a
+/// foreign file is not replaced.
 void check_own_file(const std::filesystem::path& file, const std::string& option, std::string_view head);
 
 /// EnvironmentError if the folder exists and cannot be written into, or if it is a mount point: results are written
@@ -108,7 +107,7 @@ void add_permissions(CLI::App& command, core::Permissions& permitted);
 /// Adds --max-megapixels alone.
 void add_max_megapixels(CLI::App& command, std::size_t& most_pixels);
 
-/// InputError if one of these is a scenario or a sweep, which hold no recording.
+/// InputError if one of these is a scenario or a sweep, which contain no recording.
 void refuse_scenarios(const std::vector<std::string>& inputs);
 
 /// "; use a decimal point: 0.335" for "0,335"; empty for any other text.

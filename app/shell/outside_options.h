@@ -1,4 +1,4 @@
-/// Options of the commands that judge somebody else's estimator (fit/outside/outside_estimator.h).
+/// Options of the commands that judge an outside estimator (fit/outside/outside_estimator.h).
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct OutsideOptions {
   double seconds = 60.0;
   double megabytes = 4096.0;
 
-  /// Nothing without a command; CommandLineError where it cannot be one. An interrupt ends the program.
+  /// Empty without a command; CommandLineError if it is not valid. An interrupt ends the estimator's program.
   std::optional<fit::OutsideEstimator> estimator() const;
 };
 

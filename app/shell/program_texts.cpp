@@ -37,7 +37,7 @@ bool takes_value(const CLI::Option& option) {
   return option.get_expected_max() > 0;
 }
 
-/// "N" of "N:INT in [1 - 1024]": CLI11 puts what it checks behind the name.
+/// "N" of "N:INT in [1 - 1024]": CLI11 appends its check to the name.
 std::string value_name(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.substr(0, type.find(':'));
@@ -54,7 +54,7 @@ std::string command_names(const CLI::App& app) {
   return names + "help";
 }
 
-/// What follows an option: "words" are offered, or nothing if "nothing" is set, or files.
+/// Completions after an option: "words" are offered, or nothing if "nothing" is set, or files.
 std::string bash_values(const CLI::App& app, const std::string& indent) {
   std::string text;
   for (const CLI::Option* option : app.get_options()) {
@@ -112,7 +112,7 @@ complete -F _glidelab glidelab
                      command_names(app), fmt::join(option_names(app), " "), bash_values(app, "        "), cases);
 }
 
-/// The first line of what is said of an option, between single quotes and brackets.
+/// The first line of an option's description, between single quotes and brackets.
 std::string between_brackets(const std::string& text) {
   std::string line = text.substr(0, text.find('\n'));
   boost::replace_all(line, "\\", "\\\\");
@@ -193,7 +193,7 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
 }
 
 std::string shown_type(const CLI::Option& option) {
-  constexpr std::size_t kMostWords = 6;  // more stand in the description, or where it points to
+  constexpr std::size_t kMostWords = 6;  // more are listed in the description, or where it points to
   const std::string type = option.get_type_name();
   return words_of(option).size() > kMostWords ? type.substr(0, type.find(":{")) : type;
 }
@@ -204,7 +204,7 @@ std::string completion_script(const CLI::App& app, const std::string& shell) {
 
 namespace {
 
-/// Text for roff: a backslash, a hyphen that may not be broken, and a dot or quote that would begin a request.
+/// Text for roff: a backslash, a non-breaking hyphen, and a dot or quote that would begin a request.
 std::string roff(const std::string& text) {
   std::string safe = boost::replace_all_copy(text, "\\", "\\e");
   boost::replace_all(safe, "-", "\\-");
@@ -225,7 +225,7 @@ std::string option_head(const CLI::Option& option) {
   return head;
 }
 
-/// What README's three readers are told to run; a test holds the two together.
+/// The commands that README suggests to its three kinds of reader; a test keeps the two consistent.
 struct Example {
   std::string_view reader;
   std::vector<std::string_view> commands;

@@ -1,5 +1,5 @@
-/// Texts of the whole program from its commands and options, as CLI11 holds them: completion for shells, and a manual
-/// page. Nothing here is written by hand twice.
+/// Texts of the whole program, generated from its commands and options in CLI11: completion for shells, and a manual
+/// page. Nothing is written by hand twice.
 #pragma once
 
 #include <string>
@@ -34,7 +34,7 @@ class App;
 
 namespace glidelab::app {
 
-/// The program's version, and on a second line the libraries it was built with.
+/// The program's version, and on a second line the libraries with which it was built.
 std::string version_text();
 
 /// A manual page of section 1 (roff, man(7)).

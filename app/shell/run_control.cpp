@@ -26,7 +26,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 
 std::atomic<std::int64_t> first_s = 0;
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "likewise");
-constexpr std::int64_t kSeconds = 2;  // whoever sends one to the process and its group sends two at once
+constexpr std::int64_t kSeconds = 2;  // a sender to both the process and its group sends two at once
 
 sem_t asked;                                   // posted by the first signal
 std::atomic<int> keeping = 0;                  // scopes of keep_on_interrupt()
@@ -38,7 +38,8 @@ std::int64_t now_s() {
   return now.tv_sec;
 }
 
-/// The first asks for a clean end; where that takes long, inside a library's loop, a later one ends at once.
+/// The first signal asks for a clean end; if that takes long, inside a library's loop, a later one ends the process at
+/// once.
 void set_flag(int signal) {
   if (!flag.exchange(true)) {
     first_s = now_s();
@@ -49,14 +50,14 @@ void set_flag(int signal) {
 }
 
 /// Waits for the first signal, and ends a process that is still at work some time later: a library's loop does not
-/// look at the flag. Nothing has been put in place then, and what was begun is removed.
+/// check the flag. Nothing has been put in place by then, and unfinished output is removed.
 void end_what_does_not_end() {
   while (::sem_wait(&asked) != 0) {
   }
   timespec left = kPatience;
   while (::nanosleep(&left, &left) != 0) {
   }
-  if (keeping > 0 || !base::discard_passing_folders()) return;  // ends after the piece in hand, or is about to end
+  if (keeping > 0 || !base::discard_passing_folders()) return;  // ends after the current piece, or is about to end
   const char* const over_the_bar = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
   fmt::print(stderr, "{}glidelab: error: interrupted; nothing was written\n", over_the_bar);
   std::fflush(stderr);
@@ -76,7 +77,7 @@ void catch_interrupts() {
   ::sigaction(SIGTERM, &action, nullptr);
   struct sigaction present = {};
   ::sigaction(SIGHUP, nullptr, &present);
-  if (present.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);  // started by nohup: goes on
+  if (present.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);  // started by nohup: continues
   action.sa_handler = SIG_IGN;
   ::sigaction(SIGPIPE, &action, nullptr);
   ::sigaction(SIGXFSZ, &action, nullptr);
@@ -106,7 +107,7 @@ void keep_on_interrupt(const std::function<void()>& work, const std::function<st
   try {
     work();
   } catch (const std::exception&) {
-    if (!interrupted()) throw;  // what an interrupt tears down on its way is not the error to report
+    if (!interrupted()) throw;  // an error caused by the interrupt is not the one to report
     throw InterruptedKeeping(kept());
   }
 }
@@ -117,7 +118,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kBarInterval = 100ms;
 constexpr auto kLineInterval = 1s;
-constexpr double kEnoughToGuess = 0.02;  // of a stage: before that, a time left is a wild guess
+constexpr double kEnoughToGuess = 0.02;  // of a stage: before that, the remaining time is a wild guess
 
 /// ", 1:05 left", or nothing if there is too little to go by.
 std::string time_left(double elapsed_s, double fraction) {
@@ -196,7 +197,7 @@ void ProgressDisplay::update(std::string_view stage, double fraction) {
     stage_clock_ = std::clock();
     last_shown_ = {};
   }
-  // Threads report in any order; what is done stays done.
+  // Threads report in any order; progress never goes back.
   fraction_ = std::max(fraction_, std::isfinite(fraction) ? std::min(fraction, 1.0) : 0.0);
   if (terminal_) {
     draw_bar(now);
@@ -215,7 +216,7 @@ void ProgressDisplay::draw_bar(Clock::time_point now) {
                                  std::string(static_cast<std::size_t>(kWidth - full), '.'), 100.0 * fraction_,
                                  time_left(elapsed_s, fraction_), rate(elapsed_s));
   const auto room = static_cast<std::size_t>(std::max(columns() - 1, 10));
-  line.resize(room, ' ');  // covers what stood there; cut where the terminal is narrow
+  line.resize(room, ' ');  // covers the previous text; cut if the terminal is narrow
   fmt::print(stderr, "\r{}", line);
   std::fflush(stderr);
   bar_shown_ = true;

@@ -15,17 +15,18 @@
 
 namespace glidelab::app {
 
-inline constexpr int kInterruptedStatus = 130;  ///< as a shell says it of SIGINT
+inline constexpr int kInterruptedStatus = 130;  ///< as a shell reports SIGINT
 
 /// From now on SIGINT, SIGTERM and SIGHUP set a flag; the work checks it, ends by itself and cleans up. Work that has
-/// not ended after 0.8 s is ended (kInterruptedStatus, what it had begun is removed), unless it keeps what it has
-/// finished or is putting its results in place: that is ended by a second signal, two seconds later or more. Writing
-/// beyond a size limit or to a closed pipe becomes an error that the write reports and no longer ends the process.
+/// not ended after 0.8 s is ended (kInterruptedStatus; unfinished output is removed), unless it keeps what it has
+/// finished or is putting its results in place. Such work is ended by a second signal, two seconds later or more.
+/// Writing beyond a size limit or to a closed pipe becomes an error that the write reports and no longer ends the
+/// process.
 void catch_interrupts();
 
 bool interrupted();
 
-/// An interrupt of work that keeps what it has finished; what() says what that is.
+/// An interrupt of work that keeps its finished part; what() describes that part.
 class InterruptedKeeping : public base::Interrupted {
  public:
   explicit InterruptedKeeping(std::string kept) : kept_("interrupted; " + std::move(kept)) {}
@@ -38,13 +39,13 @@ class InterruptedKeeping : public base::Interrupted {
 /// Throws base::Interrupted if the flag is set.
 void throw_if_interrupted();
 
-/// `work`, which keeps what it has finished: InterruptedKeeping where an interrupt ends it, with what `kept` says.
+/// Runs `work`, which keeps its finished part: InterruptedKeeping if an interrupt ends it, with the text of `kept`.
 void keep_on_interrupt(const std::function<void()>& work, const std::function<std::string()>& kept);
 
 /// Progress on standard error: a bar on a terminal, an occasional line elsewhere, nothing with --quiet; with --verbose
 /// also how long each stage took, on a line of its own.
 ///
-/// Also the place where an interrupt ends the work: every call checks the flag first.
+/// An interrupt also ends the work here: every call checks the flag first.
 class ProgressDisplay {
  public:
   explicit ProgressDisplay(bool quiet, bool verbose = false);
@@ -52,10 +53,10 @@ class ProgressDisplay {
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// The function to hand to the work; refers to this object.
+  /// The function to pass to the work; refers to this object.
   base::Progress callback();
 
-  /// Says how many pieces this stage has, so that it tells how many of them are done in a second.
+  /// Sets the number of pieces of this stage, so that the rate per second can be shown.
   void count(std::string stage, std::uint64_t pieces);
 
   /// Removes the bar, so that something else can be printed.
@@ -68,7 +69,7 @@ class ProgressDisplay {
   void print_line(Clock::time_point now);
   void end_stage(Clock::time_point now);
   void erase_bar();
-  /// How many pieces of the stage are done in a second, in words; empty if it has none.
+  /// The number of pieces of the stage done per second, in words; empty if it has none.
   std::string rate(double elapsed_s) const;
 
   bool quiet_;

@@ -29,7 +29,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return list;
 }
 
-/// The child's status. Once `stop` says so its group is asked to end, and is ended where it does not.
+/// Waits for the child and returns its status. Once `stop` returns true, its group is asked to end, and killed if it
+/// does not.
 int waited_for(pid_t child, const std::string& program, const std::function<bool()>& stop) {
   constexpr auto kLook = std::chrono::milliseconds(20);
   constexpr int kPatience = 25;  // looks
@@ -49,7 +50,7 @@ int waited_for(pid_t child, const std::string& program, const std::function<bool
   }
 }
 
-/// Starts it as the header says; its process number.
+/// Starts the program as the header says and returns its process number.
 pid_t spawned(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
               std::vector<std::string> environment, const std::string& hint) {
   posix_spawn_file_actions_t actions;
@@ -85,7 +86,7 @@ std::vector<std::string> under_limits(const std::string& program, const ProgramL
           program};
 }
 
-/// Whether it has ended; it is not reaped, so that its number stays its group's.
+/// Whether the child has ended. It is not reaped, so that its number remains that of its group.
 bool has_ended(pid_t child, const std::string& program) {
   siginfo_t info = {};
   if (::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 && errno != EINTR) {
@@ -124,7 +125,7 @@ ProgramEnd run_limited(const std::string& program, std::vector<std::string> argu
     } else if (now - asked > kPatience) {
       ::kill(-child, SIGKILL);
     }
-    // Looks at a program that soon ends often, and at a long one seldom.
+    // Polls a short program often and a long one rarely.
     std::this_thread::sleep_for(std::clamp(Seconds(now - start) / 20.0, kShortestLook, kLongestLook));
   }
   ::kill(-child, SIGKILL);

@@ -12,15 +12,15 @@
 
 namespace glidelab::base {
 
-/// The status of waitpid. `program` is looked up in PATH if it has no slash; `environment` holds NAME=value; if it
-/// is empty, the child gets this program's own. EnvironmentError if it cannot be started; `hint` completes the message.
-/// `stop`, if given, is asked every 20 ms; once it returns true, the child's group gets SIGTERM, and SIGKILL half a
-/// second later.
+/// Returns the status of waitpid. `program` is looked up in PATH if it has no slash. `environment` holds NAME=value; if
+/// it is empty, the child inherits this program's environment. EnvironmentError if it cannot be started; `hint`
+/// completes the message. `stop`, if given, is asked every 20 ms; once it returns true, the child's group gets SIGTERM,
+/// and SIGKILL half a second later.
 int run_program(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
                 std::vector<std::string> environment = {}, const std::string& hint = {},
                 const std::function<bool()>& stop = {});
 
-/// What a program that nobody here wrote may take at most.
+/// Upper limits on the resources of an outside program.
 struct ProgramLimits {
   double wall_s = 60.0;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< address space of a process, and size of a file it writes
@@ -34,16 +34,16 @@ struct ProgramEnd {
   double wall_s = 0.0;
 };
 
-/// As run_program(), within limits: processor time is wall_s on every core, and when wall_s is over the group is ended
-/// as by `stop`. Processes that it leaves behind in its group are ended with it. The limits of memory and processor
-/// time are set right after the start (prlimit(2)).
+/// As run_program(), within limits. Processor time is limited to wall_s on every core; after wall_s the group is ended
+/// as by `stop`. Processes that the program leaves behind in its group are ended with it. The limits of memory and
+/// processor time are set right after the start (prlimit(2)).
 ProgramEnd run_limited(const std::string& program, std::vector<std::string> arguments, const std::filesystem::path& log,
                        const ProgramLimits& limits, const std::function<bool()>& stop = {});
 
-/// Whether run_program() would find it: an executable file, looked up in PATH if the name has no slash.
+/// Whether run_program() would find the program: an executable file, looked up in PATH if the name has no slash.
 bool is_program(const std::string& name);
 
-/// "" if it ended with status 0, else how it ended.
+/// "" if the program ended with status 0, else how it ended.
 std::string how_it_failed(int status);
 
 }  // namespace glidelab::base

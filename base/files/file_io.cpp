@@ -58,7 +58,7 @@ void append_file(const fs::path& path, std::string_view bytes) {
 std::string read_file(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
-  std::error_code failure;  // of a name that is too long, or in a folder that may not be looked into
+  std::error_code failure;  // the name is too long, or its folder may not be read
   const fs::file_status status = fs::status(path, failure);
   if (!stream || fs::is_directory(status)) {
     throw InputError(Issue{path.string(), 0, "",
@@ -86,7 +86,7 @@ TemporaryFolder::TemporaryFolder(const std::string& purpose) {
 }
 
 TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;  // a destructor has nobody to tell
+  std::error_code ignored;  // a destructor cannot report errors
   fs::remove_all(path_, ignored);
   forget_passing_folder(path_);
 }
@@ -117,7 +117,7 @@ std::string state_of(const fs::path& file) {
   return fmt::format("{:016x} {}", sum_of(file), fs::file_size(file));
 }
 
-/// All that is no folder, below `dir`, by name; the list itself is not among them.
+/// Everything below `dir` that is not a folder, sorted by name, without the list itself.
 std::vector<fs::path> files_below(const fs::path& dir) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(dir)) {
@@ -129,7 +129,7 @@ std::vector<fs::path> files_below(const fs::path& dir) {
   return files;
 }
 
-/// From a name to the file's state; empty where there is no list.
+/// Maps a name to the file's state; empty if there is no list.
 std::map<std::string, std::string> listed(const fs::path& dir) {
   const fs::path list = dir / kMadeList;
   std::map<std::string, std::string> files;
@@ -175,8 +175,8 @@ namespace {
 
 std::atomic<int> next_staging_number{0};
 
-/// Says of which machine, since which start, and of which process-number space a process is: only among those does the
-/// number of a process tell whether it still runs. Zero where the system does not say.
+/// Identifies the machine, its boot and the process-number namespace of a process: only within these does a process
+/// number tell whether the process still runs. Zero if the system does not say.
 std::size_t place_of_processes() {
   std::error_code error;
   std::ifstream boot("/proc/sys/kernel/random/boot_id");
@@ -186,7 +186,7 @@ std::size_t place_of_processes() {
   return std::hash<std::string>{}(text + space.string());
 }
 
-/// "<name>.part-<place>-": with a process and a count behind it, the name of what that process writes.
+/// "<name>.part-<place>-": followed by a process number and a count, this is the name of what that process writes.
 std::string staging_prefix(const fs::path& final_dir) {
   static const std::size_t place = place_of_processes();
   return fmt::format("{}.part-{:016x}-", final_dir.filename().string(), place);
@@ -197,12 +197,11 @@ fs::path staging_name(const fs::path& final_dir, std::string_view kind = "") {
          fmt::format("{}{}-{}{}", staging_prefix(final_dir), ::getpid(), next_staging_number++, kind);
 }
 
-/// What processes that were killed left beside `final_dir`. Of another machine's, or of one that runs, nothing is
-/// touched.
+/// Removes what killed processes left beside `final_dir`. Leftovers of another machine or of a running process stay.
 void clear_leftovers(const fs::path& final_dir) {
   const std::string prefix = staging_prefix(final_dir);
   if (prefix.find("-0000000000000000-") != std::string::npos) return;
-  std::error_code ignored;  // what cannot be looked at or removed stays: it is no reason to fail
+  std::error_code ignored;  // what cannot be read or removed stays; this is no reason to fail
   std::vector<fs::path> leftovers;
   for (fs::directory_iterator entry(final_dir.parent_path(), ignored), end; entry != end; entry.increment(ignored)) {
     const std::string name = entry->path().filename().string();
@@ -229,8 +228,9 @@ void rename_or_throw(const fs::path& from, const fs::path& to) {
   if (error) throw_system_error(to.string(), "cannot be put in place", error.value());
 }
 
-/// Puts `from` where `to` stands. What stood there is in the place of `from` afterwards, or removed: a kill between
-/// leaves one of the two whole. A file system that cannot exchange names has an instant between two renames of folders.
+/// Puts `from` in the place of `to`. The previous `to` is afterwards in the place of `from`, or removed; if the process
+/// is killed in between, one of the two is whole. On a file system that cannot exchange names, folders need two
+/// renames, with an instant between them.
 void swap_in(const fs::path& from, const fs::path& to) {
   if (!fs::exists(fs::symlink_status(to))) return rename_or_throw(from, to);
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
@@ -244,23 +244,23 @@ void swap_in(const fs::path& from, const fs::path& to) {
     rename_or_throw(old, to);
     throw;
   }
-  std::error_code ignored;  // the new one stands; a leftover of the old one is no reason to fail
+  std::error_code ignored;  // the new one is in place; a leftover of the old one is no reason to fail
   fs::remove_all(old, ignored);
 }
 
-/// One name more for a file: nothing is moved, so that a kill loses nothing.
+/// Gives a file a second name: nothing is moved, so that a kill loses nothing.
 void link_or_copy(const fs::path& from, const fs::path& to) {
   fs::create_directories(to.parent_path());
   if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), 0) != 0)
     fs::copy(from, to, fs::copy_options::copy_symlinks);
 }
 
-/// What in the folder `old` is somebody's own comes into `fresh`, which takes its place.
+/// Carries the user's own files in the folder `old` over into `fresh`, which replaces it.
 void keep_own_files(const fs::path& old, const fs::path& fresh) {
   const bool known = fs::exists(old / kMadeList);
   for (const OwnFile& own : own_files(old)) {
     fs::path kept = fresh / own.name;
-    if (fs::exists(kept) && !known) continue;  // of a version that kept no list: the same plot, drawn anew
+    if (fs::exists(kept) && !known) continue;  // made by a version that kept no list: the same plot, drawn again
     while (fs::exists(fs::symlink_status(kept))) kept += ".changed";
     link_or_copy(old / own.name, kept);
   }
@@ -270,9 +270,9 @@ void keep_own_files(const fs::path& old, const fs::path& fresh) {
 
 namespace {
 
-/// EnvironmentError where the folder, or one that it is to be made in, is a link to nothing.
+/// EnvironmentError if the folder, or one of its parent folders, is a dangling link.
 void refuse_dangling(const fs::path& folder) {
-  std::error_code error;  // what cannot be looked at says so when it is made
+  std::error_code error;  // a folder that cannot be read fails later, when it is made
   for (fs::path at = folder; at.has_relative_path(); at = at.parent_path()) {
     if (!fs::is_symlink(fs::symlink_status(at, error)) || fs::exists(at, error)) continue;
     const fs::path target = fs::read_symlink(at, error);
@@ -297,7 +297,7 @@ StagedOutput::StagedOutput(fs::path final_dir)
 
 StagedOutput::~StagedOutput() {
   try {
-    std::error_code ignored;  // a destructor has nobody to tell
+    std::error_code ignored;  // a destructor cannot report errors
     fs::remove_all(staging_, ignored);
     forget_passing_folder(staging_);
   } catch (const std::bad_alloc&) {  // the next run to the same output removes it
@@ -306,9 +306,9 @@ StagedOutput::~StagedOutput() {
 
 namespace {
 
-/// After swap_in(from, to): each where it was.
+/// Reverses swap_in(from, to).
 void undo_swap(const fs::path& from, const fs::path& to) {
-  std::error_code ignored;  // the error that led here is the one to tell
+  std::error_code ignored;  // the error that led here is the one to report
   if (!fs::exists(fs::symlink_status(from, ignored))) {
     fs::rename(to, from, ignored);
   } else {
@@ -316,8 +316,8 @@ void undo_swap(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// What was put in place so far; unless it is kept, the end of this takes it back: what is new goes to its staged
-/// place, and what it replaced comes from there.
+/// The outputs put in place so far. Unless they are kept, the destructor takes them back: each new output returns to
+/// the staging folder, and what it replaced comes back from there.
 class Placed {
  public:
   explicit Placed(const fs::path& final_dir) : final_(final_dir) {}
@@ -326,7 +326,7 @@ class Placed {
   ~Placed() {
     try {
       for (const fs::path& staged : staged_) undo_swap(staged, final_ / staged.filename());
-    } catch (const std::bad_alloc&) {  // what is in place stays there; the error that led here is told
+    } catch (const std::bad_alloc&) {  // what is in place stays there; the error that led here is reported
     }
   }
   void add(const fs::path& staged) { staged_.push_back(staged); }
@@ -341,7 +341,7 @@ class Placed {
 
 void StagedOutput::publish_files() {
   begin_publishing();
-  std::vector<fs::path> staged;  // listed first: exchanging changes the folder that is listed
+  std::vector<fs::path> staged;  // listed first, because exchanging changes the listed folder
   for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) staged.push_back(entry.path());
   for (const fs::path& path : staged) {
     if (fs::is_directory(path)) list_made_files(path);

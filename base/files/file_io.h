@@ -35,36 +35,37 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The list of the files of a folder that this program made, so that it replaces these and no file of the user's own.
+/// The list of the files of a folder that this program made. The program replaces these and no file of the user's own.
 ///
 /// A folder that is replaced as a whole (an experiment that `render` made, its truth, a page's plots) holds a list of
-/// its files, each with its size and a checksum of its bytes (FNV-1a, 64 bits). What is not in the list, or differs
-/// from it, is the user's own. StagedOutput::publish_files carries such files over into the folder that replaces it: a
-/// file that was made and changed since becomes NAME.changed if there is a new NAME. The list lies in the folder, so
-/// that both are put in place at once.
+/// its files, each with its size and a checksum of its bytes (FNV-1a, 64 bits). A file that is not in the list, or
+/// differs from it, is the user's own. StagedOutput::publish_files carries such files over into the folder that
+/// replaces it; a file that was made and has since been changed becomes NAME.changed if there is a new NAME. The list
+/// lies in the folder, so that both are put in place together.
 inline constexpr std::string_view kMadeList = ".glidelab-made";
 
-/// Writes `dir`/.glidelab-made: all that is in the folder and below now. EnvironmentError where that fails.
+/// Writes `dir`/.glidelab-made, which lists everything that is now in the folder and below. EnvironmentError if that
+/// fails.
 void list_made_files(const std::filesystem::path& dir);
 
-/// A file or link that was not made, or was changed since.
+/// A file or link that this program did not make, or that has since been changed.
 struct OwnFile {
   std::filesystem::path name;  ///< relative to the folder
   bool changed = false;        ///< made, and changed since
 };
 
-/// The user's own files in `dir` (which exists) and below, by name: all if there is no list; links always. InputError
-/// if a file cannot be read, or the list is not such a list.
+/// The user's own files in `dir` (which exists) and below, sorted by name. Without a list these are all files; links
+/// always count. InputError if a file cannot be read, or the list is malformed.
 std::vector<OwnFile> own_files(const std::filesystem::path& dir);
 
 /// Outputs that appear whole or not at all.
 ///
 /// A command writes everything into a staging folder beside the final one (on the same file system, so that rename(2)
-/// is atomic) and publishes it once everything has succeeded. An exception removes the staging folder and leaves what
-/// stood before.
+/// is atomic) and publishes it once everything has succeeded. An exception removes the staging folder and leaves the
+/// previous output as it was.
 class StagedOutput {
  public:
-  /// Makes `<parent>/<name>.part-<place>-<pid>-<n>`; EnvironmentError where that cannot be written.
+  /// Makes `<parent>/<name>.part-<place>-<pid>-<n>`; EnvironmentError if that cannot be written.
   explicit StagedOutput(std::filesystem::path final_dir);
   ~StagedOutput();
   StagedOutput(const StagedOutput&) = delete;
@@ -74,17 +75,16 @@ class StagedOutput {
   const std::filesystem::path& dir() const { return staging_; }
   const std::filesystem::path& final_dir() const { return final_; }
 
-  /// Renames the staging folder to the final name where there is none; else the staged files into the final folder one
-  /// by one: files of these names are replaced, other files stay. A staged sub-folder replaces the one of its name; the
-  /// user's own files in it are kept (own_files()). Where a file cannot be put in place the ones before it are taken
-  /// back, so that the folder is as it was.
+  /// Renames the staging folder to the final name if no such folder exists. Otherwise moves the staged files into the
+  /// final folder one by one: files of these names are replaced, other files stay. A staged sub-folder replaces the one
+  /// of its name; the user's own files in it are kept (own_files()). If a file cannot be put in place, the ones before
+  /// it are taken back, so that the folder is as it was.
   void publish_files();
 
   /// Renames the staging folder to the final name as a whole; an existing folder is swapped out and removed.
   void publish_whole();
 
-  /// After publish_whole(): what stood under the final name before stands there again, as far as the file system lets
-  /// it.
+  /// After publish_whole(): restores what was under the final name before, as far as the file system allows.
   void take_back();
 
  private:

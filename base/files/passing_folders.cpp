@@ -8,7 +8,7 @@ namespace glidelab::base {
 namespace fs = std::filesystem;
 namespace {
 
-/// One for the process, as its signals are; never destroyed, for threads may outlive main().
+/// One per process, as signals are; never destroyed, because threads may outlive main().
 struct PassingFolders {
   std::mutex mutex;
   std::set<fs::path> folders;
@@ -38,13 +38,13 @@ void begin_publishing() {
 }
 
 bool discard_passing_folders() {
-  passing().mutex.lock();  // held to the end of the process where something is removed
+  passing().mutex.lock();  // held until the process ends if something is removed
   if (passing().publishing) {
     passing().mutex.unlock();
     return false;
   }
   for (const fs::path& folder : passing().folders) {
-    std::error_code ignored;  // what another thread writes meanwhile stays, as after a kill
+    std::error_code ignored;  // what another thread writes in the meantime stays, as after a kill
     fs::remove_all(folder, ignored);
   }
   return true;

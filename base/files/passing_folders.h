@@ -1,5 +1,5 @@
-/// The folders that stand only while this process works in them (staging and temporary ones), for an end without
-/// unwinding: a signal while a library computes for long.
+/// The folders that exist only while this process works in them (staging and temporary ones). They are remembered for
+/// an exit without unwinding: a signal during a library's long computation.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@ namespace glidelab::base {
 void remember_passing_folder(const std::filesystem::path& folder);
 void forget_passing_folder(const std::filesystem::path& folder);
 
-/// From now on results are being put in place, and the process ends by itself.
+/// From now on results are being put in place; the process then ends by itself.
 void begin_publishing();
 
-/// Removes the remembered folders, as far as other threads let it; false, and nothing is removed, once
-/// begin_publishing() was called. Whoever wants to publish after this waits: the process is about to end.
+/// Removes the remembered folders, as far as other threads allow. Once begin_publishing() has been called, it removes
+/// nothing and returns false. A thread that wants to publish after this waits: the process is about to end.
 bool discard_passing_folders();
 
 }  // namespace glidelab::base

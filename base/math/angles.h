@@ -6,6 +6,7 @@
 namespace glidelab::base {
 
 inline constexpr double kRadPerDegree = std::numbers::pi / 180.0;
-inline constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;  // each is rounded by itself: not 1 / the other
+inline constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;  // each is rounded separately, so it is not 1 / the
+                                                                    // other
 
 }  // namespace glidelab::base

@@ -2,7 +2,7 @@
 ///
 /// Eigen instantiates its kernels in every file that multiplies or decomposes a dynamic matrix, which costs a compiler
 /// a minute a file. These functions do the same work behind one object file; small fixed-size geometry stays in Eigen.
-/// Shapes that do not fit are a programmer's mistake: std::invalid_argument with both shapes.
+/// Shapes that do not match are a programmer's mistake: std::invalid_argument with both shapes.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,10 +23,10 @@ Eigen::MatrixXd solve_positive(const MatrixView& a, const MatrixView& b);
 /// Inverse of a symmetric positive definite matrix; only its lower triangle is read.
 Eigen::MatrixXd inverse_positive(const MatrixView& a);
 
-/// L of A = L L' for a symmetric positive definite A; NumericalError where a pivot is not positive.
+/// L of A = L L' for a symmetric positive definite A; NumericalError if a pivot is not positive.
 Eigen::MatrixXd cholesky_lower(const MatrixView& a);
 
-/// X in L X = B for a lower triangle L (what is above its diagonal is not read).
+/// X in L X = B for a lower triangle L (entries above its diagonal are not read).
 Eigen::MatrixXd solve_lower(const MatrixView& lower, const MatrixView& b);
 
 /// X that minimises |A X - B|, by Householder's QR with column pivoting.

@@ -7,13 +7,13 @@ namespace glidelab::base {
 double normal_cdf(double z);
 double normal_tail(double z);  ///< P(> z)
 double normal_quantile(double p);
-double normal_upper_quantile(double p);  ///< exceeded with the probability p
+double normal_upper_quantile(double p);  ///< exceeded with probability p
 
 double student_t_tail(double degrees, double t);  ///< P(> t)
 double student_t_quantile(double degrees, double p);
 
 double chi2_quantile(double degrees, double p);
-double chi2_upper_quantile(double degrees, double p);  ///< exceeded with the probability p
+double chi2_upper_quantile(double degrees, double p);  ///< exceeded with probability p
 
 double beta_quantile(double a, double b, double p);
 

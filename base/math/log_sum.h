@@ -1,4 +1,4 @@
-/// Sums and means of what is known by its logarithm.
+/// Sums and means of numbers given by their logarithms.
 #pragma once
 
 #include <algorithm>

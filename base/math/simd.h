@@ -1,9 +1,9 @@
-/// Which vector instructions a loop uses if there is a choice.
+/// Which vector instructions a loop uses where there is a choice.
 #pragma once
 
 namespace glidelab::base {
 
-/// All give the same results to the last bit (tests of each loop compare them).
+/// All choices give the same results to the last bit (tests of each loop compare them).
 enum class Simd {
   best,      ///< the widest of this machine
   baseline,  ///< those that every machine of this architecture has

@@ -16,7 +16,7 @@ struct CsvTable {
   std::string file;
   std::vector<std::string> header;
   std::vector<std::vector<double>> columns;  ///< columns[c][row], all of one length; every value finite
-  std::vector<double> last_digit;            ///< of a column: the smallest value of a last digit, 0.001 for "2.310"
+  std::vector<double> last_digit;            ///< per column: the smallest value of a last digit, 0.001 for "2.310"
   std::vector<int> line;                     ///< line[row], 1-based
 
   bool has(std::string_view name) const;
@@ -33,7 +33,7 @@ struct CsvTable {
 CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::string>& wanted,
                   const std::vector<std::string>& optional = {}, bool allow_others = false);
 
-/// Builds a table line by line in memory, with the shortest text that reads back as the same double.
+/// Builds a table line by line in memory. Each number is the shortest text that reads back as the same double.
 class CsvWriter {
  public:
   explicit CsvWriter(std::string_view header);

@@ -1,4 +1,4 @@
-/// The digits 0 to 9, in every locale.
+/// The digits 0 to 9, independent of the locale.
 #pragma once
 
 namespace glidelab::base {

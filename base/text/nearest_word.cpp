@@ -27,10 +27,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
   const std::string* nearest = nullptr;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;  // from here on it is no misspelling
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;  // from here on it is not a misspelling
   for (const std::string& candidate : known) {
     const auto [shorter, longer] = std::minmax({word.size(), candidate.size()});
-    if (longer - shorter >= least) continue;  // as many letters at least are too many or missing
+    if (longer - shorter >= least) continue;  // at least this many letters are surplus or missing
     const std::size_t distance = edit_distance(word, candidate);
     if (distance >= least) continue;
     nearest = &candidate;

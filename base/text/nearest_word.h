@@ -12,7 +12,7 @@ namespace glidelab::base {
 /// a third of the letters.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
-/// "; did you mean \"up\"?", or nothing if no known word is near.
+/// "; did you mean \"up\"?", or an empty text if no known word is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace glidelab::base

@@ -23,13 +23,13 @@ bool usable(double sd) {
   return std::isfinite(sd) && sd > 0.0 && decimals_of(sd) <= kMostDecimals;
 }
 
-/// "4.1e+02" as 410, "1.80e-05" as 0.0000180, as far as these are short.
+/// "4.1e+02" as 410, "1.80e-05" as 0.0000180, if these are short.
 std::string plain(const std::string& text) {
   const std::size_t power = text.find('e');
   if (power == std::string::npos) return text;
   const int exponent = std::stoi(text.substr(power + 1));
   if (exponent < kLeastPlainPower || exponent > kMostPlainPower) return text;
-  // What stands before the power of ten, moved to its place: 4.1e+02 becomes 410, 1.8e-05 becomes 0.000018.
+  // Shifts the decimal point of the mantissa by the power of ten: 4.1e+02 becomes 410, 1.8e-05 becomes 0.000018.
   const std::size_t point = text.find('.');
   const int behind_point = point < power ? static_cast<int>(power - point) - 1 : 0;
   return fmt::format("{:.{}f}", std::stod(text), std::max(0, behind_point - exponent));
@@ -45,7 +45,8 @@ std::string number_text(double value, int digits) {
 std::string digits_text(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";
-  const std::string text = fmt::format("{:.{}e}", value, digits - 1);  // rounded: 9.996 has its power of ten from here
+  const std::string text = fmt::format("{:.{}e}", value, digits - 1);  // rounded, so that 9.996 gets the right power of
+                                                                       // ten
   const int exponent = std::stoi(text.substr(text.find('e') + 1));
   if (exponent < kLeastPlainPower || exponent > kMostPlainPower) return text;
   return fmt::format("{:.{}f}", std::stod(text), std::max(0, digits - 1 - exponent));
@@ -93,7 +94,7 @@ std::string gain_text(double gain) {
 
 std::string r2_text(double r2) {
   if (!std::isfinite(r2)) return "–";
-  // Never rounded up to 1: 0.99999996 keeps its digits.
+  // It is never rounded up to 1: 0.99999996 keeps its digits.
   for (int decimals = 5; decimals < kMostDecimals; ++decimals) {
     std::string text = fmt::format("{:.{}f}", r2, decimals);
     if (r2 >= 1.0 || !text.starts_with("1.")) return text;
@@ -103,7 +104,7 @@ std::string r2_text(double r2) {
 
 namespace {
 
-constexpr double kBelow = 0.1;  // of a unit: then a smaller one
+constexpr double kBelow = 0.1;  // fraction of a unit below which a smaller unit is used
 constexpr std::array<std::string_view, 4> kPrefixed = {"m", "s", "N", "m/s²"};
 constexpr std::array<std::string_view, 4> kPrefixes = {"", "m", "µ", "n"};
 

@@ -230,8 +230,8 @@ std::optional<TomlTable> TomlTable::maybe_table(std::string_view key) const {
 TomlTable TomlTable::table(std::string_view key) const {
   if (const std::optional<TomlTable> found = maybe_table(key)) return *found;
   node_->reject(key, nullptr, fmt::format("a table [{}]", path(key)));
-  // What is asked of a missing table is missing too, but one message is enough: a document that nobody reads takes the
-  // rest.
+  // The keys of a missing table are missing too, but one message is enough: a dummy document takes the further
+  // requests.
   static const toml::table kEmpty;
   auto orphanage = std::make_shared<TomlDocument>();
   auto node =
@@ -322,7 +322,8 @@ void TomlFile::add_missing(std::string_view table, TomlFile& others, const std::
   if (from == nullptr) return;
   toml::node* to = document_->tree.get(table);
   if (to == nullptr || !from->is_table() || !to->is_table()) {
-    // A whole table, or something that is none: whoever reads it says so. Moving keeps the line and the file.
+    // A whole table, or something that is not a table: the code that reads it reports that. Moving keeps the line and
+    // the file.
     if (to == nullptr) from->visit([&](auto& node) { document_->tree.insert(table, std::move(node)); });
     return;
   }

@@ -47,7 +47,7 @@ class TomlTable {
  public:
   bool has(std::string_view key) const;
   int line() const;                              ///< where the table starts
-  int line(std::string_view key) const;          ///< where the key stands; the table's line where it does not
+  int line(std::string_view key) const;          ///< the key's line; the table's line if the key is missing
   std::string path(std::string_view key) const;  ///< "camera.frame_rate_hz", for messages
 
   double number(std::string_view key, Range range = {}) const;
@@ -60,18 +60,18 @@ class TomlTable {
   std::string text(std::string_view key) const;  ///< not empty
   std::string text_or(std::string_view key, std::string_view otherwise) const;
   std::optional<std::string> maybe_text(std::string_view key) const;
-  /// One of the words given; `otherwise`, where it is not empty, stands for a missing key.
+  /// One of the given words; `otherwise`, if not empty, is returned for a missing key.
   std::string word(std::string_view key, const std::vector<std::string>& allowed,
                    std::string_view otherwise = {}) const;
-  /// One of the words given, required; nothing (and an error is recorded) if it is missing or another one. For a word
-  /// that decides what else is read.
+  /// One of the given words, required. If it is missing or another word, an error is recorded and the result is empty.
+  /// For a word that decides what else is read.
   std::optional<std::string> one_of(std::string_view key, const std::vector<std::string>& allowed) const;
-  /// An array of exactly `count` numbers (any length where count is 0).
+  /// An array of exactly `count` numbers (any length if count is 0).
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range = {}) const;
   std::optional<std::vector<double>> maybe_numbers(std::string_view key, std::size_t count, Range range = {}) const;
   std::vector<std::string> texts_or_none(std::string_view key) const;
   /// All numbers, switches and texts of this table and those within it, by their path from here ("shutter.kind",
-  /// written as one quoted key or as keys with a dot between). Anything else, an array or a date, is recorded as wrong.
+  /// written as one quoted key or as dotted keys). Anything else, an array or a date, is recorded as wrong.
   std::vector<std::pair<std::string, TomlScalar>> scalars() const;
 
   TomlTable table(std::string_view key) const;  ///< required
@@ -79,7 +79,7 @@ class TomlTable {
   std::vector<TomlTable> tables(std::string_view key) const;  ///< [[key]], one or more
   std::vector<TomlTable> tables_or_none(std::string_view key) const;
 
-  std::vector<std::string> keys() const;  ///< all that stand here, known or not
+  std::vector<std::string> keys() const;  ///< all keys of this table, known or not
 
   /// Everything below this key is the user's own and is not checked.
   void ignore(std::string_view key) const;
@@ -104,16 +104,16 @@ class TomlFile {
   TomlFile(TomlFile&&) noexcept;
   TomlFile& operator=(TomlFile&&) noexcept;
 
-  /// Gives `table` of this file (made, where it is missing) the keys that it lacks and the table of that name in
-  /// `others` has, but for those in `without`; they move from there to here. Messages name the file that a value comes
-  /// from. To be called before the table is read.
+  /// Moves to `table` of this file (made if it is missing) those keys of the same table in `others` that it lacks,
+  /// except those in `without`. Messages name the file that a value comes from. Must be called before the table is
+  /// read.
   void add_missing(std::string_view table, TomlFile& others, const std::vector<std::string>& without);
 
   TomlTable root() const;
   const std::string& name() const;
 
-  /// Throws InputError with everything that was rejected, and every key that was never asked for (with the nearest
-  /// known name).
+  /// Throws InputError with everything that was rejected and every key that was never asked for (with the nearest known
+  /// name).
   void finish() const;
 
  private:

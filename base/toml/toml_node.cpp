@@ -42,7 +42,7 @@ std::string line_of(std::string_view text, std::size_t number) {
   return std::string(text.substr(0, text.find('\n')));
 }
 
-/// "mass_kg = 0.335" of "mass_kg = 0,335"; empty for a line that has no such number as its value.
+/// "mass_kg = 0.335" for "mass_kg = 0,335"; empty for a line whose value is not such a number.
 std::string with_decimal_point(const std::string& line) {
   static const std::regex kComma(R"(^(\s*[A-Za-z0-9_-]+\s*=\s*[-+]?[0-9]+),([0-9]+)\s*(#.*)?$)");
   std::smatch parts;

@@ -1,5 +1,5 @@
-/// What lies behind a TomlFile and its TomlTables: the parsed document, and for each table that was handed out the keys
-/// that were asked for. Private to base/toml, for it includes the TOML parser.
+/// The data behind a TomlFile and its TomlTables: the parsed document and, for each table that was handed out, the keys
+/// that were asked for. Private to base/toml, because it includes the TOML parser.
 #pragma once
 
 #include <toml++/toml.h>
@@ -39,13 +39,13 @@ struct TomlNode {
     known.emplace(key);
     return table == nullptr ? nullptr : table->get(key);
   }
-  /// `at`: what is wrong, or nothing where it is the table itself.
+  /// `at`: the wrong node, or null if it is the table itself.
   void reject(std::string_view key, const toml::node* at, std::string found, std::string expected);
   /// The value cannot be read.
   void reject(std::string_view key, const toml::node* found, std::string expected);
 };
 
-/// InputError, in the file `shown_as`, where the text is no TOML.
+/// Parses the text. InputError, in the file `shown_as`, if it is not valid TOML.
 toml::table parsed_toml(std::string_view text, const std::string& shown_as);
 
 /// The file that a value comes from.

@@ -14,7 +14,7 @@
 namespace glidelab::base {
 namespace {
 
-/// One part of a path: `key`, and where it is an array which of its elements.
+/// One part of a path: `key` and, for an array, which of its elements.
 struct Step {
   enum class Pick { none, index, all, matching };
   std::string key;
@@ -27,7 +27,7 @@ class Setter {
  public:
   Setter(const std::string& file, const TomlAssignment& assignment) : file_(file), assignment_(assignment) {}
 
-  /// The places that took the value, by numbers.
+  /// The places that took the value, with arrays indexed by number.
   std::vector<std::string> apply(toml::table& tree) const {
     std::vector<std::string> places;
     into(tree, parse(), places);
@@ -74,7 +74,7 @@ class Setter {
     std::vector<Step> steps;
     std::string_view rest = assignment_.path;
     while (true) {
-      // A dot within brackets belongs to the text there.
+      // A dot within brackets belongs to the text inside them.
       std::size_t end = 0;
       int depth = 0;
       while (end < rest.size() && !(rest[end] == '.' && depth == 0)) {
@@ -131,14 +131,14 @@ class Setter {
     return indices;
   }
 
-  /// Of a path through several tables, at least one has to take the value.
+  /// If a path leads through several tables, at least one must take the value.
   void into(toml::table& table, const std::vector<Step>& steps, std::vector<std::string>& places) const {
     if (through(table, steps, 0, "", places) == 0) {
       fail("nothing at this path", "a path that leads to one or more keys of the scenario");
     }
   }
 
-  /// How many values were put in.
+  /// The number of values that were set.
   std::size_t through(toml::table& table, const std::vector<Step>& steps, std::size_t at, const std::string& before,
                       std::vector<std::string>& places) const {
     const Step& step = steps[at];
@@ -151,7 +151,7 @@ class Setter {
         return 1;
       }
       toml::node* inner = table.get(step.key);
-      if (inner == nullptr && !assignment_.value) return 1;  // what is to be taken out is not there
+      if (inner == nullptr && !assignment_.value) return 1;  // the key to be removed is not there
       if (inner == nullptr) inner = &table.insert(step.key, toml::table{}).first->second;
       if (inner->is_array()) {
         fail(fmt::format("\"{}\", of which there are {}", step.key, inner->as_array()->size()),
@@ -224,7 +224,7 @@ std::string with_missing(std::string_view toml, const std::string& shown_as, std
   for (const TomlSection& section : sections) {
     const toml::table* from = more.get_as<toml::table>(section.name);
     if (from == nullptr) continue;
-    // Whoever reads the document says where a section is no table.
+    // The code that reads the document reports a section that is not a table.
     toml::table* to = tree.insert(section.name, toml::table{}).first->second.as_table();
     if (to == nullptr) continue;
     for (const auto& [key, value] : *from) {

@@ -35,7 +35,7 @@ std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folde
   return experiments;
 }
 
-/// Names of clips that occur in one folder only stay; the others get their folder's in front.
+/// Clip names that occur in one folder only are kept; the others are prefixed with their folder's name.
 void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipSetup>& setups) {
   std::multiset<std::string> names;
   for (const ClipSetup& setup : setups) names.insert(setup.name);
@@ -79,7 +79,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   std::vector<PlumbResult> plumbs;
   std::vector<ClipSetup> setups;
   std::vector<TrackData> tracks;
-  std::size_t modes = 0;  // of the cameras so far: folders share none
+  std::size_t modes = 0;  // of the cameras so far: folders share no modes
   std::vector<const Experiment*> experiment_of;
   for (const Experiment& experiment : experiments) {
     PictureResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.pictures);

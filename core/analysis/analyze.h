@@ -27,11 +27,11 @@ struct AnalysisOptions {
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
   bool pictures = false;       ///< keep what the clips' images show besides the motion (ClipResult::pictures)
-  TrackFileOptions bare = {};  ///< for inputs that are a track's file
+  TrackFileOptions bare = {};  ///< for inputs that are track files
 };
 
-/// Reads and analyses all folders (or tracks' files) together: they share the glider and the track, but not the camera.
-/// InputError for what is wrong with a folder; the progress counts frames.
+/// Reads and analyses all folders (or track files) together: they share the glider and the track, but not the camera.
+/// InputError for any error in a folder; the progress counts frames.
 AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const AnalysisOptions& options,
                         const base::Progress& progress = base::no_progress);
 

@@ -24,11 +24,11 @@
 namespace glidelab::core {
 namespace {
 
-// A marker whose brightness nobody states: of the frames from its first to its last, in how many a good one is seen;
-// and in how many times as many as a bright one a dark one must be.
+// For a marker of unstated brightness: the fraction of frames, from its first to its last, in which a good marker is
+// seen; and the factor by which a dark one must be seen more often than a bright one.
 constexpr double kWellSeen = 0.9, kFarBetter = 1.2;
-constexpr double kLeastTravel = 1.5;   // radii from its first place
-constexpr double kSomeRadiusPx = 5.0;  // where the camera has no ray for any pixel that was asked for: small, but seen
+constexpr double kLeastTravel = 1.5;   // radii from its first position
+constexpr double kSomeRadiusPx = 5.0;  // if the camera has no ray for any requested pixel: small, but visible
 
 bool moves(const TrackedMarker& marker) {
   return std::any_of(marker.sightings.begin(), marker.sightings.end(), [&](const MarkerSighting& sighting) {
@@ -37,7 +37,7 @@ bool moves(const TrackedMarker& marker) {
   });
 }
 
-/// In most frames from the first sighting to the last, of something that moves.
+/// Whether it is seen in most frames from the first sighting to the last, and moves.
 bool well_seen(const TrackedMarker& marker) {
   if (!moves(marker)) return false;
   const std::size_t span = marker.sightings.back().frame - marker.sightings.front().frame + 1;
@@ -62,7 +62,7 @@ std::vector<MarkerLook> looks_of(const TrackedMarker& marker, const std::vector<
   return looks;
 }
 
-/// Times of an even camera instead of its rounded stamps.
+/// Replaces rounded time stamps by the camera's uniform times.
 void put_even(SeenClip& seen) {
   std::optional<EvenTimes> even = even_times(seen.frame_t_s);
   if (!even) return;
@@ -70,7 +70,7 @@ void put_even(SeenClip& seen) {
   seen.frame_t_s = std::move(even->t_s);
 }
 
-/// Completes the record of a clip that was read to its end.
+/// Completes the record of a clip that was read to the end.
 void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
   PictureRecord& record = *seen.pictures;
   record.width_px = seen.size.width;
@@ -82,9 +82,9 @@ void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
   scene.finish(record);
 }
 
-/// What to look for where a disc is not found well: anything of the marker's size, of whatever shape its lit part has.
+/// What to look for if a disc is not found well: any object of the marker's size, whatever the shape of its lit part.
 struct AnyShape {
-  cv::Mat still;      ///< in the difference from this background, where it is not empty; else in the grey value,
+  cv::Mat still;      ///< in the difference from this background, if it is not empty; otherwise in the grey value,
   bool dark = false;  ///< or in its inverse
 
   Frame seen_in(const Frame& frame) const {
@@ -108,8 +108,7 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
   const bool with_color = signal_kind(marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
-  // Where no ray belongs to a pixel (far outside the calibrated field) the marker is as large as where it was asked for
-  // first.
+  // If a pixel has no ray (far outside the calibrated field), the marker has the size found at the first request.
   std::optional<double> usual_px;
   const auto radius_at = [&](cv::Point2d pixel) {
     const auto radius_px = restitution.marker_radius_px(pixel);
@@ -180,20 +179,20 @@ SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const Cam
       return seen;
     }
   } catch (const base::InputError&) {
-    // No single dark one either: what there is of the bright one is what counts.
+    // There is no single dark marker either, so the bright one counts.
   }
   if (no_bright) throw NoMarker(*no_bright);
   return *std::move(bright);
 }
 
-/// Nothing where there is no such thing either.
+/// Empty if no such object is found either.
 std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSetup& clip,
                                       const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene,
                                       FrameCounter& counter, const AnyShape& any) {
   try {
     return look_for(*experiment.marker, experiment, clip, setting, open, look_at_scene, counter, &any);
   } catch (const base::InputError&) {
-    return std::nullopt;  // what is said of the first look counts
+    return std::nullopt;  // the error of the first search counts
   }
 }
 
@@ -277,8 +276,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   track.dark_marker = seen.dark_marker;
   for (const PlanePoint& point : points) {
     track.frame.push_back(point.sighting.frame);
-    // A rolling shutter exposes the marker's row later than the picture's middle row, to which the frame's time
-    // belongs.
+    // A rolling shutter exposes the marker's row later than the image's middle row, to which the frame's time refers.
     const double row = point.sighting.v_px - 0.5 * (seen.size.height - 1);
     const double delay_s = camera.line_readout_s * (camera.bottom_row_first ? -row : row);
     track.t_s.push_back(seen.frame_t_s[point.sighting.frame] + delay_s);
@@ -297,7 +295,7 @@ void note_axis(const MotionAxis& axis, bool has_pattern, std::vector<Note>& note
   }
 }
 
-/// The line along which the group's marker moves; a marker that rests leaves noise only, which has no direction.
+/// The line along which the group's marker moves; a marker at rest shows only noise, which has no direction.
 MotionAxis axis_through(const std::vector<cv::Point2d>& places, double diameter_m, Downhill downhill) {
   cv::Point2d low(1e300, 1e300), high(-1e300, -1e300);
   for (const cv::Point2d& place : places) {
@@ -347,7 +345,7 @@ class GroupTracks {
   }
 
  private:
-  /// Of the group, made of pictures.
+  /// The clips of the group that have images.
   std::vector<std::size_t> clips() const {
     std::vector<std::size_t> of_group;
     for (std::size_t i = 0; i < experiment_.clips.size(); ++i) {
@@ -356,8 +354,8 @@ class GroupTracks {
     return of_group;
   }
 
-  /// What the modes do to the track: the camera's come first, then, behind those of the groups before, this plane's
-  /// own.
+  /// The effect of the modes on the track: the camera's modes come first; those of this plane follow those of the
+  /// previous groups.
   void add_shared(const MotionAxis& axis, const std::vector<ModeAxis>& modes, std::size_t of_camera,
                   const std::vector<PlanePoint>& points, std::size_t modes_before, TrackData& track) const {
     std::vector<cv::Point2d> places;
@@ -368,8 +366,8 @@ class GroupTracks {
     }
   }
 
-  /// Across the stated axis nothing says which way is down. (A pattern's X is known to lie along the track, and a note
-  /// says where it does not.)
+  /// A motion across the stated axis does not tell which direction is down. (A pattern's X should lie along the track;
+  /// a note says if it does not.)
   void check_direction(const MotionAxis& axis) const {
     if (!experiment_.scale || !std::isfinite(axis.line().sd_angle_rad)) return;
     const double from_x = std::abs(axis.angle_to_x_rad());
@@ -401,8 +399,8 @@ class GroupTracks {
 
 constexpr double kBeyondDoubt = 10.0;  // log evidence
 
-/// Takes off what a codec that predicts images does to the positions (codec_drag.h), where the file says that it is
-/// one, or does not say and the positions leave no doubt; what remains unknown of it is one more shared error.
+/// Subtracts the effect of a predictive codec on the positions (codec_drag.h), if the file states such a codec, or if
+/// it states none and the positions leave no doubt. The remaining uncertainty is an additional shared error.
 void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenClip>& seen, PictureResults& results) {
   std::vector<DragTrack> tracks;
   std::vector<std::size_t> of_clip;
@@ -443,7 +441,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
         throw base::InputError(base::Issue{clip.track.string(), 0, "--mass", "none, beside a recorded force (force_n)",
                                            "the moving mass in kilograms: the force accelerates it by F/m"});
       }
-      // A fall goes down, whether a sensor above it or below it measures the distance.
+      // A fall is downwards, whether the distance is measured by a sensor above or below.
       if (!downhill && std::abs(clip.incline_rad) >= kSurelyAFall_rad) count_along_motion(results.tracks[i]);
     } else {
       pictures.push_back(i);

@@ -1,5 +1,5 @@
-/// From images to x(t) of every clip: what a clip's images show in pixels, and where that lies along the line of
-/// motion. One function per folder, tracks_of(), hides everything that has to do with images.
+/// From images to x(t) of every clip: what a clip's images show in pixels, and the corresponding positions along the
+/// line of motion. One function per folder, tracks_of(), hides everything that concerns images.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -28,17 +28,17 @@ struct SeenClip {
   TrackedMarker marker;
   std::vector<double> frame_t_s;            ///< of all frames
   cv::Size size;                            ///< of the images
-  std::vector<Note> notes;                  ///< of the file; those of the marker are its own
-  std::shared_ptr<PictureRecord> pictures;  ///< where they are asked for
-  bool dark_marker = false;                 ///< seen as darker than its surroundings, without a colour that says so
-  std::optional<bool> predicted;  ///< by a lossy codec, out of the images before; nothing where it is not known
+  std::vector<Note> notes;                  ///< about the file; the marker has its own notes
+  std::shared_ptr<PictureRecord> pictures;  ///< if requested
+  bool dark_marker = false;                 ///< seen as darker than its surroundings, with no stated colour
+  std::optional<bool> predicted;  ///< whether a lossy codec predicts images from earlier ones; empty if not known
 };
 
-/// Counts frames over all clips for the progress; clips may be looked at at the same time.
+/// Counts frames over all clips for the progress; clips may be processed concurrently.
 class FrameCounter {
  public:
   FrameCounter(const base::Progress& progress, std::size_t clips) : progress_(progress), clips_(clips) {}
-  /// Tells how far all clips are, this clip's share having grown by `share`.
+  /// Reports the progress over all clips, this clip's share having grown by `share`.
   void add(double share);
 
  private:
@@ -47,29 +47,30 @@ class FrameCounter {
   std::atomic<double> done_ = 0.0;
 };
 
-/// Reads the clip once, or twice: a marker without a stated colour is looked for as a bright disc, and, where such a
-/// one is hardly seen and a dark one well, as a dark one. With `look_at_scene` there is a PictureRecord. InputError for
-/// images that cannot be used, NoMarker (marker_track.h) where there is none.
+/// Reads the clip once or twice: a marker without a stated colour is searched for as a bright disc and, if a bright one
+/// is hardly seen but a dark one well, as a dark disc. With `look_at_scene` there is a PictureRecord. InputError for
+/// images that cannot be used, NoMarker (marker_track.h) if there is no marker.
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter);
 
 struct SeenPattern;
 
-/// What the images of a folder say besides the motion.
+/// What the images of a folder show besides the motion.
 struct PictureResults {
   std::vector<TrackData> tracks;             ///< one for each clip, in the experiment's order
-  std::vector<std::vector<MarkerFit>> fits;  ///< as many: the marker's image wherever it was seen, frames rise
+  std::vector<std::vector<MarkerFit>> fits;  ///< one for each clip: the marker's image wherever it was seen, frames
+                                             ///< rise
   std::optional<CalibrationResult> calibration;
   std::vector<PlumbResult> plumbs;
   std::size_t modes =
-      0;  ///< independent errors of camera, planes and codec: entries of every track's shared_m, at most
+      0;  ///< independent errors of camera, planes and codec: maximum number of entries in every track's shared_m
 };
 
-/// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it on the line of
-/// motion, x positive downhill. Clips that are tracks are read with read_track. Frames stream; `jobs` clips
-/// at a time. With `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is known of the pattern
-/// already (restitution.h); null: its images are read. InputError for images that cannot be used (no pattern,
-/// no marker, truncated, of another size, …).
+/// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it onto the line of
+/// motion, x positive downhill. Clips that are tracks are read with read_track. Frames stream; `jobs` clips at a time.
+/// With `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is already known about the pattern
+/// (restitution.h); null: its images are read. InputError for images that cannot be used (no pattern, no marker,
+/// truncated, of another size, …).
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
                          const FrameOpener& open = open_frames, bool look_at_scene = false,
                          const SeenPattern* seen_pattern = nullptr);

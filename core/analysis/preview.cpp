@@ -20,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPlaybackHz = 30.0;         // a rate that every screen and player takes
+constexpr double kPlaybackHz = 30.0;         // a rate that every screen and player supports
 constexpr std::size_t kMostFrames = 360;     // 12 s of it
-constexpr std::size_t kMostBytes = 1 << 20;  // what a page can carry a few times
+constexpr std::size_t kMostBytes = 1 << 20;  // small enough for a page to hold a few
 constexpr std::size_t kPathDots = 60;
-const cv::Scalar kMarkerColor(0, 140, 255);  // orange in BGR: seen on black, grey and white
+const cv::Scalar kMarkerColor(0, 140, 255);  // orange in BGR: visible on black, grey and white
 const cv::Scalar kPathColor(255, 170, 60);   // light blue
 
 /// Small images in colour, of even size as H.264's 4:2:0 needs.
@@ -45,7 +45,7 @@ class Shrinker {
     if (small.channels() == 1) cv::cvtColor(small, small, cv::COLOR_GRAY2BGR);
     return small;
   }
-  /// A place in the image, in the small one's sixteenths of a pixel; centres of first pixels are (0, 0) in both.
+  /// A position in the image, in sixteenths of a pixel of the small image; centres of first pixels are (0, 0) in both.
   cv::Point place(double u_px, double v_px) const {
     const auto fixed = [this](double p) { return static_cast<int>(std::lround(((p + 0.5) * scale_ - 0.5) * 16.0)); };
     return {fixed(u_px), fixed(v_px)};
@@ -90,7 +90,7 @@ std::vector<std::size_t> frames_to_show(const std::vector<MarkerSighting>& sight
   return frames;
 }
 
-/// Encodes what it is given; whether a browser-playable encoder is there shows when the first frame comes.
+/// Encodes the frames given to it; whether a browser-playable encoder exists shows at the first frame.
 class VideoFile {
  public:
   void add(const cv::Mat& picture) {

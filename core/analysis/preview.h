@@ -1,6 +1,6 @@
-/// A look at a clip for a report: a few frames with the marker that was found, and a small video of the whole.
+/// A preview of a clip for a report: a few frames with the marker that was found, and a small video of the whole clip.
 ///
-/// The clip is read again, frame by frame, after the analysis; nothing of it enters a result.
+/// The clip is read again, frame by frame, after the analysis; the preview does not enter any result.
 #pragma once
 
 #include <filesystem>
@@ -25,9 +25,9 @@ struct PreviewFrame {
 
 struct Preview {
   std::vector<PreviewFrame> frames;  ///< the marker circled, its path dotted
-  std::string mp4;                   ///< H.264, playable in a browser; empty where there is none
+  std::string mp4;                   ///< H.264, playable in a browser; empty if there is none
   double slow_motion = 1.0;          ///< how many times longer the video takes than the motion
-  std::string why_no_video;          ///< empty where there is one, or none was wanted
+  std::string why_no_video;          ///< empty if there is one, or if none was requested
 };
 
 struct PreviewOptions {
@@ -36,8 +36,8 @@ struct PreviewOptions {
   int width_px = 400;
 };
 
-/// Reads the clip of `setup` again. A clip that is a track has no images: an empty preview. An encoder that is
-/// missing is no error; `why_no_video` says so. InputError where the clip cannot be read (any more).
+/// Reads the clip of `setup` again. A clip that is a track has no images: an empty preview. A missing encoder is not an
+/// error; `why_no_video` says so. InputError if the clip cannot be read (any more).
 Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const ClipResult& result,
                      const PreviewOptions& options = {});
 

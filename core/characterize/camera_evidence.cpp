@@ -15,7 +15,7 @@ namespace {
 constexpr double kLinearRange = 0.7;          // of saturation; EMVA 1288
 constexpr double kMostClippedPart = 1e-3;     // of the samples: changes a variance by less than its error
 constexpr double kLeastShareOfPixels = 0.25;  // of the image, for a level to count
-// Where rounding may change a variance by more than this part, the set does not show its noise. The limit of EMVA 1288
+// If rounding may change a variance by more than this fraction, the set does not show its noise. The limit of EMVA 1288
 // (0.24 DN², quantisation included) comes to 0.2 without a spread of the means.
 constexpr double kRoundingAllowed = 0.2;
 
@@ -64,7 +64,7 @@ class Gatherer {
 
   void find_hot_pixels(const FlatFieldStack& stack) {
     const cv::Mat deviation = stack.mean_dn - neighbourhood_median(stack.mean_dn, false);
-    // Where the codes hardly change, the means of the frames scatter in steps.
+    // If the codes hardly change, the means of the frames scatter in steps.
     const double step = std::sqrt(kQuantisation / static_cast<double>(stack.frames));
     const double limit = kOutlierSd * std::max(robust_sd(deviation, mask_), step);
     const cv::Mat hot = deviation > limit;
@@ -111,7 +111,7 @@ class Gatherer {
            rounding_of_variance(variance, all.total_dn2 - kQuantisation) <= kRoundingAllowed * variance;
   }
 
-  /// Weight of a point in the line: its sampling error, and what rounding may do to all of it.
+  /// Weight of a point in the line: its sampling error, and the possible effect of rounding on the whole level.
   double weight_of(double sampling_dn4, const CellStatistics& all) const {
     const double rounding =
         rounding_of_variance(std::max(all.temporal_dn2 - kQuantisation, 0.0), all.total_dn2 - kQuantisation);
@@ -167,7 +167,8 @@ class Gatherer {
       evidence().pattern_weight = {1.0};
       return;
     }
-    // Each dark pixel keeps its code, so that their mean shows no pattern: the regression over several levels does.
+    // Each dark pixel keeps its code, so the mean of the dark frames shows no pattern: the regression over several
+    // levels does.
     for (std::size_t level = 0; level < evidence().flats.size(); ++level) {
       if (evidence().weight[level] == 0.0) continue;
       evidence().pattern_levels.push_back(level);
@@ -179,7 +180,7 @@ class Gatherer {
         pixels += cell.pixels;
         squares += cell.squares_dn2;
       }
-      evidence().pattern_weight.push_back(pixels * pixels / (squares * squares));  // its error is in proportion to it
+      evidence().pattern_weight.push_back(pixels * pixels / (squares * squares));  // its error is proportional to it
     }
   }
 
@@ -191,7 +192,7 @@ class Gatherer {
     const cv::Mat around = neighbourhood_median(light, out_.mosaic);
     cv::Mat answer;
     cv::divide(light, cv::max(around, 1e-3),
-               answer);  // a neighbourhood without light tells nothing; see the mask below
+               answer);  // a neighbourhood without light carries no information; see the mask below
     const cv::Mat deviation = answer - 1.0;
     const cv::Mat lit = (around > 1e-3) & (mask_ != 0);
     const double limit = kOutlierSd * robust_sd(deviation, lit);

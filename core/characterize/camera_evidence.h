@@ -1,5 +1,5 @@
 /// Reads the frames of a flat-field folder and takes the decisions behind the numbers: which pixels are outliers, which
-/// cells are saturated, which levels lie in the linear range, what the quantisation hides.
+/// cells are saturated, which levels lie in the linear range, and what the quantisation hides.
 #pragma once
 
 #include <opencv2/core.hpp>

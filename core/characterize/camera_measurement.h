@@ -25,11 +25,12 @@ struct Measured {
 struct TransferPoint {
   std::string set;
   std::optional<double> exposure_s;
-  double mean_dn = 0.0;       ///< above the dark frames; of a level in the fit over the cells that count, else over all
+  double mean_dn = 0.0;       ///< above the dark frames; for a level in the fit over the cells that count, otherwise
+                              ///< over all
   double image_dn = 0.0;      ///< above the dark frames, over the whole image
   double variance_dn2 = 0.0;  ///< quantisation (1/12) subtracted
   double sd_dn2 = 0.0;        ///< of the variance
-  double at_largest = 0.0;    ///< part of the samples at the largest code
+  double at_largest = 0.0;    ///< fraction of the samples at the largest code
   bool used = false;          ///< in the fit of the line
 };
 

@@ -10,12 +10,12 @@ namespace glidelab::core {
 /// Raw codes of a colour sensor: PRNU is measured for each colour.
 struct ColourMosaic {};
 
-/// The variance departs from a straight line over the mean.
+/// The variance departs from a straight line as a function of the mean.
 struct BentVariance {
-  double part = 0.0;  ///< of the variance, the largest
+  double part = 0.0;  ///< largest departure, as a fraction of the variance
 };
 
-/// The mean departs from a straight line over the exposure.
+/// The mean departs from a straight line as a function of the exposure.
 struct BentMean {
   double part = 0.0;
 };
@@ -32,7 +32,7 @@ struct SuccessiveFramesAlike {
 
 /// The light changes from frame to frame.
 struct Flicker {
-  double part = 0.0;  ///< of the mean, the largest change
+  double part = 0.0;  ///< largest change, as a fraction of the mean
   std::size_t levels = 0, of_levels = 0;
 };
 

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Folders below `folder` in the order in which people number them.
+/// Folders below `folder`, in natural order of their numbers.
 std::vector<std::string> folder_names(const fs::path& folder) {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -24,7 +24,7 @@ std::vector<std::string> folder_names(const fs::path& folder) {
   return names;
 }
 
-/// The frames of one set. What is wrong goes into `issues`, so that a user sees all of it at once.
+/// The frames of one set. Errors go into `issues`, so that the user sees all of them at once.
 class SetReader {
  public:
   explicit SetReader(fs::path folder) : folder_(std::move(folder)) {}
@@ -82,7 +82,7 @@ void read_sets(FlatFieldFolder& result, const fs::path& folder) {
   if (!reader.issues.empty()) throw base::InputError(std::move(reader.issues));
 }
 
-/// [exposures_s] names sets; what it does not name has the exposure_s of the whole folder.
+/// [exposures_s] names sets; sets that it does not name have the exposure_s of the whole folder.
 void read_exposures(FlatFieldFolder& result, const base::TomlTable& root) {
   const std::optional<double> common = root.maybe_number("exposure_s", base::above(0.0));
   const std::optional<base::TomlTable> table = root.maybe_table("exposures_s");

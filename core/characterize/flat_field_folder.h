@@ -7,7 +7,7 @@
 ///       flat-00/*.png     two or more frames of one even, constant light
 ///       flat-01/*.png …   other levels of light: at least two in all, better ten or more, up into saturation
 ///
-/// All frames are grey PNG of 8 or 16 bits and of one size. Names after "dark-" and "flat-" are free.
+/// All frames are grey PNG images of 8 or 16 bits and of one size. Names after "dark-" and "flat-" are free.
 #pragma once
 
 #include <filesystem>
@@ -34,7 +34,7 @@ struct FlatFieldFolder {
   std::string price_class;
   std::vector<FrameSet> darks;            ///< "dark" first, then the others by name
   std::vector<FrameSet> flats;            ///< by name
-  std::size_t most_pixels = kMostPixels;  ///< of one image, as the person who runs the program permits
+  std::size_t most_pixels = kMostPixels;  ///< of one image, as permitted by the user who runs the program
 
   int largest_code() const { return (1 << bit_depth) - 1; }
 };

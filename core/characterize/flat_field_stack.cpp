@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Where this part of the pixels has another code than the most frequent one, many pixels lie near a boundary between
-// two codes, and any noise at all makes two frames differ.
+// If this fraction of the pixels differs from the most frequent code, many pixels lie near a boundary between two
+// codes, and any noise at all makes two frames differ.
 constexpr double kSpreadThatShowsNoise = 0.1;
 
 [[noreturn]] void fail(const fs::path& file, std::string found, std::string expected) {
@@ -29,7 +29,7 @@ std::string bits(int depth) {
   return depth == CV_8U ? "8 bits" : "16 bits";
 }
 
-/// Grey codes; a colour file counts as grey where its three channels are equal.
+/// Grey codes; a colour file counts as grey if its three channels are equal.
 cv::Mat read_codes(const fs::path& file, std::size_t most_pixels) {
   const cv::Mat image = read_image(file, most_pixels);
   if (image.channels() == 1) return image;
@@ -42,7 +42,7 @@ cv::Mat read_codes(const fs::path& file, std::size_t most_pixels) {
   return channels[0];
 }
 
-/// Part of the pixels that do not have the most frequent code.
+/// Fraction of the pixels that do not have the most frequent code.
 double spread(const cv::Mat& codes) {
   cv::Mat wide;
   codes.convertTo(wide, CV_16U);
@@ -91,8 +91,8 @@ namespace {
 
 constexpr int kSmallestTilePx = 16;
 constexpr int kMostTilesAcross = 12;
-/// Weight of each of `these` frames against the `others`, such that the weighted sum of all frames has no mean and the
-/// noise of the mean: the weights add up to 0, their squares to 1 / (these + others).
+/// Weight of each of `these` frames against the `others`, such that the weighted sum of all frames has zero mean and
+/// the same noise as the mean: the weights add up to 0, their squares to 1 / (these + others).
 double contrast_weight(std::size_t others, std::size_t these) {
   return std::sqrt(static_cast<double>(others) / static_cast<double>(these)) / static_cast<double>(others + these);
 }
@@ -205,7 +205,7 @@ class Accumulator {
 
   bool counts(int x, int y) const { return mask_.empty() || mask_.at<std::uint8_t>(y, x) != 0; }
 
-  /// Differences of this frame with the one before and the one before that.
+  /// Differences of this frame from the previous one and the one before that.
   void compare(cv::Mat& residual) {
     if (!last_.empty() && frames_ == 1) correlate(residual - last_);
     if (!before_last_.empty()) {

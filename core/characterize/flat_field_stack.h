@@ -1,14 +1,15 @@
 /// The frames of one set of flat fields, read strictly, and their statistics tile by tile: mean and temporal variance.
 ///
-/// An image is cut into tiles, and the pixels of a tile into four cells by their place in the 2 x 2 mosaic of a colour
-/// sensor (on a monochrome one the four are alike). With y_pf the code of pixel p in frame f, and m_f the mean of the
-/// cell in frame f,
+/// An image is cut into tiles, and the pixels of a tile into four cells by their position in the 2 x 2 mosaic of a
+/// colour sensor (on a monochrome sensor the four are equivalent). With y_pf the code of pixel p in frame f, and m_f
+/// the mean of the cell in frame f,
 ///
 ///     e_pf = y_pf - m_f,     temporal variance = mean over p of [sum_f (e_pf - mean_f e_pf)^2 / (L - 1)] n / (n - 1)
 ///
 /// which for two frames is half the variance of their difference (EMVA standard 1288, release 3.1, equation for the
-/// temporal variance from two images). Taking out each cell's own mean makes it blind to a light that flickers or
-/// drifts from frame to frame; working on each pixel's own differences makes it blind to shading and fixed patterns.
+/// temporal variance from two images). Subtracting each cell's own mean makes it insensitive to a light that flickers
+/// or drifts from frame to frame; using each pixel's own differences makes it insensitive to shading and fixed
+/// patterns.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -26,7 +27,7 @@ namespace glidelab::core {
 /// Smallest width and height, in pixels, of an image that gives enough tiles for a standard deviation.
 inline constexpr int kSmallestFlatFieldPx = 64;
 
-/// What every frame must be: set by the first one.
+/// The form that every frame must have, set by the first one.
 struct FrameForm {
   cv::Size size;
   int depth = 0;      ///< CV_8U or CV_16U
@@ -38,17 +39,17 @@ struct FrameForm {
 /// `most_pixels` in all.
 FrameForm form_of(const std::filesystem::path& file, std::size_t most_pixels = kMostPixels);
 
-/// One frame of a flat-field folder, read strictly, for a wrong frame spoils a variance without a trace. Grey codes; a
-/// colour file counts as grey where its three channels are equal. InputError (file, found, expected) for a file that is
-/// no image, one with colours, one of another size or depth, and a code above `largest_code`.
+/// One frame of a flat-field folder, read strictly, because a wrong frame would corrupt a variance unnoticed. Grey
+/// codes; a colour file counts as grey if its three channels are equal. InputError (file, found, expected) for a file
+/// that is not an image, one with colours, one of another size or depth, and a code above `largest_code`.
 cv::Mat read_flat_field_frame(const std::filesystem::path& file, const FrameForm& form, int largest_code);
 
-/// InputError where `frame`, of `file`, equals `last`, the one before: copies are no measurement of noise. Frames that
-/// are constant (dark, or all saturated) may be equal.
+/// InputError if `frame`, of `file`, equals the previous frame `last`: copies do not measure noise. Frames that are
+/// constant (dark, or all saturated) may be equal.
 void reject_copy(const std::filesystem::path& file, const cv::Mat& frame, const std::filesystem::path& last_file,
                  const cv::Mat& last);
 
-/// How an image is cut: about 50 to 150 tiles, at least 16 pixels wide and high.
+/// How an image is divided: about 50 to 150 tiles, at least 16 pixels wide and high.
 class TileGrid {
  public:
   explicit TileGrid(cv::Size size);
@@ -68,12 +69,12 @@ class TileGrid {
 };
 
 struct CellStatistics {
-  double pixels = 0.0;        ///< that are not masked
+  double pixels = 0.0;        ///< number of pixels that are not masked
   double mean_dn = 0.0;       ///< over pixels and frames
   double temporal_dn2 = 0.0;  ///< variance of a pixel from frame to frame, quantisation included
   double total_dn2 = 0.0;     ///< variance over the pixels and frames of the cell
-  double at_zero = 0.0;       ///< part of the samples at code 0
-  double at_largest = 0.0;    ///< part of the samples at the largest code
+  double at_zero = 0.0;       ///< fraction of the samples at code 0
+  double at_largest = 0.0;    ///< fraction of the samples at the largest code
 };
 
 struct FlatFieldStack {
@@ -82,19 +83,19 @@ struct FlatFieldStack {
   CellStatistics all;                  ///< over the whole image; variances are means over the cells
   std::vector<double> frame_means_dn;  ///< of the whole image, frame by frame
   cv::Mat mean_dn;                     ///< CV_32F, mean of the frames
-  cv::Mat contrast_dn;  ///< CV_32F, even frames minus odd ones, as noisy as the mean and without its pattern
-  /// Correlation of the noise (difference of the first two frames) of pixels side by side and one above the other;
-  /// 0 where there is no noise.
+  cv::Mat contrast_dn;  ///< CV_32F, even frames minus odd ones: as noisy as the mean but without its pattern
+  /// Correlation of the noise (difference of the first two frames) of pixels side by side and one above the other; 0 if
+  /// there is no noise.
   double correlation_right = 0.0;
   double correlation_below = 0.0;
-  /// Variance of the differences of frames that follow each other over that of frames two apart; 1 for noise that is
-  /// new in every frame. Nothing for two frames, or without noise.
+  /// Variance of the differences of successive frames over that of frames two apart; 1 for noise that is new in every
+  /// frame. Empty for two frames, or without noise.
   std::optional<double> successive_ratio;
 };
 
-/// Reads the frames of a set one after the other (never more than three at once). `mask`, CV_8U, is 255 where a pixel
-/// counts; empty: all count. InputError (file, found, expected) for a file that is no image, one with colours, one of
-/// another size or depth, a code above `largest_code`, and a frame that repeats the one before.
+/// Reads the frames of a set one after another (never more than three at once). `mask`, CV_8U, is 255 where a pixel
+/// counts; empty: all count. InputError (file, found, expected) for a file that is not an image, one with colours, one
+/// of another size or depth, a code above `largest_code`, and a frame that repeats the previous one.
 FlatFieldStack stack_frames(const FrameSet& set, const FrameForm& form, int largest_code, const TileGrid& grid,
                             const cv::Mat& mask);
 

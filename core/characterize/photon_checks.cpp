@@ -69,7 +69,7 @@ Measured linearity_error(const Evidence& evidence, const FlatFieldFolder& folder
 namespace {
 
 constexpr double kCorrelationNoted = 0.015;
-constexpr double kCorrelationRefused = 0.05;  // takes 10 to 20 % off the variance
+constexpr double kCorrelationRefused = 0.05;  // lowers the variance by 10 to 20 %
 constexpr double kSuccessiveNoted = 0.98;
 constexpr double kSuccessiveRefused = 0.95;
 constexpr double kBendNoted = 0.02;
@@ -81,14 +81,14 @@ constexpr double kMisfitSignificance = 3.0;
 constexpr double kMostRelativeGainSd = 0.2;
 constexpr double kFlickerNoted = 0.01;
 constexpr double kKneeFrom = 0.75;  // of saturation: above the linear range
-constexpr double kKneeTo = 0.90;    // from here on a full well of a few hundred electrons cuts the noise itself
+constexpr double kKneeTo = 0.90;    // above this a full well of a few hundred electrons clips the noise itself
 constexpr double kKneeVariance = 0.5;
 
 double neighbour_correlation(const FlatFieldStack& stack) {
   return std::max(std::abs(stack.correlation_right), std::abs(stack.correlation_below));
 }
 
-/// Mean variance over that of the line, of the cells between 75 and 90 % of saturation; nothing where there are none.
+/// Mean variance over that of the line, of the cells between 75 and 90 % of saturation; empty if there are none.
 std::optional<double> variance_below_saturation(const CameraEvidence& gathered, const PhotonNumbers& numbers) {
   const Evidence& evidence = gathered.evidence;
   double seen = 0.0;
@@ -228,7 +228,7 @@ std::optional<Flicker> flicker_of(const Evidence& evidence) {
   return flicker;
 }
 
-/// Whether the noise of neighbouring pixels is correlated by more than `limit`, and than chance makes.
+/// Whether the noise of neighbouring pixels is correlated by more than `limit` and by more than chance explains.
 bool is_correlated(const FlatFieldStack& level, double limit) {
   return neighbour_correlation(level) > std::max(limit, kLevelSignificance / std::sqrt(level.all.pixels));
 }

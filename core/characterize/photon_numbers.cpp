@@ -37,7 +37,7 @@ double variance_of(const FlatFieldStack& stack, std::optional<std::size_t> witho
   return mean_over(stack, without_tile, [](const CellStatistics& cell) { return cell.temporal_dn2 - kQuantisation; });
 }
 
-/// Level of the dark frames over exposure, as a line; without several exposures its slope is not known.
+/// Level of the dark frames as a line in the exposure; without several exposures its slope is not known.
 void dark_level(const Evidence& evidence, std::optional<std::size_t> without_tile, PhotonNumbers& numbers) {
   LineSums sums;
   for (std::size_t d = 0; d < evidence.darks.size(); ++d) {
@@ -51,7 +51,7 @@ void dark_level(const Evidence& evidence, std::optional<std::size_t> without_til
   }
 }
 
-/// Spatial variance of a set without what its temporal noise leaves in the mean of the frames, and mean square of the
+/// Spatial variance of a set, without the temporal noise that remains in the mean of the frames, and mean square of the
 /// light above dark, summed over the pixels of the pattern.
 struct PatternSums {
   double pixels = 0.0;
@@ -82,7 +82,7 @@ void fixed_pattern(const Evidence& evidence, std::optional<std::size_t> without_
   if (evidence.dark_pattern_shown) {
     const PatternSums dark = pattern_sums(evidence, evidence.dark_pattern, nullptr, without_tile);
     dsnu_squared_dn2 = dark.spatial_dn2 / dark.pixels;
-    // The dark pattern of the very cells that the flat field's sums are taken over.
+    // The dark pattern of the same cells over which the flat field's sums are taken.
     const std::vector<char>& counts = evidence.counts[evidence.pattern_levels.front()];
     const PatternSums same = pattern_sums(evidence, evidence.dark_pattern, &counts, without_tile);
     const PatternSums flat = flat_sums(0);
@@ -240,8 +240,8 @@ double drift_variance(const FlatFieldStack& stack) {
   return std::max(0.0, squares - stack.all.temporal_dn2 / stack.all.pixels) / frames;
 }
 
-/// Of the line of dark levels over exposure, from each set's own error, and from their scatter where three or more
-/// show it.
+/// Errors of the line of dark levels over exposure, from each set's own error, and from their scatter if there are
+/// three or more sets.
 void dark_line(const Evidence& evidence, const PhotonNumbers& numbers, const std::vector<double>& variance,
                SharedErrors& errors) {
   const auto sets = static_cast<double>(variance.size());
@@ -289,7 +289,7 @@ SharedErrors shared_errors(const Evidence& evidence, const PhotonNumbers& number
     errors.gain_variance += square(sensitivity.gain[i]) * rounding;
     errors.intercept_variance += square(sensitivity.intercept[i]) * rounding;
   }
-  // Without the dark frames' variance the line is carried on to their mean, which may be off.
+  // Without the dark frames' variance the line is extrapolated to their mean, which may be off.
   if (evidence.dark_weight == 0.0) errors.intercept_variance += square(numbers.gain * errors.offset_dn);
   return errors;
 }

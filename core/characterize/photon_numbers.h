@@ -16,20 +16,19 @@ inline double square(double value) {
   return value * value;
 }
 
-/// Variance of rounding to whole codes.
+/// Variance of rounding to integer codes.
 inline constexpr double kQuantisation = 1.0 / 12.0;
 
-/// Dark noise up to this cannot be distinguished from rounding: EMVA standard 1288 asks for a variance of 0.24 DN²,
-/// with the 1/12.
+/// Dark noise up to this cannot be distinguished from rounding: EMVA standard 1288 requires a variance of 0.24 DN²,
+/// including the 1/12.
 inline constexpr double kHiddenNoise_dn = 0.40;
 
-/// What rounding can do to a variance beyond adding 1/12: the amplitude of the first harmonic over where the mean lies
-/// between two codes, (4 s² + 1/pi²) exp(-2 pi² spread²), for normal noise of variance s², averaged over pixels whose
-/// means scatter so that all samples together have the variance spread² (both without the 1/12).
+/// The effect of rounding on a variance beyond adding 1/12: the amplitude of the first harmonic in the position of the
+/// mean between two codes, (4 s² + 1/pi²) exp(-2 pi² spread²), for normal noise of variance s², averaged over pixels
+/// whose means scatter such that all samples together have the variance spread² (both without the 1/12).
 double rounding_of_variance(double variance_dn2, double spread_dn2);
 
-/// Standard deviation of the error of a mean by rounding, the phase unknown: from 0.289 DN without noise down to
-/// nothing.
+/// Standard deviation of the rounding error of a mean for unknown phase: from 0.289 DN without noise down to zero.
 double rounding_of_mean(double spread_dn2);
 
 /// Everything that the numbers depend on. Choices are frozen here, so that the jackknife does not change them.
@@ -42,7 +41,7 @@ struct Evidence {
   std::vector<double> weight;             ///< of each level in the line, 1/DN⁴; 0: not used
   double dark_weight = 0.0;
 
-  bool read_noise_from_dark = false;  ///< else from the line's intercept
+  bool read_noise_from_dark = false;  ///< otherwise from the line's intercept
 
   Saturation saturation;
 
@@ -68,7 +67,7 @@ struct PhotonNumbers {
   double dsnu_squared_e2 = kNone;
 };
 
-/// One level as a point of the diagram, over the cells that count and are not of the tile left out.
+/// One level as a point of the diagram, over the cells that count, without the tile that is left out.
 struct LevelPoint {
   double pixels = 0.0;
   double mean_dn = 0.0;
@@ -77,7 +76,7 @@ struct LevelPoint {
 };
 LevelPoint level_point(const Evidence& evidence, std::size_t level, std::optional<std::size_t> without_tile);
 
-/// How the line's parameters follow each point (derivatives), for errors that are common to a level.
+/// Derivatives of the line's parameters by each point, for errors common to a level.
 struct LineSensitivity {
   std::vector<double> gain;  ///< one for each level, then the dark point
   std::vector<double> intercept;
@@ -90,7 +89,7 @@ PhotonNumbers photon_numbers(const Evidence& evidence, std::optional<std::size_t
 PhotonNumbers jackknife_sd(const Evidence& evidence, std::size_t tiles);
 
 /// Errors common to all tiles of the images, which the jackknife over tiles cannot see: the drift of the dark level
-/// from frame to frame and from set to set, and what rounding to whole codes hides.
+/// from frame to frame and from set to set, and what rounding to integer codes hides.
 struct SharedErrors {
   double offset_dn = 0.0;  ///< standard deviations
   double dark_slope_dn_s = 0.0;
@@ -99,7 +98,7 @@ struct SharedErrors {
 };
 SharedErrors shared_errors(const Evidence& evidence, const PhotonNumbers& numbers);
 
-/// Variance over the pixels and frames of a cell without the rounding's.
+/// Variance over the pixels and frames of a cell, without that of rounding.
 inline double spread_dn2(const FlatFieldStack& stack) {
   return stack.all.total_dn2 - kQuantisation;
 }

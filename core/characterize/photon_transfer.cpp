@@ -13,7 +13,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLeastSignificance = 3.0;  // standard deviations from which on a quantity is not just noise
+constexpr double kLeastSignificance = 3.0;  // standard deviations above which a quantity is not just noise
 
 class Measurer {
  public:
@@ -62,8 +62,8 @@ class Measurer {
  private:
   const FlatFieldStack& dark() const { return evidence_.darks.front(); }
 
-  /// A line that the levels do not follow within their noise is less certain than the jackknife says: all tiles share
-  /// what bends it.
+  /// A line that the levels do not follow within their noise is less certain than the jackknife says: its curvature is
+  /// common to all tiles.
   void widen_by_misfit() {
     const double more = square(quality_.misfit) - 1.0;
     shared_.gain_variance += more * square(sd_.gain);
@@ -95,12 +95,12 @@ class Measurer {
     gain.sd = sd;
   }
 
-  /// The standard deviation of a number that goes with gain^-power, from its jackknife and the gain's shared error.
+  /// The standard deviation of a number that scales as gain^-power, from its jackknife and the gain's shared error.
   double with_gain_error(double value, double sd, double power) const {
     return std::sqrt(square(sd) + square(power * value / numbers_.gain) * shared_.gain_variance);
   }
 
-  /// Neither noise nor pattern of the dark frames is more than the spread of all their codes, and of those within one.
+  /// Neither noise nor pattern of the dark frames exceeds the spread of all their codes plus the width of one code.
   double dark_spread_e() const { return std::sqrt(dark().all.total_dn2 + kQuantisation) / numbers_.gain; }
 
   void read_noise() {
@@ -137,7 +137,7 @@ class Measurer {
       return;
     }
     capacity.value = numbers_.saturation_capacity_e;
-    // The largest variance may lie anywhere between the neighbours of where it was seen.
+    // The largest variance may lie anywhere between the neighbours of the observed maximum.
     capacity.sd = std::hypot(with_gain_error(*capacity.value, sd_.saturation_capacity_e, 1.0),
                              evidence_.saturation.peak->step_dn / std::sqrt(12.0) / numbers_.gain);
     capacity.how = "the level of largest variance, known to within the steps between levels";
@@ -191,8 +191,8 @@ class Measurer {
     if (*signal.value < kLeastSignificance * signal.sd) signal.how = "not significant";
   }
 
-  /// A pattern's standard deviation from its variance; a limit where it does not stand out of its error. `most` is an
-  /// upper limit known by other ways.
+  /// A pattern's standard deviation from its variance; a limit if it does not exceed its error significantly. `most` is
+  /// an upper limit known by other means.
   static void set_pattern(Measured& result, double variance, double sd, double most, const std::string& unit) {
     if (variance > kLeastSignificance * sd) {
       result.value = std::sqrt(variance);
@@ -210,7 +210,7 @@ class Measurer {
           "the dark frames show no pattern above the quantisation, and fewer than 3 levels show one";
       return;
     }
-    // Rounding leaves each dark pixel's mean with an error that looks like a pattern.
+    // Rounding leaves an error in each dark pixel's mean that looks like a pattern.
     const double dark_dn2 = std::max(0.0, dark().all.temporal_dn2 - kQuantisation);
     const double rounding_dn2 = regression ? 0.0 : square(rounding_of_mean(dark_dn2));
     const double light_dn = level_point(evidence_, *gathered_.middle_level, std::nullopt).mean_dn;

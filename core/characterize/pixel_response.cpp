@@ -16,12 +16,13 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kCollapsedVariance = 0.1;     // of its largest: nearly every electron above is cut
-constexpr double kLeastSaturatedShare = 0.2;   // of the image: some tiles more than one, also in small images
+constexpr double kCollapsedVariance = 0.1;     // of its largest: nearly every electron above is lost
+constexpr double kLeastSaturatedShare = 0.2;   // of the image: a few tiles, even in small images
 constexpr double kLeastShareAtLargest = 0.05;  // of the samples at the largest code: the output is clipped there
 constexpr double kPeakBinWidth = 0.02;         // of saturation
 constexpr double kLeastPeakPixels = 0.02;      // of the image: enough that a bin's variance is not off by chance
-constexpr double kFallenVariance = 0.7;        // of its largest, where light rises on: more than noise and shading do
+constexpr double kFallenVariance = 0.7;        // of its largest, while the light still rises: more than noise and
+                                               // shading cause
 
 /// The level with the largest value of `variance_dn2(level)`.
 template <typename Variance>
@@ -58,7 +59,8 @@ Plateau plateau_at(const FlatFieldStack& dark, const std::vector<FlatFieldStack>
   return plateau;
 }
 
-/// Where the variance is largest, over all cells by their own light, so that shading and colours do not blur it.
+/// The point of largest variance over all cells, each at its own light level, so that shading and colours do not blur
+/// it.
 std::optional<VariancePeak> find_peak(const FlatFieldStack& dark, const std::vector<FlatFieldStack>& flats,
                                       double saturation_dn) {
   struct Bin {
@@ -83,7 +85,7 @@ std::optional<VariancePeak> find_peak(const FlatFieldStack& dark, const std::vec
   const auto peak = std::max_element(bins.begin(), bins.end(),
                                      [&](const auto& a, const auto& b) { return variance(a) < variance(b); });
   if (peak == bins.end()) return std::nullopt;
-  // Chance may have raised any of those that come near it; two frames are the fewest.
+  // Any of the values close to it may be the true maximum, given chance; two frames are the minimum.
   const double error = variance(*peak) * std::sqrt(2.0 / peak->second.pixels);
   const auto near = [&](const auto& bin) { return variance(bin) > variance(*peak) - 3.0 * error; };
   const auto first = std::find_if(bins.begin(), bins.end(), near);
@@ -129,7 +131,7 @@ constexpr double kFewestInCell = 4.0;
 constexpr double kMosaicContrast = 0.05;
 constexpr int kFilterReach = 9;  // half width of box 7, box 11 and binomial 3 in sequence: 3 + 5 + 1
 
-/// Applies `work` to the image, or to each of the four images that a mosaic is made of.
+/// Applies `work` to the image, or to each of the four images of which a mosaic consists.
 cv::Mat by_color(const cv::Mat& image, bool mosaic, const std::function<cv::Mat(const cv::Mat&)>& work) {
   if (!mosaic) return work(image);
   cv::Mat result(image.size(), CV_32F);
@@ -157,7 +159,7 @@ cv::Mat high_pass(const cv::Mat& image) {
   return image - smooth;
 }
 
-/// Part of a white pattern's variance that the filter leaves: the sum of the squares of its answer to one bright pixel.
+/// Fraction of a white pattern's variance that the filter leaves: the sum of the squares of its impulse response.
 double white_part() {
   constexpr int kMiddle = 2 * kFilterReach;
   cv::Mat impulse(2 * kMiddle + 1, 2 * kMiddle + 1, CV_32F, cv::Scalar(0));
@@ -176,7 +178,7 @@ struct CellSquares {
 CellSquares squares(const cv::Mat& image, const TileGrid& grid, const cv::Mat& mask, bool mosaic) {
   cv::Mat filled = image.clone();
   if (!mask.empty()) neighbourhood_median(image, mosaic).copyTo(filled, mask == 0);
-  filled -= cv::mean(filled)[0];  // near zero single precision keeps more digits
+  filled -= cv::mean(filled)[0];  // single precision keeps more digits near zero
   const cv::Mat pattern = by_color(filled, mosaic, high_pass);
   const int reach = mosaic ? 2 * kFilterReach : kFilterReach;
   const cv::Rect inside =

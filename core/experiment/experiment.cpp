@@ -81,7 +81,7 @@ ScaleSetup read_scale(const TomlTable& table) {
   const double length_px = std::hypot(to[0] - from[0], to[1] - from[1]);
   if (length_px == 0.0) table.reject("to_px", "the same point as from_px", "another point");
   setup.px_per_m = length_px / length_m;
-  // Both ends are read off the image to one pixel; a value that is given counts instead.
+  // Both ends are read off the image to one pixel; a given value counts instead.
   setup.px_per_m_sd = table.has("px_per_m_sd") ? sd : std::numbers::sqrt2 / length_m;
   return setup;
 }
@@ -160,7 +160,7 @@ ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
     clip.track = folder.file(table, "track");
     clip.column = table.maybe_text("column").value_or("");
     if (table.has("file"))
-      clip.file = folder.folder / table.text("file");  // an error already; the sections are asked for
+      clip.file = folder.folder / table.text("file");  // already an error; the missing sections are reported
   } else {
     clip.file = folder.file(table, "file", true);
   }
@@ -197,7 +197,7 @@ bool stated_by_all_groups(const Experiment& experiment, bool only_images, bool (
   });
 }
 
-/// The sections that clips of images cannot do without.
+/// Checks the sections that clips with images require.
 void check_sections(const Experiment& experiment, const TomlTable& root) {
   if (experiment.calibration && experiment.scale) {
     root.reject("scale", "a table [scale] and a table [calibration]", "one of the two");
@@ -235,7 +235,7 @@ void check_downhill(const Experiment& experiment, const TomlTable& root, const s
       "\"+X\" or \"-X\", along the pattern's longer row (\"+Y\" and \"-Y\" need [scale], or a Tracker project)");
 }
 
-/// The first thing that goes wrong in a first hour: no folder, another one, or a file of it.
+/// The most common mistake of a new user: no folder, a wrong one, or a file inside it.
 void check_folder(const fs::path& path) {
   const std::string wanted = "a folder with an experiment.toml (glidelab new FOLDER makes one that explains every key)";
   const auto refuse = [&](const std::string& found, const std::string& expected) {
@@ -288,8 +288,8 @@ Experiment read_experiment(const fs::path& path, Permissions permitted) {
   check_names(experiment.clips, clip_tables, experiment.groups, group_tables);
   check_readings(experiment.clips, clip_tables);
 
-  // A group may have its own downhill; [track] is needed where one that has images has not. A file of positions says by
-  // itself which way is which.
+  // A group may have its own downhill; [track] is needed if a group with images has none. A file of positions defines
+  // its own direction.
   const auto track = root.maybe_table("track");
   if (track) experiment.track.length_m = track->maybe_number("length_m", base::above(0.0));
   if (track && track->has("downhill")) {

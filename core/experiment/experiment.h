@@ -1,8 +1,8 @@
-/// The experiment as it is given, as plain data: the folder that a person with a track, a glider and a camera has on
-/// disk, or a track's file on its own.
+/// The experiment as given, as plain data: the folder of a user with a track, a glider and a camera, or a track file on
+/// its own.
 ///
 /// The form of experiment.toml is a contract with other programs (experiment_template.h explains its keys). Angles are
-/// converted to radians where the file is read; every length is in metres, every time in seconds.
+/// converted to radians when the file is read; every length is in metres, every time in seconds.
 #pragma once
 
 #include <array>
@@ -19,19 +19,19 @@ namespace glidelab::core {
 enum class Shutter { global, rolling };
 enum class TimeSource { rate, container };
 
-/// What the camera was told to do, or what its data sheet says.
+/// The camera's settings, or the values of its data sheet.
 struct CameraSettings {
   double frame_rate_hz = 0.0;
   std::optional<double> exposure_s;
   Shutter shutter = Shutter::global;
   double line_readout_s = 0.0;    ///< rolling: time from one row to the next
-  bool bottom_row_first = false;  ///< rolling: the image's bottom row is read first; else its top row
+  bool bottom_row_first = false;  ///< rolling: the image's bottom row is read first; otherwise its top row
   int bit_depth = 8;
   TimeSource time = TimeSource::rate;
-  std::size_t most_pixels = kMostPixels;  ///< of one of its images: a larger one is refused
+  std::size_t most_pixels = kMostPixels;  ///< in one of its images: a larger one is refused
 };
 
-/// Of a chessboard, in inner corners.
+/// Size of a chessboard, in inner corners.
 struct BoardSize {
   int columns = 0, rows = 0;
   bool operator==(const BoardSize&) const = default;
@@ -52,13 +52,14 @@ struct ScaleSetup {
 
 struct MarkerSetup {
   double diameter_m = 0.0;
-  double height_m = 0.0;                                  ///< of its centre off the pattern's plane, towards the camera
+  double height_m = 0.0;                                  ///< of its centre above the pattern's plane, towards the
+                                                          ///< camera
   std::optional<std::array<unsigned char, 3>> color_bgr;  ///< blue, green, red
   std::optional<PixelPoint> start_px;
 };
 
 struct TrackSetup {
-  std::optional<Downhill> downhill;  ///< of all groups that state none; a folder of tracks may leave it out
+  std::optional<Downhill> downhill;  ///< for all groups that state none; a folder of tracks may leave it out
   std::optional<double> length_m;
 };
 
@@ -79,20 +80,20 @@ struct Experiment {
   std::optional<std::filesystem::path> lines;  ///< a table of fitted lines instead of clips
 };
 
-/// Reads and checks `folder`/experiment.toml. InputError with all that is wrong: missing, misspelt, mistyped, out of
-/// range, files that are not there, clips that need a section which is missing, names used twice.
+/// Reads and checks `folder`/experiment.toml. InputError with all errors: keys that are missing, misspelt, of wrong
+/// type or out of range, files that do not exist, clips that need a missing section, names used twice.
 Experiment read_experiment(const std::filesystem::path& folder, Permissions permitted = {});
 
 /// The table of a group, or null if the file has none.
 const GroupSetup* group_of(const Experiment& experiment, const std::string& name);
 
-/// Which direction is down, of a group or else of [track]; nothing where neither states it.
+/// Which direction is down, from the group or else from [track]; empty if neither states it.
 std::optional<Downhill> downhill_of(const Experiment& experiment, const std::string& group);
 
-/// InputError where there is neither a clip nor a track: a table of lines is for `glidelab diagnose`.
+/// InputError if there is neither a clip nor a track: a table of lines is for `glidelab diagnose`.
 void require_clips(const Experiment& experiment);
 
-/// Of one of its images, as permitted where it was read.
+/// The largest number of pixels of one of its images, as permitted when it was read.
 std::size_t most_pixels_of(const Experiment& experiment);
 
 }  // namespace glidelab::core

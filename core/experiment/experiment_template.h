@@ -1,8 +1,8 @@
 /// The files of a new experiment folder: an experiment.toml that explains every key, and a short README.
 ///
 /// The folder's form is a contract with other programs (core/experiment/experiment.h reads it). Keys that a first
-/// experiment can do without stand as comments "#key = value"; taking the # away makes each of them count (a test does
-/// so one by one).
+/// experiment does not need appear as comments "#key = value"; removing the # activates each of them (a test does so
+/// one by one).
 #pragma once
 
 #include <string>

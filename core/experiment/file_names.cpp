@@ -52,7 +52,7 @@ std::string lower_extension(const std::filesystem::path& file) {
 namespace fs = std::filesystem;
 namespace {
 
-/// The name without detours, or nothing where it is recorded as an error.
+/// The normalised name; if an error is recorded, empty.
 std::optional<std::string> name_within(const base::TomlTable& table, std::string_view key, OutsideFiles outside) {
   const std::string name = table.text(key);
   if (name.empty()) return std::nullopt;
@@ -94,7 +94,7 @@ fs::path FolderFiles::file(const base::TomlTable& table, std::string_view key, b
 }
 
 std::vector<fs::path> files_matching(const fs::path& folder, std::string_view pattern) {
-  std::error_code ignored;  // what cannot be looked at does not match
+  std::error_code ignored;  // what cannot be read does not match
   const fs::path relative{std::string(pattern)};
   if (fs::is_regular_file(folder / relative, ignored)) return {folder / relative};
   std::vector<fs::path> found{relative.is_absolute() ? relative.root_path() : folder};

@@ -1,4 +1,4 @@
-/// Names of files: as people give and number them, and as experiment.toml may state them.
+/// File names: how users write and number them, and how experiment.toml may state them.
 #pragma once
 
 #include <filesystem>
@@ -11,27 +11,27 @@
 
 namespace glidelab::core {
 
-/// Orders names as people number files: "2.png" before "10.png".
+/// Orders numbered files naturally: "2.png" before "10.png".
 bool natural_less(const std::string& a, const std::string& b);
 
 /// Letters in lower case (ASCII only).
 std::string lower(std::string_view text);
 
-/// ".png" of "IMG_1.PNG"; empty where the name has no ending.
+/// ".png" for "IMG_1.PNG"; empty if the name has no extension.
 std::string lower_extension(const std::filesystem::path& file);
 
-/// The files that experiment.toml names, and where they may lie.
+/// The files that experiment.toml names, and where they may be.
 ///
-/// A name counts from the folder and is taken as it is written (a/../b is b). One that leaves the folder, or that is
-/// absolute, is refused unless the person who runs the program allows it: a folder that came from elsewhere cannot make
-/// the program open what is not in it. A symbolic link in the folder is followed: whoever put it there asked for it.
+/// A name is relative to the folder and is resolved lexically (a/../b is b). A name that leaves the folder, or that is
+/// absolute, is refused unless the user who runs the program allows it: a folder from elsewhere cannot make the program
+/// open files outside it. A symbolic link in the folder is followed: it was put there on purpose.
 struct FolderFiles {
   std::filesystem::path folder;
   OutsideFiles outside = OutsideFiles::refused;
 
-  /// The files that a key with wildcards names; at least one, else that is recorded as an error of the key.
+  /// The files that a key with wildcards names; if there is none, an error of the key is recorded.
   std::vector<std::filesystem::path> files(const base::TomlTable& table, std::string_view key) const;
-  /// The one file that a key names, or where `or_folder` the folder of frames; that it exists is checked.
+  /// The one file that a key names or, if `or_folder`, the folder of frames; its existence is checked.
   std::filesystem::path file(const base::TomlTable& table, std::string_view key, bool or_folder = false) const;
 };
 

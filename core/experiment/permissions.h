@@ -1,4 +1,4 @@
-/// What the person who runs the program permits: an experiment folder may come from a stranger.
+/// What the user who runs the program permits: an experiment folder may come from a stranger.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@ namespace glidelab::core {
 /// Whether an experiment folder may name files outside itself.
 enum class OutsideFiles { refused, allowed };
 
-/// Of an image or a frame of a clip, where nothing else is permitted: more than any camera of today takes at once for
-/// film, and 0.6 GB at 16 bits and three channels.
+/// Largest number of pixels of an image or a frame of a clip, unless more is permitted: more than any present film
+/// camera records, and 0.6 GB at 16 bits and three channels.
 inline constexpr std::size_t kMostPixels = 100'000'000;
 
 struct Permissions {

@@ -71,7 +71,7 @@ Eigen::VectorXd damped_step(const Eigen::Ref<const Eigen::MatrixXd>& jtj, const 
 }
 
 std::optional<Eigen::MatrixXd> inverse_of_equations(const Eigen::Ref<const Eigen::MatrixXd>& jtj) {
-  // What has no inverse, as FullPivLU says it: of a matrix without negative eigenvalues both take the same pivots.
+  // Singularity as judged by FullPivLU: for a matrix without negative eigenvalues both choose the same pivots.
   const Eigen::LDLT<Eigen::MatrixXd> factor(jtj);
   const auto pivots = factor.vectorD().cwiseAbs();
   const auto size = static_cast<double>(jtj.rows());

@@ -1,5 +1,5 @@
-/// Least squares without and with iteration: a line by its sums, orthogonal polynomials, and Levenberg and Marquardt's
-/// method for small dense problems.
+/// Linear and nonlinear least squares: a line by its sums, orthogonal polynomials, and the Levenberg-Marquardt method
+/// for small dense problems.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,7 +34,7 @@ struct LineSums {
     xy += weight * at * value;
   }
   double determinant() const { return w * xx - x * x; }
-  /// Where all x are alike rounding alone leaves D of about 1e-16 of W Sxx; `least` of that is asked for.
+  /// If all x are equal, rounding alone leaves D at about 1e-16 of W Sxx; D must exceed the fraction `least` of W Sxx.
   bool is_regular(double least) const { return determinant() > least * w * xx; }
   double slope() const { return (w * xy - x * y) / determinant(); }
   double intercept() const { return (xx * y - x * xy) / determinant(); }
@@ -52,11 +52,11 @@ class PairCorrelation {
     xy_ += dx * (y - mean_y_);
     yy_ += dy * (y - mean_y_);
   }
-  /// As many y as x.
+  /// x and y have the same length.
   void add(std::span<const double> x, std::span<const double> y) {
     for (std::size_t i = 0; i < x.size(); ++i) add(x[i], y[i]);
   }
-  /// 0 where all x or all y are one.
+  /// 0 if all x or all y are equal.
   double squared() const { return xx_ > 0.0 && yy_ > 0.0 ? xy_ * xy_ / (xx_ * yy_) : 0.0; }
 
  private:
@@ -68,11 +68,11 @@ class PairCorrelation {
 ///     p_0 = 1,   p_(k+1)(u) = (u - alpha_k) p_k(u) - beta_k p_(k-1)(u)
 ///     alpha_k = sum K u p_k^2 / N_k,   beta_k = N_k / N_(k-1),   N_k = sum K p_k^2
 ///
-/// The weighted fit of values y is  sum_k c_k p_k,  c_k = sum K p_k y / N_k; the c_k of white noise of unit variance
-/// and K = 1 are independent, of variance 1 / N_k. u is best scaled to about 1.
+/// The weighted fit of values y is sum_k c_k p_k, c_k = sum K p_k y / N_k; for white noise of unit variance and K = 1
+/// the c_k are independent, of variance 1 / N_k. u is best scaled to about 1.
 class OrthogonalPolynomials {
  public:
-  /// Nothing where the points carry no polynomial of the order: a norm below 1e-11 of that of the power u^k.
+  /// Empty if the points do not determine a polynomial of this order: a norm below 1e-11 of that of the power u^k.
   static std::optional<OrthogonalPolynomials> make(int order, std::span<const double> u,
                                                    std::span<const double> weights);
 
@@ -94,7 +94,7 @@ template <int N>
 struct NormalEquations {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
-  Matrix jtj = Matrix::Zero();  ///< whole once complete() was called; its lower half until then
+  Matrix jtj = Matrix::Zero();  ///< complete after complete(); only the lower half before
   Vector jtr = Vector::Zero();
   double cost = 0.0;    ///< sum of w r^2
   double weight = 0.0;  ///< sum of w
@@ -111,36 +111,36 @@ struct NormalEquations {
   void complete() { jtj.template triangularView<Eigen::StrictlyUpper>() = jtj.transpose(); }
 };
 
-/// The step -(J^T W J + D)^-1 J^T W r, D a part `damping` of the diagonal and 1e-12 of its largest: of any size,
-/// compiled once.
+/// The step -(J^T W J + D)^-1 J^T W r, where D is the fraction `damping` of the diagonal plus 1e-12 of its largest
+/// element: for any size, compiled once.
 Eigen::VectorXd damped_step(const Eigen::Ref<const Eigen::MatrixXd>& jtj, const Eigen::Ref<const Eigen::VectorXd>& jtr,
                             double damping);
 
-/// (J^T W J)^-1; nothing where it has none to rounding.
+/// (J^T W J)^-1; empty if it is singular within rounding.
 std::optional<Eigen::MatrixXd> inverse_of_equations(const Eigen::Ref<const Eigen::MatrixXd>& jtj);
 
 template <int N>
 struct LeastSquaresFit {
   Eigen::Matrix<double, N, 1> parameters;
-  Eigen::Matrix<double, N, 1> evaluated_at;  ///< where J was taken: there, or the last small step before
+  Eigen::Matrix<double, N, 1> evaluated_at;  ///< where J was evaluated: at the result, or before the last small step
   Eigen::Matrix<double, N, N> covariance;    ///< (J^T W J)^-1 times the residual variance
   double rms = 0.0;                          ///< sqrt(cost / (weight - N)): the residual standard deviation
   int iterations = 0;
   base::FitStop stop = base::FitStop::iterations;
 };
 
-/// Levenberg and Marquardt's method for small dense problems: it minimises sum_i w_i r_i(p)^2 over N parameters.
+/// The Levenberg-Marquardt method for small dense problems: it minimises sum_i w_i r_i(p)^2 over N parameters.
 ///
 /// The caller evaluates residuals and their analytic Jacobian and adds them to the normal equations one by one, so that
 /// nothing of the size of the data is stored. Units are the caller's. The loop is that of
 /// base/math/levenberg_marquardt.h. It stops when a step changes every parameter by less than its `step` (an absolute
-/// measure, one for each parameter), or changes the cost by less than 1e-7 of itself (with n data that is a step of
-/// sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels). So small a step is taken without another
-/// evaluation where it is hardly damped: the cost after it is that of the linear residuals.
+/// measure, one for each parameter), or changes the cost by less than a fraction 1e-7 (with n data this is a step of
+/// sqrt(1e-7 n) standard deviations: a hundredth for a thousand pixels). Such a small step is taken without another
+/// evaluation if it is hardly damped: the cost after it is that of the linear residuals.
 ///
-/// `evaluate(p)` gives the NormalEquations at p, or nothing where p is outside the model's range (the step is then
-/// shortened). A residual is model minus datum. `is_hopeless(fit, equations)` is asked before each step, with the
-/// parameters and iterations so far, and ends the fit. The fit is singular where J^T W J has no inverse at its end.
+/// `evaluate(p)` returns the NormalEquations at p, or an empty value if p is outside the model's range (the step is
+/// then shortened). A residual is model minus datum. `is_hopeless(fit, equations)` is called before each step, with the
+/// parameters and iterations so far; true ends the fit. The fit is singular if J^T W J has no inverse at its end.
 template <int N, class Evaluate, class IsHopeless>
 LeastSquaresFit<N> fit_least_squares(const Evaluate& evaluate, const Eigen::Matrix<double, N, 1>& start,
                                      const Eigen::Matrix<double, N, 1>& step, int max_iterations,

@@ -11,17 +11,17 @@
 
 namespace glidelab::core {
 
-/// The longest step between two times of one clip, in median steps: 1000 s at 100 Hz. Smoothing looks at the clip as
-/// at a series of such steps, and a longer gap is one between two recordings, or a time that is wrong.
+/// The longest step between two times of one clip, in median steps: 1000 s at 100 Hz. Smoothing treats the clip as a
+/// series of such steps; a longer gap separates two recordings or is due to a wrong time.
 inline constexpr double kLongestGapSteps = 1e5;
 
 struct TimeGap {
-  std::size_t after = 0;  ///< index of the time behind it
+  std::size_t after = 0;  ///< index of the time after it
   double gap_s = 0.0;
-  double longest_s = 0.0;  ///< that is allowed
+  double longest_s = 0.0;  ///< the longest allowed
 };
 
-/// The first gap that is too long; nothing where there is none. Times rise.
+/// The first gap that is too long; empty if there is none. Times rise.
 inline std::optional<TimeGap> too_long_gap(std::span<const double> t_s) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);

@@ -69,7 +69,7 @@ std::vector<MotionPoint> frames_of(const SmoothedClip& clip, std::vector<MotionP
   const TrackData& track = clip.track;
   const std::vector<std::size_t>& point = clip.motion.point;
   for (MotionPoint& frame : frames) frame.left_out = LeftOut::no_marker;
-  for (const std::size_t f : track.frame) frames[f].left_out = LeftOut::outlier;  // unless it is among the kept
+  for (const std::size_t f : track.frame) frames[f].left_out = LeftOut::outlier;  // unless it is among those kept
   for (std::size_t i = 0; i < track.force_n.size(); ++i) frames[track.frame[i]].applied_n = track.force_n[i];
   for (std::size_t i = 0; i < point.size(); ++i) frames[track.frame[point[i]]].left_out = clip.free.reason[i];
   for (const StretchPoint& of : clip.points) frames[track.frame[point[of.point]]].left_out = of.left_out;
@@ -112,7 +112,7 @@ std::vector<Stretch> used_stretches(const SmoothedClip& clip) {
 
 namespace {
 
-/// Replaces the clip's lines by generalised ones, which may exist where the others do not, and the other way round.
+/// Replaces the clip's lines by generalised ones. Either kind may exist where the other does not.
 void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput input, ClipResult& clip) {
   const std::vector<FreePiece> pieces = free_pieces(motion, free, input.bandwidth_s, input.autocovariance);
   const std::vector<LineFit> ordinary = std::exchange(clip.segments, {});
@@ -123,7 +123,7 @@ void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput inp
     auto line = fit_line_gls(direction, motion, pieces, input);
     if (line) {
       clip.notes.emplace_back(GeneralisedLine{direction, line->points});
-      if (start != ordinary.end()) line->r2 = start->r2;  // of the diagram as it is shown
+      if (start != ordinary.end()) line->r2 = start->r2;  // of the diagram as shown
       clip.segments.push_back(std::move(*line));
     } else if (start != ordinary.end()) {
       clip.notes.emplace_back(NoGeneralisedLine{direction});
@@ -131,7 +131,7 @@ void generalise_lines(const Motion& motion, const FreeMotion& free, GlsInput inp
   }
 }
 
-/// v_lim of the lines with their kernel's bias taken off.
+/// v_lim from the lines with the kernel's bias subtracted.
 Quantity recovered_limit(const std::vector<LineFit>& lines) {
   std::vector<LineFit> straight;
   for (const LineFit& line : lines) straight.push_back(without_law_bias(line));
@@ -145,7 +145,7 @@ Quantity recovered_limit(const std::vector<LineFit>& lines) {
   return limit;
 }
 
-/// A rule sees y, which is x without the known force's part, in the stretches that count.
+/// A rule sees y (x without the known force's part) in the stretches that count.
 BandwidthChoice by_rule(const std::string& name, const Motion& motion, const FreeMotion& free,
                         const PositionNoise& noise) {
   BandwidthProblem problem;
@@ -163,7 +163,7 @@ BandwidthChoice by_rule(const std::string& name, const Motion& motion, const Fre
   return {free.pilot_bandwidth_s, "that of the first smoothing: the motion is too short for the rule " + name, 0.0};
 }
 
-/// InputError where the bandwidth that is given smooths more than the clip.
+/// InputError if the given bandwidth smooths over more than the clip.
 void check_bandwidth(const MotionOptions& options, const std::string& clip, const Motion& motion) {
   if (!options.bandwidth_s || motion.t_s.empty()) return;
   const double duration_s = motion.t_s.back() - motion.t_s.front();
@@ -173,7 +173,7 @@ void check_bandwidth(const MotionOptions& options, const std::string& clip, cons
                                      fmt::format("at most {:.6g} s, what the clip lasts", duration_s)});
 }
 
-/// That of the options, or as they have it chosen.
+/// The bandwidth given in the options, or chosen by their rule.
 BandwidthChoice bandwidth_of(const Motion& motion, const FreeMotion& free, const MotionOptions& options) {
   if (options.bandwidth_s) return {*options.bandwidth_s, "given", 0.0};
   const PositionNoise noise = noise_at(motion, free.stretches, free.pilot_bandwidth_s);
@@ -181,14 +181,14 @@ BandwidthChoice bandwidth_of(const Motion& motion, const FreeMotion& free, const
                                         : by_rule(options.bandwidth_rule, motion, free, noise);
 }
 
-/// What the lines of a clip rest on beside its points.
+/// What the lines of a clip rest on besides its points.
 struct LineWeights {
   std::vector<double> law_m_s2;  ///< f(v(t)) of the first smoothing
   std::vector<double> factors;   ///< of each point's noise; empty: all 1
 };
 
-/// The line of each direction that has one, by least squares. The smoothing's bias under the line's own law is known
-/// where a stretch is smoothed with its own points alone.
+/// The line of each direction that has one, by least squares. The smoothing's bias under the line's own law is known if
+/// a stretch is smoothed with its own points alone.
 std::vector<LineFit> ordinary_lines(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights,
                                     const SmoothedWhole* whole) {
   const std::vector<double> bias =
@@ -228,7 +228,7 @@ std::vector<LostFrames> lost_frames(const TrackData& track, double mass_kg) {
   return find_lost_frames(track, motion_of(track, mass_kg));
 }
 
-/// start_s and end_s are by the file's times.
+/// start_s and end_s refer to the file's times.
 ClipSetup later(ClipSetup setup, const std::vector<LostFrames>& lost, double step_s) {
   if (setup.start_s) setup.start_s = core::put_right(*setup.start_s, lost, step_s);
   if (setup.end_s) setup.end_s = core::put_right(*setup.end_s, lost, step_s);

@@ -1,6 +1,6 @@
 /// The motion of one clip, from x(t) to the friction law: smoothing, the free parts of the motion, lines in a(v), and
-/// mu and alpha from their intercepts; and the clip frame by frame as it is reported, with the fate of each frame and
-/// the stretches that are used.
+/// mu and alpha from their intercepts; and the report of the clip frame by frame, with the fate of each frame and the
+/// stretches used.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@
 
 namespace glidelab::core {
 
-/// What is known of a clip once its points are smoothed.
+/// What is known about a clip once its points are smoothed.
 struct SmoothedClip {
   const TrackData& track;
   const Motion& motion;  ///< of the track, without its outliers
@@ -28,22 +28,22 @@ struct SmoothedClip {
   double mass_kg = 0.0;
 };
 
-/// Every frame of the clip, smoothed with the points of its own stretch, or of what lies between two of them, and the
-/// reason where it does not count.
+/// Every frame of the clip, smoothed with the points of its own stretch or of the gap between two stretches, and the
+/// reason if it does not count.
 std::vector<MotionPoint> frames_of(const SmoothedClip& clip);
-/// The same for frames that are smoothed already.
+/// The same for frames that are already smoothed.
 std::vector<MotionPoint> frames_of(const SmoothedClip& clip, std::vector<MotionPoint> smoothed);
 
-/// The track's shared errors, of every frame; 0 without a marker.
+/// The track's shared errors at every frame; 0 without a marker.
 std::vector<std::vector<double>> shared_of_frames(const TrackData& track);
 
-/// Frames in a row that are left out for one reason.
+/// Consecutive frames left out for the same reason.
 std::vector<LeftOutInterval> intervals_of(const std::vector<MotionPoint>& frames);
 
-/// The stretches that have points that count.
+/// The stretches with points that count.
 std::vector<Stretch> used_stretches(const SmoothedClip& clip);
 
-/// Whether times are corrected for the frames that the motion shows to be lost (lost_frames.h).
+/// Whether times are corrected for lost frames that the motion reveals (lost_frames.h).
 enum class LostFrameTimes { put_right, kept };
 
 struct MotionOptions {
@@ -54,12 +54,13 @@ struct MotionOptions {
   std::string smoother = "local-polynomial";  ///< a name of smoother.h (asserted)
 };
 
-/// InputError for an unknown smoother, and for a smoother without a bandwidth together with what needs one: a
-/// bandwidth, a rule that chooses one, generalised lines.
+/// InputError for an unknown smoother, and if a smoother without a bandwidth is combined with an option that needs one:
+/// a bandwidth, a rule that chooses one, generalised lines.
 void check_smoothing(const MotionOptions& options);
 
 /// Smooths one clip's x(t), decides which points count, and fits a line for v < 0 and v
-/// > 0. A given bandwidth is used (InputError: longer than the clip); otherwise the rule named, or choose_bandwidth().
+/// > 0. A given bandwidth is used (InputError if it is longer than the clip); otherwise the named rule or
+/// choose_bandwidth() chooses it.
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 
 }  // namespace glidelab::core

@@ -1,4 +1,4 @@
-/// All clips of one analysis, once their x(t) is known: each by itself, then joined by configuration.
+/// All clips of one analysis, once their x(t) is known: each on its own, then joined by configuration.
 #pragma once
 
 #include <vector>

@@ -18,20 +18,21 @@ namespace glidelab::core {
 namespace {
 
 constexpr Eigen::Index kWaves = 8, kTerms = kWaves + 1;  // down to a quarter of a pixel
-constexpr double kHeld_px = 0.05;                        // a frame, below which a marker is held
-// r: H.264 by x264 at 1 to 2 bits a pixel gives 0.3 to 0.5, and more where it saves more. One standard deviation to
+constexpr double kHeld_px = 0.05;                        // per frame; a slower marker is held
+// r: H.264 by x264 at 1 to 2 bits a pixel gives 0.3 to 0.5, and more when it compresses more. One standard deviation to
 // each side.
 constexpr std::array<double, 3> kHandedOn{0.3, 0.5, 0.7};
 constexpr std::size_t kLeastHanded = 0, kUsualHanded = 1, kMostHanded = 2;
-constexpr double kLeastWay_px = 2.0;  // of a marker that moves
+constexpr double kLeastWay_px = 2.0;  // least distance of a marker that moves
 constexpr double kFewestPoints = 60.0;
-constexpr std::size_t kNeighbours = 3;  // frames to each side, from which a displacement is found
+constexpr std::size_t kNeighbours = 3;  // frames to each side that determine a displacement
 constexpr int kPasses = 200;            // of expectation maximisation
-constexpr double kLeast_px = 1e-7;      // p; below it is none
-// Of H.264 at 1 to 2 bits a pixel, grey and behind a mosaic, p is 0.014 to 0.02. That counts as much as four waves.
+constexpr double kLeast_px = 1e-7;      // p; below it there is no drag
+// For H.264 at 1 to 2 bits per pixel, both grey and behind a colour mosaic, p is 0.014 to 0.02. This knowledge has the
+// weight of four waves.
 constexpr double kExpected_px = 0.02, kExpectedCounts = 4.0;
 
-/// The line along which the marker moves in the image, and how far along it x lies.
+/// The line along which the marker moves in the image, and x as a function of the distance along it.
 struct ImagePath {
   Eigen::Vector2d direction;
   std::vector<double> along_px;
@@ -54,7 +55,7 @@ std::optional<ImagePath> path_of(const TrackData& track) {
   const Eigen::VectorXd along = base::product(place, axes.vectors.col(1));
   const double reach = along.cwiseAbs().maxCoeff();
   if (!(along.maxCoeff() - along.minCoeff() > kLeastWay_px)) return {};
-  // x as a cubic of the place in the image: perspective and distortion are smooth.
+  // x as a cubic of the position in the image: perspective and distortion are smooth.
   constexpr Eigen::Index kCoefficients = 4;
   Eigen::MatrixXd powers(n, kCoefficients);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -71,7 +72,8 @@ std::optional<ImagePath> path_of(const TrackData& track) {
   return path;
 }
 
-/// By the parabola through the point's neighbours in time, or the line where there are few: pixels a frame.
+/// Displacement in pixels per frame, from a parabola through the point's neighbours in time, or from a line if there
+/// are few.
 double displacement(const TrackData& track, const ImagePath& path, std::size_t k) {
   const double here = static_cast<double>(track.frame[k]);
   std::size_t from = k, to = k + 1;
@@ -99,7 +101,7 @@ double displacement(const TrackData& track, const ImagePath& path, std::size_t k
 Eigen::MatrixXd terms_of(const TrackData& track, const ImagePath& path, double handed) {
   Eigen::MatrixXd terms(static_cast<Eigen::Index>(track.x_m.size()), kTerms);
   Eigen::RowVectorXd handed_on;
-  double came_px = 0.0;  // how it last moved
+  double came_px = 0.0;  // its last movement
   for (std::size_t k = 0; k < track.x_m.size(); ++k) {
     const double moved = displacement(track, path, k);
     Eigen::RowVectorXd now(kWaves);
@@ -128,7 +130,7 @@ struct TrackSums {
   double variance = 0.0;  ///< s^2
 };
 
-/// The free motion's positions in parts, and where in the motion they are.
+/// The free motion's positions in parts, and their indices in the motion.
 struct FreePoints {
   SmoothingInput input;
   std::vector<std::size_t> point;
@@ -157,7 +159,7 @@ FreePoints free_points(const Motion& motion, const ClipSetup& setup) {
 template <typename Of>
 using EachHanded = std::array<Of, kHandedOn.size()>;
 
-/// Without freedom where there is no free motion.
+/// Freedom is 0 if there is no free motion.
 EachHanded<TrackSums> sums_of(const ClipSetup& setup, const TrackData& filed,
                               const EachHanded<Eigen::MatrixXd>& terms) {
   EachHanded<TrackSums> sums;
@@ -192,7 +194,7 @@ EachHanded<TrackSums> sums_of(const ClipSetup& setup, const TrackData& filed,
     freedom += 1.0 - weights[static_cast<std::size_t>(i) - row->first];
   }
   const Eigen::MatrixXd all = base::transposed_product(columns, left);
-  const Eigen::MatrixXd even = 0.5 * (all + all.transpose());  // weights that fade are cut off on one side
+  const Eigen::MatrixXd even = 0.5 * (all + all.transpose());  // fading weights are cut off on one side
   for (std::size_t r = 0; r < sums.size(); ++r) {
     const Eigen::Index first = static_cast<Eigen::Index>(r) * kTerms;
     sums[r].terms = even.block(first, first, kTerms, kTerms);
@@ -210,7 +212,7 @@ struct Sizes {
   double log_evidence = 0.0;
 };
 
-/// The likeliest p and s, and the posterior of b and c.
+/// The most likely p and s, and the posterior of b and c.
 Sizes likeliest(std::vector<TrackSums> tracks, bool predicts) {
   Eigen::VectorXd shape(kTerms);
   for (Eigen::Index n = 0; n < kWaves; ++n) shape[n] = 1.0 / static_cast<double>(n + 1);
@@ -296,7 +298,7 @@ std::optional<CodecDrag> find_codec_drag(const std::vector<DragTrack>& tracks, b
   for (Eigen::Index m = 0; m < kTerms; ++m) {
     drag.error_m.push_back(of_tracks(kUsualHanded, std::sqrt(std::max(modes.values[m], 0.0)) * modes.vectors.col(m)));
   }
-  // That of r.
+  // The posterior of r.
   std::vector<std::vector<double>> of_r = of_tracks(kMostHanded, found[kMostHanded].size_px);
   const std::vector<std::vector<double>> least = of_tracks(kLeastHanded, found[kLeastHanded].size_px);
   for (std::size_t i = 0; i < of_r.size(); ++i) {

@@ -22,7 +22,7 @@ struct MemberClip {
   const ClipResult* clip;
 };
 
-/// Whether the clips' lines keep the kernel's bias of a line that follows its own law, or have it taken off
+/// Whether the clips' lines keep the kernel's bias of a line that follows its own law, or have it subtracted
 /// (line_law.h).
 enum class LawBiasIs { kept, taken_off };
 
@@ -63,8 +63,8 @@ std::vector<Part> parts_of(const std::vector<MemberClip>& members, int direction
 }
 
 /// How much more the clips' own lines scatter about the joint one than their uncertainty allows: chi^2 per degree of
-/// freedom, where that is more than chance makes it. (Widening by every chi^2 above 1 makes two right lines'
-/// standard deviation 17 % too large on average.)
+/// freedom, if that exceeds what chance allows. (Widening for every chi^2 above 1 would make the standard deviation of
+/// two correct lines 17 % too large on average.)
 double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
   if (parts.size() < 2) return 1.0;
   double chi2 = 0.0;
@@ -121,7 +121,7 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   joint.parts.var_k = covariance(0, 0);
   joint.parts.var_a0 = covariance(1, 1);
   joint.parts.cov = covariance(0, 1);
-  // Welch and Satterthwaite: degrees of freedom of a sum of variances.
+  // Welch-Satterthwaite: degrees of freedom of a sum of variances.
   joint.parts.degrees = var2_per_degree > 0.0 ? std::max(1.0, var_a0 * var_a0 / var2_per_degree)
                                               : std::numeric_limits<double>::infinity();
   joint.parts.smoothing_k = (inverse * smoothing)[0];
@@ -140,8 +140,8 @@ LineFit join(const std::vector<Part>& parts, int direction) {
 }
 
 /// At most one line for each direction, v < 0 first: least squares through the points of all members. Their noise is
-/// independent, and what they share (LineUncertainty) adds up signed. Lines that scatter about the joint one by more
-/// than their uncertainty allows widen it.
+/// independent; shared errors (LineUncertainty) add up with their signs. If the lines scatter about the joint one by
+/// more than their uncertainty allows, its uncertainty is widened.
 std::vector<LineFit> join_lines(const std::vector<MemberClip>& members, LineMethod lines, LawBiasIs bias) {
   std::vector<LineFit> joined;
   for (const int direction : {-1, 1}) {
@@ -160,10 +160,10 @@ double degrees_of(double rad) {
   return std::round(degrees * 1e9) / 1e9 + 0.0;  // 4, not 4.000000000000001; + 0.0: no -0
 }
 
-/// The mean of the directions' K/m, each weighted by one over its variance. Where the two lie further apart than three
-/// standard deviations, half of the unexplained part is taken as a variance of each direction's own (DerSimonian and
-/// Laird 1986, who add it at any distance; two correct lines would then state 1.2 times their standard deviation on
-/// average): it evens out the weights, and the standard deviation grows with the spread.
+/// The mean of the directions' K/m, each weighted by one over its variance. If the two differ by more than three
+/// standard deviations, half of the unexplained part is taken as an additional variance of each direction. (DerSimonian
+/// and Laird 1986 add it at any distance; two correct lines would then state 1.2 times their standard deviation on
+/// average.) This evens out the weights, and the standard deviation grows with the spread.
 Quantity mean_k(const std::vector<LineFit>& lines) {
   if (lines.empty()) return undetermined("no line: neither direction has enough points that count");
   double between = 0.0;
@@ -247,7 +247,7 @@ void set_correction(const Quantity& as_fitted, Quantity& recovered) {
   recovered.smoothing_correction = recovered.estimate->value - as_fitted.estimate->value;
 }
 
-/// Says so where a line is missing because the motion that it needs went against the stated launch.
+/// Adds a note if a line is missing because the motion that it needs went against the stated launch.
 void tell_launch(const std::vector<MemberClip>& members, ConfigurationResult& result) {
   std::string told, told_of_limit;
   for (const MemberClip& member : members) {

@@ -9,7 +9,8 @@
 
 namespace glidelab::core {
 
-/// The configurations of the clips: those of one mass, stated inclination and group. With lines for both directions
+/// The configurations of the clips: each holds those of one mass, stated inclination and group. With lines for both
+/// directions
 ///
 ///     g sin(alpha) = (a0- + a0+)/2,     mu g cos(alpha) = (a0- - a0+)/2,                                       (13)
 ///

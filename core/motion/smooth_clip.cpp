@@ -10,14 +10,14 @@
 namespace glidelab::core {
 namespace {
 
-/// Points of the motion that a smoother is given, and the frames that it is asked for beside them.
+/// Points of the motion given to a smoother, and the additional frames requested from it.
 struct Gathered {
   SmoothingInput input;
   std::vector<std::size_t> point;  // of the motion
   std::vector<std::size_t> frame;  // of input.at_s
 };
 
-/// Adds the points of a range as a part of its own, or behind a break.
+/// Adds the points of a range as a new part, or after a break.
 void add(const Motion& motion, const PointRange& range, bool goes_on, Gathered& to) {
   if (!to.point.empty()) {
     if (goes_on) {
@@ -33,7 +33,7 @@ void add(const Motion& motion, const PointRange& range, bool goes_on, Gathered& 
   }
 }
 
-/// The frames without a position that counts, which lie within a part.
+/// The frames within a part that have no position that counts.
 void want_other_frames(const TrackData& track, const Motion& motion, const std::vector<MotionPoint>& frames,
                        Gathered& to) {
   std::vector<bool> has_point(frames.size(), false);
@@ -59,11 +59,12 @@ void fill_frame(const SmoothedState& state, double force_a_m_s2, double mass_kg,
   frame.force_n = mass_kg * force_a_m_s2;
 }
 
-/// What of a stretch's ends, or around a gap, is known too badly: the points at its start, at its end, and between.
+/// Leaves out points that are too uncertain, at the ends of a stretch or around a gap: the points at its start, at its
+/// end, and in between.
 void leave_out(const FreeStretch& stretch, double most_sd_m_s2, const std::vector<double>& sd_m_s2, std::size_t from,
                std::vector<StretchPoint>& points) {
   const std::size_t to = points.size();
-  // Where the whole of a is known well beside what it varies over, all of it counts.
+  // If all of a is well known compared with its range, all points count.
   constexpr double kWell = 0.02;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t j = from; j < to; ++j) {
@@ -145,7 +146,7 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
     }
     const SmoothedSeries series = smoother.smooth(gathered->input);
     if (gathered == &of_free) whole.strength = series.strength;
-    // Rows are over the points that the smoother was given; between two parts there may be others.
+    // Rows are over the points given to the smoother; there may be others between two parts.
     const auto in_motion = [&](std::optional<KernelRow> row) {
       if (!row) return row;
       const std::size_t from = row->first, last = from + row->weights->a.size() - 1;
@@ -204,7 +205,7 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
 std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<double>& law_m_s2, const SmoothedWhole& whole) {
   std::vector<double> place(motion.t_s.size(),
-                            0.0);  // double integral of the law, anew where the motion does not go on
+                            0.0);  // double integral of the law, restarted where the motion does not continue
   std::size_t next_break = 0;
   const std::vector<double>& breaks_s = whole.strength.breaks_s;
   double v = 0.0, x = 0.0;

@@ -1,9 +1,9 @@
 /// A clip smoothed as a whole, by a smoother that chooses its own strength (smoothing/smoother.h).
 ///
-/// The free motion has one strength, and what is not free (a hand, a stop, a rest) another. Where the motion turns,
-/// both sides are smoothed together with a jump of a, because dry friction jumps there while x and v are continuous;
-/// elsewhere every part starts anew. Points count for lines where the variance of a is below kEndVariance of its
-/// median, or the standard deviation below 2 % of the range of a in the stretch.
+/// The free motion has one strength, and the rest (a hand, a stop, a rest) another. Where the motion turns, both sides
+/// are smoothed together with a jump of a, because dry friction jumps there while x and v are continuous; elsewhere
+/// every part starts afresh. Points count for lines where the variance of a is below kEndVariance of its median, or the
+/// standard deviation below 2 % of the range of a in the stretch.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@
 
 namespace glidelab::core {
 
-/// What the local cubic has at its margin of kKernelMargin bandwidths.
+/// The relative variance of the local cubic at its margin of kKernelMargin bandwidths.
 inline constexpr double kEndVariance = 1.64;
 
 struct SmoothedWhole {
@@ -35,7 +35,7 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
 std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<double>& law_m_s2, const SmoothedWhole& whole);
 
-/// Consecutive points that are smoothed together: the stretches, and what lies between two of them.
+/// Consecutive points that are smoothed together: the stretches, and the pieces between two of them.
 std::vector<PointRange> pieces_of(const std::vector<FreeStretch>& stretches, std::size_t points);
 
 /// The frames of a track with their times and what was measured.

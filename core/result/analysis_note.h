@@ -1,7 +1,8 @@
-/// What a reader of results should know besides the numbers, as data: one struct for each remark, with what belongs to
-/// it. report/analysis/note_words.h puts it into words.
+/// What a reader of results should know besides the numbers, as data: one struct for each remark, with its details.
+/// report/analysis/note_words.h puts it into words.
 ///
-/// A remark names no clip: it stands in the notes of the clip, the configuration or the calibration that it is about.
+/// A remark names no clip: it is stored in the notes of the clip, the configuration or the calibration that it
+/// concerns.
 #pragma once
 
 #include <cstddef>
@@ -13,40 +14,40 @@
 
 namespace glidelab::core {
 
-// Of a file, as it was read.
+// About a file, as it was read.
 
-/// What the reader of a file says of the file's own words: its columns, units, rates. Worded where it is read.
+/// A remark of a file's reader about the file's own words: its columns, units, rates. Worded where the file is read.
 struct AboutFile {
   std::string text;
 };
 
-/// Frames that are equal to the one before, bit by bit.
+/// Frames that are identical to the previous one, bit by bit.
 struct RepeatedFrames {
   std::size_t repeated = 0, frames = 0;
 };
 
-/// Rounded time stamps that frames at an even distance explain.
+/// Rounded time stamps that are explained by evenly spaced frames.
 struct EvenStamps {
   double tick_s = 0.0, step_s = 0.0;
   double half_width_s = 0.0;  ///< of the steps that would explain them
 };
 
-/// Nobody states these of a file on its own.
+/// A file on its own does not state these.
 struct AssumedStatements {
-  std::optional<double> mass_kg;  ///< as assumed; none where it is stated
+  std::optional<double> mass_kg;  ///< the assumed mass; empty if it is stated
   bool level = false;             ///< an inclination of 0 is assumed
 };
 
-/// Of positions without a file: a mass of 1 kg is assumed.
+/// About positions without a file: a mass of 1 kg is assumed.
 struct AssumedMass {};
 
-// Of a calibration.
+// About a calibration.
 
 /// An image that departs from the fitted camera.
 struct OutlyingView {
   std::string file;
   double error_px = 0.0;
-  bool left_out = false;  ///< or kept, since fewer than three would be left
+  bool left_out = false;  ///< or kept, because fewer than three would be left
 };
 
 struct NoPatternInSight {
@@ -58,7 +59,7 @@ struct UnrefinedCorners {
   std::size_t corners = 0;
 };
 
-/// Neighbouring corners err together: a bent pattern, or a lens that the model does not describe.
+/// Neighbouring corners have correlated errors: a bent pattern, or a lens that the model does not describe.
 struct CornersErrTogether {
   double shared_px = 0.0, own_px = 0.0;
 };
@@ -67,47 +68,48 @@ struct UncertainFocalLength {
   double focal_px = 0.0, sd_px = 0.0;
 };
 
-/// Corners fit better to an equidistant fisheye than to Brown and Conrady's model.
+/// An equidistant fisheye fits the corners better than the Brown-Conrady model.
 struct FisheyeFitsBetter {
   double rms_px = 0.0, brown_conrady_rms_px = 0.0;
 };
 
-/// The corners of a group's plane views do not lie where the camera places them, or the views among each other do not.
+/// The corners of a group's plane views do not lie where the camera model puts them, or the views disagree with each
+/// other.
 struct PlaneViewsDisagree {
   std::string group;
   double rms_px = 0.0, expected_px = 0.0;
   std::size_t views = 1;
 };
 
-// Of the marker in a clip.
+// About the marker in a clip.
 
 struct MarkerAtRest {};
 
-/// Frames in which the marker counts as not seen: beside a similar object at rest, or partly hidden.
+/// Frames in which the marker counts as not seen: next to a similar object at rest, or partly hidden.
 struct MarkerConcealed {
   enum class By { similar, disturbance } by = By::disturbance;
   std::size_t frames = 0;
 };
 
-/// By what a marker that is no plain disc is measured.
+/// How a marker that is not a plain disc is measured.
 struct MarkerMeasuredBy {
   enum class What { centroid, shading } what = What::centroid;
 };
 
-/// Its image over what its diameter predicts.
+/// The size of its image over that predicted from its diameter.
 struct MarkerOfOtherSize {
   double ratio = 1.0;
 };
 
-/// What a second look at the clip's images fitted.
+/// What a second pass over the clip's images fitted.
 struct MarkerFittedAgain {
-  bool sphere = false;           ///< lit from one side; else a disc
-  bool still_background = true;  ///< before what other frames show; else before what moves with it
+  bool sphere = false;           ///< lit from one side; otherwise a disc
+  bool still_background = true;  ///< against the background seen in other frames; otherwise against what moves with it
   std::size_t seen = 0, seen_before = 0;
 };
 
-/// Sightings that keep what a mosaic or a tone curve does to them: the windows around them take too much memory, or
-/// their fit with the pixels' answer does not converge.
+/// Sightings that are not corrected for a mosaic or a tone curve: the windows around them take too much memory, or
+/// their fit with the pixel response does not converge.
 struct PixelsAnswerLeft {
   std::size_t kept = 0, sightings = 0;
 };
@@ -119,7 +121,7 @@ struct NotOfStatedSize {
   std::string failure;
 };
 
-// Of positions in the plane of motion.
+// About positions in the plane of motion.
 
 struct NoRay {
   std::size_t sightings = 0;
@@ -131,12 +133,12 @@ struct SlantedLine {
 
 struct ExactScale {};
 
-/// What a codec did to the positions is subtracted.
+/// The codec's effect on the positions is subtracted.
 struct CodecDragSubtracted {
   double rms_px = 0.0;
 };
 
-// Of a clip's motion.
+// About a clip's motion.
 
 struct FramesMissing {
   std::size_t frames = 0;
@@ -152,7 +154,7 @@ struct CorrelatedNoise {
   double neighbours = 0.0;  ///< correlation of successive positions
 };
 
-/// Points scatter about a line by more than noise explains.
+/// Points scatter about a line by more than the noise explains.
 struct LineScatters {
   int direction = 0;
   double ratio = 1.0;
@@ -180,21 +182,21 @@ struct NoGeneralisedLine {
 
 /// Motion against the stated direction of the launch, before any along it (free_motion.h).
 struct AgainstLaunch {
-  int direction = 0;  ///< in which it moves
-  std::optional<double>
-      until_s;             ///< where motion as launched begins; without a value there is none, and nothing is left out
-  double share = 0.0;      ///< of the points that move freely
-  bool at_a_turn = false;  ///< it turns into motion as launched with neither a rest nor a push between
+  int direction = 0;              ///< direction of this motion
+  std::optional<double> until_s;  ///< where motion in the launch direction begins; if empty there is none, and nothing
+                                  ///< is left out
+  double share = 0.0;             ///< fraction of the freely moving points
+  bool at_a_turn = false;  ///< it turns into motion in the launch direction with neither a rest nor a push in between
 };
 
-// Of a configuration.
+// About a configuration.
 
 struct MassInGrams {
   double mass_kg = 0.0;
-  std::optional<double> lightest_kg;  ///< of the others, where it stands out against it
+  std::optional<double> lightest_kg;  ///< of the other gliders, if the mass stands out against it
 };
 
-/// An angle that somebody states, in degrees.
+/// A stated angle, in degrees.
 struct StatedIncline {
   double deg = 0.0;
   std::optional<double> sd_deg;
@@ -205,11 +207,12 @@ struct StatedIncline {
 struct InclineContradiction {
   StatedIncline stated;
   double deg = 0.0, sd_deg = 0.0;             ///< of the motion
-  int bound = 0;                              ///< -1: it is at most `deg`, 1: at least
-  std::optional<double> beyond_gravity = {};  ///< the acceleration without friction, where no inclination has it; m/s^2
+  int bound = 0;                              ///< -1: the inclination is at most `deg`, 1: at least
+  std::optional<double> beyond_gravity = {};  ///< the acceleration without friction, if no inclination can produce it;
+                                              ///< m/s^2
   double gravity_m_s2 = 0.0;
-  double off_deg = 0.0;  ///< infinite where no inclination has the acceleration that was found
-  bool gross = false;    ///< more than a track that was set up carelessly explains; see incline_contradiction()
+  double off_deg = 0.0;  ///< infinite if no inclination can produce the measured acceleration
+  bool gross = false;    ///< more than a carelessly set up track explains; see incline_contradiction()
 };
 
 /// A robust fit of the whole motion.
@@ -231,8 +234,8 @@ using AnyNote =
                  GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, RobustFit,
                  FitScatters>;
 
-/// One remark. What copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not wherever results
-/// are.
+/// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
+/// wherever results are used.
 struct Note : AnyNote {
   using AnyNote::AnyNote;
   Note(const Note&);

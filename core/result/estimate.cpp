@@ -53,7 +53,7 @@ namespace {
 constexpr double kOffDeg = 0.5, kOffSds = 3.0;
 constexpr double kGrossDeg = 1.0, kGrossShare = 0.25, kGrossSds = 5.0;
 
-/// What the motion says of the inclination: a value, or a bound where it goes one way only.
+/// What the motion tells about the inclination: a value, or a bound if the motion is in one direction only.
 struct FoundIncline {
   double deg = 0.0, sd_deg = 0.0;
   int bound = 0;  ///< -1: at most this, +1: at least this
@@ -69,8 +69,8 @@ std::optional<FoundIncline> found_incline(const ConfigurationResult& found, doub
   return FoundIncline{base::kDegreesPerRad * std::asin(sine), sd_deg, line.direction};
 }
 
-/// The acceleration at v = 0 without friction, where that is gravity or more: no inclination has it. A line of one
-/// direction holds friction too, which may be more.
+/// The acceleration at v = 0 without friction, if it is gravity or more: no inclination can produce it. A line of one
+/// direction also contains friction, which may be larger.
 std::optional<double> beyond_gravity(const ConfigurationResult& found, double gravity_m_s2) {
   if (found.alpha_deg.estimate || found.lines.size() != 2) return std::nullopt;
   const double mean_m_s2 = 0.5 * (found.lines[0].a0_m_s2.value + found.lines[1].a0_m_s2.value);
@@ -115,7 +115,7 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
     if (result.mass_kg >= kMassRatio * least_kg) {
       result.notes.emplace_back(MassInGrams{result.mass_kg, least_kg});
     }
-    // A mass that stands out against the lightest is said to be one of two; here all may be in grams.
+    // A mass that stands out against the lightest gets its own remark; here all masses may be in grams.
     if (result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
       result.notes.emplace_back(MassInGrams{result.mass_kg, {}});
     }

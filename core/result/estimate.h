@@ -1,5 +1,4 @@
-/// Numbers with their uncertainty, and what experiment.toml states about a configuration compared with what its motion
-/// shows.
+/// Numbers with their uncertainty, and what experiment.toml states about a configuration compared with its motion.
 #pragma once
 
 #include <functional>
@@ -13,48 +12,49 @@
 
 namespace glidelab::core {
 
-/// The value with its 95 % interval: Student's t of `degrees` degrees of freedom, the normal distribution where they
+/// The value with its 95 % interval: Student's t with `degrees` degrees of freedom, or the normal distribution if they
 /// are infinite.
 Estimate estimate(double value, double sd, double degrees);
 
-/// The 97.5 % quantile of Student's t for any degrees above 0; of the normal distribution where they are infinite.
+/// The 97.5 % quantile of Student's t for any degrees above 0; of the normal distribution if they are infinite.
 double student_t975(double degrees);
 
-/// chi^2 per degree of freedom that is exceeded by chance with a probability of 0.00135, as three standard deviations
-/// are by a normal number (Wilson and Hilferty 1931; the probability is right to a tenth from 2 degrees on).
+/// chi^2 per degree of freedom that is exceeded by chance with a probability of 0.00135, as a normal number exceeds
+/// three standard deviations (Wilson and Hilferty 1931; the probability is accurate to a tenth from 2 degrees on).
 double chi2_ratio_limit(double degrees);
 
 /// `noise_sd`: the random part of the estimate's standard deviation (Quantity).
 Quantity determined(const Estimate& estimate, std::optional<double> noise_sd = {});
 Quantity undetermined(std::string why);
 
-/// Why a line a = a0 - (K/m) v of v > 0 has no terminal velocity a0/(K/m); empty where it has one: both coefficients
-/// are above zero by 1.96 standard deviations. `k_is` begins the sentence: "K/m".
+/// Why a line a = a0 - (K/m) v of v > 0 has no terminal velocity a0/(K/m); empty if it has one: both coefficients are
+/// above zero by 1.96 standard deviations. `k_is` begins the sentence: "K/m".
 std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view k_is, const Estimate& a0_m_s2);
 
-/// A glider of a laboratory is lighter; grams for kilograms are not.
+/// Laboratory gliders are lighter; masses given in grams instead of kilograms are not.
 inline constexpr double kLargestMass_kg = 20.0;
-inline constexpr double kMassRatio = 100.0;  ///< gliders of one track differ by less; grams for kilograms make 1000
+inline constexpr double kMassRatio = 100.0;  ///< gliders of one track differ by less; grams instead of kilograms make
+                                             ///< 1000
 
-/// The stated inclination against that of the lines a = a0 - (K/m) v:
+/// The stated inclination compared with that of the lines a = a0 - (K/m) v:
 ///
 ///     both directions: g sin(alpha) = (a0- + a0+)/2                             (13)
 ///     one direction:   friction brakes, so g sin(alpha) <= a0-, and g sin(alpha) >= a0+
 ///
-/// A wrong length, frame rate or gravity shows there as well as a wrong angle: a0 goes with the scale, with the square
-/// of the rate, and with g.
+/// A wrong length, frame rate or gravity shows up here as well as a wrong angle: a0 scales with the length scale, with
+/// the square of the rate, and with g.
 ///
-/// Nothing where the two agree, or nothing was found to compare. They disagree by more than half a degree and three
+/// Empty if the two agree, or if there is nothing to compare. They disagree by more than half a degree and three
 /// standard deviations of both together; grossly by more than one degree, a quarter of the stated angle and five
-/// standard deviations (a choice: half a degree is a track that was not levelled with care).
+/// standard deviations (a choice: half a degree is typical of a track that was not carefully levelled).
 std::optional<InclineContradiction> incline_contradiction(const ConfigurationResult& found, double gravity_m_s2,
                                                           const StatedIncline& stated);
 
-/// As incline_deg and incline_sd_deg of its clips say.
+/// As stated by incline_deg and incline_sd_deg of its clips.
 StatedIncline stated_incline(const ConfigurationResult& configuration);
 
-/// Adds to the notes: masses that look like grams, stated inclinations that the motion contradicts grossly.
-/// Of configurations whose inclination nobody states that is no contradiction.
+/// Adds notes about masses that look like grams, and about stated inclinations that the motion contradicts grossly. A
+/// configuration whose inclination is not stated cannot be contradicted.
 void note_statements(
     std::vector<ConfigurationResult>& results, double gravity_m_s2,
     const std::function<bool(const ConfigurationResult&)>& states_incline = [](const ConfigurationResult&) {

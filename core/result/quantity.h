@@ -1,4 +1,4 @@
-/// The four quantities that an analysis recovers, in the order in which every table and page has them.
+/// The four quantities that an analysis recovers, in the order used by every table and page.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace glidelab::core {
 
-/// K/m, the coefficient of friction, the inclination and the terminal (limit) velocity.
+/// K/m, the friction coefficient, the inclination and the terminal (limit) velocity.
 enum class Measurand { k_over_m, mu, alpha, v_lim };
 
 struct QuantityName {
@@ -26,7 +26,7 @@ inline constexpr std::array<QuantityName, 4> kQuantities = {{
     {Measurand::v_lim, "v_lim_m_s", "terminal velocity", "m/s"},
 }};
 
-/// As options and files have it: "mu".
+/// As in options and files: "mu".
 constexpr std::string_view key_of(Measurand which) {
   return kQuantities[static_cast<std::size_t>(which)].key;
 }
@@ -49,7 +49,7 @@ constexpr auto& value_of(Four& four, Measurand which) {
 /// The keys, as options take them.
 std::vector<std::string> quantity_keys();
 
-/// Among kQuantities; their number where the key is none of theirs.
+/// Index in kQuantities; their number if the key is not among them.
 std::size_t place_of(std::string_view key);
 
 /// "K/m" for "k_over_m_1_s"; any other key stays as it is.

@@ -33,21 +33,21 @@ struct Estimate {
   double high95 = 0.0;
 };
 
-/// A quantity that the data determine, or why they do not.
+/// A quantity that the data determine, or the reason why they do not.
 struct Quantity {
   std::optional<Estimate> estimate;
-  std::string why;  ///< empty where there is an estimate
-  /// The correction for the kernel's bias of a line (line_law.h) that the estimate contains; without it, the lines as
-  /// fitted give the value.
+  std::string why;  ///< empty if there is an estimate
+  /// The correction for the kernel's bias of a line (line_law.h) that the estimate contains; without one, the value
+  /// comes from the lines as fitted.
   std::optional<double> smoothing_correction = {};
   /// The part of the estimate's standard deviation that is random from clip to clip (the positions' noise and their
-  /// scatter beyond it), without what all clips share: calibration, clock, scale, mass, the kernel's bias.
+  /// scatter beyond it), without the errors that all clips share: calibration, clock, scale, mass, the kernel's bias.
   std::optional<double> noise_sd = {};
 };
 
 /// Why a point of the motion is left out of a fit.
 enum class LeftOut {
-  used,             ///< it is in the fit
+  used,             ///< it is used in the fit
   before_start,     ///< before start_s
   after_end,        ///< after end_s
   hand,             ///< the glider is not free yet (or held)
@@ -57,61 +57,61 @@ enum class LeftOut {
   kernel_reversal,  ///< the kernel reaches over a reversal
   kernel_gap,       ///< too few frames with a marker within the kernel
   no_marker,        ///< no marker was found in this frame
-  outlier,          ///< the centre lies off the motion by more than its noise allows
-  short_stretch,    ///< a stretch so short beside others of its direction that it adds noise and no information
+  outlier,          ///< the centre lies off the motion by more than the noise allows
+  short_stretch,    ///< a stretch so short compared with others of its direction that it adds noise and no information
 };
 /// In words, for tables ("used", "hand", "kernel over a reversal", …).
 std::string describe(LeftOut reason);
 
-/// One frame of a clip: as measured, and as smoothed, by the local cubic (equations 10 to 12) or another smoother.
+/// One frame of a clip: as measured, and as smoothed by the local cubic (equations 10 to 12) or another smoother.
 struct MotionPoint {
   double t_s = 0.0;                  ///< middle of the exposure (of the marker's row), from the first frame
-  std::optional<double> measured_m;  ///< nothing where no marker was found
+  std::optional<double> measured_m;  ///< empty if no marker was found
   double x_m = 0.0;
   double v_m_s = 0.0;
   double a_m_s2 = 0.0;
   double sd_x_m = 0.0;
   double sd_v_m_s = 0.0;
   double sd_a_m_s2 = 0.0;
-  double force_n = 0.0;    ///< the applied force smoothed like x; 0 where there is none
+  double force_n = 0.0;    ///< the applied force smoothed like x; 0 if there is none
   double applied_n = 0.0;  ///< the applied force as recorded
   bool smoothed = false;   ///< x, v, a hold values
   LeftOut left_out = LeftOut::used;
 };
 
-/// The signed change of a line by one standard deviation of an error that it may share with other lines.
+/// The signed change of a line for one standard deviation of an error that it may share with other lines.
 struct LineShift {
   double k = 0.0;
   double a0 = 0.0;
 };
 
-/// The kernel's bias of a line that follows its own law (line_law.h), to be taken off, and the random covariance that
-/// is left then.
+/// The kernel's bias of a line that follows its own law (line_law.h), to be subtracted, and the random covariance after
+/// the subtraction.
 struct LawBias {
   LineShift shift;
   double var_k = 0.0;
   double cov = 0.0;
   double var_a0 = 0.0;
-  double degrees = 0.0;  ///< of freedom; infinite where the covariance is as good as known
+  double degrees = 0.0;  ///< of freedom; infinite if the covariance is practically known
 };
 
-/// What the uncertainty of a line (K/m, a0) is made of; the standard deviations in LineFit hold all of it. Parts that
-/// two lines share (the kernel's bias, the mass, the scale, the calibration) are signed, so that they add up as they
-/// should.
+/// The components of the uncertainty of a line (K/m, a0); the standard deviations in LineFit contain all of them. Parts
+/// that two lines share (the kernel's bias, the mass, the scale, the calibration) are signed, so that they add up
+/// correctly.
 struct LineUncertainty {
-  double var_k = 0.0;  ///< random: the noise of the positions, and what the points scatter beyond it
+  double var_k = 0.0;  ///< random: the noise of the positions, and the scatter of the points beyond it
   double var_a0 = 0.0;
   double cov = 0.0;
-  double scatter = 0.0;      ///< root mean square residual over that expected of the noise: 1 where the line is right
+  double scatter = 0.0;      ///< rms residual over that expected from the noise: 1 if the line is correct
   bool jackknife = false;    ///< the random part comes from leaving out stretches (line_fit.h)
-  double degrees = 0.0;      ///< of freedom that the random part rests on; infinite where it is as good as known
-  double smoothing_k = 0.0;  ///< estimated bias by the kernel where it cannot be taken off; not subtracted
+  double degrees = 0.0;      ///< of freedom of the random part; infinite if it is practically known
+  double smoothing_k = 0.0;  ///< estimated kernel bias if it cannot be subtracted; not subtracted
   double smoothing_a0 = 0.0;
-  std::optional<LawBias> law = {};  ///< where it can: the line itself keeps it, and counts it as an uncertainty
-  double mass_k = 0.0;              ///< change by one standard deviation of the mass (with a known force only)
+  std::optional<LawBias> law = {};  ///< if it can: the line itself keeps it, and counts it as an uncertainty
+  double mass_k = 0.0;              ///< change for one standard deviation of the mass (with a known force only)
   double mass_a0 = 0.0;
   double scale_relative = 0.0;         ///< standard deviation of one px_per_m: of a0 and v_lim, not of K/m
-  std::vector<LineShift> calibration;  ///< by each mode of the cameras and planes, the same ones for all lines
+  std::vector<LineShift> calibration;  ///< for each mode of the cameras and planes, the same modes for all lines
 };
 
 /// The line a = a0 - (K/m) v through the points of one direction of motion.
@@ -122,7 +122,7 @@ struct LineFit {
   Estimate a0_m_s2;
   double covariance = 0.0;  ///< of (K/m, a0)
   double r2 = 0.0;
-  double from_v_m_s = 0.0;  ///< the range of v that it rests on
+  double from_v_m_s = 0.0;  ///< the range of v on which it rests
   double to_v_m_s = 0.0;
   LineUncertainty parts;
 };
@@ -142,10 +142,10 @@ struct LeftOutInterval {
   LeftOut reason = LeftOut::used;
 };
 
-/// Frames that were lost, of which the file's times show nothing (lost_frames.h).
+/// Lost frames that leave no gap in the file's times (lost_frames.h).
 struct LostFrames {
   double after_s = 0.0;   ///< by the file's times: the last frame before them
-  std::size_t count = 0;  ///< how many follow each other
+  std::size_t count = 0;  ///< number of consecutive ones
 };
 
 /// Where the marker was seen in one frame; pixels, the centre of the first pixel is (0, 0).
@@ -157,23 +157,23 @@ struct MarkerSighting {
   double radius_px = 0.0;
 };
 
-/// A force that was recorded with the positions, over the mass: linear between its samples.
+/// A force recorded with the positions, divided by the mass: linear between its samples.
 struct RecordedForce {
   std::vector<double> t_s;
   std::vector<double> a_m_s2;
-  double mass_sd_relative = 0.0;  ///< by which all of it may err together
+  double mass_sd_relative = 0.0;  ///< common relative error of the whole force
 
   bool empty() const { return t_s.empty(); }
 };
 
-/// Measured positions of free motion that follow each other; the motion may turn at v = 0 and is otherwise free, but
-/// for a recorded force.
+/// Consecutive measured positions of free motion; the motion may turn at v = 0 and is otherwise free, except for a
+/// recorded force.
 struct FreeBlock {
   std::vector<double> t_s;
   std::vector<double> x_m;
-  std::vector<int> directions;                ///< signs of v that occur, in order: one, or two where it turns
+  std::vector<int> directions;                ///< signs of v that occur, in order: one, or two if it turns
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of these points
-  RecordedForce force;                        ///< over these points; empty where none was recorded
+  RecordedForce force;                        ///< over these points; empty if none was recorded
 };
 
 /// "motion towards +x before 0.542 s is left out as the hand's: the launch was towards -x"
@@ -187,14 +187,14 @@ struct ClipResult {
   double frame_rate_hz = 0.0;  ///< nominal; of a track, the median
   double bandwidth_s = 0.0;
   std::string bandwidth_method;
-  std::optional<SmoothingStrength> strength = {};  ///< of a smoother that has no bandwidth of its own
+  std::optional<SmoothingStrength> strength = {};  ///< of a smoother without a bandwidth
   double position_noise_m = 0.0;
   std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points
   double scale_sd_relative = 0.0;               ///< as in TrackData
-  std::optional<double> rounding_m;             ///< step to which the positions are rounded, where that matters
+  std::optional<double> rounding_m;             ///< step to which the positions are rounded, if that matters
   bool forced = false;                          ///< a known force acts
-  std::vector<LostFrames> lost_frames;          ///< found from the motion; MotionOptions says what is done about them
-  std::vector<FreeBlock> blocks;                ///< to which the whole motion is fitted
+  std::vector<LostFrames> lost_frames;          ///< found from the motion; MotionOptions says how they are treated
+  std::vector<FreeBlock> blocks;                ///< used in the fit of the whole motion
   std::vector<LineFit> segments;                ///< at most one for each direction
   Quantity v_lim_m_s;
   std::vector<Stretch> stretches;
@@ -204,7 +204,7 @@ struct ClipResult {
   std::vector<MotionPoint> motion;
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of every frame of `motion`; 0 without a marker
   std::vector<MarkerSighting> sightings;      ///< empty for a track
-  /// What the images show besides the motion (picture_record.h); null for a track, and where it was not asked for.
+  /// What the images show besides the motion (picture_record.h); null for a track, and if not requested.
   std::shared_ptr<const PictureRecord> pictures;
 };
 
@@ -220,35 +220,35 @@ struct ConfigurationResult {
   Quantity mu;
   Quantity alpha_deg;
   Quantity v_lim_m_s;
-  /// Of the fit of the whole motion: root mean square residual over the noise, where that is more than chance makes.
+  /// For the fit of the whole motion: rms residual over the noise, if that is more than chance explains.
   std::optional<double> scatter = {};
   std::vector<Note> notes;
 };
 
 struct CornerCell {
-  double u_px = 0.0, v_px = 0.0;    ///< mean place of its corners
+  double u_px = 0.0, v_px = 0.0;    ///< mean position of its corners
   double du_px = 0.0, dv_px = 0.0;  ///< mean residual
-  double sd_px = 0.0;               ///< of either
+  double sd_px = 0.0;               ///< of either coordinate
   std::size_t corners = 0;
 };
 
-/// What a camera's fit leaves of the pattern's corners, over the image (corner_errors.h).
+/// Residuals of the pattern's corners after the camera's fit, over the image (corner_errors.h).
 struct CornerMap {
   int width_px = 0, height_px = 0;
   std::vector<CornerCell> cells;  ///< with two corners or more, row by row
   double scatter_px = 0.0;        ///< s
-  double excess = 0.0;            ///< 0 where no cell has two corners, or nothing scatters
+  double excess = 0.0;            ///< 0 if no cell has two corners, or nothing scatters
 };
 
-/// The χ² of a lens's terms, all at zero, and what it must exceed to keep them.
+/// The χ² of a lens's terms set to zero, and the threshold for keeping them.
 struct TermTest {
   std::string term;
   double statistic = 0.0, limit = 0.0;
 };
 
-/// The terms of a lens's distortion that the views support.
+/// The distortion terms of a lens that the views support.
 struct LensTerms {
-  bool fisheye = false;           ///< else Brown and Conrady's
+  bool fisheye = false;           ///< otherwise Brown-Conrady
   std::vector<std::string> kept;  ///< "k1", "p1, p2"
   std::vector<TermTest> tests;
 };
@@ -260,11 +260,11 @@ struct CalibrationResult {
   std::vector<double> distortion;     ///< k1, k2, p1, p2, k3; a fisheye's k1 to k4
   std::vector<double> sd;             ///< of fx, fy, cx, cy, then `distortion`; 0 for a term that is fixed
   LensTerms lens;
-  double restitution_rms_m = 0.0;  ///< of the plane views' corners, restituted, against the pattern
+  double restitution_rms_m = 0.0;  ///< of the plane views' corners after restitution, against the pattern
   double plane_rms_px = 0.0;       ///< the same in the image, of one coordinate
   double plane_expected_px = 0.0;  ///< the part that the corners' noise explains
   std::size_t views_used = 0;
-  CornerMap rests;          ///< what the camera's fit leaves of the corners, over the image
+  CornerMap rests;          ///< residuals of the corners after the camera's fit, over the image
   std::vector<Note> notes;  ///< views without a visible pattern, …
 };
 

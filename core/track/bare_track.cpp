@@ -17,7 +17,7 @@
 namespace glidelab::core {
 
 bool is_bare_track(const std::filesystem::path& path) {
-  std::error_code ignored;  // what cannot be looked at is none
+  std::error_code ignored;  // a path that cannot be read is not a track
   return std::filesystem::is_regular_file(path, ignored) && path.filename() != "experiment.toml";
 }
 
@@ -28,7 +28,7 @@ std::vector<TrackRun> runs_in(const std::filesystem::path& file) {
     return runs;
   }
   const ColumnTable table = read_column_table(file);
-  // Heights where there is nothing else, as of falls.
+  // Heights if there is nothing else, as for falls.
   const bool places = std::any_of(table.columns.begin(), table.columns.end(), is_place_column);
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const TableColumn& column = table.columns[c];
@@ -72,7 +72,7 @@ std::vector<TrackRun> chosen_runs(const std::filesystem::path& file, const std::
   }
 }
 
-/// `one` is what every clip has of the file's own.
+/// `one` holds what all clips take from the file.
 std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const ClipSetup& one,
                                      const TrackFileOptions& options) {
   const std::vector<TrackRun> runs = chosen_runs(file, options.runs);

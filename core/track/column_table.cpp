@@ -60,7 +60,7 @@ std::string_view without_brackets(std::string_view field) {
 bool looks_like_a_unit(std::string_view field) {
   if (without_brackets(field).size() < field.size()) return true;
   if (metres_per(field) || seconds_per(field)) return true;
-  // m/s, m/s^2, m/s², N, 1, °: short and with no name of a quantity.
+  // m/s, m/s^2, m/s², N, 1, °: short and without the name of a quantity.
   const auto slash = field.find('/');
   if (slash != std::string_view::npos) return metres_per(field.substr(0, slash)).has_value() || field.size() <= 6;
   return field == "N" || field == "kg" || field == "V" || field == "rad" || field == "deg" || field == "Hz";
@@ -95,7 +95,7 @@ TableColumn column_of(const std::string& text) {
     name = std::string(trimmed(std::string_view(name).substr(colon + 1)));
   }
   const std::string small = lower(name);
-  // Of several sensors the channel says which: "Position, Ch 1 (m)".
+  // The channel distinguishes several sensors: "Position, Ch 1 (m)".
   if (const auto channel = small.find(", ch "); channel != std::string::npos && channel > 0) {
     std::string_view rest_of = std::string_view(name).substr(channel + 2);
     const auto run = lower(rest_of).find(", run");
@@ -171,8 +171,8 @@ std::optional<double> seconds_per(std::string_view unit) {
 
 namespace {
 
-/// A line of names of bodies or runs over the columns' own names, each over several columns: Tracker writes the mass
-/// over its t, x and y and pads the line.
+/// A line of names of bodies or runs above the column names, each spanning several columns: Tracker writes the mass
+/// above its t, x and y and pads the line.
 bool names_several_columns(const std::vector<std::string>& line, const std::vector<std::string>& below) {
   const auto filled = [](const std::vector<std::string>& fields) {
     return std::count_if(fields.begin(), fields.end(), [](const std::string& field) { return !field.empty(); });
@@ -198,7 +198,7 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
     units = header.back();
     header.pop_back();
   }
-  // A title of as many words as columns.
+  // A title with as many words as columns.
   const auto names_time = [](const std::vector<std::string>& line) {
     return std::any_of(line.begin(), line.end(),
                        [](const std::string& field) { return is_time_column(column_of(field)); });
@@ -210,7 +210,7 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
   for (std::size_t c = 0; c < width; ++c) {
     const bool named = !header.empty() && c < header.front().size() && !header.front()[c].empty();
     columns.push_back(column_of(named ? header.front()[c] : fmt::format("column {}", c + 1)));
-    if (c < runs.size() && !runs[c].empty()) run = runs[c];  // one word over several columns
+    if (c < runs.size() && !runs[c].empty()) run = runs[c];  // one word above several columns
     if (columns.back().run.empty()) columns.back().run = run;
     if (c < units.size() && columns.back().unit.empty()) columns.back().unit = without_brackets(units[c]);
   }
@@ -235,7 +235,7 @@ std::string_view field_text(std::string_view field) {
   return field;
 }
 
-/// A delimiter within quotes is none.
+/// A delimiter within quotes does not count.
 std::vector<std::string_view> split_at(std::string_view line, char delimiter) {
   std::vector<std::string_view> fields;
   std::size_t from = 0;
@@ -318,7 +318,7 @@ struct Line {
 
 struct Lines {
   std::vector<Line> all;
-  std::vector<Line> comments;  ///< behind their '#'
+  std::vector<Line> comments;  ///< the text after the '#'
 };
 
 Lines lines_of(std::string_view text) {
@@ -337,8 +337,8 @@ Lines lines_of(std::string_view text) {
   return lines;
 }
 
-/// What stands behind a '#': of the comments before the numbers the last that has as many fields as these, and where it
-/// is one of units, the names before it. Empty without one.
+/// The header after a '#': of the comments before the numbers, the last with as many fields as the numbers have and, if
+/// it holds units, also the names before it. Empty if there is none.
 std::vector<std::vector<std::string>> commented_header(const std::vector<Line>& comments, int first_data,
                                                        std::size_t width, const Format& format) {
   std::vector<std::vector<std::string>> lines;
@@ -353,7 +353,7 @@ std::vector<std::vector<std::string>> commented_header(const std::vector<Line>& 
   return lines;
 }
 
-/// Nothing where no line holds two numbers.
+/// Empty if no line holds two numbers.
 std::optional<Format> format_of(const std::vector<Line>& lines) {
   std::optional<Format> best;
   std::size_t most = 0;

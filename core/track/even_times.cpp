@@ -12,12 +12,12 @@ constexpr std::size_t kFewestStamps = 20;
 constexpr double kContainer_s = 2e-6;  // stamps are stored to a microsecond or better,
 constexpr double kTable_s = 2e-9;      // and decimal fractions of up to eight places exactly
 constexpr int kFewestDigits = 3, kMostDigits = 6;
-constexpr double kMostSpreadOverTick = 1.05;    // than a tick, for exposures that jitter a little
-constexpr double kLongestStepOverMedian = 1.5;  // of the median step: a longer one may hold a frame that is missing
-constexpr double kLeastTicks = 1.5;             // in a step: with fewer a tick more or less could be a frame
-constexpr int kHalvings = 60;                   // of an interval: to the last bit
+constexpr double kMostSpreadOverTick = 1.05;    // allowed spread over a tick: exposures may jitter slightly
+constexpr double kLongestStepOverMedian = 1.5;  // of the median step: a longer step may contain a missing frame
+constexpr double kLeastTicks = 1.5;             // per step: with fewer, one tick more or less could be a frame
+constexpr int kHalvings = 60;                   // of an interval, to the last bit
 
-/// The longest step of which both are whole multiples, to `resolution`.
+/// The longest step of which both are whole multiples, within `resolution`.
 double common_step(double a, double b, double resolution) {
   while (b > resolution) {
     const double rest = std::abs(a - b * std::round(a / b));
@@ -27,7 +27,8 @@ double common_step(double a, double b, double resolution) {
   return a;
 }
 
-/// The last digit of the largest of times that all have the same number of significant digits; 0: they have not.
+/// The unit of the last digit of the largest time, if all times have the same number of significant digits; otherwise
+/// 0.
 double last_significant_digit(std::span<const double> stamps_s) {
   const auto digit_of = [](double t, int digits) {
     return std::pow(10.0, std::floor(std::log10(std::abs(t)) + 1e-12) - digits + 1);
@@ -42,7 +43,7 @@ double last_significant_digit(std::span<const double> stamps_s) {
   return 0.0;
 }
 
-/// The slots that the stamps' steps pass, for a step of about the mean of the single ones.
+/// The frame slots of the stamps, for a step of about the mean of the single-frame steps.
 std::vector<double> slots_of(const std::vector<double>& steps, double tick_s) {
   const double median_s = quantile(steps, 0.5);
   double sum = 0.0, count = 0.0;
@@ -62,7 +63,7 @@ struct Spread {
   std::span<const double> stamps_s;
   const std::vector<double>& slots;
 
-  /// Of stamp - T slot; convex in T.
+  /// The spread of stamp - T slot, which is convex in T.
   double operator()(double step_s) const {
     double low = stamps_s[0], high = low;
     for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -74,7 +75,7 @@ struct Spread {
   }
 };
 
-/// Where between a step of at most this spread and one of a larger it passes the limit.
+/// The step at which the spread crosses the limit, between `inside` (at most the limit) and `outside` (above it).
 double edge(const Spread& spread, double limit, double inside, double outside) {
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (inside + outside);
@@ -90,7 +91,7 @@ std::optional<EvenTimes> even_by_ticks(std::span<const double> stamps_s, const s
   EvenTimes even;
   even.tick_s = tick_s;
 
-  // The least spread lies where the ends are off by no more than two ticks.
+  // At the minimum spread the ends are off by no more than two ticks.
   const Spread spread{stamps_s, slots};
   const double mean_s = (stamps_s.back() - stamps_s.front()) / slots.back();
   const double reach_s = 2.0 * even.tick_s / slots.back();

@@ -1,16 +1,17 @@
-/// The even times of a camera behind rounded time stamps.
+/// Recovers a camera's uniform times from rounded time stamps.
 ///
-/// A phone writes whole ticks of 1/600 s, Matroska whole milliseconds, a table three or four places after the point,
-/// while the sensor exposes evenly: stamps are then off by up to half a tick q (q / sqrt(12) on average), which at a
-/// speed v looks like noise of v q / sqrt(12), or like a shaking camera where the pattern repeats.
+/// A phone writes whole ticks of 1/600 s, Matroska whole milliseconds, a table three or four decimal places, while the
+/// sensor exposes at uniform times. Stamps are then off by up to half a tick q (q / sqrt(12) rms). At a speed v this
+/// looks like noise of v q / sqrt(12), or like a shaking camera if the pattern repeats.
 ///
 ///     stamp_k = a + T n_k + rounding,    n_k the frame's slot (frames may be missing between two)
 ///
-/// Even times are taken where the stamps themselves show it: all steps are whole multiples of one tick, of two lengths
-/// or more, and there is a T for which stamp_k - T n_k spread over no more than q, as rounding makes it (and 5 % more,
-/// for what little the exposures jitter). A clock that jitters or drifts by more leaves that band somewhere in a clip;
-/// its stamps are then better than a line. The T for which they spread over q at most are an interval; its middle is
-/// taken, and the true T lies in it. (Rounding errors are bounded, and no mean of them tells T as well.)
+/// Uniform times are used if the stamps themselves support it: all steps are whole multiples of one tick, of two
+/// lengths or more, and there is a T for which stamp_k - T n_k spreads over no more than q, as expected from rounding
+/// (plus 5 % for a small jitter of the exposures). A clock that jitters or drifts by more leaves that band somewhere in
+/// a clip; its stamps are then better than a line. The values of T for which the spread is at most q form an interval,
+/// which contains the true T; its middle is taken. (Rounding errors are bounded, and no mean of them determines T as
+/// well.)
 #pragma once
 
 #include <optional>
@@ -26,11 +27,11 @@ struct EvenTimes {
   double tick_s = 0.0;        ///< q
 };
 
-/// Where stamps come from: a container stores them to a microsecond or better; a table writes them in decimal places,
-/// all of its times with one last place, or with one number of significant digits (3 to 6; q is then the coarsest).
+/// The source of the stamps: a container stores them to a microsecond or better; a table writes them as decimals, all
+/// with the same last place, or all with the same number of significant digits (3 to 6; q is then the coarsest).
 enum class StampSource { container, table };
 
-/// `stamps_s` rise. Nothing where they are fewer than 20, are even already, or are not as above.
+/// `stamps_s` rise. Empty if there are fewer than 20, if they are already uniform, or if they are not as above.
 std::optional<EvenTimes> even_times(std::span<const double> stamps_s, StampSource source = StampSource::container);
 
 }  // namespace glidelab::core

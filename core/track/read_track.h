@@ -1,4 +1,4 @@
-/// A motion that was tracked elsewhere, from whatever file holds it.
+/// Reads a motion that was tracked elsewhere, from any supported file.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@
 
 namespace glidelab::core {
 
-/// Of a Tracker project (is_tracker_project()) read_tracker_project(), of any other file read_track_csv(). `column` is
-/// the point mass of the one and the column of the other. A table has no Y: `downhill` along Y is an InputError there,
-/// and nothing means that its x is positive downhill.
+/// For a Tracker project (is_tracker_project()) read_tracker_project(), for any other file read_track_csv(). `column`
+/// is the point mass in the former case and the column in the latter. A table has no Y: `downhill` along Y is an
+/// InputError there, and an empty value means that its x is positive downhill.
 TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column);
 
 }  // namespace glidelab::core

@@ -19,10 +19,10 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kOtherAxis = 3.0;      // times as far along y as along x: the motion is along y
-constexpr double kStraightPath = 0.08;  // sagitta over length: a wide lens bends a straight path by half of that
-constexpr double kCurveExplains = 0.8;  // of the variance across the path: less is scatter
-constexpr double kSlanted_deg = 5.0;    // x is then 0.4 % short
+constexpr double kOtherAxis = 3.0;      // extent along y over that along x: above it the motion is along y
+constexpr double kStraightPath = 0.08;  // sagitta over length: a wide-angle lens bends a straight path by half of that
+constexpr double kCurveExplains = 0.8;  // of the variance across the path: a smaller share is scatter
+constexpr double kSlanted_deg = 5.0;    // x is then too short by 0.4 %
 constexpr std::size_t kFewestOfPath = 8;
 
 bool is_acceleration(const TableColumn& column) {
@@ -55,7 +55,7 @@ bool is_asked(const TableColumn& column, std::size_t index, const std::string& a
          small == lower(column.run + ": " + column.text) || small == lower(column.run + ": " + column.name);
 }
 
-/// Accelerations alone are no track, and a person who exported them from a phone should know why.
+/// Accelerations alone are not a track, and a user who exported them from a phone should know why.
 void refuse_accelerations(const ColumnTable& table) {
   if (std::none_of(table.columns.begin(), table.columns.end(), is_acceleration)) return;
   throw wrong_column(table, "accelerations without positions, " + columns_text(table),
@@ -64,7 +64,7 @@ void refuse_accelerations(const ColumnTable& table) {
                      "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
 }
 
-/// The places in a plane at which a body was seen, first to last.
+/// The positions in a plane at which a body was seen, first to last.
 struct Path {
   std::vector<double> x_m, y_m;
 };
@@ -84,8 +84,8 @@ double range_of(const std::vector<double>& values) {
   return quantile(values, 0.98) - quantile(values, 0.02);
 }
 
-/// Sagitta over length of a parabola through the path, across the line from its first place to the farthest from that;
-/// 0 where the parabola explains little of what lies across.
+/// Sagitta over length of a parabola through the path, across the line from its first position to the one farthest from
+/// it; 0 if the parabola explains little of the deviation across the line.
 double sagitta_of(const Path& path) {
   double along_x = 0.0, along_y = 0.0;
   for (std::size_t i = 0; i < path.x_m.size(); ++i) {
@@ -121,7 +121,7 @@ double slant_deg(const Path& path) {
   return std::abs(angle) * base::kDegreesPerRad;
 }
 
-/// x or y: along which of them the body moves.
+/// The column, x or y, along which the body moves.
 std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<Note>& notes) {
   const Path path = path_of(table.columns[x], table.columns[y]);
   if (path.x_m.size() < kFewestOfPath) return x;

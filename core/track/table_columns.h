@@ -1,12 +1,12 @@
-/// Which columns of an exported table are x and its time.
+/// Chooses the columns of an exported table that hold x and its time.
 ///
-/// x is the column that is asked for, by its header, its name or its number from 1 on; otherwise the one that is called
-/// x, position, distance or displacement (or the like in other languages), if there is just one; without any, the one
-/// that is called y or height. Where both x and y are there (Tracker writes both) x is the one along which the body
-/// moves: y where it covers three times as much. A curved path of the two is no motion along a line, and is refused.
+/// x is the requested column, given by its header, its name or its number from 1 on; otherwise the one named x,
+/// position, distance or displacement (or the equivalent in other languages), if there is just one; if there is none,
+/// the one named y or height. If both x and y are present (Tracker writes both), x is the one along which the body
+/// moves: y if its extent is three times as large. A curved path of the two is not motion along a line, and is refused.
 ///
-/// Its time is the nearest column to the left that is called t or time or has a unit of time, of the same run where
-/// runs are stated; else the only one there is. In a file without header the first column is the time.
+/// Its time is the nearest column to the left that is named t or time or has a unit of time, of the same run if runs
+/// are stated; otherwise the only one. In a file without a header the first column is the time.
 #pragma once
 
 #include <cstddef>
@@ -21,17 +21,18 @@ namespace glidelab::core {
 
 struct ChosenColumns {
   std::size_t place = 0, time = 0;
-  bool is_height = false;  ///< x is a height that nobody asked for: its sign is not stated
+  bool is_height = false;  ///< x is a height that was not requested: its sign is not stated
 };
 
-/// InputError: no or several columns that x or t may be, a curved path.
+/// InputError: no or several candidates for x or t, a curved path.
 ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes);
 
-/// Metres for the numbers of a column, or seconds; a note where it states no unit. InputError for another unit.
+/// Metres (or seconds) per number of a column; adds a note if it states no unit. InputError for another unit.
 double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
 double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
 
-/// Whether at least half of the steps go up: else they are no times, and not times with a mistake among them.
+/// Whether at least half of the steps are positive. Otherwise these are not times at all, rather than times with an
+/// error among them.
 bool rises_mostly(const TableColumn& times);
 
 }  // namespace glidelab::core

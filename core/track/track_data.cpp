@@ -25,11 +25,11 @@ namespace glidelab::core {
 
 namespace {
 
-constexpr double kSlowestUnstated_s = 5.0;  // from one position to the next, of times without a unit
-constexpr double kHardlyTurns = 0.8;        // of the range of x, from the first position to the last
-constexpr double kNotableTick = 1e-3;       // of a frame: a coarser last digit is told
+constexpr double kSlowestUnstated_s = 5.0;  // from one position to the next, for times without a unit
+constexpr double kHardlyTurns = 0.8;        // of the range of x: distance from the first position to the last
+constexpr double kNotableTick = 1e-3;       // of a frame: a coarser last digit gets a note
 
-/// Times of an even camera in place of those that a table rounds.
+/// Replaces times rounded by a table with the uniform times of the camera.
 void put_even(TrackData& track) {
   const std::optional<EvenTimes> even = even_times(track.t_s, StampSource::table);
   if (!even) return;
@@ -57,7 +57,7 @@ namespace {
 
 constexpr std::size_t kMostRowIssues = 10;
 
-/// One of the series of a track that is given as numbers.
+/// One series of a track given as numbers.
 struct GivenSeries {
   const char* name;
   const std::vector<double>& values;
@@ -91,7 +91,7 @@ std::vector<base::Issue> issues_of_numbers(const std::vector<GivenSeries>& serie
   return issues;
 }
 
-/// InputError, with the line of the file, where the times have a gap that no motion bridges.
+/// InputError, with the line of the file, if the times have a gap that no motion bridges.
 void check_gaps(const TrackData& track, const std::string& file, const std::string& column,
                 const std::vector<int>& lines) {
   const std::optional<TimeGap> gap = too_long_gap(track.t_s);
@@ -123,7 +123,7 @@ void count_along_motion(TrackData& track) {
   const auto [low, high] = std::minmax_element(track.x_m.begin(), track.x_m.end());
   double way = track.x_m.back() - track.x_m.front();
   if (std::abs(way) < kHardlyTurns * (*high - *low)) {
-    // Through the ends and the middle of the time: the way in which it accelerates.
+    // From the positions at both ends and at the middle of the time: the direction of the acceleration.
     const double middle_s = 0.5 * (track.t_s.front() + track.t_s.back());
     const auto at =
         static_cast<std::size_t>(std::lower_bound(track.t_s.begin(), track.t_s.end(), middle_s) - track.t_s.begin());
@@ -241,7 +241,7 @@ bool has_own_header(const std::filesystem::path& file) {
     if (first == std::string_view::npos || line[first] == '#') continue;
     return has_field(line, "t_s");
   }
-  return true;  // an empty file: its error is the plain one
+  return true;  // an empty file gets the plain error
 }
 
 }  // namespace

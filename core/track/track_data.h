@@ -1,5 +1,5 @@
-/// x(t) of one clip, as it enters the smoothing: from a video by tracking and restitution, or read from a CSV or
-/// another program's table.
+/// x(t) of one clip, as it enters the smoothing: obtained from a video by tracking and restitution, or read from a CSV
+/// or another program's table.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,62 +17,62 @@
 
 namespace glidelab::core {
 
-/// Fewer points than this say nothing about an acceleration: a local cubic has four coefficients, and as many points
-/// again are left for their noise.
+/// Fewer points than this do not determine an acceleration: a local cubic has four coefficients, and as many points
+/// again are needed for the noise.
 inline constexpr std::size_t kFewestTrackPoints = 8;
 
 /// Positions along the line of motion, positive downhill. All vectors have one length; times rise strictly.
 struct TrackData {
   std::vector<double> t_s;  ///< frames in which the marker was found, middle of exposure
   std::vector<double> x_m;
-  std::vector<double> force_n;     ///< known applied force along x; empty where there is none
-  std::vector<std::size_t> frame;  ///< the frame that each point comes from
+  std::vector<double> force_n;     ///< known applied force along x; empty if there is none
+  std::vector<std::size_t> frame;  ///< the frame of each point
   std::vector<double> frame_t_s;   ///< times of all frames, with and without marker
   double frame_rate_hz = 0.0;
   double scale_sd_relative = 0.0;  ///< relative uncertainty of one px_per_m
-  /// How all positions change by one standard deviation of each independent error of the camera and the plane (the
-  /// calibration's modes); one entry for every mode of the whole analysis, empty where it does not touch this track.
+  /// How all positions change for one standard deviation of each independent error of the camera and the plane (the
+  /// calibration's modes); one entry for every mode of the whole analysis, empty if the mode does not affect this
+  /// track.
   std::vector<std::vector<double>> shared_m;
   std::vector<MarkerSighting> sightings;          ///< empty for a track from a file
-  std::shared_ptr<const PictureRecord> pictures;  ///< where they were asked for
-  bool dark_marker = false;  ///< seen as darker than its surroundings, without a colour that says so
+  std::shared_ptr<const PictureRecord> pictures;  ///< if requested
+  bool dark_marker = false;                       ///< seen as darker than its surroundings, with no stated colour
   std::vector<Note> notes;
 };
 
-/// Every point of a track from a file is a frame in which the object was seen; the frame rate is one over the median
-/// time step. Times that are even but for the digits they are written with are put back on their even places
-/// (written_times.h), and a note says so where a digit is more than a thousandth of a frame.
+/// Takes every point of a track from a file as a frame in which the object was seen; the frame rate is one over the
+/// median time step. Times that are uniform except for rounding to written digits are restored to their uniform values
+/// (written_times.h); a note says so if a digit is more than a thousandth of a frame.
 void take_rows_as_frames(TrackData& track);
 
-/// A motion that is given as numbers: times in seconds that rise, positions in metres, and the known force in newtons
-/// (empty where there is none), all positive downhill. `what` names it in messages: "clip \"up\"". InputError, up to
-/// ten issues named by place: not as many of each, a number that is not finite, a time that does not rise, too few
-/// points.
+/// A motion given as numbers: rising times in seconds, positions in metres, and the known force in newtons (empty if
+/// there is none), all positive downhill. `what` names it in messages: "clip \"up\"". InputError, up to ten issues
+/// named by index: series of different lengths, a number that is not finite, a time that does not rise, too few points.
 TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n,
                            const std::string& what);
 
-/// A track from a table that another program exported (column_table.h): which column is x, which is its time.
+/// A track from a table exported by another program (column_table.h).
 ///
-/// Which columns are x and t: table_columns.h. Units: m, dm, cm, mm, um, km, in, ft; s, ms, us, min. Where none is
-/// stated metres and seconds are taken, and a note says so. Rows without time or x are left out (columns of several
-/// runs differ in length), and a note counts those that lie between others.
+/// The columns of x and t: table_columns.h. Units: m, dm, cm, mm, um, km, in, ft; s, ms, us, min. If none is stated,
+/// metres and seconds are assumed, and a note says so. Rows without time or x are left out (columns of several runs
+/// differ in length), and a note counts those that lie between others.
 ///
-/// x is multiplied by `downhill`. Where that is not stated and x is a height that nobody asked for, it is counted along
-/// the motion (count_along_motion()). InputError: no or several columns that x may be, a curved path, a unit that is no
-/// length or time, times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than
+/// x is multiplied by `downhill`. If that is not stated and x is a height that was not requested, x is counted along
+/// the motion (count_along_motion()). InputError: no or several candidates for x, a curved path, a unit that is neither
+/// length nor time, times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than
 /// kFewestTrackPoints.
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill);
 
-/// Counts x positive the way that the body moves, where it hardly turns; else the way that it accelerates. A note says
-/// so where that turns the sign: of a height, and of a distance from a sensor that a body falls towards.
+/// Makes x positive in the direction of motion if the body hardly turns; otherwise in the direction of acceleration. A
+/// note says so if this reverses the sign: for a height, and for the distance from a sensor towards which a body falls.
 void count_along_motion(TrackData& track);
 
-/// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or what another
-/// program exported. x and the force are multiplied by `downhill` (+1 or -1; 1 where it is not stated), so that both
-/// are positive downhill. Times stay those of the file but for take_rows_as_frames(). InputError, up to ten issues
-/// named by line: no number, a time that does not rise, a gap that is too long (core/math/time_gap.h), too few points.
+/// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or a table exported
+/// by another program. x and the force are multiplied by `downhill` (+1 or -1; 1 if not stated), so that both are
+/// positive downhill. Times stay those of the file except for take_rows_as_frames(). InputError, up to ten issues named
+/// by line: not a number, a time that does not rise, a gap that is too long (core/math/time_gap.h), too few points.
 ///
-/// A file whose header has no `t_s`, or of which a column is asked for, goes to import_track().
+/// A file whose header has no `t_s`, or of which a column is requested, goes to import_track().
 TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill,
                          const std::string& column = {});
 

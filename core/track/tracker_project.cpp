@@ -23,15 +23,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSlantedRad = 3.0 * base::kRadPerDegree;  // off the axis: positions are 0.14 % short
-constexpr double kStraight = 1e-3;  // variance across a line of motion over that along it, above which it has no angle
-constexpr double kFilledPx = 1e-6;  // off a straight line between two marks; no hand marks so well
+constexpr double kSlantedRad = 3.0 * base::kRadPerDegree;  // off the axis: positions are too short by 0.14 %
+constexpr double kStraight = 1e-3;  // variance across a line of motion over that along it; above this the line has no
+                                    // angle
+constexpr double kFilledPx = 1e-6;  // off a straight line between two marks; manual marks are never that accurate
 
 std::string last_part(const std::string& name) {
   return name.substr(name.find_last_of("/\\") + 1);
 }
 
-/// What Apple's archiver puts beside each file is none of the user's.
+/// Files that Apple's archiver puts beside each file are not the user's.
 bool is_project_name(const std::string& name) {
   const std::string last = last_part(name);
   return lower_extension(last) == ".trk" && !last.starts_with("._");
@@ -66,11 +67,11 @@ std::string first_bytes_of(const fs::path& file, std::size_t count) {
   return bytes;
 }
 
-constexpr std::size_t kLookedAt = 64;  // bytes: a mark of the byte order and some blanks may come first
+constexpr std::size_t kLookedAt = 64;  // bytes: a byte-order mark and some blanks may come first
 
 std::vector<TrackerProject> projects_of(const fs::path& file) {
   if (is_zip_archive(first_bytes_of(file, kLookedAt))) return projects_of_archive(file);
-  std::error_code ignored;  // read_file says what is wrong
+  std::error_code ignored;  // read_file reports the error
   const auto size = fs::file_size(file, ignored);
   if (!ignored && size > kMostProjectBytes) {
     throw base::InputError(base::Issue{file.string(), 0, "", fmt::format("XML of {} bytes", size),
@@ -150,7 +151,7 @@ struct Place {
   double X = 0.0, Y = 0.0;  ///< metres, along the project's axes
 };
 
-/// Of each position whether it lies on the straight line between the two marks beside it, and is none itself.
+/// For each position, whether it lies on the straight line between the two adjacent marks and is not a mark itself.
 std::vector<bool> filled_in(const TrackerMass& mass) {
   const std::set<long> keys(mass.key_frames.begin(), mass.key_frames.end());
   const auto& points = mass.points;
@@ -212,14 +213,15 @@ double extent(const std::vector<Place>& places, double Place::*coordinate) {
   return (*high).*coordinate - (*low).*coordinate;
 }
 
-/// The coordinate of the larger extent; along Y the direction that points to the image's lower edge.
+/// The coordinate of larger extent; along Y, the direction that points to the image's lower edge.
 Downhill found_downhill(const TrackerProject& project, const std::vector<Place>& places) {
   if (extent(places, &Place::Y) <= extent(places, &Place::X)) return Downhill::plus_x;
   const bool up_in_image = std::cos(axes_at(project, project.first_frame).angle_rad) >= 0.0;
   return up_in_image ? Downhill::minus_y : Downhill::plus_y;
 }
 
-/// Of the line through the places by total least squares with the coordinate that is taken; 0 where they make no line.
+/// Angle between the chosen coordinate and the line fitted to the positions by total least squares; 0 if they do not
+/// form a line.
 double angle_to_line(const std::vector<Place>& places, bool along_y) {
   double mean_x = 0.0, mean_y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
   const auto count = static_cast<double>(places.size());
@@ -248,11 +250,11 @@ double metres_of(const fs::path& file, const TrackerProject& project, std::vecto
                                      "m, dm, cm, mm, um, km, in or ft"});
 }
 
-/// Every step from the first position to the last is a frame, whether the mass was marked there or not.
+/// Takes every step from the first position to the last as a frame, whether the mass was marked there or not.
 void take_steps_as_frames(const TrackerProject& project, const std::vector<Place>& places, TrackData& track) {
   const auto time_of = [&](long step) { return project.time_s(project.first_frame + step * project.step); };
   const long first = places.front().step;
-  constexpr long kMostLost = 1000;      // steps for each position: a mark far behind the others is a slip of the hand
+  constexpr long kMostLost = 1000;      // steps for each position: a mark far after the others is a slip
   constexpr long kMostSteps = 1000000;  // 83 minutes at 200 frames a second
   if (places.back().step - first > std::min(kMostSteps, kMostLost * static_cast<long>(places.size()))) {
     throw base::InputError(

@@ -32,7 +32,7 @@ std::string class_of(pugi::xml_node object) {
   return shown(name.substr(name.rfind('.') + 1));
 }
 
-/// One object of the project with its properties, and where it stands.
+/// One object of the project with its properties and its location.
 class Object {
  public:
   Object(pugi::xml_node node, std::string path, const std::string& file)
@@ -58,7 +58,7 @@ class Object {
     refuse(name, "nothing", "an object, as Tracker writes it");
   }
 
-  /// Java writes NaN for what there is none of; nothing where the property is missing.
+  /// Java writes NaN for a missing value; empty if the property is missing.
   std::optional<double> number(const char* name) const {
     const pugi::xml_node at = property(name);
     if (at.empty()) return {};
@@ -88,7 +88,7 @@ class Object {
     return static_cast<long>(*value);
   }
 
-  /// The elements "[n]" of an array, by n; n rises.
+  /// The elements "[n]" of an array with their n, in rising order.
   std::vector<std::pair<long, Object>> array(const char* name) const {
     std::vector<std::pair<long, Object>> elements;
     for (const pugi::xml_node element : property(name).children("property")) {
@@ -118,7 +118,7 @@ class Object {
     return items;
   }
 
-  /// "{0,3,7}", as an array of whole numbers is written.
+  /// "{0,3,7}", the form in which an array of whole numbers is written.
   std::vector<long> whole_numbers(const char* name) const {
     std::vector<long> numbers;
     std::string_view text = property(name).child("property").text().get();
@@ -166,8 +166,8 @@ pugi::xml_document parsed(std::string_view xml, const std::string& shown_as) {
   return document;
 }
 
-/// Tracker lets a value that is not fixed hold from its key frame on to the next one, and of one that is fixed the last
-/// that is stated count in all frames.
+/// In Tracker, a value that is not fixed holds from its key frame to the next one; of a fixed value, the last one
+/// stated counts in all frames.
 std::map<long, TrackerAxes> axes_of(const Object& panel) {
   if (panel.has("referenceframe")) {
     panel.refuse("referenceframe", "axes that move with \"" + panel.text("referenceframe") + "\"",
@@ -209,7 +209,7 @@ TrackerMass mass_of(const Object& track) {
   return mass;
 }
 
-/// Models, and means of other masses: each has the properties of a point mass but no marks.
+/// Models, and centroids of other masses: each has the properties of a point mass but no marks.
 bool is_model(const Object& track) {
   const std::string name = track.class_name();
   return name == "CenterOfMass" || name.ends_with("Particle") || name.starts_with("Dynamic") ||

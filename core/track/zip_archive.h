@@ -1,5 +1,5 @@
-/// A zip archive, of which single entries are read into memory. Nothing is unpacked to the disk, so that the names in
-/// the archive are only compared and shown.
+/// A zip archive from which single entries are read into memory. Nothing is unpacked to disk, so the names in the
+/// archive are only compared and shown.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace glidelab::core {
 class ZipArchive {
  public:
   struct Entry {
-    std::string name;  ///< as the archive states it; control characters are blanks
+    std::string name;  ///< as stated by the archive; control characters become blanks
     std::uint64_t index = 0;
   };
 
-  /// InputError where the file is no zip archive, or has more than kMostEntries.
+  /// InputError if the file is not a zip archive or has more than kMostEntries.
   explicit ZipArchive(const std::filesystem::path& file);
   ~ZipArchive();
   ZipArchive(const ZipArchive&) = delete;
@@ -26,11 +26,11 @@ class ZipArchive {
 
   const std::vector<Entry>& entries() const { return entries_; }
 
-  /// The entry's bytes. InputError where it is larger than `most` bytes once it is unpacked (whatever size the archive
-  /// states: no more than that is ever unpacked), encrypted, damaged, or packed in a way that libzip does not know.
+  /// The entry's bytes. InputError if it is larger than `most` bytes when unpacked (whatever size the archive states:
+  /// no more than that is ever unpacked), encrypted, damaged, or packed in a way that libzip does not know.
   std::string read(const Entry& entry, std::size_t most) const;
 
-  static constexpr std::uint64_t kMostEntries = 100'000;  ///< a project with a folder of images has some thousands
+  static constexpr std::uint64_t kMostEntries = 100'000;  ///< a project with a folder of images has a few thousand
 
  private:
   struct Handle;  ///< libzip's
@@ -39,7 +39,7 @@ class ZipArchive {
   std::vector<Entry> entries_;
 };
 
-/// Whether the file begins as a zip archive does ("PK\x03\x04", or "PK\x05\x06" of an empty one).
+/// Whether the file begins like a zip archive ("PK\x03\x04", or "PK\x05\x06" for an empty one).
 bool is_zip_archive(std::string_view first_bytes);
 
 }  // namespace glidelab::core

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 constexpr int kFormat = 1;
 
-/// What is wrong with a document, key by key.
+/// The errors of a document, key by key.
 class Findings {
  public:
   explicit Findings(const std::filesystem::path& file) : file_(file.string()) {}
@@ -39,14 +39,14 @@ class Findings {
   std::vector<base::Issue> issues_;
 };
 
-/// As a message shows it: short values themselves, others by their type.
+/// A value as a message shows it: short values themselves, others by their type.
 std::string shown(const json& value) {
   constexpr std::size_t kMostShown = 40;
   const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
   return text.size() <= kMostShown ? text : value.type_name();
 }
 
-/// The member; null and a finding where there is none.
+/// The member; if there is none, null and a finding.
 const json* member(const json& object, const std::string& key, const std::string& where, const char* expected,
                    Findings& findings) {
   const auto found = object.find(key);
@@ -113,7 +113,7 @@ core::Quantity quantity_in(const json& configuration, const std::string& key, co
   return core::determined(estimate);
 }
 
-/// Which of the results' configurations these clips are; none and a finding where they are not of one.
+/// The index of the configuration that these clips form; if they do not form one, empty and a finding.
 std::optional<std::size_t> place_in(const core::AnalysisResults& results, const json& configuration,
                                     const std::string& where, std::set<std::string>& taken, Findings& findings) {
   constexpr const char* kExpected = "a list of names of clips";
@@ -173,7 +173,7 @@ core::AnalysisResults undetermined_results(const std::vector<core::ClipSetup>& c
                                            const std::string& why) {
   core::AnalysisResults results;
   results.estimator = estimator;
-  std::vector<const core::ClipSetup*> firsts;  // of each configuration
+  std::vector<const core::ClipSetup*> firsts;  // the first clip of each configuration
   for (const core::ClipSetup& clip : clips) {
     const auto same = std::ranges::find_if(firsts, [&](const core::ClipSetup* first) {
       return first->mass_kg == clip.mass_kg && first->group == clip.group &&

@@ -65,7 +65,7 @@ std::string replaced(std::string text, std::string_view what, const std::string&
   return text;
 }
 
-/// The last line that says something, of what it printed; shortened.
+/// The last non-empty line of the program's output, shortened.
 std::string last_line(const fs::path& log) {
   constexpr std::size_t kMostShown = 200;
   const std::string text = fs::exists(log) ? base::read_file(log) : std::string();
@@ -112,7 +112,7 @@ OutsideEstimator outside_estimator(std::string_view command, std::string name) {
   if (placeholder == estimator.words.begin()) {
     refuse(fmt::format("\"{}\"", command), "a program before {folder} and {out}");
   }
-  // The nearest word before it that is no option.
+  // The nearest preceding word that is not an option.
   auto named = std::prev(placeholder);
   while (named != estimator.words.begin() && named->starts_with("-")) --named;
   estimator.name = name.empty() ? fs::path(*named).stem().string() : std::move(name);

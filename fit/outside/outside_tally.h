@@ -22,11 +22,11 @@ std::string_view words_of(OutsideFailure failure);
 /// How one run went.
 struct OutsideRun {
   OutsideFailure failure = OutsideFailure::none;
-  std::string what;  ///< "exit status 1: ValueError: …"; empty where it did not fail
+  std::string what;  ///< "exit status 1: ValueError: …"; empty if it did not fail
   double seconds = 0.0;
 };
 
-/// Why a quantity of a run that failed is undetermined: "the estimator failed (time_out): not done after 60 s".
+/// Why a quantity of a failed run is undetermined: "the estimator failed (time_out): not done after 60 s".
 std::string why_of(const OutsideRun& failed);
 /// How every why_of() of this kind begins: "the estimator failed (time_out)".
 std::string why_begins(OutsideFailure failure);
@@ -35,13 +35,13 @@ std::string why_begins(OutsideFailure failure);
 struct OutsideTally {
   struct Kind {
     std::size_t count = 0;
-    std::string first;  ///< what the first of them said
+    std::string first;  ///< message of the first of them
   };
   std::string name;
   std::string command;  ///< its words
   std::size_t runs = 0;
   std::array<Kind, kOutsideFailures.size()> failures = {};  ///< as in kOutsideFailures
-  double seconds = 0.0;                                     ///< mean of a run; 0 where it was not kept
+  double seconds = 0.0;                                     ///< mean per run; 0 if it was not recorded
   double longest_s = 0.0;
 
   std::size_t failed() const;

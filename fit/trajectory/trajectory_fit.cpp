@@ -36,7 +36,7 @@ Eigen::VectorXd times_noise(const std::vector<double>& autocovariance, const Eig
   return product;
 }
 
-/// Number of points worth an independent one, from the noise's autocovariance.
+/// Effective number of independent points, from the noise's autocovariance.
 double independent(const FitBlock& fit, double points) {
   double sum = 1.0;
   for (std::size_t lag = 1; lag < fit.autocovariance_m2.size(); ++lag) {
@@ -58,7 +58,7 @@ TrajectoryUncertainty::TrajectoryUncertainty(const std::vector<FitBlock>& blocks
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Linearised& of = at[b];
     const auto common = of.common.leftCols(free);
-    // The part of the derivatives that no start x0, v0 can take up.
+    // The part of the derivatives that no start x0, v0 can absorb.
     const Eigen::MatrixXd projected = common - product(of.start, base::least_squares(of.start, common));
     normal_ += transposed_product(projected, projected) / variance_of(blocks[b]);
     projected_.push_back(projected);
@@ -96,7 +96,7 @@ void TrajectoryUncertainty::fill(TrajectoryFit& fit) const {
   add_shared(fit);
 }
 
-/// The scores of pieces of the motion, so long that they are as good as independent.
+/// The scores of pieces of the motion that are long enough to be practically independent.
 void TrajectoryUncertainty::add_misfit(double count, double ratio, TrajectoryFit& fit) const {
   const auto length = static_cast<Eigen::Index>(std::max(1.0, std::ceil(count / static_cast<double>(kFewestPieces))));
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(inverse_.rows(), inverse_.rows());
@@ -111,10 +111,10 @@ void TrajectoryUncertainty::add_misfit(double count, double ratio, TrajectoryFit
       pieces += 1.0;
     }
   }
-  // The parameters that were fitted take their share out of the scores.
+  // The fitted parameters reduce the scores by their share.
   const double freedom = std::max(1.0, pieces - static_cast<double>(inverse_.rows()));
   const Eigen::MatrixXd wider = product(product(inverse_, sum), inverse_) * ((1.0 - 1.0 / ratio) * pieces / freedom);
-  // Not below what white residuals of that size would give.
+  // Not below the value for white residuals of that size.
   Eigen::VectorXd growth(inverse_.rows());
   for (Eigen::Index i = 0; i < growth.size(); ++i) {
     growth[i] = std::max(1.0, std::sqrt((ratio - 1.0) * inverse_(i, i) / std::max(wider(i, i), 1e-300)));
@@ -134,7 +134,7 @@ void TrajectoryUncertainty::compare_with_jackknife(TrajectoryFit& fit) const {
     const Eigen::MatrixXd rest = normal_ - weight * transposed_product(projected_[b], projected_[b]);
     const Eigen::VectorXd scale = normal_.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * rest * scale.asDiagonal();
-    if (!(base::symmetric_eigen(scaled).values[0] > kCondition)) return;  // one block holds the fit alone
+    if (!(base::symmetric_eigen(scaled).values[0] > kCondition)) return;  // one block alone determines the fit
     const Eigen::VectorXd score = weight * transposed_product(projected_[b], at_[b].residual);
     const Eigen::VectorXd moved = base::solve_positive(rest, score);
     covariance += ((n - 1.0) / n) * product(moved, moved.transpose());
@@ -143,7 +143,7 @@ void TrajectoryUncertainty::compare_with_jackknife(TrajectoryFit& fit) const {
   bool larger = false;
   for (Eigen::Index i = 0; i < free; ++i) larger = larger || covariance(i, i) > limit * fit.covariance(i, i);
   if (!larger) return;
-  // No parameter gets less than the noise gives it.
+  // No parameter gets a variance below that from the noise.
   Eigen::VectorXd growth(free);
   for (Eigen::Index i = 0; i < free; ++i) {
     growth[i] = std::sqrt(std::max(1.0, fit.covariance(i, i) / std::max(covariance(i, i), 1e-300)));
@@ -157,7 +157,7 @@ void TrajectoryUncertainty::add_shared(TrajectoryFit& fit) const {
   for (const FitBlock& block : blocks_) modes = std::max(modes, block.block->shared_m.size());
   fit.shared.assign(modes + 1, Eigen::VectorXd::Zero(inverse_.rows()));
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(inverse_.rows());
-  Eigen::VectorXd clock = 2.0 * core::kClockSdRelative * fit.parameters;  // accelerations go as 1 / time^2
+  Eigen::VectorXd clock = 2.0 * core::kClockSdRelative * fit.parameters;  // accelerations scale as 1 / time^2
   clock[0] *= 0.5;
   fit.shared.push_back(clock);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -172,7 +172,7 @@ void TrajectoryUncertainty::add_shared(TrajectoryFit& fit) const {
     if (at_[b].force.size() == 0) continue;
     const Eigen::VectorXd by_force = product(gain, at_[b].force);
     mass += block.force.mass_sd_relative * by_force;
-    fit.shared[modes + 1] += 2.0 * core::kClockSdRelative * by_force;  // a slow clock makes the force too small as well
+    fit.shared[modes + 1] += 2.0 * core::kClockSdRelative * by_force;  // a slow clock also makes the force too small
   }
   if (mass.squaredNorm() > 0.0) fit.shared.push_back(mass);
 }
@@ -185,10 +185,10 @@ using base::transposed_product;
 constexpr int kMostIterations = 60;
 constexpr double kConverged = 1e-10;  // relative change of the cost
 constexpr int kRobustPasses = 8;
-constexpr double kHuber = 1.5;    // scaled deviations beyond which a position counts less
+constexpr double kHuber = 1.5;    // scaled deviations beyond which a position is weighted down
 constexpr double kOutlier = 4.0;  // and beyond which it is left out: 6 of 1e5 by chance
 
-/// The recorded force of a block as a drive from its first point on, `factor` times as large.
+/// The recorded force of a block as a drive from its first point on, multiplied by `factor`.
 sim::RecordedDrive drive_of(const core::FreeBlock& block, double factor) {
   sim::RecordedDrive drive;
   for (std::size_t i = 0; i < block.force.t_s.size(); ++i) {
@@ -198,7 +198,7 @@ sim::RecordedDrive drive_of(const core::FreeBlock& block, double factor) {
   return drive;
 }
 
-constexpr double kForceStep = 1e-4;  // of the force, for the difference of the motion by it
+constexpr double kForceStep = 1e-4;  // relative step of the force, for the numerical derivative of the motion
 
 Linearised linearise(const FitBlock& fit, const Eigen::Vector3d& common, const Eigen::Vector2d& start) {
   const core::FreeBlock& block = *fit.block;
@@ -233,7 +233,7 @@ struct Point {
   std::vector<Eigen::Vector2d> starts;
 };
 
-/// A point, what is linear there (weighted), and its cost.
+/// A point, the weighted linearisation there, and its cost.
 struct Evaluated {
   Point at;
   std::vector<Linearised> linearised;
@@ -248,7 +248,7 @@ class Problem {
     for (const Eigen::VectorXd& of_block : weights) roots_.push_back(of_block.cwiseSqrt());
   }
 
-  /// An infinite cost where the motion cannot be moved.
+  /// The cost is infinite if the motion cannot be integrated.
   Evaluated evaluate(Point point) const {
     Evaluated there{std::move(point), {}};
     double cost = 0.0;
@@ -265,7 +265,7 @@ class Problem {
     return there;
   }
 
-  /// The step of Levenberg and Marquardt, each block's start eliminated.
+  /// The Levenberg-Marquardt step, with each block's start eliminated.
   Point step(const Evaluated& from, double damping) const {
     const std::vector<Linearised>& linearised = from.linearised;
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free_, free_);
@@ -319,7 +319,7 @@ Eigen::Vector2d start_of(const core::FreeBlock& block) {
     x[i] = block.x_m[static_cast<std::size_t>(i)];
   }
   const Eigen::Vector3d fit = base::least_squares(design, x);
-  // A block that moves one way starts that way, whatever the noise says.
+  // A block that moves in one direction starts in that direction, whatever the noise.
   const double least = 1e-6;
   const double v = block.directions.front() * std::max(least, block.directions.front() * fit[1]);
   return {fit[0], v};
@@ -345,12 +345,12 @@ Found minimise(const Problem& problem, Point at) {
   Evaluated here = problem.evaluate(std::move(at));
   const double start_cost = here.cost;
   const base::FitSummary summary = base::levenberg_marquardt(here, start_cost, options, try_step);
-  // Where no step goes down any more, rounding is all that is left.
+  // If no step lowers the cost any more, only rounding is left.
   const bool converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
   return {std::move(here), converged, summary.iterations};
 }
 
-/// The only direction that occurs, or 0.
+/// The only direction that occurs, or 0 for both.
 int only_direction(const std::vector<FitBlock>& blocks) {
   int only = 0;
   for (const FitBlock& block : blocks) {
@@ -376,15 +376,15 @@ Found minimise_from_several(const Problem& problem, const Point& first) {
 
 struct RobustFit {
   Found found;
-  std::vector<FitBlock> blocks;  // with the noise of what is not left out
+  std::vector<FitBlock> blocks;  // with the noise of the positions that are not left out
   std::size_t left_out = 0;
 };
 
-/// Huber's weights until they settle, then without what is off by more than kOutlier scaled deviations.
+/// Huber's weights until they settle, then without the positions that are off by more than kOutlier scaled deviations.
 RobustFit fit_robustly(const std::vector<FitBlock>& blocks, int free, Found found) {
   RobustFit fit{std::move(found), blocks, 0};
   for (int pass = 0; pass < kRobustPasses; ++pass) {
-    const bool last = pass + 2 >= kRobustPasses;  // two passes with what is left
+    const bool last = pass + 2 >= kRobustPasses;  // two passes with the remaining positions
     std::vector<Eigen::VectorXd> weights;
     fit.left_out = 0;
     for (std::size_t b = 0; b < blocks.size(); ++b) {

@@ -65,7 +65,7 @@ void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResu
   result.mu = quantity_of(fit, mu, Eigen::Vector3d(0.0, mu_by_drive, 1.0 / (gravity_m_s2 * cosine)));
 }
 
-/// k, d, f from the lines; where there are none, a glider without friction.
+/// k, d, f from the lines; without lines, a glider without friction.
 Eigen::Vector3d start_of(const core::ConfigurationResult& result) {
   double k = 0.0;
   for (const core::LineFit& line : result.lines) {

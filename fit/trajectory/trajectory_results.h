@@ -1,4 +1,4 @@
-/// Results of the whole-motion fit in the form of the phase diagram's.
+/// Results of the whole-motion fit, in the same form as those of the phase diagram.
 #pragma once
 
 #include "core/result/results.h"
@@ -8,11 +8,11 @@ namespace glidelab::fit {
 
 inline constexpr const char* kTrajectory = "trajectory";  ///< the estimator's name in options and files
 
-/// The same results with K/m, mu, alpha and v_lim of every configuration from fit_trajectories() in place of the lines,
-/// and estimator = kTrajectory; the clips and their lines stay. mu = f / (g cos(alpha)), sin(alpha) = d / g.
+/// The same results with K/m, mu, alpha and v_lim of every configuration from fit_trajectories() instead of the lines,
+/// and estimator = kTrajectory; the clips and their lines are kept. mu = f / (g cos(alpha)), sin(alpha) = d / g.
 ///
-/// Null with the reason: mu and alpha where the motion has one direction only (the reason says which combination is
-/// known); all of them for clips without free motion, and where no fit converges.
+/// Null with the reason: mu and alpha if the motion has one direction only (the reason says which combination is
+/// known); all of them for clips without free motion, and if no fit converges.
 core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options = {});
 
 }  // namespace glidelab::fit

@@ -1,4 +1,4 @@
-/// analyze: of folders and files as the command does it, and of tracks that are given as arrays.
+/// analyze: for folders and files as in the command, and for tracks given as arrays.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/numpy.h>
@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What of an analysis is chosen, whatever it is of.
+/// The choices of an analysis, for any kind of input.
 struct AnalysisChoices {
   std::optional<double> bandwidth_s;
   std::string bandwidth_rule;  ///< empty: the default
@@ -83,7 +83,7 @@ py::dict motion_arrays(const core::ClipResult& clip) {
   return arrays;
 }
 
-/// The outcome, and the arrays of each clip. `previews` are made when the page is.
+/// The outcome, and the arrays of each clip. `previews` are made together with the page.
 py::tuple told(
     core::AnalysisResults found, std::string title,
     std::function<std::vector<core::Preview>(const core::AnalysisResults&, const base::Progress&)> previews) {

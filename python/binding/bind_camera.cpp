@@ -1,5 +1,5 @@
-/// The camera's calibration and the marker's fit on their own, from images in memory. Pixels are read where numpy has
-/// them.
+/// The camera's calibration and the marker's fit on their own, from images in memory. Pixels are read in numpy's
+/// memory.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -113,7 +113,7 @@ py::dict calibrate_files(const std::vector<std::string>& files, std::pair<int, i
   }));
 }
 
-/// An image of its own: the caller's pixels stay as they are.
+/// A separate image: the caller's pixels stay unchanged.
 cv::Mat inverse_of(const cv::Mat& grey) {
   cv::Mat inverse;
   cv::bitwise_not(grey, inverse);

@@ -1,4 +1,4 @@
-/// diagnose and plan: of folders as the command does it, of tracks that are given as arrays, and of a scenario.
+/// diagnose and plan: for folders as in the command, for tracks given as arrays, and for a scenario.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -80,7 +80,7 @@ py::tuple diagnose_arrays(std::vector<GivenTrack> given, double gravity_m_s2, co
   check_gravity(gravity_m_s2);
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     const GivenTracks tracks = read_given(std::move(given));
-    // As diagnose::diagnose() does it with tracks from files: times as they are, no camera.
+    // As in diagnose::diagnose() for tracks from files: times as given, no camera.
     core::AnalysisResults results = core::analyze_tracks(tracks.setups, tracks.tracks, gravity_m_s2,
                                                          {.lost_frames = core::LostFrameTimes::kept}, jobs, progress);
     for (core::ClipResult& clip : results.clips) clip.experiment = name;

@@ -1,4 +1,4 @@
-/// render: the frames of a scenario's clips one after the other, in memory; or the whole experiment folder.
+/// render: the frames of a scenario's clips one after another, in memory; or the whole experiment folder.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Seed = std::optional<std::uint64_t>;
 
-/// A scenario before the camera.
+/// A scenario as seen by the camera.
 struct Film {
   std::shared_ptr<const render::ClipSet> clips;
   std::uint64_t seed = 1;
@@ -65,7 +65,7 @@ class FrameIterator {
     const std::span<Code> codes(pixels.mutable_data(), static_cast<std::size_t>(pixels.size()));
     {
       const py::gil_scoped_release without_lock;
-      stream_.read(*next->shown, all, codes);  // of a repeated frame the same codes once more
+      stream_.read(*next->shown, all, codes);  // for a repeated frame the same codes again
     }
     const sim::State& state = next->shown->middle;
     return py::make_tuple(std::move(pixels), state.t_s, next->stamp_s, next->slot, next->repeated, state.x_m,

@@ -1,4 +1,4 @@
-/// simulate: the true motions of a scenario, which is a file, or text as a file would have it.
+/// simulate: the true motions of a scenario, which is a file or the text of one.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -25,7 +25,7 @@ namespace py = pybind11;
 
 namespace {
 
-constexpr double kMostRate_hz = 1e6;  // as the command's --rate has it
+constexpr double kMostRate_hz = 1e6;  // the limit of the command's --rate
 
 std::vector<report::SimulatedClip> simulated(const render::Scenario& scenario, std::optional<double> rate_hz,
                                              const base::Progress& progress) {

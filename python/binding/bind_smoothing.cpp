@@ -1,4 +1,4 @@
-/// The smoother and the bandwidth rules on their own. Times and values are read where numpy has them.
+/// The smoother and the bandwidth rules on their own. Times and values are read in numpy's memory.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/numpy.h>
@@ -45,7 +45,7 @@ core::Kernel kernel_of(const std::string& name) {
   refuse("kernel", fmt::format("\"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
-/// What the smoother asserts of the times, and of the values that go with them.
+/// Checks what the smoother asserts about the times and the values that belong to them.
 void check_series(std::span<const double> t_s, std::span<const double> values) {
   if (values.size() != t_s.size()) {
     refuse("x_m", fmt::format("{} numbers", values.size()), fmt::format("as many as times, {}", t_s.size()));
@@ -92,7 +92,7 @@ void put(const std::optional<core::SmoothedPoint>& point, std::size_t i, std::si
   out[2 * n + i] = point ? point->a_m_s2 : kNone;
 }
 
-/// x, v and a at the times of the points, and below these their standard deviations where the noise is stated.
+/// x, v and a at the times of the points, and below these their standard deviations if the noise is stated.
 py::array_t<double> smooth(const Vector& times, const Vector& positions, double bandwidth_s, int order,
                            const std::string& kernel, std::optional<double> noise_m) {
   const std::span<const double> t_s = span_of(times), x_m = span_of(positions);
@@ -148,8 +148,8 @@ void check_rising(const char* key, std::span<const double> times_s, std::span<co
   }
 }
 
-/// x, v, a and their standard deviations at the times wanted, by a smoother that finds its own strength; and what it
-/// chose: method, smoothing time, noise, breaks, standard deviation of the jumps, factor of the simultaneous band.
+/// x, v, a and their standard deviations at the requested times, by a smoother that finds its own strength; and its
+/// choices: method, smoothing time, noise, breaks, standard deviation of the jumps, factor of the simultaneous band.
 py::tuple smooth_by(const std::string& name, const Vector& times, const Vector& positions,
                     const std::optional<Vector>& at, const Vector& breaks, std::optional<double> noise_m) {
   const std::span<const double> t_s = span_of(times), x_m = span_of(positions);
@@ -192,8 +192,8 @@ py::tuple smooth_by(const std::string& name, const Vector& times, const Vector& 
                         vector_of(strength.breaks_s), strength.jump_sd_m_s2, strength.simultaneous_a.value());
 }
 
-/// The rule's choice for one stretch of motion: (bandwidth, method, times and bandwidths of a local rule), or None
-/// where the motion is too short.
+/// The rule's choice for one stretch of motion: (bandwidth, method, times and bandwidths of a local rule), or None if
+/// the motion is too short.
 py::object choose_bandwidth(const Vector& times, const Vector& positions, const std::string& name,
                             std::optional<double> noise_m) {
   const std::span<const double> t_s = span_of(times), x_m = span_of(positions);

@@ -1,5 +1,5 @@
-/// validate, coverage, certify, require and sweep: what meets a truth. A sweep goes on where it stopped, in the folder
-/// it is given.
+/// validate, coverage, certify, require and sweep: the functions that use a truth. A sweep continues where it stopped,
+/// in the given folder.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/pybind11.h>
@@ -45,7 +45,7 @@ namespace {
 namespace fs = std::filesystem;
 using Seed = std::optional<std::uint64_t>;
 
-/// A closed loop, with its folders, which are gone when nobody holds it any more.
+/// A closed loop with its folders, which are removed with the last reference to it.
 struct Validated {
   base::TemporaryFolder folder{"validate"};
   fs::path experiment() const { return folder / "experiment"; }
@@ -96,7 +96,7 @@ Outcome measure_coverage(const GivenScenario& given, std::optional<double> noise
                          const py::object& told) {
   std::string name;
   const auto coverage = WatchedWork(told).run([&](const base::Progress& progress) {
-    // With a noise that is given no camera looks on: it need not see the motions.
+    // With a given noise there is no camera, so it need not see the motions.
     const render::Scenario scenario =
         read_scenario(given, noise_m ? render::ScenarioChecks::values : render::ScenarioChecks::all);
     name = scenario.motion.name;

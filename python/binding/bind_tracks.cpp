@@ -1,5 +1,4 @@
-/// made_tracks: the motions of a scenario as positions with noise, with what is true of them, for estimators of the
-/// user's own.
+/// made_tracks: the motions of a scenario as positions with noise, with their truth, for the user's own estimators.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -35,7 +34,7 @@ py::dict track_dict(const core::ClipSetup& setup, const core::TrackData& track) 
   return fields;
 }
 
-/// The truths of each configuration by quantity, None for one that the scenario does not have.
+/// The truths of each configuration by quantity, None for a quantity that the scenario does not have.
 py::list truth_list(const validate::Truth& truth) {
   py::list list;
   for (const validate::TrueConfiguration& of : truth.configurations) {
@@ -48,7 +47,7 @@ py::list truth_list(const validate::Truth& truth) {
   return list;
 }
 
-/// (tracks, truths, gravity): one experiment for each seed, with the scenario read and moved once.
+/// (tracks, truths, gravity): one experiment for each seed, with the scenario read and simulated once.
 class TrackMaker {
  public:
   TrackMaker(const GivenScenario& given, double noise_m)

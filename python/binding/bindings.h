@@ -1,4 +1,5 @@
-/// The functions of the module, one file bind_<topic>.cpp for each of these; glidelab/*.py makes the results of them.
+/// The functions of the module, one file bind_<topic>.cpp for each topic; glidelab/*.py turns their output into
+/// results.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -9,7 +10,7 @@
 
 namespace glidelab::python {
 
-/// InputError where there is none of the name.
+/// InputError if there is none of that name.
 const fit::Estimator& estimator_named(const std::string& name);
 
 void bind_analysis(pybind11::module_& module);

@@ -1,4 +1,4 @@
-/// A scenario as Python gives it: a file, or the text of one that a dict was written as.
+/// A scenario as given by Python: a file, or the text into which a dict was converted.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace glidelab::python {
 
-/// (file, text): without a text the file is read; with one, `file` is what messages call it, and a camera file counts
-/// from its folder.
+/// (file, text): without a text the file is read; with one, `file` is its name in messages, and a camera file is
+/// relative to its folder.
 using GivenScenario = std::pair<std::string, std::optional<std::string>>;
 
-/// InputError as render::read_scenario().
+/// InputError as in render::read_scenario().
 render::Scenario read_scenario(const GivenScenario& given, render::ScenarioChecks checks = render::ScenarioChecks::all);
 
 /// Its text.

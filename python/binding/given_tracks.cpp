@@ -22,7 +22,7 @@ Vector vector_of(std::span<const double> values) {
 
 namespace {
 
-constexpr double kSteepest_deg = 90.0;  // as experiment.toml has it
+constexpr double kSteepest_deg = 90.0;  // the limit of experiment.toml
 
 constexpr std::array<std::pair<const char*, core::Launched>, 4> kLaunches = {{{"up", core::Launched::up},
                                                                               {"down", core::Launched::down},

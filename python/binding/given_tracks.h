@@ -1,4 +1,4 @@
-/// Motions that are given as arrays, as the rooms take them: what experiment.toml states of a clip, and its x(t).
+/// Motions given as arrays, converted for the rooms: what experiment.toml states about a clip, and its x(t).
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -14,7 +14,7 @@
 
 namespace glidelab::python {
 
-/// One dimension, contiguous: glidelab/_arrays.py makes it so, and says what is wrong where it cannot.
+/// One dimension, contiguous: glidelab/_arrays.py converts it, and reports an error if it cannot.
 using Vector = pybind11::array_t<double, pybind11::array::c_style>;
 
 inline std::span<const double> span_of(const Vector& vector) {
@@ -25,11 +25,11 @@ inline std::vector<double> copy_of(const Vector& vector) {
 }
 Vector vector_of(std::span<const double> values);
 
-/// As the keys of a clip in experiment.toml; NaN and empty where nothing is stated.
+/// The keys of a clip in experiment.toml; NaN and empty if nothing is stated.
 struct GivenTrack {
   std::string name;
   std::vector<double> t_s, x_m, force_n;
-  std::optional<double> mass_kg;  ///< 1 kg, with a note, where none is stated
+  std::optional<double> mass_kg;  ///< 1 kg, with a note, if none is stated
   double mass_sd_kg = 0.0;
   double incline_deg = 0.0;
   std::optional<double> incline_sd_deg;
@@ -42,11 +42,11 @@ struct GivenTracks {
   std::vector<core::TrackData> tracks;
 };
 
-/// InputError for what makes no clip: numbers that are no track, a mass that is none, a name used twice, an unknown
+/// InputError for an invalid clip: numbers that do not form a track, an invalid mass, a name used twice, an unknown
 /// word for the launch, readings of one group's inclination that contradict each other.
 GivenTracks read_given(std::vector<GivenTrack> given);
 
-/// InputError for what is no acceleration of gravity above 0.
+/// InputError if it is not an acceleration of gravity above 0.
 void check_gravity(double gravity_m_s2);
 
 void bind_given_track(pybind11::module_& module);

@@ -1,4 +1,4 @@
-/// glidelab._glidelab: what the package's Python sources call.
+/// glidelab._glidelab: the functions called by the package's Python sources.
 #include <pybind11/pybind11.h>
 
 #include "python/binding/bindings.h"

@@ -1,5 +1,5 @@
-/// What a function of the module gives to Python beside its arrays: the JSON that the command of its name writes, the
-/// text that it prints, and all of its files when they are asked for.
+/// What a function of the module returns to Python besides its arrays: the JSON that the command of the same name
+/// writes, the text that it prints, and all of its files on request.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -15,7 +15,7 @@ base::Progress WatchedWork::progress() {
       stage_ = stage;
       fraction_ = 0.0;
     }
-    // Threads report in any order; what is done stays done.
+    // Threads report in any order; progress never goes back.
     fraction_ = std::max(fraction_, std::isfinite(fraction) ? std::min(fraction, 1.0) : 0.0);
     news_ = true;
   };

@@ -1,8 +1,8 @@
-/// Long work called from Python: done in a thread of its own, without the interpreter's lock, while the calling thread
-/// passes its progress on and looks for Ctrl-C.
+/// Long work called from Python: it runs in its own thread, without the interpreter's lock, while the calling thread
+/// forwards its progress and checks for Ctrl-C.
 ///
 /// Only Python's main thread may run signal handlers, and only a thread with the lock may call the progress function.
-/// Workers do neither: they leave what they have to tell, and learn from a flag that they are to stop.
+/// Workers do neither: they leave their reports for the calling thread, and a flag tells them to stop.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -23,18 +23,18 @@ namespace glidelab::python {
 
 class WatchedWork {
  public:
-  /// `told` is None, or is called with a stage and how much of it is done (0 to 1).
+  /// `told` is None, or is called with a stage and the fraction done (0 to 1).
   explicit WatchedWork(pybind11::object told) : told_(std::move(told)) {}
 
-  /// The result of work(progress). To be called with the lock held. Throws what the work throws; where a signal handler
-  /// or the progress function raised something, the work is ended at its next report, and that is thrown.
+  /// The result of work(progress). Must be called with the lock held. Throws what the work throws. If a signal handler
+  /// or the progress function raises an exception, the work is ended at its next report and that exception is thrown.
   template <typename Work>
   auto run(const Work& work) {
     auto done = std::async(std::launch::async, [&] { return work(progress()); });
     {
       const pybind11::gil_scoped_release without_lock;
       while (done.wait_for(kInterval) != std::future_status::ready) look();
-      look();  // what was told last
+      look();  // forwards the last report
     }
     if (raised_) {
       end(done);
@@ -43,16 +43,16 @@ class WatchedWork {
     return done.get();
   }
 
-  /// For work that looks more often whether it is to stop than it reports: throws Interrupted.
+  /// For work that checks for interruption more often than it reports: throws Interrupted.
   void throw_if_stopped() const {
     if (stop_) throw base::Interrupted();
   }
 
  private:
-  static constexpr std::chrono::milliseconds kInterval{20};  // a person who presses Ctrl-C notices no less
+  static constexpr std::chrono::milliseconds kInterval{20};  // a user who presses Ctrl-C notices no shorter delay
 
   base::Progress progress();
-  /// Called without the lock; takes it where there is something to do.
+  /// Called without the lock; takes it if there is something to do.
   void look();
 
   template <typename Done>
@@ -60,7 +60,7 @@ class WatchedWork {
     const pybind11::gil_scoped_release without_lock;
     try {
       done.get();
-    } catch (const std::exception&) {  // what an interrupt tears down on its way is not the error to report
+    } catch (const std::exception&) {  // an error caused by the interrupt is not the one to report
       return;
     }
   }
@@ -68,7 +68,7 @@ class WatchedWork {
   pybind11::object told_;
   std::atomic<bool> stop_ = false;
   std::unique_ptr<pybind11::error_already_set> raised_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // protects the following members
   std::string stage_;
   double fraction_ = 0.0;
   bool news_ = false;

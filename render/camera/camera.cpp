@@ -15,7 +15,7 @@
 namespace glidelab::render {
 namespace {
 
-/// The factor of the radius, and its derivative by s = r².
+/// The factor on the radius, and its derivative by s = r².
 struct Radial {
   double factor;
   double slope;
@@ -65,7 +65,7 @@ std::optional<Eigen::Vector2d> newton_inverse(const Lens& lens, const Eigen::Vec
   return std::nullopt;
 }
 
-/// theta of theta_d by bisection and Newton's method between 0 and where the mapping folds or ends.
+/// theta from theta_d, by bisection and Newton's method between 0 and the angle at which the mapping folds or ends.
 std::optional<Eigen::Vector2d> fisheye_inverse(const Lens& lens, const Eigen::Vector2d& distorted,
                                                double largest_radius) {
   const double wanted = distorted.norm();
@@ -123,7 +123,7 @@ Polynomial sum(const Polynomial& a, double factor, const Polynomial& b) {
   return out;
 }
 
-/// The positive real zeros, rising: eigenvalues of the companion matrix, which is Hessenberg's as it stands.
+/// The positive real zeros, rising: eigenvalues of the companion matrix, which already has Hessenberg form.
 std::vector<double> positive_zeros(Polynomial p) {
   while (!p.empty() && p.back() == 0.0) p.pop_back();
   if (p.size() < 2) return {};
@@ -133,7 +133,7 @@ std::vector<double> positive_zeros(Polynomial p) {
     companion(i, degree - 1) = -p[static_cast<std::size_t>(i)] / p.back();
     if (i > 0) companion(i, i - 1) = 1.0;
   }
-  constexpr double kReal = 1e-6;  // a double zero splits by the root of the rounding
+  constexpr double kReal = 1e-6;  // a double zero splits by the square root of the rounding error
   std::vector<double> zeros;
   Eigen::RealSchur<Eigen::MatrixXd> schur(degree);
   schur.computeFromHessenberg(companion, Eigen::MatrixXd(), false);
@@ -146,7 +146,7 @@ std::vector<double> positive_zeros(Polynomial p) {
       keep(t(i, i));
       continue;
     }
-    // A block of two that is left holds a conjugate pair.
+    // A remaining 2 x 2 block contains a conjugate pair.
     const double half = 0.5 * (t(i, i) - t(i + 1, i + 1));
     const std::complex<double> root = std::sqrt(std::complex<double>(half * half + t(i, i + 1) * t(i + 1, i)));
     const double middle = 0.5 * (t(i, i) + t(i + 1, i + 1));
@@ -158,7 +158,7 @@ std::vector<double> positive_zeros(Polynomial p) {
   return zeros;
 }
 
-/// The smallest s > 0 at which a polynomial that is positive at 0 becomes negative; infinity where it does not. A zero
+/// The smallest s > 0 at which a polynomial that is positive at 0 becomes negative; infinity if it does not. A zero
 /// that it only touches does not count.
 double first_crossing(const Polynomial& p) {
   const std::vector<double> zeros = positive_zeros(p);
@@ -221,7 +221,7 @@ std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d
 std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted, double largest_radius) {
   if (lens.model == LensModel::fisheye) return fisheye_inverse(lens, distorted, largest_radius);
   if (const auto direct = newton_inverse(lens, distorted, distorted, largest_radius)) return direct;
-  // Far from the axis Newton may start too far off: walk out from the centre in steps.
+  // Far from the axis Newton's method may start too far off, so it proceeds from the centre in steps.
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   constexpr int kSteps = 64;
   for (int i = 1; i <= kSteps; ++i) {

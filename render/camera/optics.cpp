@@ -114,7 +114,7 @@ double farthest_radius_px(const Camera& camera) {
 
 namespace {
 
-/// What the pixels of a rectangle see, each to its square's corners.
+/// The rays seen by the pixels of a rectangle, each out to the corners of its square.
 RayBounds seen_in(const RayTable& table, const PixelRect& rect) {
   RayBounds bounds;
   for (int v = rect.y; v < rect.y + rect.height; ++v) {

@@ -1,4 +1,4 @@
-/// Optics of the true camera: sharpness, how light falls off towards the corners, and the exact ray of every pixel.
+/// Optics of the true camera: sharpness, vignetting, and the exact ray of every pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,11 +14,11 @@ namespace glidelab::render {
 /// Sharpness: the thin lens's disc of confusion, and a Gaussian core of diffraction.
 ///
 /// A lens of the focal length f = s d / (s + d), s = focal_px · pixel pitch being the distance from lens to sensor and
-/// d the focus distance, with the aperture D = f / N: a point at depth Z is spread evenly over a disc of the diameter D
+/// d the focus distance, with the aperture D = f / N: a point at depth Z is spread uniformly over a disc of diameter D
 /// |1/Z - 1/d| in undistorted coordinates, times focal_px in the image. A point a of the aperture sees the point (X, Y,
-/// Z) at (X/Z, Y/Z) - a (1/Z - 1/d). The core is a Gaussian with sigma = 0.42 lambda N s / f, the one nearest to Airy's
-/// disc, and in quadrature what else blurs (`core_px`). The pixel's square is integrated over besides. Source: M. Born
-/// and E. Wolf, Principles of Optics, 8.5.2; B. Zhang et al., Applied Optics 46 (2007), for 0.42.
+/// Z) at (X/Z, Y/Z) - a (1/Z - 1/d). The core is a Gaussian with sigma = 0.42 lambda N s / f, the closest to the Airy
+/// disc, with other blur (`core_px`) added in quadrature. The image is also integrated over the pixel's square. Source:
+/// M. Born and E. Wolf, Principles of Optics, 8.5.2; B. Zhang et al., Applied Optics 46 (2007), for 0.42.
 struct Focus {
   double f_number = 0.0;
   double focus_distance_m = 0.0;
@@ -36,22 +36,22 @@ double disc_radius_px(const Focus& focus, const Camera& camera, double depth_m);
 /// The standard deviation of the core, in pixels.
 double core_sigma_px(const Focus& focus, const Camera& camera);
 
-/// One of the rays of which a blurred image is the mean.
+/// One of the rays whose mean is a blurred image.
 struct FocusSample {
   Eigen::Vector2d aperture = Eigen::Vector2d::Zero();  ///< in the unit disc
   Eigen::Vector2d core = Eigen::Vector2d::Zero();      ///< of a normal distribution with variance 1
   Eigen::Vector2d place = Eigen::Vector2d::Zero();     ///< in the pixel, -1/2 to 1/2
 };
 
-/// `count` samples, evenly spread in all six dimensions (Roberts' R6 sequence); aperture and core have mean 0 and the
-/// exact covariance, 1/4 and 1 on the diagonal. `count` is even: samples come in opposite pairs.
+/// `count` samples, uniformly spread in all six dimensions (Roberts' R6 sequence); aperture and core have mean 0 and
+/// the exact covariance, 1/4 and 1 on the diagonal. `count` is even: samples come in opposite pairs.
 std::vector<FocusSample> focus_samples(std::size_t count);
 
-/// How much darker the image is towards its corners.
+/// The darkening of the image towards its corners.
 ///
 /// cos⁴: the illumination of a flat sensor behind a simple lens, cos⁴ of the angle between the ray and the optical
-/// axis. Radial: a table of gains over the distance from the principal point in pixels, linear between its entries; it
-/// multiplies the former. Applied to the light, before the sensor.
+/// axis. Radial: a table of gains as a function of the distance from the principal point in pixels, linear between its
+/// entries; it multiplies the former. Applied to the light, before the sensor.
 struct Vignetting {
   bool cos4 = false;
   std::vector<Eigen::Vector2d> radial;  ///< (radius_px, gain), radii rising from 0 to beyond the farthest corner
@@ -84,22 +84,23 @@ inline bool overlap(const RayBounds& a, const RayBounds& b) {
   return a.low.x() <= b.high.x() && b.low.x() <= a.high.x() && a.low.y() <= b.high.y() && b.low.y() <= a.high.y();
 }
 
-/// The image is cut into tiles of kRayTile x kRayTile pixels, from its first pixel on.
+/// The image is divided into tiles of kRayTile x kRayTile pixels, starting at its first pixel.
 inline constexpr int kRayTile = 8;
 
-/// The exact inverse of the camera's mapping at every pixel, its derivative there, and how much light gets there.
+/// The exact inverse of the camera's mapping at every pixel, its derivative there, and the relative illumination.
 ///
 /// For the pixel (u, v) the table gives the undistorted coordinates (x, y) of the ray through its centre, and the
 /// Jacobian d(x, y)/d(u, v). Within a pixel the mapping is taken as linear; the neglected second order is below
-/// |d²x/du²|/8, 3e-5 px for the strongest lens that `why_not_one_to_one` lets pass in an image of 800 px. Computed in
+/// |d²x/du²|/8, 3e-5 px for the strongest lens that `why_not_one_to_one` accepts in an image of 800 px. Computed in
 /// double and rounded once to single precision: 2^-25 of half the image's width, 1e-5 px.
 struct RayTable {
   int width = 0;
   int height = 0;
-  std::vector<float> x_y_dxdu_dxdv;  ///< four floats a pixel
-  std::vector<float> dydu_dydv;      ///< two floats a pixel
-  std::vector<float> gain;           ///< one a pixel, of its light; empty where it is 1 everywhere
-  std::vector<RayBounds> tiles;      ///< what the pixels of each tile see, their whole squares; row by row
+  std::vector<float> x_y_dxdu_dxdv;  ///< four floats per pixel
+  std::vector<float> dydu_dydv;      ///< two floats per pixel
+  std::vector<float> gain;           ///< one per pixel, for its light; empty if it is 1 everywhere
+  std::vector<RayBounds> tiles;      ///< bounds of the rays of each tile's pixels, including their whole squares; row
+                                     ///< by row
   double fold_radius = 0.0;          ///< of the lens
 
   const RayBounds& tile(int column, int row) const {
@@ -107,7 +108,7 @@ struct RayTable {
   }
 };
 
-/// NumericalError where a pixel has no ray (a camera that `why_not_one_to_one` would refuse).
+/// NumericalError if a pixel has no ray (a camera that `why_not_one_to_one` would refuse).
 RayTable make_ray_table(const Camera& camera, const Vignetting& vignetting = {});
 
 }  // namespace glidelab::render

@@ -12,13 +12,14 @@
 namespace glidelab::render {
 namespace {
 
-/// Of the lens: enough that neighbours lie a quarter of a pixel apart along any line through the blur.
+/// Number of samples of the lens: enough that neighbours are a quarter of a pixel apart along any line through the
+/// blur.
 std::size_t sample_count(double disc_radius_px, double core_sigma_px) {
   const double across = 2.0 * disc_radius_px + 4.0 * core_sigma_px;
   return 2 * static_cast<std::size_t>(std::clamp(std::ceil(4.0 * across), 8.0, 64.0));
 }
 
-/// From one pose to the next the image moves by no more than this.
+/// Largest motion of the image from one pose to the next.
 constexpr double kPoseStep = 0.02;  // px
 constexpr double kMostPoses = 64.0;
 
@@ -38,7 +39,7 @@ ClipRenderer::ClipRenderer(const Scenario& scenario, const sim::ConfigurationSet
       readout_(scenario.sensor, scenario.recording.exposure_s, seed, scenario.camera.width_px,
                scenario.camera.height_px),
       stream_(stream) {
-  // At the reference point, which the camera looks at; half a pixel there.
+  // At the reference point at which the camera looks; half a pixel there.
   const double depth =
       (scenario.camera.X_WC.inverse() * marker_position_W(scenario, configuration.body.incline_rad, 0.0)).z();
   longest_step_m_ = 0.5 * std::max(depth, 0.1) / scenario.camera.focal_px.maxCoeff();
@@ -93,7 +94,7 @@ void ClipRenderer::background_of(const FrameMotion& frame, const PixelRect& with
   for (int y = within.y; y < within.y + within.height; ++y) {
     const std::span<float> row = expected_e_.row(y, within.x, within.width);
     std::fill(row.begin(), row.end(), 0.0f);
-    // The poses that this row's exposure meets, each by its share; the fine image has the blur of the lens in it.
+    // The poses during this row's exposure, each weighted by its share; the fine image includes the blur of the lens.
     instants_of(frame, frame.start_s + recording.shutter.delay_s(y));
     std::vector<double> share(poses_, 0.0);
     for (const Instant& instant : instants_) share[instant.view / samples] += instant.weight;
@@ -142,7 +143,7 @@ void ClipRenderer::add_views(const FrameMotion& frame) {
     const double aperture_m = aperture_radius_m(*scenario_.focus, camera);
     const double core = core_sigma_px(*scenario_.focus, camera);
     for (const FocusSample& sample : samples_) {
-      // p - a (1 - Z/d) + g Z: from the point a of the aperture, and off by g in undistorted coordinates.
+      // p - a (1 - Z/d) + g Z: from the point a of the aperture, displaced by g in undistorted coordinates.
       const Eigen::Vector2d a = aperture_m * sample.aperture;
       const Eigen::Vector2d g = core * sample.core.cwiseQuotient(camera.focal_px);
       Eigen::Affine3d seen = Eigen::Affine3d::Identity();
@@ -172,7 +173,7 @@ void ClipRenderer::instants_of(const FrameMotion& frame, double start_s) {
     instants_.push_back({pose * samples + k % samples, frame.path.x_m(t_s), weight});
     sum += weight;
   }
-  // All light may be off for a whole exposure; then it does not matter which instants it is the mean of.
+  // All light may be off for a whole exposure; then the choice of instants for the mean does not matter.
   for (Instant& instant : instants_) {
     instant.weight = sum > 0.0 ? instant.weight / sum : 1.0 / static_cast<double>(n);
   }
@@ -217,7 +218,7 @@ FloatPicture scaled(FloatPicture picture, double factor) {
   return picture;
 }
 
-/// The stills were taken before the focus changed, of the first configuration's track, by a camera at rest.
+/// The stills were taken before the focus changed, with the first configuration's track, by a camera at rest.
 void set_stills(const Scenario& scenario, Stage& stage) {
   const sim::ConfigurationSetup& first = scenario.motion.configurations.front();
   if (scenario.mount.focal_change == 0.0) {

@@ -13,7 +13,7 @@ namespace glidelab::render {
 
 std::vector<ClipView> views_of(const Scenario& scenario) {
   const Scenario seen_by = as_in_clips(scenario);
-  constexpr double kWholeExposure_m = 1e3;  // one instant stands for an exposure: nothing is drawn
+  constexpr double kWholeExposure_m = 1e3;  // one instant represents an exposure: nothing is drawn
   std::vector<ClipView> views;
   for (const sim::ConfigurationSetup& configuration : seen_by.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {

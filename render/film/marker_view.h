@@ -1,4 +1,4 @@
-/// What of a scenario's motions the camera sees: in which frames the marker's centre lies outside the image.
+/// How much of a scenario's motions the camera sees: the frames in which the marker's centre lies outside the image.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@ struct ClipView {
   std::string clip;
   std::size_t frames = 0;
   std::size_t outside = 0;  ///< of these, with the marker's centre outside the image
-  double moved_m = 0.0;     ///< from the least to the largest x of the frames
-  double seen_m = 0.0;      ///< the same of the frames that show the marker
+  double moved_m = 0.0;     ///< from the smallest to the largest x of the frames
+  double seen_m = 0.0;      ///< the same for the frames that show the marker
 };
 
-/// Of every clip, at the frames' times by the stated rate, without an error of the clock: only simulated, nothing is
-/// drawn. NumericalError where a motion cannot be simulated.
+/// The view of every clip, at the frames' times for the stated rate, without clock error: only simulated, nothing is
+/// drawn. NumericalError if a motion cannot be simulated.
 std::vector<ClipView> views_of(const Scenario& scenario);
 
 /// "m1-up: the marker leaves the image in 88 of 361 frames: the camera sees 0.99 m of the 1.2 m that it moves"

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How long a still takes beside a frame, for the progress.
+// Duration of a still relative to a frame, for the progress.
 constexpr double kStillWork = 30.0;
 
 void make_folder(const fs::path& path) {
@@ -29,7 +29,7 @@ void make_folder(const fs::path& path) {
   if (error) base::throw_system_error(path.string(), "cannot be made", error.value());
 }
 
-/// A table that grows on disk, however long the clip.
+/// A table that grows on disk, for clips of any length.
 class TruthTable {
  public:
   TruthTable(fs::path file, std::string_view header) : file_(std::move(file)), header_(header), rows_(header) {}
@@ -55,7 +55,7 @@ class TruthTable {
   bool written_ = false;
 };
 
-/// What the truth says of one clip, frame by frame of the file.
+/// The truth of one clip, frame by frame of the file.
 class ClipTruth {
  public:
   ClipTruth(const fs::path& folder, const std::string& clip)
@@ -63,7 +63,7 @@ class ClipTruth {
         marker_(folder / fmt::format("marker-{}.csv", clip), "frame,t_s,u_px,v_px,centroid_u_px,centroid_v_px"),
         times_(folder / fmt::format("frames-{}.csv", clip), "frame,slot,t_s,stamp_s,duplicate") {}
 
-  /// A frame of the file that shows what was exposed in its own slot, or once more what was before.
+  /// Adds a frame of the file that shows its own slot's exposure, or a repeated earlier one.
   void add(const ClipStream::Next& frame, const std::optional<MarkerInPicture>& in_picture) {
     const sim::State& state = frame.shown->middle;
     trajectory_.row().number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);

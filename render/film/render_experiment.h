@@ -14,9 +14,9 @@ namespace glidelab::render {
 struct RenderOptions {
   std::uint64_t seed = 1;
   int jobs = 1;        ///< clips rendered at the same time; every pixel is the same for any number
-  bool ideal = false;  ///< write ideal frames to the truth folder besides (truth_files.h)
-  bool clips = true;   ///< false: empty files in their place, for who draws them in memory, and no trajectories
-  bool stills = true;  ///< false: those that lie there from another time stay
+  bool ideal = false;  ///< also write ideal frames to the truth folder (truth_files.h)
+  bool clips = true;   ///< false: empty files instead, for callers that draw them in memory, and no trajectories
+  bool stills = true;  ///< false: existing ones from an earlier run stay
 };
 
 struct RenderSummary {
@@ -25,9 +25,9 @@ struct RenderSummary {
 };
 
 /// Writes `experiment_dir` (experiment.toml, clips/, calibration/, plumb.png) and `truth_dir` (truth.json,
-/// `trajectory-<clip>.csv`, `marker-<clip>.csv`), two folders that exist and are empty (but for stills, where these
-/// are not asked for). EnvironmentError where a file cannot be written. The stage of another rendering of the same
-/// scene may be given; else it is set.
+/// `trajectory-<clip>.csv`, `marker-<clip>.csv`), two folders that exist and are empty (except for stills, if these are
+/// not requested). EnvironmentError if a file cannot be written. The stage of another rendering of the same scene may
+/// be given; otherwise it is made.
 RenderSummary render_experiment(const Scenario& scenario, const std::filesystem::path& experiment_dir,
                                 const std::filesystem::path& truth_dir, const RenderOptions& options,
                                 const base::Progress& progress = base::no_progress,

@@ -15,13 +15,13 @@
 namespace glidelab::render {
 namespace {
 
-/// A pose as a person would take it: where in the image (parts of its half width and height off the middle), how
-/// large (part of the image's width), how tilted (degrees about the image's horizontal and vertical), how turned.
+/// A typical hand-held pose: position in the image (offset from the middle in fractions of its half width and height),
+/// size (fraction of the image's width), tilt (degrees about the image's horizontal and vertical), and rotation.
 struct Pose {
   double right, down, width, tilt_x_deg, tilt_y_deg, turn_deg;
 };
 
-// Every part of the image is covered, every tilt comes with another place; cyclic beyond twelve.
+// Every part of the image is covered, and every tilt has a different position; cyclic beyond twelve.
 constexpr Pose kPoses[] = {
     {0.00, 0.00, 0.78, 0.0, 0.0, 0.0},        {-0.55, -0.50, 0.52, 25.0, -25.0, 3.0},
     {0.55, -0.50, 0.52, 25.0, 25.0, -4.0},    {-0.55, 0.50, 0.52, -25.0, -25.0, -3.0},
@@ -73,7 +73,7 @@ std::vector<Chessboard> calibration_boards(const Scenario& scenario, std::uint64
     const Eigen::Vector3d middle_P(0.5 * (pattern.inner_columns - 1) * pattern.square_m,
                                    0.5 * (pattern.inner_rows - 1) * pattern.square_m, 0.0);
     bool found = false;
-    // Moved towards the middle and away from the camera until it is wholly in the image.
+    // Moved towards the middle and away from the camera until it is entirely in the image.
     for (int attempt = 0; attempt < 60 && !found; ++attempt) {
       const double inward = std::pow(0.93, attempt);
       const double width = pose.width * std::pow(0.985, attempt);
@@ -120,7 +120,7 @@ std::vector<Still> stills_of(const Scenario& scenario, std::uint64_t seed) {
   return stills;
 }
 
-/// Stills are kept with 8 bits, as a viewer program saves them.
+/// Stills are stored with 8 bits, as saved by a viewer program.
 Sensor with_8_bits(const Sensor& sensor) {
   Sensor shallow = sensor;
   shallow.bit_depth = 8;
@@ -134,7 +134,8 @@ Sensor with_8_bits(const Sensor& sensor) {
   return shallow;
 }
 
-/// The painter of stills in which the board does not stand free, or is not sharp everywhere; made when there is one.
+/// The painter of stills in which the board is partly hidden or shaded, or not sharp everywhere; made when first
+/// needed.
 class Painter {
  public:
   Painter(const Scenario& scenario, const Stage& stage)

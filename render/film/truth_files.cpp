@@ -23,7 +23,7 @@
 namespace glidelab::render {
 namespace {
 
-/// A float of TOML, with a point; 12 digits hide what a conversion from degrees and back leaves.
+/// A TOML float with a decimal point; 12 digits hide the rounding of a conversion from degrees and back.
 std::string number(double value) {
   std::string text = fmt::format("{:.12g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
@@ -153,8 +153,8 @@ std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const
   const double middle_row = 0.5 * (camera.height_px - 1);
   double sim_s = mid_exposure_s(recording, frame, middle_row);
   if (recording.shutter.rolling) {
-    // The row's time and the centre's row depend on one another: t = mid-exposure of the row v(t), a contraction where
-    // the marker moves by less than a row in a line time.
+    // The row's time and the centre's row depend on one another: t = mid-exposure of the row v(t), a contraction if the
+    // marker moves by less than a row per line time.
     double row = middle_row;
     for (int i = 0;; ++i) {
       sim_s = mid_exposure_s(recording, frame, row);
@@ -196,7 +196,7 @@ void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& t
       base::CsvWriter marker_truth("frame,t_s,u_px,v_px");
       std::vector<std::uint8_t> codes(static_cast<std::size_t>(format.width) * format.height);
       const sim::Body& body = set.configuration(clip).body;
-      // The motion as the real camera's shutter counts it; of each frame its middle.
+      // The motion in the time of the real camera's shutter; for each frame its middle.
       const auto visit = [&](const FrameMotion& real) {
         FrameMotion frame;
         frame.frame = real.frame;

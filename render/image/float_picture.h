@@ -8,7 +8,7 @@
 
 namespace glidelab::render {
 
-/// Columns [x, x + width), rows [y, y + height); empty where a side is not positive.
+/// Columns [x, x + width), rows [y, y + height); empty if a side is not positive.
 struct PixelRect {
   int x = 0;
   int y = 0;
@@ -26,7 +26,7 @@ inline PixelRect intersection(const PixelRect& a, const PixelRect& b) {
   return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
 }
 
-/// The smallest rectangle that holds both; an empty one holds nothing.
+/// The smallest rectangle that contains both; an empty one contains nothing.
 inline PixelRect united(const PixelRect& a, const PixelRect& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
@@ -35,7 +35,7 @@ inline PixelRect united(const PixelRect& a, const PixelRect& b) {
   return {left, top, std::max(a.x + a.width, b.x + b.width) - left, std::max(a.y + a.height, b.y + b.height) - top};
 }
 
-/// Row by row from the top, no padding. Radiance (1 is a white wall in the scene's light) or electrons, as said where
+/// Row by row from the top, no padding. Radiance (1 is a white wall in the scene's light) or electrons, as stated where
 /// it is used.
 struct FloatPicture {
   int width = 0;

@@ -33,7 +33,7 @@ base::Extent times_within(const base::Extent& from, const base::Extent& along, d
 }
 
 /// Whether a ray from any of the starts along any of the directions (each within the box around them) may meet the box
-/// before `last` of its length.
+/// before the fraction `last` of its length.
 template <typename Starts, typename Directions>
 bool may_meet(const StaticBox& box, const Starts& starts_W, const Directions& directions_W, double last) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(-box.turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -48,7 +48,7 @@ bool may_meet(const StaticBox& box, const Starts& starts_W, const Directions& di
   return times.low <= times.high;
 }
 
-/// Corners of the cube of directions in which a part of the lamp is seen (static_shader.cpp).
+/// Corners of the cube of directions in which part of the lamp is seen (static_shader.cpp).
 std::array<Eigen::Vector3d, 8> lamp_directions() {
   constexpr double kHalfWidth = 0.05;
   std::array<Eigen::Vector3d, 8> directions;
@@ -81,7 +81,7 @@ bool stands_free(const Camera& camera, const StaticScene& scene) {
 
 namespace {
 
-/// A convex polygon of few corners; clipping by a line adds one at most.
+/// A convex polygon with few corners; clipping by a line adds at most one.
 struct Polygon {
   std::array<Eigen::Vector2d, 12> corners;
   std::size_t count = 0;
@@ -96,7 +96,7 @@ struct Polygon {
     return 0.5 * std::abs(twice);
   }
 
-  /// What of it has sign * coordinate >= sign * border.
+  /// The part of it with sign * coordinate >= sign * border.
   Polygon beyond(int axis, double border, double sign) const {
     Polygon kept;
     for (std::size_t i = 0; i < count; ++i) {
@@ -113,7 +113,7 @@ struct Polygon {
 /// The plate in its own coordinates, in squares, the first inner corner at (0, 0).
 struct Plate {
   Eigen::Array2d last;  ///< the outer border of the squares, which begin at -1
-  double margin;        ///< of white around them
+  double margin;        ///< white margin around them
 
   explicit Plate(const Chessboard& board) : last(board.inner_columns, board.inner_rows), margin(board.border_squares) {}
 
@@ -121,7 +121,8 @@ struct Plate {
     return column >= -1 && row >= -1 && column < last.x() && row < last.y() && (column + row) % 2 == 0;
   }
 
-  /// Of a parallelogram with the middle p and the sides du, dv: which parts of its area are on the plate and are black.
+  /// For a parallelogram with middle p and sides du, dv: the fractions of its area that are on the plate and that are
+  /// black.
   struct Parts {
     double plate, black;
   };
@@ -131,7 +132,7 @@ struct Plate {
     if ((high <= -1.0 - margin).any() || (low >= last + margin).any()) return {0.0, 0.0};
     const bool whole = (low >= -1.0 - margin).all() && (high <= last + margin).all();
     const Eigen::Array2i first = low.max(-1.0).floor().cast<int>(), end = high.min(last).ceil().cast<int>();
-    if (whole && (end - first <= 1).all()) {  // within one square, or beside them all
+    if (whole && (end - first <= 1).all()) {  // within one square, or outside them all
       const bool beside = (high <= -1.0).any() || (low >= last).any();
       const bool inside = (low >= -1.0).all() && (high <= last).all();
       if (beside || inside) return {1.0, !beside && is_black(first.x(), first.y()) ? 1.0 : 0.0};

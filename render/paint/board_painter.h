@@ -1,13 +1,13 @@
-/// The chessboard's pixels as exact areas: the painter of calibration views, of which every run of a study has its own.
+/// The chessboard's pixels as exact areas: the painter of calibration views, which differ in every run of a study.
 ///
-/// A pixel is a parallelogram on the board, by the ray through its middle and the lens's derivatives there (what is
-/// left out, how perspective and lens bend within a pixel, is below 1e-3 of it). Its albedo is the mean over it of
-/// black and white squares, by clipping the parallelogram at their borders; light and shade, which hardly change within
-/// a pixel, are those of its middle. A pixel of which the plate covers a part shows the image without the board in the
-/// rest of it.
+/// A pixel is a parallelogram on the board, given by the ray through its middle and the lens's derivatives there (the
+/// neglected curvature of perspective and lens within a pixel is below 1e-3 of it). Its albedo is the mean over black
+/// and white squares, found by clipping the parallelogram at their borders; light and shade, which hardly change within
+/// a pixel, are those of its middle. If the plate covers only part of a pixel, the rest of it shows the image without
+/// the board.
 ///
-/// The board is by itself: nothing stands before it, or keeps the light from it (stands_free()). For a lens that is not
-/// sharp everywhere see static_painter.h.
+/// The board is unobstructed: nothing hides it or blocks its light (stands_free()). For a lens that is not sharp
+/// everywhere see static_painter.h.
 #pragma once
 
 #include "render/camera/camera.h"
@@ -17,12 +17,12 @@
 
 namespace glidelab::render {
 
-/// Whether the scene has a board, seen from its printed side, that surely no box of the scene hides in part, or keeps
-/// light from.
+/// Whether the scene has a board, seen from its printed side, that certainly no box of the scene partly hides or
+/// shades.
 bool stands_free(const Camera& camera, const StaticScene& scene);
 
-/// The image of the scene with its board, which stands free (asserted), from `empty`, the one without it, in which a
-/// relative radiance of 1 is worth `white` (times the gain of the table). `rays` belongs to `camera`.
+/// The image of the scene with its board, which must be unobstructed (asserted), made from `empty`, the image without
+/// it. There a relative radiance of 1 corresponds to `white` (times the gain of the table). `rays` belongs to `camera`.
 FloatPicture paint_board(const Camera& camera, const RayTable& rays, const FloatPicture& empty,
                          const StaticScene& scene, double white);
 

@@ -59,10 +59,10 @@ GLuint compile(GLenum kind, const std::string& source) {
 
 }  // namespace
 
-// Everything that GL holds goes with the context.
+// Everything that GL holds is freed with the context.
 struct FloatCanvas::Context {
   OSMesaContext mesa = nullptr;
-  std::array<unsigned char, 4> unused_color_buffer{};  // OSMesa wants one; drawing goes to the float target
+  std::array<unsigned char, 4> unused_color_buffer{};  // required by OSMesa; drawing goes to the float target
   int width = 0;
   int height = 0;
   int channels = 0;

@@ -1,12 +1,12 @@
-/// Images by fragment shaders, off screen and in single precision: an OSMesa context behind RAII.
+/// Images by fragment shaders, off screen and in single precision: an OSMesa context managed by RAII.
 ///
 /// A canvas has one render target of floats, textures of floats that shaders read with texelFetch, and programs, each
 /// made of one fragment shader (GLSL 3.30) that runs once for every pixel of a rectangle. Row 0 of the target is the
 /// image's top row: the shader's ivec2(gl_FragCoord.xy) is the target's (column, row), and this is the one place
 /// where OpenGL's half pixel is dropped.
 ///
-/// A canvas belongs to one thread at a time. Errors: EnvironmentError where OSMesa gives no 3.3 core context or no
-/// float target; std::logic_error with the compiler's words for a shader that does not compile (a programmer's
+/// A canvas belongs to one thread at a time. Errors: EnvironmentError if OSMesa provides no 3.3 core context or no
+/// float target; std::logic_error with the compiler's message for a shader that does not compile (a programmer's
 /// mistake).
 #pragma once
 
@@ -27,7 +27,7 @@ class FloatCanvas {
   FloatCanvas(const FloatCanvas&) = delete;
   FloatCanvas& operator=(const FloatCanvas&) = delete;
 
-  /// Gives the texture unit at which shaders find it; values row by row, 1, 2 or 4 channels.
+  /// Returns the texture unit at which shaders find it; values row by row, 1, 2 or 4 channels.
   int add_texture(int width, int height, int channels, std::span<const float> values);
 
   /// Replaces the values of a texture by as many others.
@@ -36,7 +36,7 @@ class FloatCanvas {
   /// Compiles a fragment shader and returns its number.
   int add_program(std::string_view fragment_shader);
 
-  /// The program that set() and draw() mean from now on.
+  /// Selects the program to which set() and draw() refer from now on.
   void use(int program);
   void set(const char* name, int value);
   void set(const char* name, float value);

@@ -15,7 +15,7 @@
 namespace glidelab::render {
 namespace {
 
-/// Depth (z in the camera's frame) of what the ray meets.
+/// Depth (z in the camera's frame) of the surface that the ray meets.
 double depth_along(const Camera& camera, const StaticScene& scene, const Eigen::Vector2d& undistorted) {
   const Eigen::Vector3d eye = camera.X_WC.translation();
   const Eigen::Vector3d along = camera.X_WC.linear() * undistorted.homogeneous();
@@ -65,7 +65,7 @@ FloatPicture box_means(const FloatPicture& fine) {
   return means;
 }
 
-/// The same lens before pixels that are kFine times smaller.
+/// The same lens with pixels that are kFine times smaller.
 std::optional<Focus> as_fine(std::optional<Focus> focus) {
   if (focus) {
     focus->pixel_pitch_m /= kFine;
@@ -121,7 +121,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
   fine.camera = camera;
   fine.rays = make_ray_table(camera);
   constexpr double kNearest = 0.5;  // m
-  // The sines between the instants that were looked at, and a pixel for the means.
+  // For the sines between the sampled instants, and a pixel for the means.
   const double shift = 1.1 * largest_shift_px(camera, mount, duration_s, kNearest) + 2.0;
   constexpr double kMost = 400.0;
   if (!(shift <= kMost)) {
@@ -132,7 +132,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
   const int columns = (camera.width_px + 2 * fine.margin_px) * kFine;
   const int rows = (camera.height_px + 2 * fine.margin_px) * kFine;
   FloatPicture cast(columns, rows);
-  // In strips, for memory. A strip sees what a blurred edge beyond it may reach.
+  // In strips, to save memory. A strip includes the reach of blurred edges beyond it.
   constexpr int kStrip = 512;
   const int overlap = focus ? 128 : 8;
   for (int top = 0; top < rows; top += kStrip) {
@@ -172,7 +172,7 @@ void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int
              std::span<float> values) {
   constexpr int kStep = 16;
   const int step = fine.depth_m.values.empty() ? kStep : 1;
-  const double offset = fine.margin_px * kFine;  // a pixel's window begins kFine places on for each pixel
+  const double offset = fine.margin_px * kFine;  // a pixel's window advances by kFine places per pixel
   const auto sample = [&](double u, double v) {
     const double fx = u * kFine + offset;
     const double fy = v * kFine + offset;
@@ -189,7 +189,7 @@ void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int
     const float below = lower[0] + a * (lower[1] - lower[0]);
     return above + b * (below - above);
   };
-  // Nodes at multiples of the step, so that a pixel is the same in any part of the row that is asked for.
+  // Nodes at multiples of the step, so that a pixel is the same for any requested part of the row.
   const int end = x + static_cast<int>(values.size());
   for (int node = x / step * step; node < end; node += step) {
     const Eigen::Vector2d from = source_of(fine, moved, node, y);
@@ -239,7 +239,7 @@ PixelRect add_reflection(const Scenario& scenario, const RayTable& rays, const s
     if (scenario.mount.moves()) moved.X_WC = moved.X_WC * mount_at(scenario.mount, t_s);
     return moved;
   };
-  // The row of its middle, found from the middle row's time.
+  // The row of the spot's middle, found from the middle row's time.
   double row = 0.5 * (scenario.camera.height_px - 1);
   for (int i = 0; i < 3; ++i) {
     const double t_s = mid_exposure_s(recording, frame, row);

@@ -120,18 +120,18 @@ void Shapes::add_sphere(const MarkerSphere& marker) {
 
 namespace {
 
-/// What may be seen of a shape in a tile; `crossing` is that of InTile.
+/// The potentially visible part of a shape in a tile; `crossing` is that of InTile.
 struct Step {
   const Polygon* polygon = nullptr;
   double radiance = 0.0;
   std::uint8_t crossing = 0;
 };
 
-/// How a tile is drawn as one view sees it: what may be seen of it, in order.
+/// How a tile is drawn for one view: the potentially visible shapes, in order.
 struct Plan {
   std::vector<Step> steps;
   bool with_sphere = false;
-  bool even = true;  ///< the same in all its pixels at all shifts of the range
+  bool even = true;  ///< uniform over all its pixels at all shifts of the range
 };
 
 bool same_picture(const Plan& a, const Plan& b) {
@@ -148,13 +148,13 @@ void make_plan(const Shapes& shapes, const RayBounds& tile, const ShiftRange& sh
     const InTile place = place_in_tile(polygon, tile, shifts);
     if (place.outside) continue;
     const bool first_of_box = plan.steps.empty() || plan.steps.back().polygon->box != polygon.box;
-    if (polygon.is_patch && first_of_box) continue;  // the box itself is not there
+    if (polygon.is_patch && first_of_box) continue;  // the box itself does not reach here
     if (place.crossing == 0 && polygon.is_patch && plan.steps.size() == 1 && plan.steps.front().crossing == 0) {
       plan.steps.front().radiance = polygon.radiance;  // hides the face and the patches under it
       continue;
     }
     plan.steps.push_back({&polygon, polygon.radiance, place.crossing});
-    // A face that fills the tile hides the boxes before.
+    // A face that fills the tile hides the previous boxes.
     if (place.crossing == 0 && !polygon.is_patch && first_of_box) {
       plan.steps.erase(plan.steps.begin(), plan.steps.end() - 1);
     }
@@ -171,7 +171,7 @@ struct RowPicture {
 
 constexpr RowPicture kDark{};
 
-/// Coverage by a polygon of which only some edges may cross the tile.
+/// Coverage by a polygon, only some of whose edges may cross the tile.
 TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
   std::array<Eigen::Vector3d, 4> lines;
   std::size_t count = 0;
@@ -182,12 +182,12 @@ TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
   return polygon_row(std::span(lines).first(count), rays);
 }
 
-/// Adds what a row of a tile shows at one instant.
+/// Adds the content of a row of a tile at one instant.
 [[gnu::always_inline]] inline void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight,
                                            const RowRays& rays, RowPicture& out) {
   RowPicture seen = kDark;
-  // One box after the other: its seen faces, which share its image, then patches in their places, then the whole
-  // over what was there.
+  // One box after another: its visible faces, which together make up its image, then the patches on them, then the
+  // whole over the previous content.
   for (std::size_t k = 0; k < plan.steps.size();) {
     RowPicture box = kDark;
     const std::size_t number = plan.steps[k].polygon->box;
@@ -205,7 +205,7 @@ TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
         if (!step.polygon->is_patch) {
           light += coverage[i] * step.radiance;
           box_part += coverage[i];
-        } else {  // nothing where there is no part of the box
+        } else {  // nothing if there is no part of the box
           const double patched = std::min(coverage[i], box_part), part = box_part > 0.0 ? box_part : 1.0;
           light += patched * (step.radiance - light / part);
         }
@@ -252,8 +252,8 @@ AddRow* best_add_row() {
   return add_row_baseline;
 }
 
-/// Draws tile by tile. What is decided of a tile is decided of the whole of it, also where only a part is wanted: so a
-/// pixel is the same in any part of the image.
+/// Draws tile by tile. Decisions apply to a whole tile, even if only a part is requested, so that a pixel is the same
+/// in any part of the image.
 class TilePainter {
  public:
   TilePainter(const RayTable& rays, const std::vector<Shapes>& shapes, double middle_m, const Looks& looks)
@@ -279,7 +279,7 @@ class TilePainter {
   }
 
  private:
-  /// The tiles within which anything may be seen.
+  /// The tiles in which anything may be visible.
   PixelRect touched(const PixelRect& within) const {
     RayBounds body;
     for (const Shapes& shapes : shapes_) add_to(body, shapes.bounds());
@@ -293,7 +293,7 @@ class TilePainter {
     return intersection(all, within);
   }
 
-  /// The instants of a row of tiles, and between which shifts each view is looked from.
+  /// Finds the instants of a row of tiles, and the range of shifts for each view.
   void look_at_rows(int tile_row) {
     std::fill(ranges_.begin(), ranges_.end(), std::nullopt);
     for (int i = 0; i < kRayTile; ++i) {
@@ -344,9 +344,9 @@ class TilePainter {
   const std::vector<Shapes>& shapes_;
   double middle_m_;
   const Looks& looks_;
-  std::vector<std::optional<ShiftRange>> ranges_;  ///< of each view, in the rows at hand; nothing: not looked from
-  std::vector<Plan> plans_;                        ///< of each view, for the tile at hand
-  std::array<std::vector<Instant>, kRayTile> instants_;  ///< of the rows at hand
+  std::vector<std::optional<ShiftRange>> ranges_;  ///< of each view, in the current rows; empty: the view is not used
+  std::vector<Plan> plans_;                        ///< of each view, for the current tile
+  std::array<std::vector<Instant>, kRayTile> instants_;  ///< of the current rows
   MovingLayer layer_;
 };
 

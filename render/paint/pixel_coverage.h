@@ -13,8 +13,8 @@ struct PixelLine {
   double gy = 0.0;
 };
 
-/// The part of the pixel on the inner side of all lines (up to eight): the pixel's square cut by one line after the
-/// other (Sutherland and Hodgman), and the area of what is left.
+/// The fraction of the pixel on the inner side of all lines (up to eight): the pixel's square is clipped by one line
+/// after another (Sutherland and Hodgman), and the remaining area is computed.
 double convex_coverage(std::span<const PixelLine> lines);
 
 }  // namespace glidelab::render

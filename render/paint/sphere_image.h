@@ -18,7 +18,7 @@ struct Ellipse {
   Eigen::Vector2d axis_v = Eigen::Vector2d::Zero();
 };
 
-/// Nothing where the sphere is not wholly before the camera (c.z <= r).
+/// Empty if the sphere is not entirely in front of the camera (c.z <= r).
 std::optional<Ellipse> image_of_sphere(const Eigen::Vector3d& center_C, double radius_m);
 
 struct AreaMoments {
@@ -26,9 +26,9 @@ struct AreaMoments {
   Eigen::Vector2d centroid_px = Eigen::Vector2d::Zero();
 };
 
-/// Area and centroid, in the image, of what the lens makes of an ellipse: the integrals of 1 and of the pixel
-/// position over the ellipse with the mapping's Jacobian, by Gauss-Legendre in the radius and the trapezoid rule in the
-/// angle (exact to rounding for the polynomials that a lens is made of).
+/// Area and centroid of an ellipse's image under the lens: the integrals of 1 and of the pixel position over the
+/// ellipse with the mapping's Jacobian, by Gauss-Legendre in the radius and the trapezoid rule in the angle (exact
+/// within rounding for the polynomials of a lens).
 AreaMoments picture_of(const Camera& camera, const Ellipse& ellipse);
 
 }  // namespace glidelab::render

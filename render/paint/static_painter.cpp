@@ -15,9 +15,10 @@
 namespace glidelab::render {
 namespace {
 
-constexpr double kMarginPx = 6.0;  // for what a long edge bulges between its points, and the rays of pixels beside it
+constexpr double kMarginPx = 6.0;  // for the bulge of a long edge between its points, and for rays of neighbouring
+                                   // pixels
 
-/// The rectangle that holds the images of points, with a margin; the whole image where one of them has none.
+/// The rectangle that contains the images of points, with a margin; the whole image if one of them has no image.
 class Extent {
  public:
   explicit Extent(const Camera& camera) : camera_(camera) {}
@@ -31,7 +32,7 @@ class Extent {
     low_ = low_.cwiseMin(*pixel);
     high_ = high_.cwiseMax(*pixel);
   }
-  /// The lens bends long edges: points all along.
+  /// The lens bends long edges, so points are added along them.
   void add_edge(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) {
     constexpr int kSteps = 16;
     for (int i = 0; i <= kSteps; ++i) add(from_W + (to_W - from_W) * (static_cast<double>(i) / kSteps));
@@ -94,8 +95,8 @@ PixelRect pixels_before(const Camera& camera, const StaticScene& scene, int reac
 
 namespace {
 
-// Radiance, of white: what may change within a pixel that gets 4 rays, or 16. The mean is then good to some 1e-3, a
-// quarter of a code of 8 bits.
+// Radiance relative to white: the change allowed within a pixel that gets 4 rays, or 16. The mean is then accurate to
+// about 1e-3, a quarter of an 8-bit code.
 constexpr float kUneven = 0.006f;
 constexpr float kEdge = 0.04f;
 
@@ -199,7 +200,7 @@ int StaticPainter::blur_reach_px(const StaticScene& scene) const {
   double nearest = std::numeric_limits<double>::infinity();
   double farthest = 0.0;
   const auto add = [&](const Eigen::Vector3d& p_W) {
-    constexpr double kBefore = 0.2;  // m; what is nearer is hardly in the image
+    constexpr double kBefore = 0.2;  // m; nearer objects are hardly in the image
     const double depth = std::max((X_CW * p_W).z(), kBefore);
     nearest = std::min(nearest, depth);
     farthest = std::max(farthest, depth);
@@ -214,7 +215,7 @@ int StaticPainter::blur_reach_px(const StaticScene& scene) const {
       }
     }
   }
-  // Of boxes the middle of what is before the camera: a table may reach under it.
+  // For boxes, the middle of the part in front of the camera: a table may reach under it.
   for (const StaticBox& box : scene.boxes) add(box.center_W + Eigen::Vector3d(0.0, 0.0, box.half_m.z()));
   if (scene.board) {
     for (const Eigen::Vector3d& corner : outline_of(*scene.board)) add(corner);
@@ -272,7 +273,7 @@ void StaticPainter::show(const StaticScene& scene) {
     caster_halves.push_back(half_of(box));
     const double c = std::abs(std::cos(box.turn_rad)), s = std::abs(std::sin(box.turn_rad));
     const Eigen::Vector3d half = box.half_m;
-    // And a millimetre for single precision.
+    // Plus a millimetre for single precision.
     const Eigen::Vector3d reach =
         Eigen::Vector3d(c * half.x() + s * half.y(), s * half.x() + c * half.y(), half.z()).array() + 1e-3;
     casters.extend(box.center_W - reach).extend(box.center_W + reach);
@@ -326,7 +327,7 @@ FloatPicture StaticPainter::cast_rays(const StaticScene& scene, const PixelRect&
   }
   FloatPicture wanted = wanted_rays(picture, spread);
   if (focus_) {
-    // All that a blurred edge may reach.
+    // Everything that a blurred edge may reach.
     cv::Mat rays(within.height, within.width, CV_32F, wanted.values.data());
     cv::dilate(rays, rays, cv::Mat::ones(2 * reach_px + 1, 2 * reach_px + 1, CV_8U));
     for (float& count : wanted.values) count = count > 0.0f ? static_cast<float>(kFocusRays) : 0.0f;
@@ -365,7 +366,7 @@ FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const Static
   const int reach_px = focus_ ? blur_reach_px(scene) : 0;
   const PixelRect changed = pixels_before(camera_, scene, reach_px);
   if (changed.empty()) return empty;
-  // How many rays a pixel gets depends on those around it.
+  // The number of rays of a pixel depends on the surrounding pixels.
   const int around = reach_px + 2;
   const PixelRect drawn =
       intersection({0, 0, camera_.width_px, camera_.height_px},

@@ -13,15 +13,15 @@ namespace {
 
 constexpr std::size_t kMostLines = 4;
 
-/// A polygon's lines in the coordinates of each pixel, one after the other.
+/// A polygon's lines in the coordinates of each pixel, one after another.
 struct RowLines {
   std::array<TileRow, kMostLines> s, gx, gy, reach;
   TileRow through;   ///< how many lines cut the pixel
-  TileRow coverage;  ///< right where that is one line at most, or the pixel is outside of one
-  bool cut_twice;    ///< any pixel by two lines and more, and outside of none
+  TileRow coverage;  ///< correct if at most one line cuts the pixel, or if the pixel is outside of one
+  bool cut_twice;    ///< whether any pixel is cut by two or more lines and outside of none
 };
 
-/// The part of the pixel on the inner side of one line (pixel_coverage.h), without branches.
+/// The fraction of the pixel on the inner side of one line (pixel_coverage.h), without branches.
 [[gnu::always_inline]] inline double inside_part(double s, double gx, double gy) {
   const double ax = std::abs(gx), ay = std::abs(gy), t = std::abs(s);
   const double a = ax > ay ? ax : ay, b = ax > ay ? ay : ax;
@@ -33,7 +33,7 @@ struct RowLines {
   return s > 0.0 ? 1.0 - beyond : beyond;
 }
 
-/// The square of a pixel against each line.
+/// Tests the square of a pixel against each line.
 [[gnu::always_inline]] inline void lines_in_pixels(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
                                                    RowLines& out) {
   TileRow through, outside, coverage;
@@ -66,7 +66,7 @@ struct RowLines {
   out.cut_twice = most > 1.0;
 }
 
-/// A sphere as one view sees it.
+/// A sphere as seen in one view.
 struct Ball {
   double x, y, z;  // c
   double center_x, center_y;
@@ -74,11 +74,11 @@ struct Ball {
   double radius;
 };
 
-/// Where a ball's outline is to a pixel, from distances of rays: well within, well outside, or near.
+/// The position of a pixel relative to a ball's outline, from distances of rays: well within, well outside, or near.
 ///
 /// The distance of the ray (x, y, 1) from the centre is |(e, 0) x c| / |(x, y, 1)|, e = (x, y) - (x_c, y_c). Its
 /// gradient is at most |c| and half of the distance, so that within half a pixel it changes by no more than that times
-/// what the ray does; a tenth more is for the outline's curvature.
+/// the change of the ray; an extra tenth allows for the outline's curvature.
 [[gnu::always_inline]] inline void near_outline(const Ball& ball, const RowRays& rays, TileRow& coverage,
                                                 std::array<double, kRayTile>& cut) {
   const double z2 = ball.z * ball.z;
@@ -101,7 +101,7 @@ struct Ball {
 
 constexpr int kQuarters = 4 * kRayTile;
 
-/// Quarters of pixels: their middles' rays, the slopes of these, and how much of each is covered.
+/// Quarters of pixels: the rays of their middles, the slopes of these, and the covered fraction of each.
 struct Quarters {
   std::array<double, kQuarters> x, y, dxdu, dxdv, dydu, dydv, coverage;
 };
@@ -109,7 +109,7 @@ struct Quarters {
 [[gnu::always_inline]] inline void cover_quarters(const Ball& ball, int count, Quarters& q) {
   const double z2 = ball.z * ball.z, least = 1e-3 * ball.radius, bend = 1.0 / (24.0 * ball.radius);
   for (int i = 0; i < count; ++i) {
-    // The distance's gradient in the image makes it a distance in pixels.
+    // Dividing by the distance's gradient in the image converts it to pixels.
     const double x = q.x[i], y = q.y[i], ex = x - ball.center_x, ey = y - ball.center_y;
     const double ray2 = 1.0 + (x * x + y * y);
     const double turn = ex * ball.y - ey * ball.x;
@@ -202,7 +202,7 @@ TileRow polygon_row(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
   lines_in_pixels_baseline(lines, rays, at);
 #endif
   if (!at.cut_twice) return at.coverage;
-  std::array<PixelLine, kMostLines> through;  // one for all pixels: to clear it is a quarter of the work
+  std::array<PixelLine, kMostLines> through;  // one for all pixels: clearing it is a quarter of the work
   for (int i = 0; i < kRayTile; ++i) {
     if (!(at.through[i] > 1.0)) continue;
     std::size_t count = 0;

@@ -1,7 +1,7 @@
 /// How much of each pixel in a row of a tile lies within an outline.
 ///
-/// All eight pixels of a row are looked at together, so that a compiler turns the arithmetic into vector instructions;
-/// where the processor has AVX2 these are wider, with the same operations: the results are the same to the last bit.
+/// All eight pixels of a row are processed together, so that a compiler turns the arithmetic into vector instructions.
+/// If the processor has AVX2 these are wider, with the same operations: the results are the same to the last bit.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,15 +15,15 @@ namespace glidelab::render {
 
 using TileRow = std::array<double, kRayTile>;
 
-/// The rays of the pixels and their slopes; a row of fewer than kRayTile pixels is filled up with its last one.
+/// The rays of the pixels and their slopes; a row of fewer than kRayTile pixels is padded with its last one.
 struct RowRays {
   TileRow x, y, dxdu, dxdv, dydu, dydv;
 };
 
-/// Of the pixels (x, y) to (x + count - 1, y), all in one tile.
+/// Rays of the pixels (x, y) to (x + count - 1, y), all in one tile.
 RowRays rays_of_row(const RayTable& rays, int x, int y, int count);
 
-/// Coverage by what lies on the inner side of all lines a x + b y + c > 0 (at most four).
+/// Coverage by the region on the inner side of all lines a x + b y + c > 0 (at most four).
 TileRow polygon_row(std::span<const Eigen::Vector3d> lines, const RowRays& rays, Simd simd = Simd::best);
 
 /// Coverage by a sphere's image, each pixel in quarters, the outline's curvature to first order.

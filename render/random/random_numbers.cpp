@@ -21,13 +21,13 @@ void row_words_portable(std::uint32_t first_block, int groups, const RowNoise& n
 }
 
 #if defined(__x86_64__)
-// Philox on four blocks at a time, each in the lower half of a 64-bit lane (what stands in the upper half is ignored by
-// the multiplication): blocks 0, 2, 4, 6 in one vector, 1, 3, 5, 7 in the other, merged at the end.
+// Philox on four blocks at a time, each in the lower half of a 64-bit lane (the multiplication ignores the upper half):
+// blocks 0, 2, 4, 6 in one vector, 1, 3, 5, 7 in the other, merged at the end.
 [[gnu::target("avx2")]] void row_words_avx2(std::uint32_t first_block, int groups, const RowNoise& noise,
                                             std::uint32_t* words) {
   const __m256i m0 = _mm256_set1_epi64x(kPhiloxM0);
   const __m256i m1 = _mm256_set1_epi64x(kPhiloxM1);
-  alignas(32) __m256i keys[kPhiloxRounds][2];  // of each round, made once and not for every group
+  alignas(32) __m256i keys[kPhiloxRounds][2];  // for each round, made once and not for every group
   PhiloxKey key = noise.key;
   for (auto& pair : keys) {
     for (int k = 0; k < 2; ++k) pair[k] = _mm256_set1_epi32(static_cast<std::int32_t>(key[k]));
@@ -61,7 +61,7 @@ void row_words_portable(std::uint32_t first_block, int groups, const RowNoise& n
   }
 }
 
-// The same with SSE2, which every x86-64 has: two blocks a vector.
+// The same with SSE2, which every x86-64 has: two blocks per vector.
 void row_words_sse2(std::uint32_t first_block, int groups, const RowNoise& noise, std::uint32_t* words) {
   const __m128i m0 = _mm_set1_epi64x(kPhiloxM0);
   const __m128i m1 = _mm_set1_epi64x(kPhiloxM1);
@@ -120,7 +120,7 @@ PoissonTable::PoissonTable(int largest_mean) {
     for (int k = 0;; ++k) {
       sum += mean == 0 ? (k == 0 ? 1.0 : 0.0) : std::exp(k * std::log(mean) - mean - std::lgamma(k + 1.0));
       distribution.below.push_back(sum);
-      // The rest is below a quarter of a word's resolution; the last entry takes it.
+      // The remainder is below a quarter of a word's resolution; the last entry takes it.
       if (k > mean && sum > 1.0 - 0.5 * uniform_of(0)) break;
       if (k > mean + 20.0 * std::sqrt(mean + 1.0) + 20.0) break;
     }

@@ -3,8 +3,8 @@
 ///
 /// Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC '11.
 /// Ten rounds of two 32 x 32 -> 64 bit multiplications; passes TestU01's BigCrush. Every value is a pure function of
-/// its inputs, so that it is the same in any order and on any number of threads. streams.h says which stream is for
-/// what.
+/// its inputs, so that it is the same in any order and on any number of threads. streams.h lists the uses of the
+/// streams.
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ constexpr PhiloxKey philox_key(std::uint64_t seed) {
   return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)};
 }
 
-/// A uniform number of a word, in steps of 2^-32, above 0 and below 1.
+/// A uniform number from a word, in steps of 2^-32, above 0 and below 1.
 constexpr double uniform_of(std::uint32_t word) {
   return (word + 0.5) / 4294967296.0;
 }
@@ -59,14 +59,14 @@ struct RowNoise {
   PhiloxKey key;
 };
 
-/// The random words of a row of pixels: Philox4x32-10, in groups of 32 pixels of 8 blocks each (sensor.h says what
-/// for).
+/// The random words of a row of pixels: Philox4x32-10, in groups of 32 pixels of 8 blocks each (sensor.h describes
+/// their use).
 ///
 /// Words of the blocks first_block, first_block + 1, …, 8 blocks a group, into `words` (32 a group): word j of block b
 /// of group g at 32 g + 8 j + b. RandomPurpose::pixel_noise.
 void row_words(std::uint32_t first_block, int groups, const RowNoise& noise, std::uint32_t* words, Simd simd);
 
-/// 2 pi of an angle given in turns, as sine: |x| <= 1/4; minimax of degree 7, error 6e-7.
+/// sin(2 pi x), for an angle x in turns, |x| <= 1/4; minimax of degree 7, error 6e-7.
 inline float sine_of_turns(float x) {
   const float q = x * x;
   return x * (6.28316404f + q * (-41.3371423f + q * (81.3407651f + q * -70.9933988f)));
@@ -84,8 +84,8 @@ inline float log_of(float x) {
   return static_cast<float>(exponent) * 0.693147181f + m * polynomial;
 }
 
-/// The parts of two normal deviates, sqrt(square) cosine and sqrt(square) sine: the root of square times a variance is
-/// one root, not two.
+/// The parts of two normal deviates, sqrt(square) cosine and sqrt(square) sine: the root of square times a variance
+/// takes one root, not two.
 struct PolarPair {
   float square;
   float cosine;
@@ -107,8 +107,8 @@ struct NormalPair {
   float z1;
 };
 
-/// Two normal deviates of two random words, by Box and Muller's method in single precision: at most 5.9 standard
-/// deviations. Only IEEE-exact operations, so that every way to vectorise it gives the same bits.
+/// Two normal deviates from two random words, by the Box-Muller method in single precision: at most 5.9 standard
+/// deviations. Only IEEE-exact operations, so that every vectorisation gives the same bits.
 inline NormalPair normal_pair(std::uint32_t word0, std::uint32_t word1) {
   const PolarPair pair = polar_pair(word0, word1);
   const float radius = std::sqrt(pair.square);
@@ -117,9 +117,9 @@ inline NormalPair normal_pair(std::uint32_t word0, std::uint32_t word1) {
 
 /// Exact Poisson numbers for small means, from two uniform words each.
 ///
-/// Poisson(mean) is the sum of Poisson(n), n the whole part of the mean, and Poisson(the rest): the first by inversion
-/// of a tabulated distribution (found through a guide, so that it takes a few steps at any mean), the second by
-/// sequential inversion. Exact to the 2^-32 of a uniform word.
+/// Poisson(mean) is the sum of Poisson(n), with n the integer part of the mean, and Poisson(the rest): the first by
+/// inversion of a tabulated distribution (found through a guide, so that it takes a few steps at any mean), the second
+/// by sequential inversion. Exact to the 2^-32 of a uniform word.
 class PoissonTable {
  public:
   /// For means in [0, largest_mean).

@@ -1,7 +1,7 @@
-/// Which random numbers are drawn for what, so that no two uses draw the same.
+/// The uses of random numbers, so that no two uses draw the same ones.
 ///
 /// A random word is a function of the seed and of a counter {first, second, third, purpose} (random_numbers.h). Every
-/// purpose has a number of its own in the last place; the stream in the third place tells clips and stills apart.
+/// purpose has its own number in the last place; the stream in the third place distinguishes clips and stills.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace glidelab::render {
 enum class RandomPurpose : std::uint32_t {
   pixel_noise = 0,        ///< normal deviates of shot and read noise: {block, frame, stream}
   exact_pixel_noise = 1,  ///< Poisson numbers of dark pixels: {pixel, frame, stream}
-  fixed_pattern = 2,      ///< how a sensor's pixels differ: {pixel, 0, 0}
+  fixed_pattern = 2,      ///< differences among a sensor's pixels: {pixel, 0, 0}
   frame_clock = 3,        ///< jitter, dropped and repeated frames: {slot, 0, stream}
   pattern_poses = 4,      ///< poses of the calibration's boards: {view, number, 0}
 };
@@ -25,7 +25,7 @@ inline constexpr std::array kRandomPurposes = {RandomPurpose::pixel_noise, Rando
                                                RandomPurpose::fixed_pattern, RandomPurpose::frame_clock,
                                                RandomPurpose::pattern_poses};
 
-/// Streams: clips count from 0, stills from here.
+/// Streams: clips are numbered from 0, stills from here.
 inline constexpr std::uint32_t kFirstStillStream = 0x40000000u;
 
 /// Four random words.

@@ -11,7 +11,7 @@ namespace glidelab::render {
 /// Frames of one clip: an hour at 1389 Hz. Its true motion is held in memory, 0.6 GB of it.
 inline constexpr std::size_t kMostFrames = 5'000'000;
 
-/// InputError (file, key) where a true motion would have more states than that, with what they would take as a CSV.
+/// InputError (file, key) if a true motion would have more states than that, with their size as a CSV.
 void check_states(const sim::MotionScenario& scenario, const Recording& recording, const std::string& file,
                   const std::string& key);
 

@@ -10,7 +10,7 @@ namespace glidelab::render {
 std::size_t frame_count(const Recording& recording, const sim::MotionSetup& motion) {
   const double rate_hz = FrameClock(recording.clock, recording.frame_rate_hz, 0, 0).true_rate_hz();
   const double last_start = motion.duration_s - recording.exposure_s - recording.shutter.readout_s();
-  // A whole number of frame times that rounding made a little shorter still counts.
+  // A whole number of frame times that rounding made slightly shorter still counts.
   return last_start <= 0.0 ? 1 : static_cast<std::size_t>(std::floor(last_start * rate_hz + 1e-9)) + 1;
 }
 
@@ -116,12 +116,12 @@ void FrameMotions::simulate_chunk() {
   const double step_s = open_s / static_cast<double>(pieces);
   const auto start_of = [&](std::size_t i) { return clock_.between_s(first_, first_ + i); };
   const std::size_t count = std::min(kChunk, frames_ - first_);
-  // Once for the middles, which say how fast the glider is; then for the instants of each exposure.
+  // Once for the middles, which give the speed of the glider; then for the instants of each exposure.
   std::vector<double> times;
   for (std::size_t i = 0; i < count; ++i) {
     times.push_back(start_of(i) + 0.5 * recording_.exposure_s + 0.5 * recording_.shutter.readout_s());
   }
-  // A frame that is read for longer than the frame time may have its middle after the next chunk's start.
+  // A frame whose readout takes longer than the frame time may have its middle after the next chunk's start.
   if (times.back() < start_of(count)) times.push_back(start_of(count));
   const sim::Trajectory middles = sim::simulate(body_, x0_m_, v0_m_s_, times);
 
@@ -129,7 +129,7 @@ void FrameMotions::simulate_chunk() {
   std::vector<std::size_t> parts;
   for (std::size_t i = 0; i < count; ++i) {
     if (with_path_) {
-      // The last knot of a frame may be the first of the next one, or lie a rounding behind it.
+      // The last knot of a frame may be the first of the next one, or lie after it by a rounding error.
       for (std::size_t k = 0; k <= pieces; ++k) part_times.push_back(start_of(i) + static_cast<double>(k) * step_s);
       parts.push_back(pieces + 1);
       continue;
@@ -142,7 +142,7 @@ void FrameMotions::simulate_chunk() {
     }
   }
   part_times.push_back(start_of(count));
-  // sim wants times that rise.
+  // sim requires rising times.
   std::vector<double> rising = part_times;
   std::sort(rising.begin(), rising.end());
   rising.erase(std::unique(rising.begin(), rising.end()), rising.end());

@@ -1,8 +1,8 @@
-/// Where the glider is during each frame's exposure.
+/// The glider's position during each frame's exposure.
 ///
-/// The first row's exposure of frame k is [start, start + exposure] on the clock of sim, start = k / rate where the
+/// The first row's exposure of frame k is [start, start + exposure] on the clock of sim, start = k / rate if the
 /// camera's clock is right (exposure_times.h); the motion starts at t = 0, with the first exposure. Other rows follow
-/// as the shutter says. The middle of the middle row's exposure has the time `start` on the clock of the truth.
+/// according to the shutter. The middle of the middle row's exposure has the time `start` on the clock of the truth.
 #pragma once
 
 #include <array>
@@ -21,12 +21,12 @@ namespace glidelab::render {
 std::size_t frame_count(const Recording& recording, const sim::MotionSetup& motion);
 
 /// The motion at the middle of each exposure of the first row, on the recording's clock: the first frame's middle is t
-/// = 0. A clock that errs is not in it.
+/// = 0. Clock errors are not included.
 sim::Trajectory recorded_motion(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording);
 
 /// The motion while a frame is read, for any instant: cubic Hermite between states of equal distance. With knots h = 1
-/// ms apart the error is h^4/384 times the fourth derivative of x, below 1e-13 m on a track; where a reversal changes a
-/// by 0.2 m/s², 1e-8 m.
+/// ms apart the error is h^4/384 times the fourth derivative of x, below 1e-13 m on a track; if a reversal changes a by
+/// 0.2 m/s², 1e-8 m.
 class MotionPath {
  public:
   MotionPath() = default;
@@ -34,11 +34,11 @@ class MotionPath {
   MotionPath(double start_s, double step_s, std::vector<sim::State> knots);
   double start_s() const { return start_s_; }
   double end_s() const { return start_s_ + step_s_ * static_cast<double>(knots_.size() - 1); }
-  /// On sim's clock; beyond the ends the nearest piece goes on.
+  /// On sim's clock; beyond the ends the nearest piece is extrapolated.
   double x_m(double t_s) const;
   double v_m_s(double t_s) const;
   bool empty() const { return knots_.empty(); }
-  /// Of the knots; between them the body gets farther by less than its turning point's a h²/8.
+  /// Over the knots; between them the body goes farther by less than a h²/8 at its turning point.
   double least_x_m() const;
   double largest_x_m() const;
 
@@ -59,31 +59,32 @@ struct FrameMotion {
   std::size_t frame = 0;    ///< slot of the clock
   double start_s = 0.0;     ///< when its first row's exposure starts, on sim's clock
   sim::State middle;        ///< at the middle row's mid-exposure; t_s = start_s, from the first frame's middle
-  std::vector<double> x_m;  ///< at the instants that stand for the exposure (below); empty where there is a path
+  std::vector<double> x_m;  ///< at the instants that represent the exposure (below); empty if there is a path
   MotionPath path;          ///< from the start of the first row's exposure to the end of the last one's
 };
 
-/// What of a frame's motion is wanted.
+/// The requested detail of a frame's motion.
 enum class MotionDetail {
   parts,  ///< `x_m`, or `path` with a rolling shutter
   path,   ///< `path` always
 };
 
-/// How many instants stand for an exposure in which the body moves by `length_m`: one for each `longest_step_m`, at
-/// least two, and one alone where it moves by less than 1/500 of that.
+/// The number of instants that represent an exposure in which the body moves by `length_m`: one for each
+/// `longest_step_m`, at least two, but only one if it moves by less than 1/500 of that.
 std::size_t exposure_instants(double length_m, double longest_step_m);
 
-/// The i-th of n instants that stand for an exposure, as a part of it: evenly spaced about its middle, and spread so
-/// that their variance is that of the whole, 1/12 (for n = 1: 0). A smear so has its length to the second moment.
+/// The i-th of n instants that represent an exposure, as a fraction of it: uniformly spaced about its middle, and
+/// spread such that their variance is that of the whole, 1/12 (for n = 1: 0). A smear thus has the correct second
+/// moment.
 double exposure_instant(std::size_t i, std::size_t n);
 
-/// The slots of a clip's clock, one after the other, simulated in chunks so that no clip is held in memory. Body
-/// outlives it.
+/// The slots of a clip's clock, one after another, simulated in chunks so that no clip is held in memory. The body must
+/// outlive this object.
 class FrameMotions {
  public:
   FrameMotions(const sim::Body& body, const sim::MotionSetup& motion, const Recording& recording,
                const FrameClock& clock, double longest_step_m, MotionDetail detail = MotionDetail::parts);
-  /// Nothing after the last slot.
+  /// Empty after the last slot.
   std::optional<FrameMotion> next();
 
  private:
@@ -108,7 +109,7 @@ void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const
                     double longest_step_m, const std::function<void(const FrameMotion&)>& visit,
                     MotionDetail detail = MotionDetail::parts);
 
-/// On sim's clock, the middle of the exposure of a row (also between rows) of a frame.
+/// The middle of the exposure of a row of a frame (also between rows), on sim's clock.
 double mid_exposure_s(const Recording& recording, const FrameMotion& frame, double row);
 
 }  // namespace glidelab::render

@@ -30,7 +30,7 @@ std::vector<std::string_view> camera_file_sections() {
   return names;
 }
 
-/// With a key of the scenario's own, these keys of the camera make no sense.
+/// If the scenario has this key, these keys of the camera do not apply.
 struct Choice {
   std::string_view section;
   std::string_view key;
@@ -101,7 +101,7 @@ CameraFile read_camera_name(const std::filesystem::path& path) {
 
 CameraFile take_camera_file(const std::filesystem::path& path, TomlFile& scenario, std::string_view scenario_text) {
   const CameraFile camera = read_camera_name(path);
-  // Asking marks a key as known, so what is asked here is another copy of both files.
+  // Requesting a key marks it as known, so another copy of both files is queried here.
   TomlFile values = TomlFile::load(path);
   const TomlFile own = TomlFile::parse(scenario_text, scenario.name());
   for (const std::string_view section : camera_file_sections()) {
@@ -116,7 +116,7 @@ std::string with_camera_written_in(std::string_view scenario_text, const std::fi
   const std::optional<std::string> camera = scenario.root().maybe_text("camera_file");
   if (!camera) return std::string(scenario_text);
   const std::filesystem::path path = scenario_file.parent_path() / *camera;
-  read_camera_name(path);  // says what is wrong with the file
+  read_camera_name(path);  // reports errors of the file
   std::vector<base::TomlSection> sections;
   for (const std::string_view section : camera_file_sections()) {
     const std::optional<TomlTable> table = scenario.root().maybe_table(section);
@@ -130,7 +130,7 @@ namespace {
 
 using base::TomlTable;
 
-/// The checks that need the whole scenario; asked only of one without other errors.
+/// The checks that need the whole scenario; made only if there are no other errors.
 void check_pictures(const TomlTable& root, const Scenario& scenario) {
   const Camera& camera = scenario.camera;
   if (const auto why = why_not_one_to_one(camera)) {
@@ -151,7 +151,7 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
   if (scenario.plumb && !plumb_region(scenario)) {
     root.reject("plumb", fmt::format("a plumb line at x = {} m", scenario.plumb->x_m), "one that the camera sees");
   }
-  constexpr double kNearest = 0.1;  // m before the camera
+  constexpr double kNearest = 0.1;  // m in front of the camera
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {
       bool seen = false;
@@ -180,7 +180,7 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
   }
 }
 
-/// What takes hours or terabytes is refused before it begins.
+/// Work of hours or terabytes is refused before it begins.
 void check_length(const TomlTable& root, const Scenario& scenario) {
   for (const sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     for (const sim::MotionSetup& motion : configuration.motions) {
@@ -196,8 +196,8 @@ void check_length(const TomlTable& root, const Scenario& scenario) {
   }
 }
 
-/// A file of the other sort is said to be one, not taken apart key by key. It is read apart: asking for a key makes it
-/// a known one.
+/// A file of the other kind is reported as such, not key by key. It is read separately, because requesting a key makes
+/// it known.
 void refuse_sweep(std::string_view text, const std::filesystem::path& path) {
   const base::TomlFile file = base::TomlFile::parse(text, path.string());
   if (file.root().has("configuration") || !file.root().has("scenario") || !file.root().has("vary")) return;
@@ -207,7 +207,7 @@ void refuse_sweep(std::string_view text, const std::filesystem::path& path) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& path) {
-  std::error_code ignored;  // what cannot be looked at says so when it is read
+  std::error_code ignored;  // a file that cannot be accessed fails when it is read
   if (std::filesystem::is_directory(path, ignored)) {
     const bool recording = std::filesystem::exists(path / "experiment.toml", ignored);
     throw base::InputError(base::Issue{path.string(), 0, "",

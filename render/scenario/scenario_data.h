@@ -1,5 +1,4 @@
-/// What a scenario holds: the true motions, the light as it changes, and everything that stands before the camera and
-/// in it.
+/// The contents of a scenario: the true motions, the changing light, and everything in front of the camera and in it.
 ///
 /// SI units and radians; pixels where the name says so. scenario.h reads it, scenario_sections.h names its sections.
 #pragma once
@@ -21,30 +20,31 @@
 
 namespace glidelab::render {
 
-/// A round spot of light with a Gaussian profile, added to what stands there; it follows its own velocity, and the
-/// glider's motion times `follow`.
+/// A round spot of light with a Gaussian profile, added to the scene; it moves with its own velocity plus the glider's
+/// motion times `follow`.
 struct Reflection {
   Eigen::Vector3d position_W =
       Eigen::Vector3d::Zero();  ///< at the clip's start; with `follow`, when the glider is at x = 0
   double radius_m = 0.02;       ///< standard deviation of its profile
-  double radiance = 1.0;        ///< in its middle, of white
+  double radiance = 1.0;        ///< in its middle, relative to white
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
   double follow = 0.0;    ///< of the glider's displacement along the track
-  bool in_front = false;  ///< of the glider; else it hides the spot
+  bool in_front = false;  ///< of the glider; otherwise the glider hides the spot
 };
 
-/// The light of a scene as it changes from image to image and from place to place.
+/// The light of a scene, which varies from image to image and with position.
 ///
-/// Flicker: all light is multiplied by 1 + depth cos(2 pi f t + phase), t counted from the clip's first exposure; a row
-/// gets its mean over the row's exposure [a, a + T], 1 + depth sinc(pi f T) cos(2 pi f (a + T/2) + phase). Still images
+/// Flicker: all light is multiplied by 1 + depth cos(2 pi f t + phase), t measured from the clip's first exposure; a
+/// row gets the mean over its exposure [a, a + T], 1 + depth sinc(pi f T) cos(2 pi f (a + T/2) + phase). Still images
 /// do not flicker.
 struct Light {
   double level = 1.0;                                        ///< of all light
-  Eigen::Vector2d gradient_per_m = Eigen::Vector2d::Zero();  ///< light is times exp(gradient · (x, y)) in the world
+  Eigen::Vector2d gradient_per_m = Eigen::Vector2d::Zero();  ///< light is multiplied by exp(gradient · (x, y)) in the
+                                                             ///< world
   double flicker_depth = 0.0;                                ///< 0 to 1
   double flicker_hz = 100.0;
   double flicker_phase_rad = 0.0;
-  double ring_light = 0.0;  ///< radiance that a lamp beside the lens adds to the marker at the track's reference point
+  double ring_light = 0.0;  ///< radiance that a lamp next to the lens adds to the marker at the track's reference point
   std::vector<Reflection> reflections;
 
   bool flickers() const { return flicker_depth > 0.0; }
@@ -66,9 +66,9 @@ struct Recording {
 
 /// How bright things are in the image: a white surface in the middle of the light.
 struct Exposure {
-  double white_level = 0.75;              ///< its code, as part of the largest code; not looked at where there is
-  std::optional<double> white_photons_s;  ///< the photons that come from it to a pixel
-  double quantum_efficiency = 1.0;        ///< electrons a photon
+  double white_level = 0.75;              ///< its code, as a fraction of the largest code; not used if there is
+  std::optional<double> white_photons_s;  ///< photons from it per pixel and second
+  double quantum_efficiency = 1.0;        ///< electrons per photon
 };
 
 struct PatternSetup {
@@ -78,13 +78,13 @@ struct PatternSetup {
   int views = 12;
   std::vector<double> plane_x_m = {0.0};  ///< the middle of the pattern, along the track, in each view of the plane
   double plane_y_m = 0.0;                 ///< and across it, upward
-  double plane_rotation_rad = 0.0;        ///< how far it is turned off the track, anticlockwise as the camera sees it
+  double plane_rotation_rad = 0.0;        ///< rotation relative to the track, anticlockwise as seen by the camera
 };
 
 struct MarkerSetup {
   double diameter_m = 0.02;
-  double height_m = 0.0;     ///< its centre off the pattern's plane, towards the camera
-  double reflectance = 1.1;  ///< radiance beside a white wall's; retro-reflective ones shine more than white
+  double height_m = 0.0;     ///< of its centre above the pattern's plane, towards the camera
+  double reflectance = 1.1;  ///< radiance relative to a white wall's; retro-reflective ones exceed white
 };
 
 struct TrackSetup {
@@ -97,8 +97,8 @@ struct SceneSetup {
   double wall_distance_m = 0.6;  ///< behind the plane of motion
   double track_albedo = 0.5;
   double glider_albedo = 0.22;
-  double glider_mass_kg = 0.335;  ///< without weights; every 0.1 kg more is a weight that is seen on it
-  double light_falloff = 0.12;    ///< how much darker it is 1 m off the middle of the light
+  double glider_mass_kg = 0.335;  ///< without weights; every additional 0.1 kg is a weight visible on it
+  double light_falloff = 0.12;    ///< relative darkening at 1 m from the middle of the light
 };
 
 struct PlumbSetup {
@@ -109,12 +109,12 @@ struct PlumbSetup {
 
 struct Scenario {
   std::filesystem::path file;
-  std::uint64_t seed = 1;  ///< used where the command line gives none
+  std::uint64_t seed = 1;  ///< used if the command line gives none
   sim::MotionScenario motion;
   std::string camera_name;  ///< of the camera file; empty without one
   Camera camera;
   Vignetting vignetting;
-  std::optional<Focus> focus;  ///< without it all is sharp
+  std::optional<Focus> focus;  ///< without it everything is sharp
   Recording recording;
   Light light;
   Mount mount;

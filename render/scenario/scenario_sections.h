@@ -1,5 +1,6 @@
-/// The sections of a scenario beside its motions: [camera], [sensor], … One entry of the table says everything that the
-/// program knows of a section as a whole: how it is read, what the truth says of it, what a perfect camera makes of it.
+/// The sections of a scenario besides its motions: [camera], [sensor], … One entry of the table holds everything that
+/// the program knows about a section as a whole: how it is read, what the truth says about it, and its form for a
+/// perfect camera.
 ///
 /// To add one: its member in scenario_data.h, its entry in sections/*.cpp, a line in the list below, and its lines in
 /// the documentation of scenarios.
@@ -13,7 +14,7 @@
 #include "base/toml/strict_toml.h"
 #include "render/scenario/scenario_data.h"
 
-/// The names, in the order in which they are read and in which truth.json has them.
+/// The names, in the order in which they are read and written to truth.json.
 #define GLIDELAB_SCENARIO_SECTIONS(SECTION) \
   SECTION(camera)                           \
   SECTION(clock)                            \
@@ -37,14 +38,14 @@ struct ScenarioSection {
   std::string_view help;
   /// Whether a camera's file may have the section (scenario.h).
   bool in_camera_file;
-  /// Fills its part of the scenario; nothing where the file has no such section. The sections before it are read. What
-  /// is wrong is recorded in the table's file.
+  /// Fills its part of the scenario; `table` is empty if the file has no such section. Earlier sections have already
+  /// been read. Errors are recorded in the table's file.
   void (*read)(const std::optional<base::TomlTable>& table, Scenario& scenario);
-  /// What depends on sections that are read later; may be null.
+  /// Settles what depends on sections that are read later; may be null.
   void (*settle)(const base::TomlTable& root, Scenario& scenario);
-  /// Adds what truth.json says of it to the JSON of the camera; null where it says nothing.
+  /// Adds its entries of truth.json to the JSON of the camera; null if there are none.
   void (*truth)(const Scenario& scenario, nlohmann::ordered_json& camera);
-  /// Makes of it what `render --ideal` shows: a perfect camera before the same scene (truth_files.h).
+  /// Converts it to the form shown by `render --ideal`: a perfect camera with the same scene (truth_files.h).
   void (*ideal)(Scenario& scenario);
 };
 
@@ -54,7 +55,7 @@ namespace sections {
 GLIDELAB_SCENARIO_SECTIONS(GLIDELAB_DECLARE_SECTION)
 #undef GLIDELAB_DECLARE_SECTION
 
-/// For a section that ideal frames show as it is, or do not look at.
+/// For a section that ideal frames show unchanged, or do not use.
 void keep(Scenario& scenario);
 
 /// Three numbers within 1 km.
@@ -64,13 +65,13 @@ Eigen::Vector3d vector_or(const base::TomlTable& table, std::string_view key, co
 
 std::span<const ScenarioSection* const> scenario_sections();
 
-/// Reads all sections of a scenario's file. What is wrong is recorded in the file.
+/// Reads all sections of a scenario's file. Errors are recorded in the file.
 void read_sections(const base::TomlTable& root, Scenario& scenario);
 
-/// What truth.json says of the camera: what all sections say.
+/// The camera entry of truth.json: the entries of all sections.
 nlohmann::ordered_json sections_truth(const Scenario& scenario);
 
-/// The scenario with a perfect camera; its motions, times, scene and pose.
+/// The scenario with a perfect camera, but with its own motions, times, scene and pose.
 Scenario ideal_of(const Scenario& scenario);
 
 }  // namespace glidelab::render

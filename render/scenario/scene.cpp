@@ -23,22 +23,22 @@ std::vector<Eigen::Vector3d> outline_of(const Chessboard& board) {
 
 namespace {
 
-// The glider, as figure 5 of the paper shows it: a body of 13 cm with magnets at its ends and weights on top.
-// Metres and kilograms.
+// The glider, as shown in figure 5 of the paper: a body of 13 cm with magnets at its ends and weights on top. Metres
+// and kilograms.
 constexpr double kGliderLength = 0.130;
 constexpr double kGliderTop = 0.018;      // above the marker's centre
 constexpr double kGliderBottom = -0.034;  // below it: the skirt hides the upper edge of the track
 constexpr double kGliderDepth = 0.060;
 constexpr double kWeightMass = 0.100;
 constexpr double kWeightHeight = 0.009;
-constexpr int kMostWeights = 8;  // seen on top of each other; what is heavier looks the same
+constexpr int kMostWeights = 8;  // visible on top of each other; heavier gliders look the same
 constexpr double kTrackTop = -0.027;
 constexpr double kTrackHeight = 0.048;
 constexpr double kTableBelow = 0.20;  // under the reference point
 
 struct TrackFrame {
   Eigen::Vector3d right;  // along the track, to the right in the world
-  Eigen::Vector3d up;     // across it, in the plane of motion
+  Eigen::Vector3d up;     // perpendicular to it, in the plane of motion
   double turn_rad;
 };
 
@@ -69,7 +69,7 @@ StaticScene empty_track(const Scenario& scenario, double incline_rad) {
   scene.light_gradient_per_m = scenario.light.gradient_per_m;
   const TrackFrame frame = track_frame(scenario.track, incline_rad);
   const double half_length = 0.5 * scenario.track.length_m;
-  // The board of a plane view stands at z = 0 before the track; the glider's front overhangs it.
+  // The board of a plane view stands at z = 0 in front of the track; the glider's front overhangs it.
   const double front_z = std::min(glider_front_z(scenario.marker) - 0.006, -0.004);
   const double back_z = front_z - 0.050;
   const double middle_z = 0.5 * (front_z + back_z);
@@ -101,7 +101,7 @@ StaticScene empty_track(const Scenario& scenario, double incline_rad) {
         {0.07, 0.010, 0.060}, 0.16);
     add({under.x(), table_y + 0.006, middle_z}, 0.0, {0.11, 0.012, 0.09}, 0.14);
   }
-  // The table, from the wall to a hand's breadth before the track.
+  // The table, from the wall to a hand's breadth in front of the track.
   const double table_front = 0.22;
   add({0.0, table_y - 0.015, 0.5 * (scene.wall_z_m + table_front)}, 0.0, {6.0, 0.030, table_front - scene.wall_z_m},
       0.30, Surface::wood);
@@ -164,7 +164,7 @@ MovingBody glider(const Scenario& scenario, const StaticScene& scene, const sim:
   moving.marker = MarkerSphere{place(0.0, 0.0, scenario.marker.height_m), 0.5 * scenario.marker.diameter_m,
                                scenario.marker.reflectance * light};
   if (scenario.light.ring_light > 0.0) {
-    // A lamp at the lens: what it lights falls with the square of the distance.
+    // A lamp at the lens: its illumination falls with the square of the distance.
     const Eigen::Vector3d eye = scenario.camera.X_WC.translation();
     const double near2 = eye.squaredNorm();
     const double far2 = (eye - marker_position_W(scenario, body.incline_rad, x_m)).squaredNorm();
@@ -199,7 +199,7 @@ PlumbLine plumb_line(const PlumbSetup& setup, const Camera& camera) {
   line.x_m = setup.x_m;
   line.z_m = setup.z_m;
   line.diameter_m = setup.diameter_m;
-  // From above the image down to a bob that hangs a little over the table.
+  // From above the image down to a bob that hangs slightly above the table.
   const double reach = camera.height_px / camera.focal_px.y() * (camera.X_WC.translation().z() - setup.z_m);
   line.top_y_m = camera.X_WC.translation().y() + 2.0 * reach;
   line.bottom_y_m = -kTableBelow + 0.035;

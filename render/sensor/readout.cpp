@@ -19,7 +19,7 @@ struct Mask {
   float center, side, upright, corner;
 };
 
-/// By place in the mosaic: red, green in a row of red, green in a row of blue, blue.
+/// By position in the mosaic: red, green in a row of red, green in a row of blue, blue.
 constexpr std::array<Mask, 4> kMasks = {{{kRed, kGreen / 4.0f, kGreen / 4.0f, kBlue / 4.0f},
                                          {kGreen, kRed / 2.0f, kBlue / 2.0f, 0.0f},
                                          {kGreen, kBlue / 2.0f, kRed / 2.0f, 0.0f},
@@ -75,7 +75,7 @@ bool converts(const Sensor& sensor) {
   return sensor.tone.kind != ToneCurve::Kind::linear || sensor.largest_converter_code() != sensor.largest_code();
 }
 
-/// Without a tone curve black keeps its place, so that offset and gain of the output are those of the converter,
+/// Without a tone curve the black level is kept, so that offset and gain of the output are those of the converter,
 /// scaled.
 double black_of(const Sensor& sensor) {
   return sensor.tone.kind == ToneCurve::Kind::linear ? 0.0 : sensor.offset_dn;

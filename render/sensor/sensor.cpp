@@ -89,7 +89,7 @@ FixedPattern make_fixed_pattern(const PixelSpread& spread, double exposure_s, st
     pattern.offset_e[i] = static_cast<float>(spread.dsnu_e) * z2;
     const double hot = uniform_of(words[2]);
     if (hot < spread.hot_fraction) {
-      // Below the fraction the word is uniform again, so minus its logarithm is exponential of mean 1.
+      // Below the fraction the word is again uniform, so minus its logarithm is exponential with mean 1.
       const double signal_e_s = -std::log(hot / spread.hot_fraction) * spread.hot_signal_e_s;
       pattern.dark_e[i] += static_cast<float>(signal_e_s * exposure_s);
     }
@@ -100,12 +100,12 @@ FixedPattern make_fixed_pattern(const PixelSpread& spread, double exposure_s, st
 
 namespace {
 
-/// What a row's pixels are computed with, in single precision.
+/// The constants for computing a row's pixels, in single precision.
 struct Transfer {
   float read_variance, gain, offset_and_half, largest_code, highest_normal_mean;
 };
 
-/// Pixels one after the other: what light gives them, and how each differs (null where all are alike).
+/// Successive pixels: their expected light, and how each differs (null if all are alike).
 struct Pixels {
   const float* expected_e;
   const float* response;
@@ -115,8 +115,8 @@ struct Pixels {
 
 constexpr int kBatch = 16;  // groups
 
-/// The fast path for groups of pixels; says whether some of them need the exact path. Of the pattern nothing is looked
-/// at where kPatterned is false. In two short loops, of which a processor has several turns in work at the same time.
+/// The fast path for groups of pixels; returns whether some of them need the exact path. The pattern is not used if
+/// kPatterned is false. It has two short loops, of which a processor can overlap several iterations.
 template <bool kPatterned, typename Code>
 [[gnu::always_inline]] inline bool group_codes(int groups, const Transfer& t, const Pixels& pixels,
                                                const std::uint32_t* __restrict words, Code* __restrict codes) {
@@ -186,7 +186,7 @@ int exact_code(const Sensor& sensor, double mean_e, double own_e, std::uint32_t 
   return static_cast<int>(std::clamp(code, 0.0, static_cast<double>(sensor.largest_converter_code())));
 }
 
-/// A copy of pixels that do not fill a group, filled up with ones that need nothing exact.
+/// A copy of pixels that do not fill a group, padded with pixels that do not need the exact path.
 class FilledGroup {
  public:
   FilledGroup(const Pixels& pixels, int count) {
@@ -233,7 +233,7 @@ class RowReader {
 #endif
   }
 
-  /// Codes of the pixels [left, right) of row y: whole groups where they stand, a group that is cut through a copy.
+  /// Codes of the pixels [left, right) of row y: whole groups in place, a partial group through a copy.
   void read(int y, int left, int right, Code* codes) {
     const int first_whole = (left + kGroup - 1) / kGroup;
     const int end_whole = right / kGroup;

@@ -81,10 +81,10 @@ std::string file_name_of(Codec codec, const std::string& clip) {
 
 namespace {
 
-// Ticks a second of the stamps of a clip with a variable rate: MPEG's clock. Matroska rounds them to 1 ms.
+// Ticks per second of the stamps of a clip with a variable rate: MPEG's clock. Matroska rounds them to 1 ms.
 constexpr int kStampClock = 90'000;
 
-/// Throws for a negative result of libav, with the path and what was tried.
+/// Throws for a negative result of libav, with the path and the attempted action.
 void check(int result, const std::filesystem::path& path, const char* what) {
   if (result >= 0) return;
   std::array<char, AV_ERROR_MAX_STRING_SIZE> words{};
@@ -209,7 +209,7 @@ class LibavWriter final : public VideoWriter {
     encoder_->time_base = time_base_;
     encoder_->framerate = rate;
     if (format_.codec == Codec::ffv1) {
-      // Level 3: every slice has its checksum and may be coded on its own; all frames are key frames.
+      // Level 3: every slice has a checksum and may be coded on its own; all frames are key frames.
       encoder_->level = 3;
       encoder_->gop_size = 1;
       encoder_->slices = 4;
@@ -222,16 +222,16 @@ class LibavWriter final : public VideoWriter {
     check(avcodec_open2(encoder_, codec, nullptr), path_, "encoder cannot be opened");
   }
 
-  /// As the encoders in phones work: 4:2:0 in the range of video, no images that refer to later ones, and with a bit
-  /// rate a buffer of one second.
+  /// Like the encoders in phones: 4:2:0 in video range, no images that refer to later ones, and, with a bit rate, a
+  /// buffer of one second.
   void set_h264() {
     const Compression& wanted = format_.compression;
     encoder_->pix_fmt = AV_PIX_FMT_YUV420P;
     encoder_->color_range = AVCOL_RANGE_MPEG;
-    encoder_->log_level_offset = AV_LOG_INFO - AV_LOG_ERROR;  // x264 tells its settings as information
+    encoder_->log_level_offset = AV_LOG_INFO - AV_LOG_ERROR;  // x264 reports its settings as information
     encoder_->max_b_frames = 0;
     encoder_->gop_size = wanted.gop;
-    encoder_->thread_count = 1;  // more of them would change the result
+    encoder_->thread_count = 1;  // more threads would change the result
     check(av_opt_set(encoder_->priv_data, "preset", "veryfast", 0), path_, "encoder");
     if (wanted.bitrate_kbit_s > 0.0) {
       encoder_->bit_rate = std::llround(wanted.bitrate_kbit_s * 1e3);
@@ -336,7 +336,7 @@ class LibavWriter final : public VideoWriter {
   AVPacket* packet_ = nullptr;
   AVRational time_base_{1, 1};
   std::int64_t frame_ticks_ = 1;
-  std::int64_t next_ = 0;  // the least stamp that the next frame may have
+  std::int64_t next_ = 0;  // the smallest allowed stamp of the next frame
 };
 
 }  // namespace
@@ -370,7 +370,7 @@ class PngFolderWriter final : public VideoWriter {
       throw std::logic_error(
           fmt::format("a frame of {} codes for {} x {}", frame.size(), format_.width, format_.height));
     }
-    // imwrite takes const data by a cv::Mat that it does not change.
+    // The cv::Mat wraps const data, which imwrite does not change.
     const cv::Mat image(format_.height, format_.width, type, const_cast<Code*>(frame.data()));
     write_png(folder_ / fmt::format("{:06d}.png", next_++), image);
   }

@@ -17,17 +17,17 @@ inline bool lossy(Codec codec) {
 }
 enum class Container { mkv, avi, mp4, folder };
 
-/// How much a lossy codec may leave out.
+/// The settings of a lossy codec.
 struct Compression {
-  std::optional<Container> container = {};  ///< usual_container(), where not given
-  int quality = 85;                         ///< of mjpeg: 1 to 100, as libjpeg counts
-  double crf = 23.0;                        ///< of h264: constant rate factor, 0 (best) to 51
-  double bitrate_kbit_s = 0.0;              ///< of h264, in place of crf, where above 0
-  int gop = 30;                             ///< of h264: frames from one key frame to the next
+  std::optional<Container> container = {};  ///< usual_container(), if not given
+  int quality = 85;                         ///< for mjpeg: 1 to 100, on libjpeg's scale
+  double crf = 23.0;                        ///< for h264: constant rate factor, 0 (best) to 51
+  double bitrate_kbit_s = 0.0;              ///< for h264, instead of crf, if above 0
+  int gop = 30;                             ///< for h264: frames from one key frame to the next
 };
 
-/// How a clip lies on disk: lossless (FFV1, uncompressed, a folder of 16-bit PNG for more than 8 bits), or as cameras
-/// write it (MJPEG, H.264), in Matroska, AVI or MP4.
+/// How a clip is stored on disk: lossless (FFV1, uncompressed, a folder of 16-bit PNG for more than 8 bits), or as
+/// written by cameras (MJPEG, H.264), in Matroska, AVI or MP4.
 struct VideoFormat {
   Codec codec = Codec::ffv1;
   int width = 0;  ///< even for h264, and height too
@@ -52,8 +52,8 @@ std::string file_name_of(Codec codec, const std::string& clip);
 
 /// Writes the frames of one grey clip.
 ///
-/// A clip has a constant rate, frame k at k / frame_rate, or a time stamp for every frame. Matroska rounds stamps to
-/// its tick of 1 ms and carries the exact rate beside them; MP4 counts in 1/90000 s; AVI has a constant rate and no
+/// A clip has a constant rate, with frame k at k / frame_rate, or a time stamp for every frame. Matroska rounds stamps
+/// to its tick of 1 ms and also stores the exact rate; MP4 counts in 1/90000 s; AVI has a constant rate and no
 /// rounding. Every write is checked: a full disk is an EnvironmentError that names the file, at the frame, at finish()
 /// or never.
 class VideoWriter {
@@ -64,12 +64,12 @@ class VideoWriter {
   virtual void write(std::span<const std::uint16_t> frame) = 0;
   /// The same for a clip of variable rate; times rise by 1/90000 s or more.
   virtual void write(std::span<const std::uint8_t> frame, double t_s) = 0;
-  /// Ends the clip. Without it what was written is no clip; the destructor only frees.
+  /// Ends the clip. Without this call the output is not a valid clip; the destructor only frees.
   virtual void finish() = 0;
 };
 
-/// A clip through libavformat and libavcodec, for every codec but png. EnvironmentError where the file cannot be
-/// written or the encoder is missing.
+/// A clip through libavformat and libavcodec, for every codec but png. EnvironmentError if the file cannot be written
+/// or the encoder is missing.
 std::unique_ptr<VideoWriter> open_libav(const std::filesystem::path& path, const VideoFormat& format);
 
 }  // namespace glidelab::render
@@ -83,7 +83,7 @@ namespace glidelab::render {
 /// Writes one 8- or 16-bit image.
 void write_png(const std::filesystem::path& path, const cv::Mat& image);
 
-/// Opens `path` for writing. EnvironmentError where it cannot be written or the codec is missing.
+/// Opens `path` for writing. EnvironmentError if it cannot be written or the codec is missing.
 std::unique_ptr<VideoWriter> open_video(const std::filesystem::path& path, const VideoFormat& format);
 
 }  // namespace glidelab::render

@@ -20,7 +20,7 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kStraight = 0.99;  // R² below which a page should not speak of a straight line
+constexpr double kStraight = 0.99;  // R² below which a page should not call it a straight line
 
 std::string sentence_of(const core::AnalysisResults& results, const core::ConfigurationResult& c) {
   std::string text;
@@ -59,9 +59,9 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
   return fmt::format("<li><b>{}:</b> {}.</li>\n", escape(configuration_name(results, c)), text);
 }
 
-/// The K of each mass, where it is the same for all within its errors, says that the drag does not depend on the load.
+/// If K is the same for all masses within its errors, the drag does not depend on the load.
 std::string damping_sentence(const core::AnalysisResults& results) {
-  constexpr double kChance = 0.01;  // that the chi² of equal K is beyond the limit
+  constexpr double kChance = 0.01;  // probability that the chi² for equal K exceeds the limit
   struct Damping {
     double mass_kg, k_n_s_m, sd_n_s_m;
   };
@@ -132,8 +132,8 @@ std::string r2_of(const core::ConfigurationResult& configuration, int direction)
   return line == nullptr ? "–" : base::r2_text(line->r2);
 }
 
-/// "K/m = 2.7630 ± 0.0060 1/s" of one configuration, "K/m = 0.86 ± 0.01 to 2.76 ± 0.02 1/s" of several; empty where
-/// none has it.
+/// "K/m = 2.7630 ± 0.0060 1/s" for one configuration, "K/m = 0.86 ± 0.01 to 2.76 ± 0.02 1/s" for several; empty if none
+/// has it.
 std::string value_words(const core::AnalysisResults& results, std::size_t which) {
   const core::Estimate *least = nullptr, *most = nullptr;
   const QuantityName& name = kQuantities[which];
@@ -207,7 +207,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
 
 namespace {
 
-/// K/m, µ, α and the terminal velocity with ±, of each of few configurations; of many the table has them.
+/// K/m, µ, α and the terminal velocity with ±, for each configuration if there are few; if there are many, they are in
+/// the table.
 std::string value_tiles(const core::AnalysisResults& results) {
   constexpr std::size_t kMostTiled = 2;
   if (results.configurations.size() > kMostTiled) return {};
@@ -239,7 +240,7 @@ std::string size_words(const core::AnalysisResults& results) {
   return fmt::format("{} {}, {}", clips, clips == 1 ? "clip" : "clips", seen);
 }
 
-/// x(t) with the law over it, of the first clips.
+/// x(t) of the first clips, with the law overlaid.
 Html fitted_section(const core::AnalysisResults& results) {
   constexpr std::size_t kMostFitted = 4;
   const std::vector<Plot> plots = fitted_plots(results, kMostFitted);
@@ -257,7 +258,7 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
   Html body = question_heading(title, "What are K/m, µ and α?") +
               fmt::format("<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n",
                           escape(estimator_name(results.estimator)), size_words(results));
-  // Where the law is in doubt the doubt comes before the numbers.
+  // If the law is in doubt, the doubt comes before the numbers.
   const std::string values = value_tiles(results) + recovered_section(results), meaning = meaning_of(results);
   body += doubts_about(results).empty() ? values + meaning : meaning + values;
   body += with_causes;

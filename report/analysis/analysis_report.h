@@ -1,4 +1,4 @@
-/// report.html of `analyze`: one self-contained page, with what its numbers say in words at its head.
+/// report.html of `analyze`: one self-contained page, which begins with the meaning of its numbers in words.
 #pragma once
 
 #include <string>
@@ -16,13 +16,12 @@ namespace glidelab::report {
 std::string meaning_of(const core::AnalysisResults& results);
 
 /// `title` names what was analysed; `previews` is empty or has one for each clip of the results; `with_causes` is a
-/// section on a fit with causes in the model, which stands after the recovered values. EnvironmentError where gnuplot
-/// fails.
+/// section on a fit with causes in the model, placed after the recovered values. EnvironmentError if gnuplot fails.
 Page analysis_report(const std::string& title, const core::AnalysisResults& results,
                      const std::vector<core::Preview>& previews, const base::Progress& progress = base::no_progress,
                      const Html& with_causes = {});
 
-/// Of each configuration: K/m, mu, alpha, v_lim with sd, R² of its lines; below, why something is missing.
+/// For each configuration: K/m, mu, alpha, v_lim with sd, R² of its lines; below, the reasons for missing values.
 std::string analysis_text(const core::AnalysisResults& results);
 
 }  // namespace glidelab::report

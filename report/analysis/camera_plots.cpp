@@ -13,8 +13,8 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kArrow = 0.08;  // of the image's width, for the largest
-constexpr int kMostTics = 7;     // that leave room for numbers of pixels side by side
+constexpr double kArrow = 0.08;  // length of the largest, as a fraction of the image's width
+constexpr int kMostTics = 7;     // leaves room for adjacent pixel numbers
 
 /// 1, 2 or 5 times a power of ten, at most `value`.
 double round_down(double value) {
@@ -95,7 +95,7 @@ double place_of(const core::MarkerSighting& sighting, bool across) {
   return across ? sighting.v_px : sighting.u_px;
 }
 
-/// Along which of the image's axes the marker moves, and its pixels a metre of x (signed).
+/// The image axis along which the marker moves, and its pixels per metre of x (signed).
 struct Course {
   bool vertical = false;
   double px_per_m = 0.0;

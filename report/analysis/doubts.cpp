@@ -11,7 +11,7 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kOffLine = 2.0;  // times the noise: more than a wrong idea of the noise makes
+constexpr double kOffLine = 2.0;  // times the noise: more than a wrong noise estimate explains
 
 }  // namespace
 

@@ -15,7 +15,7 @@ namespace glidelab::report {
 namespace {
 
 constexpr std::size_t kLeastPositions = 4;
-constexpr std::size_t kDrawn = 250;  // of a clip; more only makes the page heavy
+constexpr std::size_t kDrawn = 250;  // per clip; more only makes the page heavy
 
 struct Law {
   double k_1_s = 0.0, a0_m_s2 = 0.0;
@@ -32,7 +32,8 @@ std::optional<Law> law_of(const core::ConfigurationResult& of, int direction, do
   return Law{line->k_over_m_1_s.value, line->a0_m_s2.value};
 }
 
-/// phi and psi of the head of fitted_curve.h; by their series where k t is so small that they cancel (to 1e-12).
+/// phi and psi as defined at the top of fitted_curve.h; computed by their series if k t is so small that they cancel
+/// (to 1e-12).
 struct Shape {
   double phi, psi;
 };
@@ -46,7 +47,7 @@ Shape shape_at(double k, double t) {
   return {phi, (t - phi) / k};
 }
 
-/// Fits x0 and v0 and puts the law's positions in the curve.
+/// Fits x0 and v0 and stores the law's positions in the curve.
 bool fit_start(const Law& law, const std::vector<double>& measured_m, FittedCurve& curve) {
   double n = 0.0, p = 0.0, pp = 0.0, y = 0.0, py = 0.0;
   std::vector<Shape> shapes;

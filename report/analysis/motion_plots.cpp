@@ -47,7 +47,8 @@ const char* axis_of(Variable variable) {
   return variable == Variable::x ? "x  (m)" : variable == Variable::v ? "v  (m/s)" : "a  (m/s²)";
 }
 
-/// The smoothed points that are used (or not), as lines that break where the other kind stands between: t, y, sd.
+/// The smoothed points that are used (or not used), as lines that break where points of the other kind lie in between:
+/// t, y, sd.
 PlotData smoothed_lines(const core::ClipResult& clip, Variable variable, bool used, std::string name) {
   const std::vector<core::MotionPoint>& motion = clip.motion;
   PlotData data{std::move(name), {}, {"t (s)", axis_of(variable), "its standard deviation"}};
@@ -97,7 +98,7 @@ std::string shading(const core::ClipResult& clip) {
   return script;
 }
 
-/// The range of what is used, with a margin: beyond the ends of a stretch the smoothed derivatives run away.
+/// The range of the used points, with a margin: beyond the ends of a stretch the smoothed derivatives diverge.
 std::optional<std::pair<double, double>> used_range(const core::ClipResult& clip, Variable variable) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
@@ -111,7 +112,7 @@ std::optional<std::pair<double, double>> used_range(const core::ClipResult& clip
   return std::pair(low - margin, high + margin);
 }
 
-/// A band that is thinner than its line is told in words.
+/// If a band is thinner than its line, its size is given in words.
 std::string largest_deviation(const core::ClipResult& clip, Variable variable) {
   double largest = 0.0;
   for (const core::MotionPoint& point : clip.motion) {
@@ -176,19 +177,19 @@ std::vector<Plot> motion_plots(const core::ClipResult& clip) {
 namespace {
 
 constexpr std::size_t kPointsOfAll = 1500;  // in one diagram; more only makes the page heavy
-constexpr double kDetail = 0.15;            // of the largest speed: the part that figures 7 and 9 show
-constexpr std::size_t kBars = 12;           // of one configuration; on every point they would hide each other
+constexpr double kDetail = 0.15;            // of the largest speed: the part shown in figures 7 and 9
+constexpr std::size_t kBars = 12;           // per configuration; bars on every point would hide each other
 constexpr int kSteps = 24;                  // along a line, whose band is a hyperbola
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct PhasePoint {
   double v_m_s;
   double a_m_s2;
-  double residual_m_s2;  ///< NaN where there is no line of this direction
-  double half95_m_s2;    ///< of a, by the noise of the positions
+  double residual_m_s2;  ///< NaN if there is no line for this direction
+  double half95_m_s2;    ///< of a, due to the noise of the positions
 };
 
-/// The points of one configuration, thinned out by whoever draws them.
+/// The points of one configuration; the drawing code thins them out.
 struct Cloud {
   std::size_t configuration;
   std::vector<PhasePoint> points;
@@ -235,7 +236,7 @@ PlotData thinned(const Cloud& cloud, const char* kind, std::size_t most, double 
   return never_empty(std::move(data));
 }
 
-/// Each line with its band from v = 0 to where its points end.
+/// Each line with its band, from v = 0 to the end of its points.
 PlotData fitted_lines(const core::ConfigurationResult& configuration, std::size_t index) {
   PlotData data{data_name("lines", index), {}, {"v (m/s)", "a (m/s²)", "half of the line's 95 % interval (m/s²)"}};
   for (const core::LineFit& line : configuration.lines) {
@@ -256,13 +257,13 @@ struct Window {
   bool has_limit;  ///< a line crosses a = 0 within it, on its own side of v = 0
 };
 
-/// Labels with a minus sign run into each other where there are more.
+/// With more steps, labels with a minus sign would overlap.
 constexpr int kMostSteps = 6;
 
 Window detail_window(const core::AnalysisResults& results, const PhaseGroup& group, double v_max) {
   const double half = kDetail * v_max;
   double low = 0.0;
-  double high = 0.0;  // a = 0, the equilibrium, is always in view
+  double high = 0.0;  // a = 0, the equilibrium, is always visible
   bool has_limit = false;
   for (const std::size_t c : group.configurations) {
     for (const core::LineFit& line : results.configurations[c].lines) {
@@ -282,13 +283,13 @@ Window detail_window(const core::AnalysisResults& results, const PhaseGroup& gro
   return {-half, half, script, has_limit};
 }
 
-/// What gnuplot draws, and the command that draws it.
+/// The data for gnuplot, and the command that draws them.
 struct Diagram {
   std::string plot;
   std::vector<PlotData> data;
 };
 
-/// Points with some bars, lines and their bands: of a, or of what the lines leave of it.
+/// Points with some bars, lines and their bands: of a, or of its residuals.
 Diagram diagram(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all,
                 double from_v, double to_v, bool residuals) {
   std::vector<PlotData> data;
@@ -304,7 +305,7 @@ Diagram diagram(const core::AnalysisResults& results, const PhaseGroup& group, c
         "${0} using 1:({1}-$3):({1}+$3) with filledcurves fillcolor rgb '{2}' fillstyle transparent solid 0.2 "
         "notitle, ",
         line, residuals ? "0" : "$2", own);
-    // Strokes and not error bars, around whose points gnuplot leaves white.
+    // Strokes instead of error bars, because gnuplot leaves white space around the points of error bars.
     points += fmt::format(
         "${0} using 1:{2} with points pt 7 ps 0.3 lc rgb '{3}' notitle, ${1} using 1:(${2}-$4):(0):(2*$4) with vectors "
         "nohead lw 1.2 lc rgb '{3}' notitle, ",
@@ -325,7 +326,7 @@ std::string axes(const char* y) {
       y);
 }
 
-/// Half of the usual 95 % interval: residuals are judged beside it. 0 where no bar is drawn.
+/// Half of the usual 95 % interval, against which residuals are judged. 0 if no bar is drawn.
 double usual_bar(const std::vector<PlotData>& data) {
   constexpr std::size_t kHalf = 3;  // column of a bar's half length
   std::vector<double> halves;
@@ -341,8 +342,8 @@ double usual_bar(const std::vector<PlotData>& data) {
   return *middle;
 }
 
-/// The range of the points and the lines, for the band of a line that is hardly known runs out of it, and the labels of
-/// v. Residuals that are much smaller than their bars leave room for these.
+/// The range of the points and the lines (the band of a poorly known line may extend beyond it), and the labels of v.
+/// If residuals are much smaller than their bars, there is room for the bars.
 std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
   const double bar = residuals ? usual_bar(data) : 0.0;
   double low = bar > 0.0 ? -bar : HUGE_VAL, high = bar > 0.0 ? bar : -HUGE_VAL, slowest = 0.0, fastest = 0.0;
@@ -380,7 +381,7 @@ double line_half95_m_s2(const core::LineFit& line, double v_m_s) {
   if (!(var_a0 > 0.0)) return 0.0;
   const double quantile = (line.a0_m_s2.high95 - line.a0_m_s2.value) / line.a0_m_s2.sd;  // that of both coefficients
   const double variance = var_a0 - 2.0 * v_m_s * line.covariance + v_m_s * v_m_s * var_k;
-  return quantile * std::sqrt(std::max(0.0, variance));  // below 0 by rounding only
+  return quantile * std::sqrt(std::max(0.0, variance));  // below 0 only by rounding
 }
 
 std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results) {
@@ -397,7 +398,7 @@ std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results) {
 
 std::string phase_label(const core::AnalysisResults& results, const PhaseGroup& group, std::size_t configuration) {
   const core::ConfigurationResult& own = results.configurations[configuration];
-  std::string label = own.mass_kg < 1.0 ? fmt::format("{:.6g} g", own.mass_kg * 1e3)  // as a person reads it
+  std::string label = own.mass_kg < 1.0 ? fmt::format("{:.6g} g", own.mass_kg * 1e3)  // readable form
                                         : fmt::format("{:.6g} kg", own.mass_kg);
   const auto same_mass =
       std::count_if(group.configurations.begin(), group.configurations.end(),

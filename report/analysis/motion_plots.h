@@ -1,5 +1,5 @@
-/// Plots of the motion: x(t), v(t) and a(t) of a clip, and a(v) with the lines a = a0 - (K/m) v that an analysis
-/// fitted, one for each direction of motion at most.
+/// Plots of the motion: x(t), v(t) and a(t) of a clip, and a(v) with the lines a = a0 - (K/m) v fitted by an analysis,
+/// at most one for each direction of motion.
 #pragma once
 
 #include <algorithm>
@@ -24,28 +24,28 @@ inline double line_at(const core::LineFit& line, double v_m_s) {
   return line.a0_m_s2.value - line.k_over_m_1_s.value * v_m_s;
 }
 
-/// x(t), v(t) and a(t) of one clip, as measured and smoothed, with what was left out in grey: three plots, or none if
-/// no frame has a position.
+/// x(t), v(t) and a(t) of one clip, as measured and smoothed, with omitted points in grey: three plots, or none if no
+/// frame has a position.
 std::vector<Plot> motion_plots(const core::ClipResult& clip);
 
-/// The configurations of one stated inclination: what one diagram shows.
+/// The configurations of one stated inclination, shown in one diagram.
 struct PhaseGroup {
   double incline_deg = 0.0;
   std::vector<std::size_t> configurations;  ///< indices into the results
 };
-/// One for each stated inclination, in the order in which they first occur.
+/// One for each stated inclination, in order of first occurrence.
 std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results);
 
-/// "335 g", with the name of its group where another configuration of the diagram has the same mass.
+/// "335 g", with the name of its group if another configuration of the diagram has the same mass.
 std::string phase_label(const core::AnalysisResults& results, const PhaseGroup& group, std::size_t configuration);
 
 /// Half of the 95 % interval of a line at v, in m/s²: t sqrt(var(a0) - 2 v cov(K/m, a0) + v² var(K/m)), with the t of
-/// the line's own intervals; 0 of a line without errors.
+/// the line's own intervals; 0 for a line without errors.
 double line_half95_m_s2(const core::LineFit& line, double v_m_s);
 
-/// a(v) diagrams as the paper's figures 6 to 9: points of all masses on one stated inclination, their lines, and the
+/// a(v) diagrams like the paper's figures 6 to 9: points of all masses on one stated inclination, their lines, and the
 /// gap at v = 0. The diagram, its detail near v = 0, and the residuals of the lines, each with the lines' 95 % bands
-/// and the bars of some points; none if no point is used. Where a known force was applied, a - F/m stands for a.
+/// and the bars of some points; none if no point is used. If a known force was applied, a is replaced by a - F/m.
 std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group);
 
 }  // namespace glidelab::report

@@ -19,7 +19,7 @@
 namespace glidelab::report {
 namespace {
 
-/// Of one frame of the clip, at t_s. Table and clip outlive it.
+/// A row for one frame of the clip, at t_s. Table and clip must outlive it.
 class MotionRow {
  public:
   MotionRow(base::CsvWriter& table, const core::ClipResult& clip, double t_s) : table_(table), clip_(clip), t_s_(t_s) {}
@@ -41,7 +41,7 @@ class MotionRow {
   double t_s_;
 };
 
-/// a on the clip's own line; nothing if there is none, and for a clip with a known force.
+/// a on the clip's own line; empty if there is none, and for a clip with a known force.
 std::optional<double> own_line_at(const core::ClipResult& clip, double v_m_s) {
   const core::LineFit* const line = clip.forced ? nullptr : line_of(clip.segments, v_m_s);
   return line == nullptr ? std::nullopt : std::optional(line_at(*line, v_m_s));
@@ -208,7 +208,7 @@ Json calibration_json(const core::CalibrationResult& calibration) {
   return object;
 }
 
-/// One set-up: its angle. Several: each under its name, as the form asks for.
+/// For one set-up its angle; for several, each under its name, as the format requires.
 Json inclination_json(const core::AnalysisResults& results) {
   std::vector<std::string> groups;
   for (const core::ConfigurationResult& configuration : results.configurations) {

@@ -19,7 +19,7 @@
 namespace glidelab::report {
 namespace {
 
-/// "2.7791 ± 0.0062", or a dash that says why when it is pointed at. HTML.
+/// "2.7791 ± 0.0062", or a dash that shows the reason as a tooltip. HTML.
 std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
   if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
   return base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
@@ -32,7 +32,7 @@ std::string notes_html(const std::vector<std::string>& notes) {
   return text + "</ul></div>\n";
 }
 
-/// With the number of points that the line rests on.
+/// R² with the number of points of the line.
 std::string r2_of(const std::vector<core::LineFit>& lines, int direction) {
   const core::LineFit* line = line_of(lines, direction);
   return line == nullptr ? "–" : fmt::format("{}<br><small>{} points</small>", base::r2_text(line->r2), line->points);
@@ -43,7 +43,7 @@ std::string clip_anchor(std::size_t index) {
 }
 
 std::string left_out_table(const core::ClipResult& clip) {
-  constexpr std::size_t kMostRows = 40;  // a recording of many bounces; results.json has all of them
+  constexpr std::size_t kMostRows = 40;  // for recordings with many bounces; results.json has all of them
   if (clip.left_out.empty()) return {};
   HtmlTable table({"left out because", "from (s)", "to (s)", "frames"});
   for (std::size_t i = 0; i < std::min(kMostRows, clip.left_out.size()); ++i) {
@@ -85,7 +85,7 @@ std::string pictures(const core::ClipResult& clip, const core::Preview& preview)
   return text;
 }
 
-/// With its standard deviation, s / sqrt(2 n) for n residuals of white noise.
+/// The noise with its standard deviation, s / sqrt(2 n) for n residuals of white noise.
 std::string noise_text(double noise_mm, std::size_t points) {
   return points > 0 ? base::value_and_sd_text(noise_mm, noise_mm / std::sqrt(2.0 * static_cast<double>(points)))
                     : base::number_text(noise_mm, 3);
@@ -236,7 +236,7 @@ std::string method_section() {
          "reach across a reversal or past an end of the free motion are left out.</p>\n";
 }
 
-/// What the lines give as they are, and what the kernel's bias adds to it; nothing if none was taken off.
+/// The values from the lines as fitted, and the correction for the kernel's bias; empty if none was subtracted.
 std::string corrections_html(const core::AnalysisResults& results) {
   HtmlTable table({"configuration", "quantity", "uncorrected", "correction", "recovered"}, 2);
   for (const core::ConfigurationResult& c : results.configurations) {

@@ -1,4 +1,4 @@
-/// The parts that the pages of an analysis and of a validation share.
+/// The sections shared by the pages of an analysis and of a validation.
 #pragma once
 
 #include <string>
@@ -11,15 +11,15 @@
 
 namespace glidelab::report {
 
-/// One row a configuration: what was recovered, and below it why something was not.
+/// One row per configuration: the recovered values, and below the table the reasons for missing ones.
 std::string recovered_section(const core::AnalysisResults& results);
 
 /// The phase diagrams of every set-up.
 Html phase_section(const core::AnalysisResults& results);
 
-/// The details behind the values: the fitted lines (as the paper's tables 1 and 3), calibration and plumb line where
-/// there are any, every clip (facts, plots, images, what was left out and why, notes), and the method in a few
-/// sentences. `previews` is empty or has one for each clip.
+/// The details behind the values: the fitted lines (as the paper's tables 1 and 3), calibration and plumb line if
+/// present, every clip (facts, plots, images, omitted points with reasons, notes), and the method in a few sentences.
+/// `previews` is empty or has one for each clip.
 Html details_sections(const core::AnalysisResults& results, const std::vector<core::Preview>& previews,
                       const base::Progress& progress);
 

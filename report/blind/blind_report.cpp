@@ -34,7 +34,7 @@ std::string with_interval(const BlindShare& share) {
                      100.0 * interval.low, 100.0 * interval.high);
 }
 
-/// By how much more is stated than is right, on average over the cases.
+/// The mean excess of the stated probability over the fraction that is right.
 double over_stated(const validate::BlindScore& score) {
   double sum = 0.0, cases = 0.0;
   for (const validate::ReliabilityBin& bin : score.reliability) {
@@ -104,7 +104,7 @@ std::string blind_meaning(const validate::BlindScore& score) {
                       : over_stated(score) > 0.0 ? ": it is overconfident"
                                                  : ": it is underconfident");
   std::string missed = calibrated ? "" : "the expected calibration error";
-  std::size_t weighed = 1;  // with that of the calibration
+  std::size_t weighed = 1;  // including that of the calibration
   for (const BlindTarget& target : blind_targets(score)) {
     if (target.share.of == 0) continue;
     ++weighed;
@@ -124,7 +124,7 @@ std::string percent_only(const BlindShare& share) {
   return share.of == 0 ? "–" : fmt::format("{:.0f} %", 100.0 * share.share());
 }
 
-/// Of the kinds of case, as the methods' table and plot have them.
+/// The kinds of case, in the order of the methods' table and plot.
 std::array<BlindShare, 6> kinds_of(const validate::BlindMethod& method) {
   return {method.none,
           share_of(method.single, "weak"),

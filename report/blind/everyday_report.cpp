@@ -16,7 +16,7 @@ using validate::SharesByCase;
 
 using TextRows = std::vector<std::vector<std::string>>;
 
-/// "86 % (43 of 50; 95 %: 73 to 94 %)", a dash of none.
+/// "86 % (43 of 50; 95 %: 73 to 94 %)"; a dash if there are none.
 std::string share_and_interval(const BlindShare& share) {
   if (share.of == 0) return "–";
   const validate::ProportionInterval interval = share.interval95();
@@ -63,7 +63,7 @@ std::string calibration_text(const validate::EverydayCalibration& of) {
                      base::number_text(of.right, 2), of.of);
 }
 
-/// Every share of a table by class and strength, one a row.
+/// Every share of a table by class and strength, one per row.
 void add_rows(const std::string& what, const SharesByCase& shares, const std::string& method, TextRows& rows) {
   for (const auto& [kind, by_strength] : shares) {
     for (const auto& [strength, share] : by_strength) {

@@ -8,20 +8,20 @@
 
 namespace glidelab::report {
 
-/// A number that is to be at most, or between, what is wanted.
+/// A number with an upper limit, or with a required range.
 struct EverydayTarget {
   std::string what;
-  validate::BlindShare share;   ///< of a share; of no cases otherwise
-  std::optional<double> value;  ///< of what is no share; none where no case bears on it
+  validate::BlindShare share;   ///< if the target is a share; of no cases otherwise
+  std::optional<double> value;  ///< if the target is not a share; empty if no case bears on it
   double low = 0.0, high = 1.0;
 };
 std::vector<EverydayTarget> everyday_targets(const validate::EverydayScore& score);
 
-/// Whether some case bears on it, and whether what was found lies where it is wanted.
+/// Whether some case bears on it, and whether the result lies in the required range.
 bool bears(const EverydayTarget& target);
 bool is_met(const EverydayTarget& target);
 
-/// As those of blind_report.h, of a run with `everyday`.
+/// Like those of blind_report.h, for a run with `everyday`.
 std::string everyday_json(const BlindRun& run);
 std::string everyday_text(const BlindRun& run);
 Page everyday_page(const BlindRun& run);

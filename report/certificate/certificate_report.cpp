@@ -19,7 +19,7 @@ using validate::Certificate;
 using validate::CertifiedQuantity;
 using validate::ChangedTwin;
 
-constexpr double kSure = 2.5;  // standard deviations of a mean, the largest of three: 4 % by chance
+constexpr double kSure = 2.5;  // standard deviations of a mean, for the largest of three: 4 % by chance
 constexpr std::size_t kMostChanges = 3;
 
 std::string percent(double share) {
@@ -43,7 +43,7 @@ bool is_headline(const CertifiedQuantity& quantity) {
   return quantity.quantity != core::key_of(core::Measurand::v_lim) && quantity.answered() > 0;
 }
 
-/// "K/m, µ, α": those that were counted.
+/// "K/m, µ, α": the quantities that were counted.
 std::string headline_names(const Certificate& certificate) {
   std::string names;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
@@ -56,7 +56,7 @@ double sureness(const CertifiedQuantity& quantity) {
   return std::abs(quantity.bias_sds.value) / quantity.bias_sds.sd;
 }
 
-/// The largest that is more than chance: "µ is off by 0.3 of its standard deviation on average".
+/// The largest bias that exceeds chance: "µ is off by 0.3 of its standard deviation on average".
 std::string bias_words(const Certificate& certificate) {
   const CertifiedQuantity* worst = nullptr;
   bool any = false;
@@ -72,7 +72,7 @@ std::string bias_words(const Certificate& certificate) {
                      std::abs(worst->bias_sds.value));
 }
 
-/// Quantities whose intervals hold too rarely: "µ, terminal velocity".
+/// Quantities whose intervals contain the truth too rarely: "µ, terminal velocity".
 std::string narrow_names(const Certificate& certificate) {
   std::string names;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
@@ -95,7 +95,7 @@ std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
 const std::vector<std::string> kHeader = {"quantity",  "intervals that hold", "bias (stated sd)",
                                           "rms error", "stated sd",           "without a value"};
 
-/// What of a change stands in the column of each quantity that is counted.
+/// The table cells of a change, one for each counted quantity.
 std::vector<std::string> change_cells(const Certificate& certificate, const ChangedTwin& change) {
   std::vector<std::string> cells;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
@@ -157,7 +157,7 @@ std::string explanation_name(const validate::CertifiedExplanation& one) {
   return text.empty() ? "the nominal law alone" : text;
 }
 
-/// Which explanations break the intervals, where others do not; empty where that makes no difference.
+/// The explanations under which the intervals fail, if they hold under others; empty if there is no difference.
 std::string explanation_words(const Certificate& certificate) {
   double failing = 0.0;
   const validate::CertifiedExplanation* worst = nullptr;
@@ -172,7 +172,7 @@ std::string explanation_words(const Certificate& certificate) {
       percent(failing), explanation_name(*worst), percent(worst->coverage.share));
 }
 
-/// "The twins are without …: read the answer with that in mind."; empty where they have all of it.
+/// "The twins are without …: read the answer with that in mind."; empty if nothing is missing.
 std::string lack_words(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;

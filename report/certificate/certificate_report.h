@@ -15,16 +15,16 @@ namespace glidelab::report {
 /// deviation on average." Text, one line without its end.
 std::string certificate_answer(const validate::Certificate& certificate);
 
-/// Three at most, the largest gain first: "Use more light. With half the noise, K/m, µ, α err
+/// At most three, the largest gain first: "Use more light. With half the noise, K/m, µ, α err
 /// 45 % (38 to 51 %) less.". Text.
 std::vector<std::string> best_changes(const validate::Certificate& certificate);
 
-/// Which share of the intervals of each quantity holds, with its own interval.
+/// The fraction of each quantity's intervals that contain the truth, with its own interval.
 Plot certificate_plot(const validate::Certificate& certificate);
 
 std::string certificate_json(const validate::Certificate& certificate);
 std::string certificate_text(const validate::Certificate& certificate);
-/// `name` is the recording's.
+/// `name` is that of the recording.
 Page certificate_page(const std::string& name, const validate::Certificate& certificate);
 
 }  // namespace glidelab::report

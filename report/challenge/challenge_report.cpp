@@ -25,7 +25,7 @@ using validate::ChallengeScore;
 
 constexpr const char* kNoAnswer = "–";
 
-/// By rank, entrants that share one in the order in which they were given.
+/// Sorted by rank; entrants with equal rank stay in the given order.
 std::vector<ChallengeRow> ranked(const ChallengeQuantity& of) {
   std::vector<ChallengeRow> rows = of.rows;
   std::ranges::stable_sort(rows, {}, &ChallengeRow::rank);
@@ -72,8 +72,8 @@ std::vector<std::vector<std::string>> rows_of(const ChallengeScore& score) {
   return rows;
 }
 
-/// Who has the first rank, quantities with the same winners together: "Best in K/m and α: a. In µ 8 cases do not tell
-/// a and b apart, the best of 3."
+/// The entrants with the first rank, with quantities grouped by winners: "Best in K/m and α: a. In µ 8 cases do not
+/// tell a and b apart, the best of 3."
 std::string answer_of(const ChallengeScore& score) {
   std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> by_winners;  // winners, quantities
   for (const ChallengeQuantity& of : score.quantities) {
@@ -102,7 +102,7 @@ std::string answer_of(const ChallengeScore& score) {
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
-/// "K/m: a is better than b in 18 of 20 cases (p = 0.0004).": those that are significant.
+/// "K/m: a is better than b in 18 of 20 cases (p = 0.0004).": the significant comparisons.
 std::vector<std::string> sentences_of(const ChallengeScore& score) {
   std::vector<std::string> sentences;
   for (const ChallengeQuantity& of : score.quantities) {
@@ -153,7 +153,7 @@ Json row_json(const ChallengeScore& score, const ChallengeRow& row) {
   return object;
 }
 
-/// Interval scores of all entrants, quantity by quantity, over the lowest of the quantity.
+/// Interval scores of all entrants for each quantity, over the lowest for that quantity.
 std::vector<Plot> score_plot(const ChallengeScore& score) {
   PlotData data{"scores", {}, {"interval score over the lowest", "row", "low", "high"}};
   std::string tics;

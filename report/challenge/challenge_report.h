@@ -1,5 +1,5 @@
-/// The score of a challenge (validate/challenge/challenge_score.h): a file, a text, a page. Each ranks only where
-/// entrants differ significantly.
+/// The score of a challenge (validate/challenge/challenge_score.h): a file, a text, a page. Each ranks entrants only if
+/// they differ significantly.
 #pragma once
 
 #include <string>

@@ -156,7 +156,7 @@ Plot transfer_plot(const core::CameraMeasurement& camera) {
           "Variance over mean of every level, with the fitted line"};
 }
 
-/// Where levels were made by exposures: what the mean does over them.
+/// If the levels were made by exposures: the mean as a function of exposure.
 std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
   PlotData data{"levels", {}, {"exposure (ms)", "mean above dark (DN)"}};
   for (const core::TransferPoint& point : camera.curve) {
@@ -185,7 +185,7 @@ std::string numbers_table(const core::CameraMeasurement& camera) {
   return table.str() + (remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");
 }
 
-/// How finely a pixel resolves light, in the numbers that are known.
+/// How finely a pixel resolves light, from the known numbers.
 std::string camera_meaning(const core::CameraMeasurement& camera) {
   std::string text;
   if (camera.gain_dn_per_e.value && camera.read_noise_e.value) {

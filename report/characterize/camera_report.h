@@ -1,4 +1,4 @@
-/// A measured camera as characterize.json, as a table and as a page, and the rows that these three share.
+/// A measured camera as characterize.json, as a table and as a page, and the rows shared by these three.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace glidelab::report {
 
-/// One number as a person reads it.
+/// One number in readable form.
 struct CameraRow {
   std::string key;   ///< in JSON, and in camera.toml
   std::string name;  ///< "read noise"
   std::string value;
   std::string sd;
   std::string unit;
-  const core::Measured* measured = nullptr;  ///< in the CameraMeasurement that was given
+  const core::Measured* measured = nullptr;  ///< in the given CameraMeasurement
 };
 
-/// In one order for all; PRNU and linearity in per cent, as texts. A limit reads "< 3.2" or "> 5400".
+/// The rows in the common order; PRNU and linearity in per cent, as texts. A limit reads "< 3.2" or "> 5400".
 std::vector<CameraRow> camera_rows(const core::CameraMeasurement& camera);
 
 /// Each number as {"value", "sd", "how"}, or null with the reason in "why" beside it (and its limit in "limit").
@@ -28,7 +28,7 @@ std::string camera_json(const core::CameraMeasurement& camera);
 /// The same as a table for a terminal, with notes and reasons below.
 std::string camera_text(const core::CameraMeasurement& camera);
 
-/// The page of a measured camera, self-contained HTML: its numbers, the photon-transfer diagram, what was noticed.
+/// The page of a measured camera, self-contained HTML: its numbers, the photon-transfer diagram, and its notes.
 /// EnvironmentError if gnuplot fails.
 Page camera_report(const core::CameraMeasurement& camera);
 

@@ -18,7 +18,7 @@ std::string in_comment(std::string text) {
   return text;
 }
 
-/// A TOML number with as many significant digits as three of its standard deviation need; 4 without one.
+/// A TOML number with enough significant digits to show three of its standard deviation; 4 without one.
 std::string number(double value, double sd) {
   int digits = 4;
   if (sd > 0.0 && value != 0.0) {

@@ -109,7 +109,7 @@ std::string name_of(core::Severity severity) {
 
 namespace {
 
-/// The finding with its note and what follows from it as texts.
+/// The finding, with its note and its consequences as text.
 struct WordedFinding {
   core::Severity severity = core::Severity::note;
   std::string about, found, advice;
@@ -122,10 +122,10 @@ std::string found_words(const core::Finding& finding) {
   return incline != nullptr ? contradiction_words(*incline) : note_words(*finding.note);
 }
 
-/// In words; notes that read the same are one, of all that they are about.
+/// The findings in words; notes with the same text are merged, with all their subjects.
 std::vector<WordedFinding> worded(const std::vector<core::Finding>& findings) {
   std::vector<WordedFinding> all;
-  std::vector<std::vector<std::string>> about;  // of each
+  std::vector<std::vector<std::string>> about;  // subjects of each note
   for (const core::Finding& finding : findings) {
     WordedFinding words{finding.severity, finding.about, found_words(finding), finding.advice};
     const auto same = std::find_if(all.begin(), all.end(), [&](const WordedFinding& before) {
@@ -207,7 +207,7 @@ std::string word_of(core::Severity severity) {
   return "";
 }
 
-/// What was found, and folded what follows from it. HTML.
+/// The finding, with its consequences folded. HTML.
 std::string found_html(const WordedFinding& finding) {
   if (finding.follow.empty()) return escape(finding.found);
   std::string list;
@@ -227,7 +227,7 @@ std::string findings_section(const core::RecordingCheck& check) {
   return text + table.str();
 }
 
-/// How much of the clips can be used, and how well a position is known where it is known at its worst.
+/// How much of the clips can be used, and the largest uncertainty of a position.
 std::string extent_words(const core::RecordingCheck& check) {
   std::size_t frames = 0, seen = 0;
   std::optional<double> noise;
@@ -269,7 +269,7 @@ PlotData places(const std::string& name, const std::vector<core::PixelPlace>& fr
   return data;
 }
 
-/// Where in the image the pattern was seen, and where the marker runs.
+/// The regions of the image in which the pattern was seen, and the path of the marker.
 Plot coverage_plot(const core::RecordingCheck& check) {
   const core::PatternCheck& pattern = *check.pattern;
   std::vector<core::PixelPlace> corners, plane, path;
@@ -325,7 +325,7 @@ Html pattern_section(const core::RecordingCheck& check) {
   return text + table.str();
 }
 
-/// Rows of the clips' table: the name, and what is written of it.
+/// Rows of the clips' table: the name, and its text.
 struct ClipRow {
   const char* title;
   std::string (*text)(const core::ClipCheck&);

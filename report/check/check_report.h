@@ -1,4 +1,4 @@
-/// What `glidelab check` found: check.json (docs/reference/check.md), a page, and text for a terminal.
+/// The findings of `glidelab check`: check.json (docs/reference/check.md), a page, and text for a terminal.
 #pragma once
 
 #include <string>

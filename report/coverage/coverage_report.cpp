@@ -51,7 +51,7 @@ Plot coverage_plot(const validate::Coverage& coverage) {
 }
 
 Plot reliability_plot(const validate::Coverage& coverage) {
-  // A column of the plot for each level: over the level itself 90, 95 and 99 % would lie over each other.
+  // A column of the plot for each level: if plotted over the level itself, 90, 95 and 99 % would overlap.
   PlotData band{"band", {}}, stated{"stated", {}};
   std::string tics;
   const std::vector<std::string> estimators = validate::coverage_estimators(coverage.outside);
@@ -118,7 +118,7 @@ std::vector<std::string> cells_of(const validate::CoverageRow& row) {
           fmt::format("{}", row.determined)};
 }
 
-/// What is marked fails the test (too_narrow, too_wide).
+/// Marked entries fail the test (too_narrow, too_wide).
 std::string level_table(const validate::Coverage& coverage) {
   std::vector<std::string> header = {"quantity"};
   for (const double level : coverage.levels) header.push_back(level_text(level));
@@ -179,8 +179,8 @@ std::string failures_html(const std::vector<validate::CoverageFailure>& failures
   return "<ul>\n" + text + "</li>\n</ul>\n";
 }
 
-/// Rows of which single values lie so far off that all of them scatter much farther than stated. An interval may hold
-/// the truth in 95 % of the replicates and still say nothing of the few that are lost.
+/// Rows in which a few values are so far off that the scatter is much larger than stated. An interval may contain the
+/// truth in 95 % of the replicates and still not account for the few bad ones.
 std::vector<validate::CoverageRow> scattered(const validate::Coverage& coverage) {
   std::vector<validate::CoverageRow> rows;
   for (const validate::CoverageRow& row : coverage.rows) {

@@ -13,12 +13,12 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kAll = 100.0;       // percent of the excess
-constexpr double kThick = 0.15;      // half of a bar, rows being 1 apart
+constexpr double kThick = 0.15;      // half of a bar's thickness, with rows 1 apart
 constexpr double kNameAbove = 0.24;  // of a row: its name, above the bar
 constexpr double kBelow = 0.14;      // of a bar's middle under its row, to make room for the name
 constexpr double kRoom = 3.0;        // percent, at both ends
 constexpr int kWidth = 520, kRowPoints = 54, kFramePoints = 84;  // narrow: readable on a telephone
-constexpr std::size_t kLongLine = 54;  // characters that fit beside each other in the usual size
+constexpr std::size_t kLongLine = 54;                            // characters per line at the usual size
 
 struct Row {
   std::string name;

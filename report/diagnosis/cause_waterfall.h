@@ -1,4 +1,5 @@
-/// The excess of the squared gap as a waterfall: before, what each cause takes of it, what is left, and the floor.
+/// The excess of the squared gap as a waterfall: the initial excess, the share of each cause, the remainder, and the
+/// noise floor.
 #pragma once
 
 #include <vector>
@@ -8,12 +9,14 @@
 
 namespace glidelab::report {
 
-/// Where the bars of a waterfall begin and end, in percent of the excess g²_0 - 1: 0 is the floor, 100 the gap before.
+/// The start and end of the bars of a waterfall, in percent of the excess g²_0 - 1: 0 is the noise floor, 100 the
+/// initial gap.
 struct WaterfallBar {
-  double from = 0.0, to = 0.0;   ///< `to` is where it ends to the left, and the next cause begins
-  double low = 0.0, high = 0.0;  ///< 95 % of `to` by the interval of the cause's own share; both `to` where it has none
+  double from = 0.0, to = 0.0;   ///< `to` is its left end, where the next cause begins
+  double low = 0.0, high = 0.0;  ///< 95 % interval of `to` from that of the cause's own share; both equal `to` if it
+                                 ///< has none
 };
-/// One bar a cause, in order.
+/// One bar per cause, in order.
 std::vector<WaterfallBar> waterfall_bars(const std::vector<diagnose::ExplainedCause>& explained);
 
 /// One plot; none without causes.

@@ -44,7 +44,7 @@ bool is_explained(const diagnose::Diagnosis& diagnosis, const std::string& id) {
                      [&](const diagnose::ExplainedCause& cause) { return cause.id == id; });
 }
 
-/// ", c = 0.0031 ± 0.0002 kg/m,": the fitted parameters of the effect as a whole; empty where there are none.
+/// ", c = 0.0031 ± 0.0002 kg/m,": the fitted parameters of the effect as a whole; empty if there are none.
 std::string sizes_aside(const diagnose::Diagnosis& diagnosis, const std::string& id) {
   const diagnose::DiagnosedEffect* const effect = effect_in(diagnosis, id);
   if (effect == nullptr) return {};
@@ -64,14 +64,14 @@ std::string left_words(const diagnose::GapRemainder& remainder) {
 }
 
 /// "Quadratic drag, c = …, explains 91 % (…) of the gap on clips that were held out; …"; with `gap_named`, the gap has
-/// been mentioned.
+/// already been mentioned.
 std::string causes_words(const diagnose::Diagnosis& diagnosis, bool gap_named = false) {
   std::string text;
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
     const std::string name = effect_name(cause.id);
     const std::string share = share_text(cause.share, cause.share_interval95);
     const bool first = text.empty();
-    const bool all = cause.share > 1.0;  // what it leaves is below the noise by chance
+    const bool all = cause.share > 1.0;  // the remaining gap is below the noise by chance
     text +=
         fmt::format("{}{}{} {} {}{}{}", first ? "" : "; ", first && !gap_named ? capital(name) : name,
                     sizes_aside(diagnosis, cause.id), is_plural(name) ? "explain" : "explains", first ? "" : "another ",
@@ -163,7 +163,7 @@ std::string region_words(const diagnose::GapRegion& region) {
 
 std::string holds_within_words(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.levels || !diagnosis.levels->holds_within || !diagnosis.levels->configuration) return {};
-  constexpr double kHolds = 1.5;  // times the noise: a law that leaves more only fits better there
+  constexpr double kHolds = 1.5;  // times the noise: a law with a larger gap only fits better there
   const double within = *diagnosis.levels->configuration;
   const std::string here = base::number_text(within, 3), across = base::number_text(diagnosis.levels->all, 3);
   if (within < kHolds) {
@@ -193,7 +193,7 @@ std::string sequence_words(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
-  // What explains the gap first, then what is only seen.
+  // First the effects that explain the gap, then those that are only seen.
   std::vector<std::string> alone, alone_beside;
   std::string text;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
@@ -290,7 +290,7 @@ struct Reason {
   std::vector<std::string> labels;
 };
 
-/// "µ of 0.335 kg, 90°: a fall has …"; one sentence for all that share a reason.
+/// "µ of 0.335 kg, 90°: a fall has …"; one sentence for all quantities with the same reason.
 std::vector<std::string> reasons_text(const std::vector<Reason>& reasons, std::size_t configurations) {
   std::vector<Reason> joined;
   for (const Reason& one : reasons) {

@@ -21,7 +21,7 @@ std::string region_size(const diagnose::GapRegion& region) {
   return region.size_sd ? size_and_sd_text(region.size, *region.size_sd, unit) : size_text(region.size, 2, unit);
 }
 
-/// Of texts, the first row its header.
+/// A table of texts; the first row is its header.
 std::string html_of(const std::vector<std::vector<std::string>>& rows) {
   const auto cells = [](const std::vector<std::string>& row) {
     std::vector<std::string> html;
@@ -51,7 +51,7 @@ std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
 
 constexpr std::size_t kPlacesTold = 4;
 
-/// Where nothing has a name, the curve that would fill the gap over the variable that matters most.
+/// If no cause is named, the curve that would fill the gap over the most important variable.
 std::vector<Plot> likeliest_curve(const diagnose::Diagnosis& diagnosis,
                                   const std::vector<diagnose::GapRegion>& regions) {
   if (diagnosis.verdict != diagnose::Verdict::unknown || regions.empty()) return {};
@@ -86,7 +86,7 @@ std::string member_section(const diagnose::Diagnosis& diagnosis) {
   std::string text;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     const auto rows = member_rows(effect);
-    if (rows.empty() || rows.size() < 3) continue;  // of one alone nothing differs
+    if (rows.empty() || rows.size() < 3) continue;  // with only one there is no difference
     text += fmt::format("<h3>{}</h3>\n", effect_html(effect.id)) + html_of(rows);
   }
   return text.empty() ? text : "<h2>What differs</h2>\n" + text;
@@ -95,7 +95,7 @@ std::string member_section(const diagnose::Diagnosis& diagnosis) {
 std::string region_table(const std::vector<diagnose::GapRegion>& regions) {
   HtmlTable table({"over", "what", "from", "to", "largest", "at", "size / sd, where clearest"}, 2);
   for (const diagnose::GapRegion& region : regions) {
-    const bool named = region.variable == diagnose::GapVariable::set_up;  // a set-up has a number that no reader knows
+    const bool named = region.variable == diagnose::GapVariable::set_up;  // a set-up has a number unknown to the reader
     const std::string over = named ? "one of the set-ups" : axis_of(region.variable);
     table.row({escape(over + (region.clip.empty() ? "" : " of " + region.clip)), escape(to_text(region.what)),
                named ? "–" : base::number_text(region.from, 3), named ? "–" : base::number_text(region.to, 3),

@@ -1,5 +1,5 @@
 /// The open part of a diagnosis' page, below its first paragraph: the waterfall, K/m, µ, α and terminal velocity with
-/// the causes in the model, where the rest lies, and what to record next. All else on the page is folded.
+/// the causes in the model, where the remainder lies, and what to record next. Everything else on the page is folded.
 #pragma once
 
 #include "diagnose/result/diagnosis.h"
@@ -7,13 +7,13 @@
 
 namespace glidelab::report {
 
-/// Places of a gap; empty without any. A size that images show has a parameter's key for its unit.
+/// Regions of a gap; empty if there are none. The unit of a size shown by images is that of a parameter's key.
 std::string region_table(const std::vector<diagnose::GapRegion>& regions);
 
-/// What differs from one configuration to the next, where an effect has a value of each; empty where none has.
+/// Differences between configurations, if an effect has a value for each; empty if none has.
 std::string member_section(const diagnose::Diagnosis& diagnosis);
 
-/// Parts that there is nothing to say of are left out. Not of a table of lines.
+/// Empty parts are left out. Not for a table of lines.
 Html answer_sections(const diagnose::Diagnosis& diagnosis);
 
 }  // namespace glidelab::report

@@ -56,7 +56,7 @@ Json where_json(const diagnose::Diagnosis& diagnosis) {
   return where;
 }
 
-/// Null with its reason where there is none.
+/// Null with its reason if there is none.
 void put_interval(Json& object, const char* key, const std::optional<diagnose::GapInterval>& interval,
                   const std::string& why) {
   if (interval) {

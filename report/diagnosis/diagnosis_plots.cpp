@@ -18,14 +18,14 @@ namespace glidelab::report {
 namespace {
 
 constexpr std::size_t kBars = 8, kFewestBars = 3;  // explanations in the chart
-constexpr double kNoBar = 5e-4;                    // a probability that is no bar to be seen
-constexpr std::size_t kLongName = 66;  // characters that a plot of bars has room for in its usual size of text
-constexpr std::size_t kCurves = 3;     // of those that fill the gap, the likeliest
-constexpr std::size_t kPoints = 800;   // of a clip
-constexpr std::size_t kInFull = 8;     // clips of which every residual is drawn; of k times as many one in k
-constexpr int kMarks = 6;              // steps of an axis whose labels have room beside each other
+constexpr double kNoBar = 5e-4;                    // a probability too small for a visible bar
+constexpr std::size_t kLongName = 66;              // characters that fit in a bar plot at the usual text size
+constexpr std::size_t kCurves = 3;                 // number of most likely curves that fill the gap
+constexpr std::size_t kPoints = 800;               // per clip
+constexpr std::size_t kInFull = 8;  // clips for which every residual is drawn; for k times as many, one in k
+constexpr int kMarks = 6;           // steps of an axis whose labels do not overlap
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// Room around the points but at the left: time begins at 0, and room there would make an axis that begins before it.
+/// Room around the points except at the left: time begins at 0, and room there would make the axis begin before 0.
 constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
 
 Plot probabilities(const diagnose::Diagnosis& diagnosis) {
@@ -41,7 +41,7 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
   std::string script(kFrame);
   script += "unset key\nunset ytics\nset border 1\nset offsets 0,0,0,0\nset xrange [0:1]\nset xlabel 'probability'\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
-    // The name stands above its bar: beside it, three effects in one name would leave the bars no room.
+    // The name is above its bar: next to it, three effects in one name would leave no room for the bars.
     const std::string name = bars[i].second + ": " + probability_text(bars[i].first);
     script += fmt::format("set label {} at 0, {} left{}\n", gnuplot_quoted(name), 0.26 - static_cast<double>(i),
                           name.size() > kLongName ? " font ',11'" : "");
@@ -57,10 +57,11 @@ Plot probabilities(const diagnose::Diagnosis& diagnosis) {
           "Bar chart of the probabilities of the explanations"};
 }
 
-/// `of_lines`: what was held out are published lines, whose own scatter stands for the noise. `one`: of one model
-/// alone.
+/// `of_lines`: the held-out data are published lines, whose own scatter represents the noise. `one`: for one model
+/// only.
 Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
-  constexpr double kLogAbove = 8.0, kLeft = 0.5;  // times the noise: above it the axis is logarithmic; its left end
+  constexpr double kLogAbove = 8.0, kLeft = 0.5;  // times the noise: above the first the axis is logarithmic; the
+                                                  // second is its left end
   PlotData data{"gaps", {}, {"row", "gap before / noise", "gap after / noise"}};
   double most = 2.0, least = kLeft;
   for (std::size_t c = 0; c < gap.held_out.size(); ++c) {
@@ -90,7 +91,7 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
           one ? "Dots for each clip's gap" : "Dots for each clip's gap before and after"};
 }
 
-/// `alternatives` is how many curves are shown, each of which fills the gap by itself.
+/// `alternatives` is the number of curves shown, each of which fills the gap on its own.
 Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
   PlotData data{"curve",
                 {},
@@ -134,7 +135,7 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, diagnose::GapVariable v
       to = std::max(to, at[p]);
     }
   }
-  // What changes nothing leaves both at one place: the larger ones stay visible around the smaller.
+  // If nothing changes, both are at the same position: the larger ones stay visible around the smaller.
   std::string script(kFrame);
   if (variable == diagnose::GapVariable::time) script += kFromStart;
   if (to > from) script += even_tics("x", from, to, kMarks);
@@ -196,7 +197,7 @@ OverTime over_time(const std::vector<diagnose::PictureCurve>& curves, const std:
   OverTime of{std::move(data), {}};
   for (const diagnose::PictureCurve& curve : curves) {
     if (curve.what != what || curve.at.empty()) continue;
-    if (!of.data.rows.empty()) of.data.rows.emplace_back();  // the next clip begins a block of its own
+    if (!of.data.rows.empty()) of.data.rows.emplace_back();  // the next clip begins a new block
     const std::size_t step = std::max<std::size_t>(1, curve.at.size() / kPoints);
     for (std::size_t p = 0; p < curve.at.size(); p += step) {
       of.data.rows.push_back({curve.at[p], scale * curve.value[p]});
@@ -206,7 +207,7 @@ OverTime over_time(const std::vector<diagnose::PictureCurve>& curves, const std:
   return of;
 }
 
-/// A line for each clip in its colour, with its name in the legend; of more clips than there are colours all in grey.
+/// A line for each clip in its colour, with its name in the legend; if there are more clips than colours, all are grey.
 std::string lines_of(const OverTime& of, int dashes, bool names) {
   const bool told_apart = of.clips.size() <= kColors.size();
   std::string text;
@@ -220,7 +221,7 @@ std::string lines_of(const OverTime& of, int dashes, bool names) {
   return text;
 }
 
-/// Names beside each other in the legend, as many as its width holds.
+/// Names side by side in the legend, as many as fit its width.
 std::string key_of(const OverTime& of) {
   constexpr std::size_t kLongClip = 10;
   const bool narrow =
@@ -338,7 +339,7 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
     data.rows.emplace_back();
   }
   std::string script(kFrame);
-  // Names stand once, at the rows, with the numbers of the columns: sixteen of them upright were too small to read.
+  // Names appear once, at the rows, with the numbers of the columns: sixteen vertical names were too small to read.
   std::string rows, columns;
   for (std::size_t i = 0; i < n; ++i) {
     const char* const comma = i > 0 ? ", " : "";

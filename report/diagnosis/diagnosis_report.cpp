@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kRankedRows = 12;
 
-/// The number on a tile is of the effect however it acts; the chart has each explanation by itself.
+/// The number on a tile covers all forms of the effect; the chart shows each explanation separately.
 std::string beside_others(const diagnose::Diagnosis& diagnosis, const diagnose::DiagnosedEffect& effect) {
   const bool joined = std::any_of(diagnosis.ranking.begin(), diagnosis.ranking.end(), [&](const auto& ranked) {
     return ranked.explanation.effects.size() > 1 && ranked.explanation.holds(effect.id);
@@ -68,7 +68,7 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
 
 std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"explanation", "probability", "ln evidence over the nominal model", "over the likeliest here"});
-  double likeliest = 0.0;  // huge gains that print alike are told apart by how far they are below the largest
+  double likeliest = 0.0;  // huge gains that print alike are distinguished by their distance below the largest
   for (const auto& ranked : diagnosis.ranking) {
     if (!ranked.left_out) likeliest = std::max(likeliest, ranked.log_evidence_gain);
   }
@@ -86,13 +86,14 @@ std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
 
 std::string z_text(const std::optional<double>& z) {
   if (!z) return "–";
-  constexpr double kTenths = 100.0;  // beyond, a tenth of a standard deviation tells nothing
+  constexpr double kTenths = 100.0;  // beyond this, a tenth of a standard deviation is meaningless
   if (std::abs(*z) >= kTenths) return fmt::format("{}{}", *z > 0.0 ? "+" : "", base::number_text(*z, 3));
   return base::error_text(*z, 1.0);
 }
 
-/// Of the nominal model, by parts of the data. Where something is missing its fits are no property of the glider,
-/// however small their standard deviation: then they stand without it, and not at all beside what was recovered.
+/// Parameters of the nominal model, by parts of the data. If something is missing, its fits are not a property of the
+/// glider, however small their standard deviation: they are then shown without it, and not at all next to recovered
+/// values.
 std::string parameter_table(const diagnose::Diagnosis& diagnosis) {
   const std::vector<diagnose::GapOfParameter>& parameters = diagnosis.gap->parameters;
   if (parameters.empty()) return {};
@@ -166,7 +167,7 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
   return text + parameter_table(diagnosis);
 }
 
-/// What was looked for in the images, what is there first.
+/// The effects searched for in the images, those present first.
 std::string picture_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"looked for", "seen", "what the images show"}, 3);
   for (const bool seen : {true, false}) {
@@ -230,7 +231,7 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
                       const std::vector<validate::TwinMotion>& twin) {
   if (diagnosis.lines) return line_report(title, diagnosis);
   Html body = question_heading(title, kDiagnosisQuestion) + "<p class=\"soft\">Diagnosis by Glidelab.</p>\n";
-  // The sentence of the causes holds what the tiles would say.
+  // The sentence about the causes contains what the tiles would say.
   const bool told = !sequence_words(diagnosis).empty();
   if (!told) body += tiles(diagnosis);
   body += diagnosis_meaning(diagnosis);
@@ -291,7 +292,7 @@ std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
                             acceleration(*gap.acceleration_after, over_clips.acceleration_after));
 }
 
-/// What each configuration has of its own, a table for each effect.
+/// The individual values of each configuration, one table per effect.
 std::vector<std::string> member_tables(const diagnose::Diagnosis& diagnosis) {
   std::vector<std::string> tables;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
@@ -302,7 +303,7 @@ std::vector<std::string> member_tables(const diagnose::Diagnosis& diagnosis) {
   return tables;
 }
 
-/// Below the summary: each cause's share, what the rest is like, and the quantities with the causes in the model.
+/// Below the summary: each cause's share, the nature of the remainder, and the quantities with the causes in the model.
 std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
   std::string text;
   const auto add = [&](const std::string& part) {
@@ -311,7 +312,7 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
   if (const auto rows = explained_rows(diagnosis, true); !rows.empty()) add(text_table(rows, 1));
   if (diagnosis.remainder) {
     std::string rest = remainder_words(*diagnosis.remainder);
-    // Of `unknown` the summary says where it lies.
+    // For `unknown` the summary says where it lies.
     if (diagnosis.verdict == diagnose::Verdict::effect) {
       const std::string clearest = clearest_words(*diagnosis.remainder, rest.empty() ? "What is left" : "It");
       rest += (rest.empty() || clearest.empty() ? "" : " ") + clearest;

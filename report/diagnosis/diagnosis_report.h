@@ -1,4 +1,4 @@
-/// A diagnosis for people: report.html of `diagnose`, one self-contained page, and text for a terminal.
+/// A diagnosis for the reader: report.html of `diagnose`, one self-contained page, and text for a terminal.
 #pragma once
 
 #include <string>
@@ -10,8 +10,7 @@
 
 namespace glidelab::report {
 
-/// `title` names what was diagnosed; `twin`, where one was asked for, is shown beside the data. EnvironmentError where
-/// gnuplot fails.
+/// `title` names what was diagnosed; `twin`, if requested, is shown with the data. EnvironmentError if gnuplot fails.
 Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
                       const std::vector<validate::TwinMotion>& twin = {});
 

@@ -58,12 +58,12 @@ std::string percent(double probability) {
 
 namespace {
 
-/// Decimals of a value to the first digit of its standard deviation, two at least.
+/// Decimals of a value to the first digit of its standard deviation, at least two.
 int decimals_for(double sd) {
   return sd > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(sd))), 2, 9) : 2;
 }
 
-/// `-ups "a", "b"`, or `-up "a"` of one.
+/// `-ups "a", "b"`, or `-up "a"` for one.
 std::string ups(const std::vector<std::string>& names) {
   std::string text = names.size() > 1 ? "-ups" : "-up";
   for (std::size_t i = 0; i < names.size(); ++i) text += fmt::format("{} \"{}\"", i == 0 ? "" : ",", names[i]);
@@ -228,7 +228,7 @@ namespace {
 using diagnose::Change;
 using diagnose::ChangeKind;
 
-constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which a larger figure means nothing more
+constexpr double kMostStated = 1000.0;  // expected log likelihood beyond which a larger figure has no meaning
 constexpr const char* kMoveCamera =
     "what belongs to the track stays in place on it; what belongs to the image moves with the camera.";
 
@@ -261,7 +261,7 @@ std::string weighed_words(const diagnose::ChangesWeighed& of) {
   return fmt::format("the {} changes considered ({})", of.count, kinds);
 }
 
-/// An order: "Record a launch uphill at 1.2 m/s with 535 g".
+/// An instruction: "Record a launch uphill at 1.2 m/s with 535 g".
 std::string change_words(const Change& change) {
   const std::string on = change.on.empty() ? "" : fmt::format(" on set-up \"{}\"", change.on);
   std::string launch, mass;

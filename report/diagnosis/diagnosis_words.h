@@ -1,4 +1,4 @@
-/// Words of a diagnosis: its explanations and verdicts as ids (for files and terminals) and as names (for people), its
+/// Words of a diagnosis: its explanations and verdicts as ids (for files and terminals) and as names (for readers), its
 /// notes (diagnose/result/note.h) as sentences, and what to record next (diagnose/result/next_step.h) as a sentence or
 /// two.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace glidelab::report {
 
-/// "none", "effect", "unknown", as diagnosis.json has it.
+/// "none", "effect", "unknown", as in diagnosis.json.
 std::string verdict_id(diagnose::Verdict verdict);
 
 /// "none", "scale_error", "scale_error + tether", "unknown", "scale_error + unknown".
@@ -21,24 +21,24 @@ std::string explanation_id(const diagnose::Explanation& explanation);
 /// The same in the short names of effects: "wrong scale + an unnamed cause".
 std::string explanation_name(const diagnose::Explanation& explanation);
 
-/// The name, and the id small beside it. HTML.
+/// The name, with the id in small type next to it. HTML.
 std::string explanation_html(const diagnose::Explanation& explanation);
 
-/// A probability for a person: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
+/// A probability for the reader: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
 std::string percent(double probability);
 
 std::string note_words(const diagnose::Note& note);
 
 std::vector<std::string> notes_words(const std::vector<diagnose::Note>& notes);
 
-/// Without the standard deviation of the motion's angle (0) where that is the nominal model's and something is missing:
-/// such an angle may be off by many of them.
+/// Removes the standard deviation of the motion's angle (sets it to 0) if it is that of the nominal model and something
+/// is missing: such an angle may be off by many standard deviations.
 diagnose::ContradictedIncline as_told(diagnose::ContradictedIncline of, const diagnose::Diagnosis& diagnosis);
 
-/// The diagnosis' notes, angles as_told().
+/// The diagnosis' notes, with angles as_told().
 std::vector<std::string> notes_words(const diagnose::Diagnosis& diagnosis);
 
-/// Empty where no step was looked for.
+/// Empty if no step was searched for.
 std::string next_step_words(const diagnose::NextStep& step);
 
 }  // namespace glidelab::report

@@ -16,11 +16,11 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kEmptyCell = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWide = 8.0;           // times the noise: from here on a logarithmic axis
-constexpr double kLogFrom = 0.5;        // where that begins
-constexpr std::size_t kCells = 60;      // of a row of the map
+constexpr double kWide = 8.0;           // times the noise: above this the axis is logarithmic
+constexpr double kLogFrom = 0.5;        // where the logarithmic axis begins
+constexpr std::size_t kCells = 60;      // per row of the map
 constexpr double kDeepest = 5.0;        // standard deviations at which the colours end
-constexpr std::size_t kMostNamed = 40;  // rows with names that can be read
+constexpr std::size_t kMostNamed = 40;  // rows with readable names
 
 std::string domain_name(const std::string& domain) {
   if (domain == "positions") return "positions of held-out clips";

@@ -1,5 +1,5 @@
-/// The gap of a diagnosis as plots: how large in each domain, where in which clip, and in the phase plane; and a twin
-/// compared with the data that it was made from.
+/// The gap of a diagnosis as plots: its size in each domain, its location in each clip, and in the phase plane; and a
+/// twin compared with the data from which it was made.
 #pragma once
 
 #include <cstddef>
@@ -12,29 +12,29 @@
 
 namespace glidelab::report {
 
-/// Bars of each domain's gap over its noise, before and after; 1 is the noise. Nothing where there is no domain.
+/// Bars of each domain's gap over its noise, before and after; 1 is the noise. Empty if there is no domain.
 std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis);
 
-/// Measured minus modelled acceleration over the speed with its 95 % band, before and after; of several masses each as
-/// well. Nothing where no motion was compared.
+/// Measured minus modelled acceleration as a function of speed with its 95 % band, before and after; for several masses
+/// also each one. Empty if no motion was compared.
 std::vector<Plot> phase_gap_plots(const diagnose::Diagnosis& diagnosis);
 
-/// Residuals by clip (rows) over time, or place or speed where the gap lies over that: colour is the sum of a cell's
-/// standardised residuals over sqrt(their number), before and after. Nothing of lines.
+/// Residuals by clip (rows) over time, or over position or speed if the gap depends on that: colour is the sum of a
+/// cell's standardised residuals over sqrt(their number), before and after. Empty for lines.
 std::vector<Plot> residual_maps(const diagnose::Diagnosis& diagnosis);
 
-/// Rows of a map: one a clip, in the order of the curves; NaN where a cell holds no position.
+/// Rows of a map: one per clip, in the order of the curves; NaN if a cell contains no position.
 struct ResidualMap {
   std::vector<std::string> clips;
   double low = 0.0, high = 0.0;                    ///< of the variable
   std::vector<std::vector<double>> before, after;  ///< [clip][cell]
 };
-/// `variable` is a time, position or speed (std::logic_error for another); cells as many as asked for (at least 1), of
-/// equal width. Each curve has as many noise_m as residuals.
+/// `variable` is a time, position or speed (std::logic_error for another); the requested number of cells (at least 1),
+/// of equal width. Each curve has as many noise_m as residuals.
 ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, diagnose::GapVariable variable,
                          std::size_t cells);
 
-/// What the measured positions lie off the twin's, over the time, beside noise alone; and a(v) of both.
+/// The deviation of the measured positions from the twin's over time, compared with noise alone; and a(v) of both.
 std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions);
 
 }  // namespace glidelab::report

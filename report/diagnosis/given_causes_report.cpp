@@ -22,8 +22,8 @@ std::vector<std::string> names_of(const diagnose::GivenCauses& given) {
   return effect_names(ids);
 }
 
-/// The fit of the same group and mass at the nearest stated inclination (clips that state slightly different ones may
-/// share a set-up there); null: none of its clips took part.
+/// The fit of the same group and mass at the nearest stated inclination (clips that state slightly different
+/// inclinations may share a set-up there); null: none of its clips took part.
 const diagnose::RecoveredConfiguration* counterpart_of(const core::ConfigurationResult& configuration,
                                                        const diagnose::GivenCauses& given) {
   const diagnose::RecoveredConfiguration* nearest = nullptr;
@@ -45,12 +45,13 @@ std::string interval_of(const core::Quantity& quantity) {
   return fmt::format("{} to {}", base::value_text(of.low95, of.sd), base::value_text(of.high95, of.sd));
 }
 
-/// Whether the law alone is in doubt: its ± then hold for a law that does not.
+/// Whether the law alone is in doubt: its ± then refer to a law that does not hold.
 bool law_fails(const core::AnalysisResults& results) {
   return !doubts_about(results).empty();
 }
 
-/// Configuration and quantity; by the law alone; with the causes, and its 95 % interval. And why something is missing.
+/// Configuration and quantity; by the law alone; with the causes, and its 95 % interval. Also the reasons for missing
+/// values.
 struct BothColumns {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> why;
@@ -92,7 +93,7 @@ std::vector<std::string> size_lines(const diagnose::GivenCauses& given) {
   return lines;
 }
 
-/// What the causes do to the gap, and what a reader must know of the numbers.
+/// The effect of the causes on the gap, and what a reader must know about the numbers.
 std::vector<std::string> sentences_of(const core::AnalysisResults& results, const diagnose::GivenCauses& given) {
   std::vector<std::string> sentences;
   const std::string before = base::digits_text(given.gap_before, 3), after = base::digits_text(given.gap_after, 3);

@@ -1,5 +1,6 @@
-/// K/m, µ, α and the terminal velocity with causes in the model that a person named (diagnose/result/given_causes.h),
-/// beside what the analysis gave without them: for the page, the screen and results.json of `analyze --with`.
+/// K/m, µ, α and the terminal velocity with causes in the model that the user named (diagnose/result/given_causes.h),
+/// compared with the results of the analysis without them: for the page, the screen and results.json of `analyze
+/// --with`.
 #pragma once
 
 #include <string>

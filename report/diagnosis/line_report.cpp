@@ -81,7 +81,7 @@ std::vector<Plot> line_plots(const diagnose::LineComparison& lines) {
 
 namespace {
 
-constexpr double kShown = 0.01;  // probability from which on an explanation has a row in any case
+constexpr double kShown = 0.01;  // probability above which an explanation always has a row
 
 std::string line_tiles(const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
@@ -146,7 +146,7 @@ std::string gap_table(const diagnose::GapSizes& gap) {
   return text;
 }
 
-/// Those that are shown, of those that were weighed: what is likely, and the likeliest form of each single effect.
+/// The weighed candidates that are shown: the likely ones, and the most likely form of each single effect.
 std::vector<const diagnose::LineCandidate*> shown_candidates(const diagnose::LineComparison& lines) {
   std::vector<const diagnose::LineCandidate*> shown;
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
@@ -172,7 +172,7 @@ std::string candidate_table(const diagnose::LineComparison& lines) {
   }
   std::string text = table.str();
   for (const diagnose::LineCandidate& candidate : lines.candidates) {
-    if (!candidate.left_out || candidate.explanation.effects.size() > 1) continue;  // of a pair for the same reason
+    if (!candidate.left_out || candidate.explanation.effects.size() > 1) continue;  // for a pair, for the same reason
     text += fmt::format("<p class=\"soft\">Not weighed: {} ({}).</p>\n", explanation_html(candidate.explanation),
                         escape(impossible_words(*candidate.left_out)));
   }

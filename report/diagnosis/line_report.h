@@ -1,4 +1,4 @@
-/// The page of a diagnosis of published lines, with its plots. The page of motions does not serve: it speaks of clips,
+/// The page of a diagnosis of published lines, with its plots. The page for motions is not suitable: it is about clips,
 /// positions and their noise.
 #pragma once
 
@@ -12,18 +12,18 @@
 
 namespace glidelab::report {
 
-/// The friction that the nominal model leaves in each line's intercept, over 1/m and over (K/m)², with what each effect
-/// that acts on intercepts makes of it.
+/// The friction that the nominal model leaves in each line's intercept, over 1/m and over (K/m)², with the prediction
+/// of each effect that acts on intercepts.
 std::vector<Plot> line_plots(const diagnose::LineComparison& lines);
 
-/// A whole page; `diagnosis.lines` is there. EnvironmentError where gnuplot fails.
+/// A whole page; `diagnosis.lines` must be set. EnvironmentError if gnuplot fails.
 Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis);
 
-/// What stands under "lines" in diagnosis.json.
+/// The entry "lines" of diagnosis.json.
 Json lines_json(const diagnose::LineComparison& lines);
 
-/// The explanations as rows of a table of plain text, a header first: those that were weighed, of those without a name
-/// the first three.
+/// The explanations as rows of a plain-text table, with a header first: those that were weighed, and of those without a
+/// name the first three.
 std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& lines);
 
 }  // namespace glidelab::report

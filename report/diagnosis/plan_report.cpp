@@ -39,7 +39,7 @@ std::string lead(const diagnose::Plan& plan) {
       seen, plan.effects.size(), alone, plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2));
 }
 
-/// What follows from what can be seen; plain text.
+/// The conclusions from the detectable effects; plain text.
 std::string what_follows(const diagnose::Plan& plan) {
   if (plan.effects.empty()) return {};
   const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
@@ -48,7 +48,7 @@ std::string what_follows(const diagnose::Plan& plan) {
          "smaller ones may still act, and those that are not seen may have any size.";
 }
 
-/// What to do about effects that look alike; empty where none do.
+/// What to do about effects that look alike; empty if there are none.
 std::string advice(const diagnose::Plan& plan) {
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     if (!effect.alike.empty()) {

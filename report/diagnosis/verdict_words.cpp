@@ -36,7 +36,7 @@ const diagnose::LineCandidate& candidate(const diagnose::LineComparison& lines,
                        [&](const diagnose::LineCandidate& c) { return c.explanation == explanation; });
 }
 
-/// Of one effect alone.
+/// An explanation with one effect only.
 diagnose::Explanation only(const std::string& id) {
   return {{id}, false};
 }
@@ -49,7 +49,8 @@ std::string sizes_of(const diagnose::LineCandidate& candidate) {
   return text;
 }
 
-/// "µ from 0.0051 (535 g, 0°) to 0.0075 (335 g, 0°)", of an effect with a size for each cell; or its one size.
+/// "µ from 0.0051 (535 g, 0°) to 0.0075 (335 g, 0°)", for an effect with a size for each cell; otherwise its single
+/// size.
 std::string effect_size_text(const diagnose::DiagnosedEffect& effect) {
   constexpr std::string_view kMuOf = "mu.", kDragOf = "k_n_s_m.";
   const diagnose::DiagnosedParameter *least = nullptr, *most = nullptr;
@@ -212,7 +213,7 @@ std::string count_in_words(std::size_t count) {
   return count >= 2 && count - 2 < kWords.size() ? kWords[count - 2] : fmt::format("{}", count);
 }
 
-/// One effect, or the set that these data cannot tell apart, before any of its members.
+/// One effect, or, before any of its members, the set that these data cannot distinguish.
 std::string claim(const diagnose::DiagnosedEffect& effect) {
   if (effect.alike.empty()) {
     return fmt::format("{} ({}, {})", effect.words, effect.id, percent(effect.probability));
@@ -252,7 +253,7 @@ std::string_view in_words(diagnose::GapVariable variable) {
   return {};
 }
 
-/// `sequence`: the remainder with the causes in the model has been stated.
+/// `sequence`: the remainder with the causes in the model has already been stated.
 std::string clip_gap_words(const diagnose::Diagnosis& diagnosis, bool sequence = false) {
   if (!diagnosis.gap) return "";
   const diagnose::GapSizes& gap = *diagnosis.gap;
@@ -277,7 +278,7 @@ std::string clip_gap_words(const diagnose::Diagnosis& diagnosis, bool sequence =
   return text + ".";
 }
 
-/// Each note's sentence, in a row.
+/// The sentences of all notes, in a row.
 template <class Notes>
 std::string sentences(const Notes& notes) {
   std::string text;
@@ -298,7 +299,7 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
       sentences(diagnosis.limits.contradicted), sure);
 }
 
-/// Behind a verdict: the first set-up, and how many more; each has its note.
+/// After a verdict: the first set-up, and the number of others; each has its note.
 std::string contradicted_words(const diagnose::Diagnosis& diagnosis) {
   const std::vector<diagnose::ContradictedIncline>& all = diagnosis.limits.contradicted;
   std::string text = note_words(as_told(all.front(), diagnosis));
@@ -309,7 +310,7 @@ std::string contradicted_words(const diagnose::Diagnosis& diagnosis) {
   return text;
 }
 
-/// What the gap depends on most, and how large it is there.
+/// The variable on which the gap depends most, and its size there.
 std::string first_region_words(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.regions.empty()) return "";
   const diagnose::GapRegion& region = diagnosis.regions.front();
@@ -325,7 +326,7 @@ std::string first_region_words(const diagnose::Diagnosis& diagnosis) {
   return text + fmt::format(": {} of up to {}.", to_text(region.what), largest_words(region));
 }
 
-/// Behind the sentence of the causes: how sure they are, and of `unknown` where the rest lies.
+/// After the sentence about the causes: how certain they are, and for `unknown` where the remainder lies.
 std::string beside_sequence(const diagnose::Diagnosis& diagnosis) {
   std::string text;
   if (diagnosis.verdict == diagnose::Verdict::effect) {
@@ -395,8 +396,8 @@ std::string too_few_words(const diagnose::GapIntervals& intervals) {
 
 namespace {
 
-/// What the verdict says of K/m, µ and the inclination that an analysis of the same data gives; empty where they may be
-/// taken as they are, or where it is open.
+/// The consequence of the verdict for K/m, µ and the inclination from an analysis of the same data; empty if they may
+/// be trusted, or if the question is open.
 std::string consequence(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.verdict == diagnose::Verdict::effect) {
     const bool lost_only = diagnosis.effects.size() == 1 &&
@@ -430,7 +431,7 @@ bool one_model(const diagnose::Diagnosis& diagnosis) {
 
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words) {
   std::string text = tile(probability_text(diagnosis.none), "nothing is missing");
-  // What differs between lines always has a name.
+  // A difference between lines always has a name.
   if (!diagnosis.lines) text += tile(probability_text(diagnosis.unknown), "an unnamed cause");
   if (!diagnosis.gap) return text;
   const std::string before = base::number_text(diagnosis.gap->before, 3);
@@ -439,7 +440,7 @@ std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string
 }
 
 std::string diagnosis_meaning(const diagnose::Diagnosis& diagnosis) {
-  // The answer stands out where there is a sentence of its own for it.
+  // The answer is highlighted if it has its own sentence.
   std::string verdict = escape(verdict_words(diagnosis));
   const std::string lead = diagnosis.lines ? std::string() : escape(sequence_words(diagnosis));
   if (const std::size_t at = verdict.find(lead); !lead.empty() && at != std::string::npos) {

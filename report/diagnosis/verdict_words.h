@@ -1,5 +1,5 @@
-/// The verdict in plain words, of clips and of published lines, and what stands first on the page of either: tiles, and
-/// what they mean in words.
+/// The verdict in plain words, for clips and for published lines, and the first elements of the page of either: tiles,
+/// and their meaning in words.
 #pragma once
 
 #include <string>
@@ -9,38 +9,38 @@
 
 namespace glidelab::report {
 
-/// What a page of a diagnosis answers.
+/// The question answered by a diagnosis page.
 inline constexpr std::string_view kDiagnosisQuestion = "What does the simple law leave out?";
 
-/// What a table of lines says, in plain words: a paragraph for somebody who knows the experiment and no statistics.
-/// `diagnosis.lines` is there.
+/// The result for a table of lines in plain words: a paragraph for a reader who knows the experiment but no statistics.
+/// `diagnosis.lines` must be set.
 std::string line_words(const diagnose::Diagnosis& diagnosis);
 
-/// "a separate µ for each mass", of each form; empty where an explanation has none.
+/// "a separate µ for each mass", for each form; empty if an explanation has none.
 std::string forms_words(const diagnose::LineCandidate& candidate);
 
 /// Why an explanation was not weighed: "force would have to be -3.1 mN, and it cannot be below zero".
 std::string impossible_words(const diagnose::ImpossibleSize& size);
 
-/// The verdict of clips or of published lines in plain words: a paragraph for somebody who knows the experiment and no
+/// The verdict for clips or published lines in plain words: a paragraph for a reader who knows the experiment but no
 /// statistics.
 std::string verdict_words(const diagnose::Diagnosis& diagnosis);
 
-/// Why a gap has no interval over clips; empty where clips are not too few.
+/// Why a gap has no interval over clips; empty if there are enough clips.
 std::string too_few_words(const diagnose::GapIntervals& intervals);
 
 /// Three decimals, "> 0.999" and "< 0.001" beyond them.
 std::string probability_text(double probability);
 
-/// True where nothing is missing, so that there is the nominal model alone and no second one to lay beside it: what
-/// pages show of before and after is then shown once.
+/// True if nothing is missing, so that there is only the nominal model and no second one to compare: pages then show
+/// "before" and "after" once.
 bool one_model(const diagnose::Diagnosis& diagnosis);
-inline constexpr const char* kNominalModel = "nominal model";  ///< as plots then call it
+inline constexpr const char* kNominalModel = "nominal model";  ///< its name in plots
 
-/// Tiles for nothing, for an unnamed cause, and for the gap, which is called `gap_words`; HTML.
+/// Tiles for no cause, for an unnamed cause, and for the gap, which is called `gap_words`; HTML.
 std::string common_tiles(const diagnose::Diagnosis& diagnosis, const std::string& gap_words);
 
-/// "What this means": the summary, its answer in bold where it is a sequence of causes, and what follows for the
+/// "What this means": the summary, with its answer in bold if it is a sequence of causes, and the consequences for the
 /// numbers of an analysis. HTML.
 std::string diagnosis_meaning(const diagnose::Diagnosis& diagnosis);
 

@@ -1,4 +1,4 @@
-/// Parts of a page that open where their heading is clicked.
+/// Parts of a page that open when their heading is clicked.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace glidelab::report {
 
-/// The heading is HTML; nothing of an empty part.
+/// The heading is HTML; an empty part gives nothing.
 Html folded(const std::string& heading, const Html& part);
 
 }  // namespace glidelab::report

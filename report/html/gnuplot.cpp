@@ -43,7 +43,7 @@ void check_status(int status, const fs::path& log) {
   if (!how.empty()) throw base::EnvironmentError(fmt::format("gnuplot {}: {}", how, base::read_file(log)));
 }
 
-/// "v  (m/s)" of `set xlabel 'v  (m/s)'`; "" where the script names no such axis.
+/// "v  (m/s)" of `set xlabel 'v  (m/s)'`; "" if the script names no such axis.
 std::string axis_label(const std::string& script, const char* axis) {
   const std::string command = fmt::format("set {}label '", axis);
   const std::size_t found = script.find(command);
@@ -52,8 +52,8 @@ std::string axis_label(const std::string& script, const char* axis) {
   return script.substr(from, script.find('\'', from) - from);
 }
 
-/// What the axes show, then blocks of rows two blank lines apart, as gnuplot counts them; what would look like such a
-/// gap within a block is closed.
+/// The axis labels, then blocks of rows separated by two blank lines, as gnuplot expects; similar gaps within a block
+/// are closed.
 std::string csv_of(const Drawing& drawing) {
   std::string text;
   for (const char* axis : {"x", "y"}) {
@@ -91,7 +91,7 @@ bool of_a_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// The script with every `$block` outside of its texts replaced by where the block stands in the file of data.
+/// The script with every `$block` outside its texts replaced by the block's location in the data file.
 std::string with_files(const Drawing& drawing) {
   const std::string& script = drawing.script;
   std::string text;
@@ -109,14 +109,14 @@ std::string with_files(const Drawing& drawing) {
     const std::string name = script.substr(i + 1, end - i - 1);
     const auto found =
         std::find_if(drawing.data.begin(), drawing.data.end(), [&](const PlotData& data) { return data.name == name; });
-    text += found == drawing.data.end() ? "$" + name  // gnuplot says that there is none
+    text += found == drawing.data.end() ? "$" + name  // gnuplot reports that there is none
                                         : fmt::format("name.'.csv' index {}", found - drawing.data.begin());
     i = end - 1;
   }
   return text;
 }
 
-/// What gnuplot says of numbers that leave nothing to draw, as 5.4 and 6.0 word it. What else it says is of a script.
+/// The messages of gnuplot 5.4 and 6.0 for numbers that leave nothing to draw. All other messages concern the script.
 constexpr std::array<std::string_view, 12> kNothingToShow = {"value undefined",
                                                              "points undefined",
                                                              "range is invalid",
@@ -130,8 +130,8 @@ constexpr std::array<std::string_view, 12> kNothingToShow = {"value undefined",
                                                              "undefined variable: nan",
                                                              "Undefined value"};
 
-/// "all points y value undefined!" of a log that ends with `"01-x.gp" line 12: all points y value undefined!`, where
-/// that is said of numbers; else "".
+/// "all points y value undefined!" for a log that ends with `"01-x.gp" line 12: all points y value undefined!`, if the
+/// message is about numbers; otherwise "".
 std::string why_nothing(const std::string& log) {
   static const std::regex kMessage("\",? line [0-9]+: ([^\n]*)");
   std::smatch found;
@@ -144,8 +144,8 @@ std::string why_nothing(const std::string& log) {
   return of_numbers ? message : std::string();
 }
 
-/// Both files come from one script, run twice. At the font size 15 text is still 11 pixels high where the page shows
-/// the plot 350 pixels wide; a point of the PDF is a pixel of the SVG.
+/// Both files come from one script, run twice. At font size 15, text is still 11 pixels high if the page shows the plot
+/// 350 pixels wide; a point of the PDF is a pixel of the SVG.
 std::string script_of(const Drawing& drawing, const std::string& name) {
   constexpr double kPointsPerInch = 72.0;
   return fmt::format(
@@ -167,7 +167,7 @@ std::string script_of(const Drawing& drawing, const std::string& name) {
       drawing.size.height / kPointsPerInch, with_files(drawing));
 }
 
-/// cairo writes the time of day into a PDF; the same numbers shall give the same file.
+/// Cairo writes the time of day into a PDF; the same numbers must give the same file.
 std::string without_date(std::string pdf) {
   constexpr std::string_view kKey = "/CreationDate (D:", kEpoch = "19700101000000";
   const std::size_t found = pdf.find(kKey);
@@ -175,7 +175,7 @@ std::string without_date(std::string pdf) {
   return pdf;
 }
 
-/// Quantities' Greek letters by their names, which file names can have.
+/// Replaces the Greek letters of quantities by their names, which are allowed in file names.
 std::string spelt_out(std::string text) {
   for (const auto& [letter, name] : {std::pair("µ", "mu"), std::pair("α", "alpha")}) {
     for (std::size_t at = text.find(letter); at != std::string::npos; at = text.find(letter)) {
@@ -188,7 +188,7 @@ std::string spelt_out(std::string text) {
 }  // namespace
 
 std::string shortened(std::string_view text, std::size_t most) {
-  std::vector<std::size_t> starts;  // of characters: UTF-8's further bytes begin none
+  std::vector<std::size_t> starts;  // of characters: continuation bytes of UTF-8 do not count
   for (std::size_t i = 0; i < text.size(); ++i) {
     if ((static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u) starts.push_back(i);
   }
@@ -232,7 +232,7 @@ std::vector<std::string> arguments_in(const fs::path& folder) {
   return {"-d", "-e", "cd " + gnuplot_quoted(folder.string())};
 }
 
-/// Draws them one by one, in a folder that has their scripts and numbers, and finds those that show nothing.
+/// Draws the plots one by one, in a folder with their scripts and numbers, and finds those that show nothing.
 void draw_each(const fs::path& folder, std::vector<DrawnPlot>& plots) {
   for (DrawnPlot& plot : plots) {
     const fs::path log = folder / "log.txt";
@@ -259,7 +259,7 @@ std::vector<DrawnPlot> draw_plots(std::span<const Plot> plots, std::span<const s
     base::write_file(folder / (names[i] + ".csv"), drawn[i].csv);
     arguments.push_back(names[i] + ".gp");
   }
-  // All at once; gnuplot ends at the first that it cannot draw.
+  // All at once; gnuplot stops at the first plot that it cannot draw.
   if (!base::how_it_failed(run(std::move(arguments), log)).empty()) draw_each(folder.path(), drawn);
   for (DrawnPlot& plot : drawn) {
     if (!plot.left_out.empty()) continue;

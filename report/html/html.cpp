@@ -42,8 +42,8 @@ char32_t character_before(std::string_view text, std::size_t at) {
   return value;
 }
 
-/// Of a word that a hyphen would join, letters of other alphabets among them: those lie from U+00C0 on but for the
-/// signs × and ÷ and the block of punctuation and mathematical signs, U+2000 to U+2BFF.
+/// Whether the character belongs to a word that a hyphen would join, including letters of other alphabets: those from
+/// U+00C0 on except the signs × and ÷ and the block of punctuation and mathematical signs, U+2000 to U+2BFF.
 bool joins(char32_t c) {
   if (c < 0x80) return std::isalnum(static_cast<int>(c)) != 0 || c == '-' || c == '_' || c == '.' || c == ']';
   return c == U'µ' || (c >= 0xC0 && c != U'×' && c != U'÷' && (c < 0x2000 || c >= 0x2C00));
@@ -54,7 +54,7 @@ bool opens(std::string_view tag, std::string_view name) {
          (tag.size() == name.size() || !std::isalnum(static_cast<unsigned char>(tag[name.size()])));
 }
 
-/// Where what is not text, and begins at the "<" at `at`, ends: behind the tag, or behind the element that is verbatim.
+/// The end of the markup that begins at the "<" at `at`: after the tag, or after a verbatim element.
 std::size_t end_of_markup(std::string_view html, std::size_t at) {
   const std::size_t behind = std::min(html.find('>', at), html.size() - 1) + 1;
   const std::string_view tag = html.substr(at + 1, behind - at - 2);
@@ -64,13 +64,13 @@ std::size_t end_of_markup(std::string_view html, std::size_t at) {
   return behind;
 }
 
-/// Of a longer word: the first byte of what could go on a unit.
+/// Whether this byte could continue a unit, making it part of a longer word.
 bool goes_on(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return std::isalnum(byte) != 0 || byte >= 0x80u || c == '/' || c == '_' || c == '-';
 }
 
-/// The unit behind the space at `at`, without the space; "" where there is none.
+/// The unit after the space at `at`, without the space; "" if there is none.
 std::string_view unit_behind(std::string_view html, std::size_t at) {
   const std::string_view rest = html.substr(at + 1);
   std::string_view longest;
@@ -81,7 +81,7 @@ std::string_view unit_behind(std::string_view html, std::size_t at) {
   return longest;
 }
 
-/// How many bytes from the space at `at` on belong to the number before it; 0 where a line may begin there.
+/// How many bytes from the space at `at` on belong to the preceding number; 0 if a line may begin there.
 std::size_t joined_behind(std::string_view html, std::size_t at) {
   if (html[at] != ' ' || at == 0) return 0;
   if (base::is_digit(html[at - 1]) && html.substr(at).starts_with(kPlusMinus)) return kPlusMinus.size();
@@ -202,7 +202,8 @@ details.part[open] { padding-bottom: 0.8rem; }
 constexpr std::size_t kShort = 13;  // characters that stay on one line
 constexpr std::size_t kLong = 24;
 
-/// How many characters of HTML are seen: no tags, an entity is one, UTF-8's further bytes none.
+/// The number of visible characters of HTML: tags do not count, an entity counts as one, and continuation bytes of
+/// UTF-8 do not count.
 std::size_t seen_length(std::string_view html) {
   std::size_t length = 0;
   for (std::size_t i = 0; i < html.size(); ++i) {
@@ -309,7 +310,7 @@ Html figures(const std::vector<Plot>& plots) {
   if (plots.empty()) return {};
   Html html(plots.size() % 3 == 0 ? "<div class=\"figures\">\n" : "<div class=\"figures large\">\n");
   for (const Plot& plot : plots) {
-    // As an image of its own: gnuplot gives every plot the same ids, which would clash within one page.
+    // As a separate image: gnuplot gives every plot the same ids, which would clash within one page.
     html += "<figure>";
     html.plot(plot);
     html += fmt::format("<figcaption>{}</figcaption></figure>\n", escape(plot.caption));

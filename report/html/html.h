@@ -1,7 +1,7 @@
 /// The pieces of a self-contained page: style, tables, images as data URIs, typeset numbers.
 ///
-/// Plots are drawn when the page is made, all in one run of gnuplot; beside the page their files are laid in a folder
-/// "plots". Every text that comes from a file goes through escape(): a clip that is named `<script>` is text.
+/// Plots are drawn when the page is made, all in one run of gnuplot; their files are put into a folder "plots" next to
+/// the page. Every text that comes from a file goes through escape(): a clip named `<script>` is text.
 #pragma once
 
 #include <filesystem>
@@ -15,16 +15,16 @@
 namespace glidelab::report {
 
 /// HTML in which a hyphen before a number is a minus sign (U+2212), and a number keeps to its unit and to its ± by
-/// no-break spaces (U+00A0), so that no line begins with a unit. Not touched: tags, what stands in code, script and
-/// style elements, and a hyphen right behind a letter of any alphabet, a digit, another hyphen, "_", "." or "]"
-/// ("m1-2", "maß-2", "1e-07", "2026-11-23"). A unit is one that pages use.
+/// no-break spaces (U+00A0), so that no line begins with a unit. Unchanged are tags, the content of code, script and
+/// style elements, and a hyphen directly after a letter of any alphabet, a digit, another hyphen, "_", "." or "]"
+/// ("m1-2", "maß-2", "1e-07", "2026-11-23"). Only units used on pages are recognised.
 std::string typeset_numbers(std::string_view html);
 
 /// The text with &, <, >, quotes and apostrophes as entities; fit for content and for attributes in quotes.
 std::string escape(std::string_view text);
 
-/// escape(), and a quantity's name as it is written by hand: "v_lim" is v with the subscript lim, and so with all
-/// single letters; names of several letters and what is joined to more stay.
+/// escape(), with the names of quantities typeset: "v_lim" becomes v with the subscript lim, and likewise for all
+/// single letters; names of several letters, and those joined to more text, stay.
 std::string symbols_html(std::string_view text);
 
 /// RFC 4648, with padding.
@@ -34,26 +34,26 @@ std::string base64(std::string_view bytes);
 std::string data_uri(std::string_view media_type, std::string_view bytes);
 
 /// A table whose cells are HTML (escape texts first). Columns from `first_number` on are aligned as numbers. Cells of
-/// up to 13 characters stay on one line; where the first column has longer names it is wide enough for them.
+/// up to 13 characters stay on one line; if the first column has longer names, it is wide enough for them.
 class HtmlTable {
  public:
   explicit HtmlTable(std::vector<std::string> header, std::size_t first_number = 1);
-  /// As many cells as the header has.
+  /// Needs as many cells as the header.
   void row(const std::vector<std::string>& cells);
   /// One cell over all columns, which names the rows that follow.
   void heading(const std::string& cell);
   bool empty() const { return rows_.empty(); }
-  /// The HTML, in a box that scrolls where the table is wider than the page.
+  /// The HTML, in a box that scrolls if the table is wider than the page.
   std::string str() const;
 
  private:
   std::size_t first_number_;
-  std::size_t longest_name_ = 0;  ///< of the first column, in characters that are seen
+  std::size_t longest_name_ = 0;  ///< of the first column, in visible characters
   std::vector<std::string> header_;
   std::string rows_;
 };
 
-/// A part of a page: HTML, and between its texts the plots that are yet to be drawn.
+/// A part of a page: HTML texts, interleaved with plots yet to be drawn.
 class Html {
  public:
   Html() : texts_(1) {}
@@ -61,10 +61,10 @@ class Html {
   Html(const char* text) : texts_{text} {}             // NOLINT(google-explicit-constructor)
   Html& operator+=(const Html& next);
   friend Html operator+(Html first, const Html& next) { return first += next; }
-  /// The plot goes here: an image, or words where it has nothing to show.
+  /// Inserts the plot here: an image, or words if it has nothing to show.
   void plot(Plot plot);
 
-  /// One more than plots: texts()[i] stands before plots()[i].
+  /// One more than there are plots: texts()[i] precedes plots()[i].
   const std::vector<std::string>& texts() const { return texts_; }
   const std::vector<Plot>& plots() const { return plots_; }
 
@@ -73,20 +73,20 @@ class Html {
   std::vector<Plot> plots_;
 };
 
-/// A number (or a word) large, and what it is below it; both are text.
+/// A number (or a word) in large type with its meaning below it; both are text.
 std::string tile(const std::string& number, const std::string& words);
 
-/// The top of a page: the question that it answers, and above it in small type what it is about; both are text. HTML.
+/// The top of a page: the question that it answers, and its subject above it in small type; both are text. HTML.
 std::string question_heading(std::string_view about, std::string_view question);
 
-/// The part at the top of a page that says in plain words what its numbers say; HTML below a heading, which is not
-/// shown where it would stand right below the page's question.
+/// The part at the top of a page that gives the meaning of its numbers in plain words; HTML below a heading, which is
+/// omitted if it would come directly below the page's question.
 std::string meaning_section(const std::string& html);
 
-/// Plots side by side where there is room, each on white paper with its caption, or why it has nothing to show.
+/// Plots side by side if there is room, each on white with its caption, or the reason why it has nothing to show.
 Html figures(const std::vector<Plot>& plots);
 
-/// A whole HTML document and the files of its plots, by their path beside it ("plots/NAME.svg", .pdf, .gp, .csv).
+/// A whole HTML document and the files of its plots, by their relative path ("plots/NAME.svg", .pdf, .gp, .csv).
 struct Page {
   std::string html;
   std::map<std::string, std::string> files;
@@ -95,7 +95,7 @@ struct Page {
 /// The title is text. EnvironmentError if gnuplot fails.
 Page page(std::string_view title, const Html& body);
 
-/// Writes the document under the name and the files of its plots into the folder.
+/// Writes the document under the given name, and the files of its plots, into the folder.
 void write_page(const std::filesystem::path& folder, const std::string& name, const Page& page);
 
 }  // namespace glidelab::report

@@ -12,9 +12,9 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kRoom = 0.05;          // at each end, of the values' span
-constexpr std::size_t kFewValues = 12;  // each with a mark of its own
+constexpr std::size_t kFewValues = 12;  // each with its own mark
 
-/// The first of 1, 2, 5 times powers of ten that is not below it.
+/// The smallest of 1, 2, 5 times powers of ten that is not below it.
 double round_up(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double digit : {1.0, 2.0, 5.0}) {
@@ -23,7 +23,7 @@ double round_up(double value) {
   return 10.0 * power;
 }
 
-/// As gnuplot writes the numbers that it labels itself.
+/// In gnuplot's own number format.
 std::string with_minus(std::string number) {
   for (std::size_t at = number.find('-'); at != std::string::npos; at = number.find('-')) number.replace(at, 1, "−");
   return number;
@@ -74,7 +74,7 @@ std::vector<double> ladder_of(double from, double to) {
 }
 
 SmallLengthUnit small_length_unit(double largest_m) {
-  constexpr double kMillimetresFrom = 2e-4;  // m: below it the labels of millimetres would all begin with a zero
+  constexpr double kMillimetresFrom = 2e-4;  // m: below it all labels in millimetres would begin with a zero
   return largest_m < kMillimetresFrom ? SmallLengthUnit{"µm", 1e6} : SmallLengthUnit{"mm", 1e3};
 }
 
@@ -100,7 +100,7 @@ double ValueAxis::from_axis(double place) const {
 }
 
 double ValueAxis::beside(double value, std::size_t i, std::size_t count) const {
-  constexpr double kApart = 0.014;  // of the axis: a bar's end
+  constexpr double kApart = 0.014;  // of the axis: the width of a bar's end
   const double step = std::min(kApart * (to_ - from_), 0.7 * least_gap_ / static_cast<double>(count));
   return from_axis(to_axis(value) + step * (static_cast<double>(i) - 0.5 * (static_cast<double>(count) - 1.0)));
 }
@@ -134,7 +134,7 @@ std::string ValueAxis::script(double points) const {
     labelled[i] = is_last || i == 0 || (left >= free_from && before_last);
     if (labelled[i]) free_from = place(all[i]) + half(all[i]);
   }
-  std::string tics;  // placed to the digits that the data are written with
+  std::string tics;  // positions with the same digits as the data
   for (std::size_t i = 0; i < all.size(); ++i) {
     tics += fmt::format("{}'{}' {:.9g}", i == 0 ? "" : ", ", labelled[i] ? tic_label(all[i]) : "", all[i]);
   }

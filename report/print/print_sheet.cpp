@@ -16,7 +16,7 @@ namespace glidelab::report {
 namespace {
 
 constexpr double kPointsPerM = 72.0 / 0.0254;  // PDF's unit
-constexpr double kMillimetresPerM = 1e3;       // the unit that the SVG says it is in
+constexpr double kMillimetresPerM = 1e3;       // the unit stated in the SVG
 
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
   static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
@@ -26,7 +26,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
 }  // namespace
 
 struct SheetCanvas::Cairo {
-  std::string bytes;  // of a page, as Cairo writes them
+  std::string bytes;  // of a page, as written by Cairo
   cairo_surface_t* surface = nullptr;
   cairo_t* context = nullptr;
 
@@ -43,7 +43,7 @@ struct SheetCanvas::Cairo {
     cairo_set_source_rgb(context, 1.0, 1.0, 1.0);
     cairo_paint(context);
   }
-  /// Ends the drawing and says whether all of it went well.
+  /// Ends the drawing and reports any failure.
   void finish() {
     const cairo_status_t drawn = cairo_status(context);
     cairo_surface_finish(surface);
@@ -124,7 +124,7 @@ SheetPicture SheetCanvas::finish_picture() {
   const int stride = cairo_image_surface_get_stride(cairo_->surface);
   for (int row = 0; pixels != nullptr && row < picture.height; ++row) {
     for (int column = 0; column < picture.width; ++column) {
-      constexpr int kBytesPerPixel = 4;  // RGB24, of which all three are equal
+      constexpr int kBytesPerPixel = 4;  // RGB24, with equal channels
       picture.grey.push_back(pixels[row * stride + column * kBytesPerPixel + 1]);
     }
   }
@@ -134,16 +134,16 @@ SheetPicture SheetCanvas::finish_picture() {
 
 namespace {
 
-constexpr double kMargin = 0.010;      // m; white around everything, more than printers leave
+constexpr double kMargin = 0.010;      // m; white around everything, more than printers need
 constexpr double kFoot = 0.025;        // m; below the board or the markers: the ruler, two lines of text, the margin
 constexpr double kTextSize = 0.0032;   // m; 9 point
 constexpr double kRuler = 0.100;       // m
 constexpr double kLine = 0.0003;       // m
 constexpr double kGap = 0.004;         // m; between markers
 constexpr double kLabel = 0.018;       // m; left of a row of markers
-constexpr double kRounding = 1e-9;     // m; sums of lengths that fit exactly may exceed by this
+constexpr double kRounding = 1e-9;     // m; sums of lengths that fit exactly may exceed the limit by this
 constexpr double kMillimetre = 0.001;  // m
-constexpr double kFinest = 0.001;      // m; a square or disc of 12 dots of a printer with 300 dots an inch
+constexpr double kFinest = 0.001;      // m; a square or disc of 12 dots on a printer with 300 dots per inch
 
 const std::array<Paper, 3> kPapers = {
     Paper{"a4", 0.297, 0.210}, {"a3", 0.420, 0.297}, {"letter", 11.0 * 0.0254, 8.5 * 0.0254}};
@@ -189,7 +189,7 @@ void draw(SheetCanvas& canvas, const BoardSheet& sheet) {
             measure_text(sheet));
 }
 
-/// Side of the square that a marker of this diameter stands on.
+/// Side of the square on which a marker of this diameter is printed.
 double tile(double diameter_m) {
   return 2.0 * diameter_m;
 }
@@ -279,7 +279,7 @@ void validate(const MarkerSheet& sheet) {
   const double room_across = sheet.paper.width_m - 2.0 * kMargin - kLabel;
   if (sheet.diameters_m.empty()) fail("--marker-mm", "nothing", "one or more diameters");
   for (const double diameter : sheet.diameters_m) {
-    // One of each kind beside each other.
+    // One of each kind side by side.
     if (diameter >= kFinest - kRounding && 2.0 * tile(diameter) + kGap <= room_across + kRounding) continue;
     fail("--marker-mm", fmt::format("{:.6g}", diameter / kMillimetre),
          fmt::format("at least {:g}, which a printer draws sharply, and at most {:.4g} on {}", kFinest / kMillimetre,

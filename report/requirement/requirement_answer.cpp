@@ -18,7 +18,7 @@ using validate::Requirement;
 using validate::Target;
 using validate::Verdict;
 
-/// "raspberry v1, 640x480 at 90 fps" without the mode, which the answer gives apart.
+/// "raspberry v1, 640x480 at 90 fps" without the mode, which the answer gives separately.
 std::string model_of(const std::string& camera) {
   for (std::size_t at = camera.find(", "); at != std::string::npos; at = camera.find(", ", at + 1)) {
     const std::size_t size = at + 2, cross = camera.find('x', size);
@@ -37,7 +37,7 @@ std::string mode_words(const Candidate& candidate) {
                      candidate.mode.codec);
 }
 
-/// What is to be expected: the error by runs, or the bound where nothing was run.
+/// The expected error: from runs, or the bound if nothing was run.
 std::optional<double> expected(const validate::TargetResult& result) {
   return result.found ? result.found : result.bound;
 }
@@ -71,7 +71,7 @@ std::string judged_words(const Requirement& requirement, const Candidate& candid
              : fmt::format("{}{} experiments as tracks, without lens, codec and calibration{}", part, first.runs, by);
 }
 
-/// Of those that were judged: the least error over its target, of the hardest target.
+/// Among the judged candidates, the one with the smallest error over target, for the hardest target.
 const Candidate* nearest(const Requirement& requirement) {
   const Candidate* best = nullptr;
   double least = std::numeric_limits<double>::infinity();

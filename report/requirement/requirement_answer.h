@@ -1,4 +1,4 @@
-/// The answer of `require` in a sentence: what to buy, how to set it, what to expect of it.
+/// The answer of `require` in a sentence: what to buy, how to set it, and what to expect.
 #pragma once
 
 #include <string>
@@ -7,18 +7,18 @@
 
 namespace glidelab::report {
 
-/// Times smaller with one limitation less: below it nothing is worth a name.
+/// Factor gained by removing one limitation; smaller gains are not mentioned.
 inline constexpr double kLeastNamedGain = 1.05;
 
-/// "µ ± 0.0001" of a 95 % error, "an rms error of µ of 0.0001", "a bias of µ of 0.0001", with their units.
+/// "µ ± 0.0001" for a 95 % error, "an rms error of µ of 0.0001", "a bias of µ of 0.0001", with their units.
 std::string error_words(const validate::Target& target, const std::string& value);
 
 /// "Buy: CAMERA, PRICE; set it to MODE; expect µ ± … (95 % of 8 rendered experiments)": the cheapest that reaches the
-/// targets; "Choose …" where no price is known. Where nothing does, what comes nearest, and what limits it. Text, one
-/// line without its end.
+/// targets; "Choose …" if no price is known. If none does, the nearest candidate and what limits it. Text, one line
+/// without its end.
 std::string requirement_answer(const validate::Requirement& requirement);
 
-/// "That is 50 times better than needed: 11 frames/s would do, or …", where it is so; else empty. Text.
+/// "That is 50 times better than needed: 11 frames/s would do, or …", if that is the case; otherwise empty. Text.
 std::string enough_words(const validate::Requirement& requirement);
 
 }  // namespace glidelab::report

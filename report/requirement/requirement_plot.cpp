@@ -37,7 +37,7 @@ double cost_of(const Requirement& requirement, const Candidate& candidate) {
   return requirement.by_price ? *candidate.price : candidate.pixels_s * 1e-6;
 }
 
-/// What the plot and the front are about: the first target, by runs where there are some, else by its bound.
+/// The quantity of the plot and the front: the first target, from runs if there are any, otherwise from its bound.
 struct Reach {
   double value = std::numeric_limits<double>::quiet_NaN(), sd = 0.0;
 };
@@ -54,14 +54,14 @@ Reach reach_of(const Candidate& candidate) {
   return std::isfinite(reach.value) && reach.value > 0.0 ? reach : Reach{};
 }
 
-/// A label of one point, or of several that lie close together.
+/// A label of one point, or of several close together.
 struct Label {
   double x = 0.0, y = 0.0;
   std::vector<int> numbers = {};
-  double right = 0.0, top = 0.0;  ///< of the points: beyond them it covers none
+  double right = 0.0, top = 0.0;  ///< extent of the points: beyond it the label covers none
 };
 
-/// A logarithmic axis: what is on it and some room, with 1, 2 and 5 times powers of ten written.
+/// A logarithmic axis: its values and some room, labelled at 1, 2 and 5 times powers of ten.
 struct LogAxis {
   double from = std::numeric_limits<double>::infinity(), to = 0.0;
   void include(double value) {
@@ -76,7 +76,7 @@ struct LogAxis {
   }
 };
 
-/// `points`: cost, value, number. Close is what a label would cover: of these axes a part of their length.
+/// `points`: cost, value, number. Points are close if a label would cover them: a fraction of the axes' length.
 std::vector<Label> labels_of(const std::vector<std::vector<double>>& points, double wide, double high) {
   constexpr double kAcross = 0.07, kUp = 0.06;
   std::vector<Label> labels;
@@ -117,7 +117,7 @@ Plot requirement_plot(const Requirement& requirement) {
     const Reach reach = reach_of(candidate);
     const double cost = cost_of(requirement, candidate);
     if (!std::isfinite(reach.value)) continue;
-    // On a logarithmic axis one standard deviation is as long upwards as downwards.
+    // On a logarithmic axis one standard deviation is drawn equally long upwards and downwards.
     const double times = std::exp(reach.sd / reach.value);
     all.push_back({cost, reach.value, number, reach.value / times, reach.value * times});
     (reached(candidate) ? met : missed).rows.push_back(all.back());
@@ -133,7 +133,7 @@ Plot requirement_plot(const Requirement& requirement) {
       fmt::format("set xlabel {}\nset ylabel {}\n",
                   gnuplot_quoted(requirement.by_price ? "price, middle of its class (EUR)" : "million pixels a second"),
                   gnuplot_quoted(target_name(target)));
-  constexpr double kLeft = 1.2, kRight = 1.6, kAbove = 1.3;  // times, for labels and bars
+  constexpr double kLeft = 1.2, kRight = 1.6, kAbove = 1.3;  // factors, for labels and bars
   LogAxis x, y;
   y.include(target.value / kAbove);
   y.include(target.value * kAbove);

@@ -25,7 +25,8 @@ using validate::Requirement;
 using validate::Target;
 using validate::Verdict;
 
-/// In tables a target's values stand in thousandths, millionths, … of its unit: columns of zeros hide which is smaller.
+/// In tables a target's values are given in thousandths, millionths, … of its unit: columns of zeros hide which is
+/// smaller.
 struct Scale {
   double size = 1.0;
   std::string factor;  ///< "10⁻⁶"; empty for 1
@@ -42,7 +43,7 @@ Scale scale_of(const Target& target) {
   return {size, kFactors[thousands]};
 }
 
-/// " (10⁻³ 1/s)", for the column beside.
+/// " (10⁻³ 1/s)", for the adjacent column.
 std::string same_unit(const Target& target) {
   const std::string name = target_name(target, scale_of(target).factor);
   const std::size_t unit = name.find(" (");
@@ -67,13 +68,13 @@ std::string order_text(const Requirement& requirement) {
   return requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)";
 }
 
-/// "3 of 200"; nothing if none was run.
+/// "3 of 200"; empty if none was run.
 std::string beyond_text(const validate::TargetResult& result) {
   return result.runs == 0 ? "–" : fmt::format("{} of {}", result.beyond, result.runs);
 }
 
-/// What no track knows is said where tracks or the bound judged, and what rendering is for where it could change
-/// something: images only add to what the bound forbids.
+/// If tracks or the bound judged, says what tracks do not include, and recommends rendering if that could change the
+/// result: images can only add to the error.
 std::string next_step(const Requirement& requirement) {
   if (requirement.confirm == validate::Confirm::clips) return {};
   const bool ran = std::ranges::any_of(requirement.candidates, [](const Candidate& candidate) {
@@ -111,7 +112,7 @@ std::string limit_cell(const validate::TargetResult& result, double scale) {
   return result.found && std::isfinite(result.high) ? base::digits_text(result.high / scale, 2) : "–";
 }
 
-/// Error by runs, its upper limit, bound and runs beyond, of each target.
+/// Error from runs, its upper limit, bound and number of runs beyond, for each target.
 std::vector<std::string> result_cells(const Requirement& requirement, const Candidate& candidate) {
   std::vector<std::string> cells;
   for (std::size_t t = 0; t < candidate.results.size(); ++t) {
@@ -124,7 +125,7 @@ std::vector<std::string> result_cells(const Requirement& requirement, const Cand
   return cells;
 }
 
-/// "2.1", of the position noise; a dash where the camera cannot see the marker.
+/// "2.1", the position noise; a dash if the camera cannot see the marker.
 std::string noise_cell(const Candidate& candidate) {
   return std::isfinite(candidate.noise_m) ? base::number_text(candidate.noise_m * 1e6, 3) : "–";
 }
@@ -170,7 +171,7 @@ std::string candidate_table(const Requirement& requirement) {
   return table.str();
 }
 
-/// What stands in the way of those that do not reach it: words, for which a table has no room.
+/// What limits the candidates that do not reach the target: text, for which a table has no room.
 std::string limits_list(const Requirement& requirement) {
   std::string items;
   for (const Candidate& candidate : requirement.candidates) {
@@ -206,7 +207,7 @@ std::string judged_by_text(const Requirement& requirement) {
       validate::kRunsForQuantile);
 }
 
-/// What the table's numbers are.
+/// The meaning of the table's numbers.
 std::string how_judged(const Requirement& requirement) {
   std::string text = fmt::format(
       "<p>Errors are those of the worst configuration; {} first. The bound is the Cramér-Rao bound for the motion at "

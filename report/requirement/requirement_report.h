@@ -1,4 +1,4 @@
-/// What `require` says: the cameras that reach a target, cheapest first, and what limits the others.
+/// The results of `require`: the cameras that reach a target, cheapest first, and what limits the others.
 #pragma once
 
 #include <string>

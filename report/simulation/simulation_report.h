@@ -1,4 +1,4 @@
-/// What `glidelab simulate` tells of true motions: a table for each clip's states, JSON, and text for a terminal.
+/// The output of `glidelab simulate` on true motions: a table for each clip's states, JSON, and text for a terminal.
 #pragma once
 
 #include <string>
@@ -19,10 +19,10 @@ struct SimulatedClip {
 std::string trajectory_csv(const sim::Trajectory& trajectory);
 
 /// The document, with a newline at its end: for each clip its name, the number of its states, its file, its reversals
-/// and changes of mode, and the energy that friction took.
+/// and changes of mode, and the energy dissipated by friction.
 std::string simulation_json(const std::vector<SimulatedClip>& clips);
 
-/// A row for each clip, which has a state at least.
+/// A row for each clip, which has at least one state.
 std::string simulation_text(const std::vector<SimulatedClip>& clips);
 
 }  // namespace glidelab::report

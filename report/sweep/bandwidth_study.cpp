@@ -45,7 +45,7 @@ const ErrorStatistics* overall(const SweepSummary& summary, std::string_view qua
   return nullptr;
 }
 
-/// Of bandwidths with which nearly all runs have an answer; the others go to `unanswered`.
+/// The curve over bandwidths for which nearly all runs have an answer; the others go to `unanswered`.
 Curve curve_of(const SweepSummary& summary, std::string_view quantity, std::vector<double>& unanswered) {
   Curve curve;
   for (const Series& series : summary.overall) {
@@ -72,7 +72,7 @@ double least_total(const Curve& curve) {
 /// All quantities that have errors at enough bandwidths.
 struct Curves {
   std::vector<std::pair<const QuantityName*, Curve>> of;
-  std::vector<double> bandwidths_s;  ///< at which all of them have errors, rising
+  std::vector<double> bandwidths_s;  ///< at which all quantities have errors, rising
   std::vector<double> unanswered_s;
 };
 
@@ -93,7 +93,7 @@ Curves curves_of(const SweepSummary& summary) {
   return curves;
 }
 
-/// How many times the error of `h` is that of `other`, in the worst quantity.
+/// The error at `h` over that at `other`, for the worst quantity.
 double loss(const Curves& curves, double h, double other) {
   double most = 0.0;
   for (const auto& [quantity, curve] : curves.of) most = std::max(most, curve.at(h)->rms / curve.at(other)->rms);
@@ -231,7 +231,7 @@ double positive(double value) {
   return value > 0.0 ? value : kNothing;
 }
 
-/// A level line over the whole axis.
+/// A horizontal line over the whole axis.
 PlotData level(const std::string& name, double value, double from, double to) {
   return {name, {{from, value}, {to, value}}, {"h (s)", "error"}};
 }

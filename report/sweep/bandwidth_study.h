@@ -5,8 +5,8 @@
 ///
 ///     total² = mean of e²,  bias = mean of e,  noise² = total² - bias²
 ///
-/// The h to use is the one whose worst quantity loses least: the least over h of the largest over the quantities of
-/// total(h) / (least total over h); of those whose stated intervals hold, where there is one.
+/// The h to use is the one whose worst quantity loses least: the minimum over h of the maximum over the quantities of
+/// total(h) / (smallest total over h). If there are any h whose stated intervals hold, only these are considered.
 #pragma once
 
 #include <optional>
@@ -20,26 +20,29 @@ namespace glidelab::report {
 
 /// Errors that are at most this many times those of the bandwidth to use are nearly as good.
 inline constexpr double kNearlyAsGood = 1.3;
-/// Stated intervals are too wide where they hold the truth too often and the stated sd is so many times the error.
+/// Stated intervals are too wide if they contain the truth too often and the stated sd exceeds the error by this
+/// factor.
 inline constexpr double kTooWide = 1.5;
 
 struct BandwidthAnswer {
   double use_s = 0.0;
-  double from_s = 0.0, to_s = 0.0;       ///< around it, of those that were run: all err at most kNearlyAsGood times
-  std::vector<double> narrow_s, wide_s;  ///< whose stated intervals hold the truth too seldom; are too wide
-  std::vector<double> unanswered_s;      ///< with which some clips have no line
+  double from_s = 0.0, to_s = 0.0;       ///< range around it, of those that were run, in which all errors are at most
+                                         ///< kNearlyAsGood times as large
+  std::vector<double> narrow_s, wide_s;  ///< bandwidths whose stated intervals contain the truth too seldom; whose
+                                         ///< intervals are too wide
+  std::vector<double> unanswered_s;      ///< bandwidths with which some clips have no line
   std::string text;                      ///< "Use h = 0.045 s; anything from …", one line
 };
 
-/// Of a sweep with the lines at three bandwidths or more; nothing else.
+/// For a sweep with lines at three or more bandwidths; empty for any other.
 std::optional<BandwidthAnswer> bandwidth_answer(const validate::SweepSummary& summary);
 
-/// For each quantity: total, noise, bias and stated sd over h; the least total; the default rule's choice; the fit of
-/// the whole motion; the Cramér-Rao bound where it is known. Empty where there is no bandwidth_answer().
+/// For each quantity: total, noise, bias and stated sd over h; the smallest total; the default rule's choice; the fit
+/// of the whole motion; the Cramér-Rao bound if known. Empty if there is no bandwidth_answer().
 std::vector<Plot> bandwidth_plots(const validate::SweepSummary& summary);
 
-/// Each bandwidth's total error of each quantity, beside that of the default rule and of the fit of the whole motion.
-/// HTML; empty where there is no bandwidth_answer().
+/// Each bandwidth's total error of each quantity, compared with that of the default rule and of the fit of the whole
+/// motion. HTML; empty if there is no bandwidth_answer().
 std::string bandwidth_table(const validate::SweepSummary& summary);
 
 }  // namespace glidelab::report

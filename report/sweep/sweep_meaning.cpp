@@ -26,7 +26,7 @@ std::string default_lines() {
   return std::string(fit::default_estimator().name);
 }
 
-/// A line by a rule that knows no more than the data: no fixed bandwidth, no truth.
+/// Lines by a rule that uses only the data: no fixed bandwidth, no truth.
 bool is_rule(const std::string& estimator) {
   const std::string lines = default_lines();
   const std::string best = validate::Analysis{lines, std::nullopt, validate::kBestPossible}.name();
@@ -47,8 +47,8 @@ const GroupStatistics* group_at(const Series& series, double position) {
   return found == series.groups.end() ? nullptr : &*found;
 }
 
-/// By what factor an rms error must be larger: kClearlyBetterFactor, and two standard errors of a ratio of two (normal
-/// errors).
+/// The factor by which an rms error must be larger: kClearlyBetterFactor, plus two standard errors of a ratio of two
+/// (normal errors).
 double clearly(const validate::ErrorStatistics& of) {
   return kClearlyBetterFactor * (1.0 + 2.0 / std::sqrt(static_cast<double>(of.answered)));
 }
@@ -58,7 +58,7 @@ struct Winner {
   double rms = 0.0;
 };
 
-/// The rule with the least error in the group at this position, of those that answer there.
+/// The rule with the smallest error in the group at this position, of those that answer there.
 std::optional<Winner> winner(const std::vector<Series>& all, std::string_view quantity, double position) {
   std::uint64_t most = 0;
   const auto each_rule = [&](const auto& visit) {
@@ -96,7 +96,7 @@ std::string factor_sentence(const SweepSummary& summary, const std::string& othe
   return factors.empty() ? std::string() : fmt::format(" Its rms error divided by that of {}: {}.", words, factors);
 }
 
-/// Neighbouring groups of one axis in which another rule than the default wins clearly.
+/// Neighbouring groups of one axis in which a rule other than the default is clearly better.
 std::string exceptions(const validate::AxisSummary& axis, const QuantityName& quantity) {
   const Series* const ours = series_of(axis.series, quantity.key, default_lines());
   if (ours == nullptr) return {};
@@ -117,7 +117,7 @@ std::string exceptions(const validate::AxisSummary& axis, const QuantityName& qu
       if (!next || next->estimator != first->estimator) break;
       ++last;
     }
-    constexpr std::size_t kFewGroups = 4;  // of more, one alone is chance more often than not
+    constexpr std::size_t kFewGroups = 4;  // with more, a single one is more likely due to chance
     if (first && (last > i || ours->groups.size() <= kFewGroups)) {
       text += fmt::format("{}{} in {} at {} = {}", text.empty() ? "" : ", ", escape(first->estimator), quantity.symbol,
                           escape(axis.name), ours->groups[i].label);
@@ -184,13 +184,13 @@ bool knows_truth(const std::string& estimator) {
   return estimator.ends_with(validate::kBestPossible);
 }
 
-/// "h=0.04 s" of the lines with that bandwidth; empty for all others.
+/// "h=0.04 s" for the lines with that bandwidth; empty for all others.
 std::string given_bandwidth(const std::string& estimator) {
   const std::string lines = std::string(fit::default_estimator().name) + " h=";
   return estimator.starts_with(lines) ? estimator.substr(lines.size() - 2) : std::string();
 }
 
-/// Of one group each: the least rms error among those that answer and are asked for.
+/// The series with the smallest rms error (one group each) among those that answer and are requested.
 const Series* best_of(const std::vector<Series>& all, std::string_view quantity,
                       const std::function<bool(const std::string& estimator)>& asked) {
   std::uint64_t most = 0;
@@ -219,8 +219,7 @@ std::string error_of(double value, std::string_view quantity) {
   return base::number_text(value, 2) + unit_suffix(unit_of(quantity));
 }
 
-/// "trajectory in K/m (0.001 1/s), µ (0.0001)", of each quantity the best that is asked for; `name` makes the name of
-/// it.
+/// "trajectory in K/m (0.001 1/s), µ (0.0001)", for each quantity the best of those requested; `name` makes its name.
 std::string winners_of(const SweepSummary& summary, const std::function<bool(const std::string& estimator)>& asked,
                        const std::function<std::string(const std::string& estimator)>& name) {
   std::string text, previous;
@@ -238,7 +237,7 @@ std::string winners_of(const SweepSummary& summary, const std::function<bool(con
   return text;
 }
 
-/// Which of several given bandwidths errs least; nothing if there are not two of them.
+/// Which of several given bandwidths has the smallest error; empty if there are fewer than two.
 std::string bandwidths_of(const SweepSummary& summary) {
   std::set<std::string> given;
   std::uint64_t answered = 0;
@@ -250,7 +249,7 @@ std::string bandwidths_of(const SweepSummary& summary) {
   if (given.size() < 2 || answered == 0) return {};
   const std::string winners = winners_of(
       summary, [](const std::string& estimator) { return !given_bandwidth(estimator).empty(); }, given_bandwidth);
-  // Two standard errors of the ratio of two rms errors, of normal errors.
+  // Two standard errors of the ratio of two rms errors, for normal errors.
   return fmt::format(
       "<p>Of the {} given bandwidths of the lines, the smallest rms error is that of {}. Two whose errors differ by "
       "less than {:.0f} % may be equivalent.</p>\n",
@@ -262,7 +261,7 @@ std::string at_text(const validate::AxisSummary& axis, const GroupStatistics& gr
   return fmt::format("{}{}{}", base::number_text(group.position, 4), axis.unit.empty() ? "" : " ", escape(axis.unit));
 }
 
-/// ", over 4 of 6 combinations of the other keys": where not all have a result.
+/// ", over 4 of 6 combinations of the other keys": if not all have a result.
 std::string part_of(const validate::Likeness& of, std::string_view what) {
   if (of.whole || of.alike == of.combinations) return {};
   return fmt::format(", over those {} of {} {}", of.alike, of.combinations, what);
@@ -290,7 +289,7 @@ bool answered_at_two(const Series& series) {
                        [](const GroupStatistics& group) { return group.statistics.answered > 0; }) > 1;
 }
 
-/// "turning: 0.0001; straight: 0.0002": where each run has both, or over those that have.
+/// "turning: 0.0001; straight: 0.0002": if each run has both, otherwise over those that have.
 std::string configurations_of(const SweepSummary& summary, const Series& best) {
   std::string text, part;
   for (const validate::ConfigurationSummary& of : summary.configurations) {
@@ -308,7 +307,7 @@ std::string item(const std::string& text) {
   return "<li>" + text + "</li>\n";
 }
 
-/// Of one quantity over the keys and the configurations: a list.
+/// The changes of one quantity over the keys and the configurations: a list.
 std::string changes_of(const SweepSummary& summary, const Series& best) {
   std::string list, unlike;
   bool drawn = false;
@@ -335,13 +334,14 @@ std::string changes_of(const SweepSummary& summary, const Series& best) {
                      escape(best.estimator), list);
 }
 
-/// What is wrong with a series, as a number: "80" of "80 %".
+/// The deviation of a series as a number: "80" in "80 %".
 struct Listed {
   const Series* series = nullptr;
   double number = 0.0;
 };
 
-/// "K/m, µ by trajectory (80 to 88 %)": of each estimator its quantities, of many estimators the first.
+/// "K/m, µ by trajectory (80 to 88 %)": for each estimator its quantities; if there are many estimators, only the
+/// first.
 std::string series_text(std::vector<Listed> all, int digits, const char* unit) {
   std::stable_sort(all.begin(), all.end(),
                    [](const Listed& x, const Listed& y) { return x.series->estimator < y.series->estimator; });
@@ -366,7 +366,7 @@ std::string series_text(std::vector<Listed> all, int digits, const char* unit) {
   return text;
 }
 
-/// Two lists in a sentence each: of too little and of too much.
+/// Two lists in one sentence each: too small and too large.
 std::string two_lists(const std::string& what, const std::string& little, const std::string& much,
                       const char* little_is, const char* much_is) {
   std::string text;
@@ -375,7 +375,7 @@ std::string two_lists(const std::string& what, const std::string& little, const 
   return text;
 }
 
-/// Intervals that hold the truth in another part of the runs than 95 %.
+/// Intervals that contain the truth in a fraction of the runs other than 95 %.
 std::string intervals(const SweepSummary& summary) {
   std::vector<Listed> narrow, wide;
   for (const Series& series : summary.overall) {
@@ -393,13 +393,13 @@ std::string intervals(const SweepSummary& summary) {
                    "less often", "more often");
 }
 
-/// Stated standard deviations that are far from the errors: a few values that lie far off do not show in coverage.
+/// Stated standard deviations that are far from the errors: a few values that are far off do not show in coverage.
 std::string stated_sds(const SweepSummary& summary) {
   std::vector<Listed> small, large;
   for (const Series& series : summary.overall) {
     const ErrorStatistics& of = series.groups.front().statistics;
     if (of.answered == 0 || !(of.sd > 0.0) || !(of.rms > 0.0)) continue;
-    // Two standard errors of the ratio, of normal errors.
+    // Two standard errors of the ratio, for normal errors.
     const double clearly = kAstray * (1.0 + 2.0 / std::sqrt(2.0 * static_cast<double>(of.answered)));
     if (of.rms > clearly * of.sd) small.push_back({&series, of.rms / of.sd});
     if (of.sd > clearly * of.rms) large.push_back({&series, of.sd / of.rms});

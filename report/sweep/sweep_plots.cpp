@@ -23,7 +23,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kPlotWidth = 360.0;  // points between the axis' ends
 
-/// Words stand one beside the other.
+/// Words are placed side by side.
 std::string axis_of_words(const AxisSummary& axis) {
   std::string script = "set xtics rotate by -35 left font ',10'\nset xtics (";
   for (std::size_t i = 0; i < axis.labels.size(); ++i) {
@@ -33,8 +33,8 @@ std::string axis_of_words(const AxisSummary& axis) {
          fmt::format(")\nset xrange [-0.5:{}]\nset bmargin 8\n", static_cast<double>(axis.labels.size()) - 0.5);
 }
 
-/// Of errors a range that begins and ends at 1, 2 or 5 times a power of ten, with these labelled, or with
-/// powers of ten alone where those are many.
+/// For errors, a range that begins and ends at 1, 2 or 5 times a power of ten, with these labelled, or only powers of
+/// ten if there are many.
 std::string error_axis(const std::vector<PlotData>& data) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const PlotData& block : data) {
@@ -61,8 +61,8 @@ bool whole(const validate::Likeness& of) {
   return of.whole || (of.alike > 0 && of.alike == of.combinations);
 }
 
-/// What lines are of, where some runs have no answer: in the caption (`common`) if it is the same of all, else beside
-/// each name.
+/// The runs that lines refer to, if some runs have no answer: in the caption (`common`) if it is the same for all,
+/// otherwise next to each name.
 struct RunNotes {
   std::string common;
   std::vector<std::string> of_each;
@@ -96,7 +96,7 @@ RunNotes notes_of(const std::vector<const Series*>& drawn) {
   return notes;
 }
 
-/// The 95 % interval of a part, in per cent (Wilson 1927): within 0 and 100, of few runs as well.
+/// The 95 % interval of a proportion, in per cent (Wilson 1927): within 0 and 100 even for few runs.
 std::pair<double, double> wilson_percent(double part, double count) {
   constexpr double z = base::kNormal95;
   const double centre = part + z * z / (2.0 * count);
@@ -105,7 +105,7 @@ std::pair<double, double> wilson_percent(double part, double count) {
   return {100.0 * (centre - reach) / whole_of, 100.0 * (centre + reach) / whole_of};
 }
 
-/// What is drawn of a quantity: each series that has an answer, and its block of numbers.
+/// The drawn data of a quantity: each series that has an answer, and its block of numbers.
 struct Drawn {
   std::vector<const Series*> series;
   std::vector<PlotData> data;
@@ -134,7 +134,7 @@ Drawn drawn_of(const std::vector<Series>& all, std::string_view quantity) {
   return drawn;
 }
 
-/// Last column: where a point with a bar stands, beside those of the others.
+/// Last column: the position of a point with a bar, next to those of the others.
 std::vector<PlotData> with_places(std::vector<PlotData> data, const AxisSummary& axis, const ValueAxis& values) {
   for (std::size_t i = 0; i < data.size(); ++i) {
     for (std::vector<double>& row : data[i].rows) {
@@ -146,7 +146,8 @@ std::vector<PlotData> with_places(std::vector<PlotData> data, const AxisSummary&
   return data;
 }
 
-/// The series' names in the legend. Where many stand in one plot, the lines by their rule alone, as the caption says.
+/// The series' names in the legend. If there are many in one plot, lines are named only by their rule, as the caption
+/// explains.
 struct Titles {
   std::vector<std::string> of_each;
   bool shortened = false;
@@ -164,7 +165,7 @@ Titles titles_of(const std::vector<const Series*>& drawn) {
   return titles;
 }
 
-/// One axis' plots of one quantity: the legend, what is common to them, and how high they are.
+/// One axis' plots of one quantity: the legend, their common elements, and their height.
 struct Frame {
   std::vector<PlotData> data;
   std::vector<std::string> titles;
@@ -172,7 +173,7 @@ struct Frame {
   std::string line;  ///< how values are joined
   std::string note;  ///< for the caption
   PlotSize size;
-  std::size_t values = 0;  ///< of the axis, that have an answer
+  std::size_t values = 0;  ///< number of the axis' values that have an answer
 };
 
 Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::string_view quantity) {
@@ -193,7 +194,7 @@ Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::str
   }
   frame.note = notes.common;
   if (titles.shortened) frame.note += "; entries named by a rule or h alone are lines of the phase diagram";
-  // gnuplot makes the legend's columns as wide as its longest text: some 7.5 points a letter at this size, and its
+  // gnuplot makes the legend's columns as wide as its longest text: about 7.5 points per letter at this size, plus its
   // sample.
   std::size_t longest = std::string_view("stated sd (dashed)").size();
   for (const std::string& title : frame.titles) longest = std::max(longest, title.size());
@@ -201,25 +202,25 @@ Frame frame_of(const AxisSummary& axis, const std::vector<Series>& all, std::str
   const int columns = std::max(1, static_cast<int>((kWidth - 20) / (7.5 * static_cast<double>(longest) + 50.0)));
   const int rows = (static_cast<int>(frame.titles.size()) + 2 + columns - 1) / columns;
   frame.size = {kWidth, (axis.words ? 400 : 290) + kRow * rows + kEdge};
-  // Around the middle of the plot: around that of the axes it would be cut off at the right.
+  // Centred on the plot: centred on the axes it would be cut off at the right.
   frame.script = std::string(kFrame) +
                  fmt::format("set key at screen 0.5, screen {:.4f} center top font ',11' maxcols {} samplen 1\n",
                              1.0 - 4.0 / static_cast<double>(frame.size.height), columns) +
                  fmt::format("set xlabel {} offset 0,0.3\n", gnuplot_quoted(with_unit(axis.name, axis.unit))) +
                  (axis.words ? axis_of_words(axis) : values.script(kPlotWidth));
-  // gnuplot takes no room for a legend of many rows: it is left here.
+  // gnuplot reserves no room for a legend of many rows, so it is reserved here.
   frame.script += fmt::format("set tmargin at screen {:.4f}\n",
                               1.0 - static_cast<double>(kRow * rows + kEdge) / static_cast<double>(frame.size.height));
   frame.line = axis.words ? "points" : "linespoints";
   return frame;
 }
 
-/// Where colours come again: squares in place of discs.
+/// If colours repeat: squares instead of discs.
 int shape_of(std::size_t i) {
   return i < kColors.size() ? 7 : 5;
 }
 
-/// `of`: of which configuration; empty of all.
+/// `of`: the configuration; empty for all.
 Plot error_plot(const AxisSummary& axis, const std::vector<Series>& all, std::string_view quantity,
                 const std::string& of) {
   const Frame frame = frame_of(axis, all, quantity);
@@ -230,7 +231,7 @@ Plot error_plot(const AxisSummary& axis, const std::vector<Series>& all, std::st
                          "{}plot ",
                          gnuplot_quoted(with_unit("error of " + symbol, unit_of(quantity))), error_axis(frame.data));
   bool bound = false;
-  const char* const x = axis.words ? "10" : "1";  // points of words side by side; lines over the value itself
+  const char* const x = axis.words ? "10" : "1";  // points for words, side by side; lines over the value itself
   const std::string sd = axis.words ? "hollow" : "dashed";
   for (std::size_t i = 0; i < frame.data.size(); ++i) {
     script += fmt::format(

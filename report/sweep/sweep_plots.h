@@ -10,8 +10,8 @@
 
 namespace glidelab::report {
 
-/// Rms error with stated sd and bound, of each configuration where the axis has them apart (`configurations` of the
-/// same summary), else of all; bias with its standard error; coverage. Empty if no run has an answer.
+/// RMS error with stated sd and bound, for each configuration if the axis has them separately (`configurations` of the
+/// same summary), otherwise for all; bias with its standard error; coverage. Empty if no run has an answer.
 std::vector<Plot> sweep_plots(const validate::AxisSummary& axis, std::string_view quantity,
                               std::span<const validate::ConfigurationSummary> configurations = {});
 

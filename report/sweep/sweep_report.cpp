@@ -26,7 +26,7 @@ std::string fall_text(double fall, double se) {
   return se > 0.0 ? base::value_and_sd_text(fall, se) : base::digits_text(fall, 2);
 }
 
-/// Two values with the decimals of the one that has more.
+/// Two values, both with the larger number of decimals.
 std::pair<std::string, std::string> with_equal_decimals(double one, double other) {
   const auto decimals = [](double value) {
     const std::string text = base::number_text(value, 4);
@@ -115,8 +115,8 @@ std::vector<std::string> cells_of(const ErrorStatistics& of) {
           sds ? fmt::format("{:.2f} ± {:.2f}", sds->rms, sds->rms_sd) : "–"};
 }
 
-/// Quantity, estimator and numbers, as text: the quantities in the order in which every page has them, which is not
-/// that of the database.
+/// Quantity, estimator and numbers, as text: the quantities in the order used on every page, which is not that of the
+/// database.
 std::vector<std::vector<std::string>> rows_of(std::vector<validate::Series> overall) {
   std::ranges::stable_sort(overall, {}, [](const validate::Series& series) { return place_of(series.quantity); });
   std::vector<std::vector<std::string>> rows;
@@ -155,7 +155,7 @@ std::string configuration_table(const SweepSummary& summary) {
 
 std::string acceleration_table(const SweepSummary& summary) {
   if (summary.accelerations.empty()) return {};
-  bool compared = false;  // with the best possible bandwidth, where the sweep names it
+  bool compared = false;  // with the best possible bandwidth, if the sweep names it
   for (const validate::AccelerationError& of : summary.accelerations) compared = compared || of.regret;
   std::vector<std::string> header = {"estimator", "clips", "rms error of a(t), median (m/s²)"};
   if (compared) {
@@ -205,7 +205,7 @@ Json statistics_json(const ErrorStatistics& of) {
   return object;
 }
 
-/// Where some runs have no answer: the same over those that are alike at every value.
+/// If some runs have no answer: the same over those that are comparable at every value.
 void put_alike(Json& object, const validate::Series& series, const validate::GroupStatistics& group) {
   const validate::Likeness& of = series.likeness;
   if (of.whole) return;

@@ -11,8 +11,7 @@
 namespace glidelab::report {
 
 /// The section of a sweep's page on whether mu falls with mass (validate/study/sweep/mass_study.h, as part of the
-/// summary). HTML: the answer in words where the sweep names what was published, and the table. Empty of any other
-/// sweep.
+/// summary). HTML: the answer in words if the sweep names published values, and the table. Empty for any other sweep.
 std::string mass_study_section(const validate::MassStudy& study);
 
 /// EnvironmentError if gnuplot fails.

@@ -158,7 +158,7 @@ std::string shrink_text(const diagnose::GapSizes& gap) {
 
 namespace {
 
-/// Code points of UTF-8: every byte that does not continue one.
+/// Number of UTF-8 code points: bytes that are not continuation bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

@@ -1,6 +1,6 @@
-/// Text for people: what the recovered quantities (core/result/quantity.h), the estimators (fit/estimators.h), the
-/// configurations and files of a result, and the effects are called, a file's keys with sizes in the units that people
-/// use (base/text/number_text.h), intervals of a gap, and tables for a terminal.
+/// Text for readers: the names of the recovered quantities (core/result/quantity.h), the estimators (fit/estimators.h),
+/// the configurations and files of a result, and the effects; a file's keys with sizes in customary units
+/// (base/text/number_text.h); intervals of a gap; and tables for a terminal.
 #pragma once
 
 #include <array>
@@ -23,16 +23,16 @@ using core::QuantityName;
 using core::symbol_of;
 using core::unit_of;
 
-/// "v (m/s)"; the name alone of a pure number.
+/// "v (m/s)"; only the name for a pure number.
 std::string with_unit(std::string_view name, std::string_view unit);
 
 /// "K/m (1/s)" for "k_over_m_1_s": a quantity at the head of a row or a column.
 std::string heading_of(std::string_view key);
 
-/// What a page of `count` recordings is about: the first one's name, "my glider and 2 more".
+/// The subject of a page of `count` recordings: the first one's name, "my glider and 2 more".
 std::string title_of(std::string first, std::size_t count);
 
-/// A unit behind a number: " 1/s", "°", and nothing of a pure number.
+/// A unit after a number: " 1/s", "°", and nothing for a pure number.
 std::string unit_suffix(std::string_view unit);
 
 /// "fit of the whole motion" for "trajectory"; any other name stays as it is.
@@ -41,13 +41,13 @@ std::string estimator_name(std::string_view estimator);
 /// A recovered quantity with its names.
 struct NamedQuantity {
   QuantityName name;
-  const core::Quantity* quantity = nullptr;  ///< in the configuration that was given
+  const core::Quantity* quantity = nullptr;  ///< in the given configuration
 };
 
 /// K/m, µ, α and the terminal velocity of a configuration, in the order of kQuantities.
 std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::ConfigurationResult& configuration);
 
-/// "0.335 kg, 4°", and with the group where another of the results has the same mass and stated inclination: "0.5 kg,
+/// "0.335 kg, 4°", with the group added if another of the results has the same mass and stated inclination: "0.5 kg,
 /// 2°, plunger". Text from a file: to be escaped.
 std::string configuration_name(const core::AnalysisResults& results, const core::ConfigurationResult& configuration);
 
@@ -55,24 +55,24 @@ std::string configuration_name(const core::AnalysisResults& results, const core:
 /// is any text; a file's name is not.
 std::string file_name_part(std::string_view text);
 
-/// `phase-<clip>.csv` for each clip of the results; where clips of two folders bear one name, the folder's name stands
-/// before it (and a number behind it where that is the same as well).
+/// `phase-<clip>.csv` for each clip of the results; if clips of two folders have the same name, the folder's name
+/// precedes it (and a number follows it if that is also the same).
 std::vector<std::string> phase_file_names(const core::AnalysisResults& results);
 
-/// What effects are called on pages, beside the ids that stand in files and options, by the names that the effects' own
-/// files give them (diagnose/effects/): "quadratic drag + rolling shutter" of "quadratic_drag + rolling_shutter";
-/// "none" and "unknown" are told in words too. What is the id of no effect (a cause without a name, in words already)
+/// The names of effects on pages, in contrast to the ids in files and options; the names are given by the effects' own
+/// files (diagnose/effects/): "quadratic drag + rolling shutter" for "quadratic_drag + rolling_shutter"; "none" and
+/// "unknown" are also put into words. A text that is not the id of an effect (a cause without a name, already in words)
 /// stays as it is.
 std::string effect_name(std::string_view ids);
 
-/// What the letters beside the effect's size mean: "a force −c v |v|"; empty where its size is a word, or an id is of
-/// no effect.
+/// The meaning of the letters in the effect's size: "a force −c v |v|"; empty if its size is a word, or if an id is not
+/// that of an effect.
 std::string effect_meaning(std::string_view id);
 
 /// effect_name() of each.
 std::vector<std::string> effect_names(const std::vector<std::string>& ids);
 
-/// The name, and the ids small beside it where it is another. HTML.
+/// The name, with the ids in small type next to it if they differ. HTML.
 std::string effect_html(std::string_view ids);
 
 using base::name_and_unit;
@@ -80,15 +80,16 @@ using base::NamedUnit;
 using base::size_and_sd_text;
 using base::size_text;
 
-/// "line = 30.67 ± 0.34 µs" for the key "line_s"; of a set-up by itself ("x_mid_m.NAME") "x_mid.NAME = …".
+/// "line = 30.67 ± 0.34 µs" for the key "line_s"; for a single set-up ("x_mid_m.NAME") "x_mid.NAME = …".
 std::string parameter_text(std::string_view key, double value, double sd);
-/// The same of a fitted one: "codec = libx264" of what is a word, "line: not known: …" of what the data do not tell.
+/// The same for a fitted one: "codec = libx264" if it is a word, "line: not known: …" if the data do not determine it.
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter);
 
-/// "22.1 to 28"; "–" where there is none.
+/// "22.1 to 28"; "–" if there is none.
 std::string interval_text(const std::optional<diagnose::GapInterval>& interval);
 
-/// How much of what is above the floor goes: "96.9 % (95.8 to 98.0 %)"; "" where the gap is at the floor.
+/// The fraction of the gap above the noise floor that disappears: "96.9 % (95.8 to 98.0 %)"; "" if the gap is at the
+/// noise floor.
 std::string shrink_text(const diagnose::GapSizes& gap);
 
 /// "a, b and c", or with another last word: "a, b, or c".
@@ -97,7 +98,7 @@ std::string list_of(const std::vector<std::string>& words, const std::string& la
 /// The text with "?" for each control character: a clip's name must not steer the terminal.
 std::string printable(std::string text);
 
-/// Columns set under their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
+/// Columns aligned below their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
 /// characters, not bytes. printable() is applied to every cell.
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number);
 

@@ -1,4 +1,4 @@
-/// How numbers and missing numbers stand in a JSON file: null with the reason in "why" beside it, never NaN.
+/// Numbers and missing numbers in a JSON file: null with the reason in "why" beside it, never NaN.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace glidelab::report {
 
 using Json = nlohmann::ordered_json;
 
-/// Sets object[key] to the number, or to null with its reason where it is not finite.
+/// Sets object[key] to the number, or to null with its reason if it is not finite.
 inline void put(Json& object, const std::string& key, double value) {
   if (std::isfinite(value)) {
     object[key] = value;
@@ -22,14 +22,14 @@ inline void put(Json& object, const std::string& key, double value) {
   object["why"][key] = "the calculation gives no finite number";
 }
 
-/// The same; where there is none, null with the reason that is given.
+/// The same; if there is no number, null with the given reason.
 inline void put(Json& object, const std::string& key, const std::optional<double>& value, const std::string& why) {
   if (value) return put(object, key, *value);
   object[key] = nullptr;
   object["why"][key] = why.empty() ? "not known" : why;
 }
 
-/// {"value", "sd", "interval95"}; null with its reason where the value is not finite.
+/// {"value", "sd", "interval95"}; null with its reason if the value is not finite.
 inline void put(Json& object, const std::string& key, const core::Estimate& estimate) {
   if (!std::isfinite(estimate.value)) return put(object, key, estimate.value);
   Json inner;
@@ -44,8 +44,8 @@ inline void put(Json& object, const std::string& key, const core::Estimate& esti
   object[key] = std::move(inner);
 }
 
-/// The same, with "uncorrected" and "smoothing_correction" where one was made; null with why the data do not determine
-/// it.
+/// The same, with "uncorrected" and "smoothing_correction" if a correction was made; null with the reason why the data
+/// do not determine it.
 inline void put(Json& object, const std::string& key, const core::Quantity& quantity) {
   if (quantity.estimate) {
     put(object, key, *quantity.estimate);
@@ -59,7 +59,7 @@ inline void put(Json& object, const std::string& key, const core::Quantity& quan
   object["why"][key] = quantity.why.empty() ? "the data do not determine it" : quantity.why;
 }
 
-/// The text of a file: indented, one newline at the end, and text that is no UTF-8 made so.
+/// The text of a file: indented, one newline at the end, and invalid UTF-8 replaced.
 inline std::string json_text(const Json& document) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

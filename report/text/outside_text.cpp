@@ -10,7 +10,7 @@
 namespace glidelab::report {
 namespace {
 
-/// Calls with each kind that occurred.
+/// Calls `use` with each kind of failure that occurred.
 template <typename Use>
 void for_failures(const fit::OutsideTally& tally, const Use& use) {
   for (std::size_t i = 0; i < fit::kOutsideFailures.size(); ++i) {

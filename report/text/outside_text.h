@@ -9,7 +9,7 @@
 namespace glidelab::report {
 
 /// {"name", "command", "runs", "failed", "failures": {"exit_status": {"count", "first"}, …}, "mean_s", "longest_s"};
-/// only kinds of failure that occurred stand in it, and times only where they were kept.
+/// it contains only kinds of failure that occurred, and times only if they were recorded.
 Json outside_json(const fit::OutsideTally& tally);
 
 /// "mine: 2 of 50 runs failed (2 not done in time, first: …); 0.12 s a run, 1.3 s at most"; printable, no newline.

@@ -69,10 +69,10 @@ std::string comparison_json(const validate::Comparison& comparison) {
 namespace {
 
 constexpr std::size_t kRestitutionPoints = 2000;
-constexpr std::size_t kMostNamed = kColors.size();  // clips of which each has a colour of its own
+constexpr std::size_t kMostNamed = kColors.size();  // clips that each have their own colour
 
-/// One row a quantity, one colour a kind of quantity, filled for the lines' values and open for the whole motion's;
-/// the page's reader looks for points beyond the band of ±2.
+/// One row per quantity, one colour per kind of quantity, filled for the lines' values and open for the whole motion's;
+/// the reader looks for points beyond the band of ±2.
 std::vector<Plot> error_plot(const validate::Comparison& comparison) {
   std::map<std::string, PlotData> by_quantity;
   std::vector<std::string> order;
@@ -177,11 +177,11 @@ namespace {
 
 constexpr double kAgrees_sd = 2.0;  // standard deviations from the truth: 95 of 100 values lie within
 
-/// What a reader wants to know first.
+/// The quantities that a reader wants to know first.
 constexpr std::array<std::string_view, 3> kHeadline = {
     core::key_of(core::Measurand::k_over_m), core::key_of(core::Measurand::mu), core::key_of(core::Measurand::alpha)};
 
-/// The fit of the whole motion where it has a value, as it is the more precise; else the first of the estimators.
+/// The fit of the whole motion if it has a value, because it is more precise; otherwise the first of the estimators.
 std::string headline_estimator(const validate::Comparison& comparison) {
   for (const validate::QuantityComparison& q : comparison.quantities) {
     const fit::Estimator* const estimator = fit::find_estimator(q.estimator);
@@ -194,14 +194,14 @@ std::string name_of(const validate::QuantityComparison& q) {
   return fmt::format("{} ({:.6g} kg, {:.4g}°)", q.configuration, q.mass_kg, q.incline_deg);
 }
 
-/// "2.768 ± 0.002 (2.7680)"; "–" where nothing was recovered or is true.
+/// "2.768 ± 0.002 (2.7680)"; "–" if there is no recovered or no true value.
 std::string beside_truth(const validate::QuantityComparison& q) {
   const double sd = q.sd.value_or(0.0);
   return fmt::format("{} ({})", q.value ? base::value_and_sd_text(*q.value, sd) : "–",
                      q.truth ? base::value_text(*q.truth, sd) : "–");
 }
 
-/// How many values lie near their truth, and which is farthest off; one sentence.
+/// How many values are close to their truth, and which is farthest off; one sentence.
 std::string agreement_of(const validate::Comparison& comparison) {
   std::size_t compared = 0, near = 0;
   double worst = 0.0;
@@ -256,7 +256,7 @@ std::string headline(const validate::Comparison& comparison) {
       no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
 }
 
-/// How far measured positions are off, in a line.
+/// The errors of the measured positions, in one line.
 std::string restitution_text(const validate::RestitutionComparison& restitution) {
   if (restitution.points.empty()) return "\nposition error: no marker was found\n";
   std::string text =
@@ -275,7 +275,7 @@ std::string cell(const std::optional<double>& value, std::string (*text)(double,
   return value ? text(*value, sd) : "–";
 }
 
-/// A quantity that these motions do not have, as a level track has no terminal velocity: no row.
+/// A quantity that these motions do not have (a level track has no terminal velocity) gets no row.
 bool is_absent(const validate::QuantityComparison& of) {
   return !of.truth && !of.value;
 }
@@ -296,7 +296,7 @@ std::string comparison_table(const validate::Comparison& comparison) {
     std::string in_sd = "–";
     if (q.error && sd > 0.0) {
       const double ratio = *q.error / sd;
-      // Three standard deviations happen once in 370 times; a reader should look at more.
+      // Three standard deviations happen once in 370 times; a larger deviation deserves the reader's attention.
       in_sd = fmt::format("<span class=\"{}\">{:+.2f}</span>", std::abs(ratio) <= 3.0 ? "good" : "bad", ratio);
     }
     const bool relative = q.error && q.truth && *q.truth != 0.0 && q.quantity != core::key_of(core::Measurand::alpha) &&

@@ -1,5 +1,5 @@
-/// report.html of `validate`: truth, recovered value and error first, then all that an analysis shows; its plots of
-/// truth against estimate, and comparison.json.
+/// report.html of `validate`: truth, recovered value and error first, then everything that an analysis shows; its plots
+/// of truth against estimate, and comparison.json.
 #pragma once
 
 #include <string>
@@ -14,12 +14,12 @@
 
 namespace glidelab::report {
 
-/// comparison.json: each recovered value beside its truth, with a newline at its end. No number in it is NaN; what is
-/// missing is null with its reason in "why".
+/// comparison.json: each recovered value with its truth, with a newline at its end. No number in it is NaN; a missing
+/// value is null with its reason in "why".
 std::string comparison_json(const validate::Comparison& comparison);
 
 /// Truth against estimate: errors of the recovered values in units of their standard deviation, restitution errors of
-/// the positions over the field, and errors of the centres within their pixels; each only where there is something to
+/// the positions over the field, and errors of the centres within their pixels; each only if there is something to
 /// compare.
 std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison);
 
@@ -28,12 +28,11 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
                        const validate::Comparison& comparison, const std::vector<core::Preview>& previews,
                        const base::Progress& progress = base::no_progress);
 
-/// First, of each configuration, K/m, mu and alpha by the better estimator beside their truth, and how many values
-/// agree with it; then, below a line "In full:", every quantity, R² of each clip's lines, position error, frames and
-/// time.
+/// First, for each configuration, K/m, mu and alpha by the better estimator with their truth, and how many values agree
+/// with it; then, below a line "In full:", every quantity, R² of each clip's lines, position error, frames and time.
 std::string comparison_text(const validate::Comparison& comparison);
 
-/// On how well the truth was recovered. HTML.
+/// How well the truth was recovered. HTML.
 std::string meaning_of(const validate::Comparison& comparison);
 
 }  // namespace glidelab::report

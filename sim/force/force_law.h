@@ -1,4 +1,4 @@
-/// Force laws along the track: the terms that add up on a glider, and what a scenario can say of each law.
+/// Force laws along the track: the terms that add up on a glider, and what a scenario can say about each law.
 ///
 /// Frame: x positive downhill, v = dx/dt. Forces in newtons along x. A term may depend on v only through smooth
 /// functions on each side of v = 0; a term that jumps at v = 0 (Coulomb, Stribeck) gives its value for either side and
@@ -33,18 +33,18 @@ class ForceTerm {
  public:
   virtual ~ForceTerm() = default;
   /// Force at speed v while sliding in `direction` (+1, -1); at v = 0 the limit from that side. Beyond v = 0 (v of the
-  /// other sign) a continuation without a jump, on which a solver steps before it finds the root.
+  /// other sign) it is continued without a jump, because a solver steps there before it finds the root.
   virtual double force_n(double v_m_s, int direction, const Contact& contact) const = 0;
   /// d force / dv on that side; may be infinite at v = 0.
   virtual double slope_n_s_m(double v_m_s, int direction, const Contact& contact) const = 0;
-  /// d force / d each parameter of the law, in the law's order (ForceLaw::parameters), v not 0 where the slope is
-  /// infinite.
+  /// Derivatives of the force by each parameter, in the law's order (ForceLaw::parameters). v is not 0 if the slope is
+  /// infinite there.
   virtual std::vector<double> by_parameter(double v_m_s, int direction, const Contact& contact) const = 0;
   /// Largest force with which the term opposes motion at rest (static friction); 0 for a term that does not hold. Not
-  /// less than |force_n(0, direction)| of a term that holds.
+  /// less than |force_n(0, direction)| for a term that holds.
   virtual double holding_n(const Contact&) const { return 0.0; }
-  /// The p of |force(v) - force(0)| ~ |v|^p as v -> 0. Below 1 the slope at rest is infinite, and the term alone stops
-  /// a glider in finite time; from 1 on it never does.
+  /// The exponent p of |force(v) - force(0)| ~ |v|^p as v -> 0. Below 1 the slope at rest is infinite, and the term
+  /// alone stops a glider in finite time; at 1 or above it never does.
   virtual double exponent_at_rest() const { return 1.0; }
   /// What the term adds to m dv/dt = m g sin(alpha) - K v - sign(v) mu N; nothing for any other law.
   virtual std::optional<LinearShare> linear() const { return std::nullopt; }
@@ -54,24 +54,24 @@ class ForceTerm {
 struct ForceParameter {
   std::string key;
   base::Range range;
-  std::string help;            ///< what it is, for a person
+  std::string help;            ///< what it is, for the reader
   double example = 0.0;        ///< a value as on a laboratory's track
   std::string over_mass = {};  ///< a second key for the value divided by the mass; a table has exactly one of the two
-  /// An earlier parameter: its value is taken where this key is left out, and this one is never below it.
+  /// An earlier parameter: its value is taken if this key is left out, and this one is never below it.
   std::string not_below = {};
 };
 
-/// A law that a scenario can name.
+/// A force law that a scenario can name.
 struct ForceLaw {
   std::string id;          ///< "viscous"
   std::string force;       ///< along x, as docs write it; d is the direction of sliding, N the normal force
   std::string holds = {};  ///< the force it holds at rest, likewise; empty for none
   std::vector<ForceParameter> parameters;
-  /// From one number for each parameter; they are not checked.
+  /// Makes the term from one number for each parameter, which are not checked.
   std::function<std::shared_ptr<const ForceTerm>(std::span<const double>)> make;
 
-  /// The term with these values, in the order of `parameters`; a last one that is left out is taken from its
-  /// `not_below`. std::logic_error where the number of values is wrong or a value is out of its range.
+  /// The term with these values, in the order of `parameters`. If the last one is left out, it is taken from its
+  /// `not_below`. std::logic_error if the number of values is wrong or a value is out of its range.
   std::shared_ptr<const ForceTerm> with(std::initializer_list<double> values) const;
 };
 

@@ -18,7 +18,7 @@ using base::TomlTable;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-// A value as it is, or over the mass; exactly one of the two.
+// A value as it is, or divided by the mass; exactly one of the two.
 double read_either(const TomlTable& table, const ForceParameter& parameter, double mass_kg) {
   const bool absolute = table.has(parameter.key);
   const bool over_mass = table.has(parameter.over_mass);
@@ -44,7 +44,7 @@ double read_not_below(const TomlTable& table, const ForceParameter& parameter, d
   return value;
 }
 
-// Without a law nobody knows which keys belong here, so none of them is called unknown.
+// Without a law the allowed keys are not known, so none is called unknown.
 std::shared_ptr<const ForceTerm> no_law(const TomlTable& table) {
   for (const ForceLaw* law : force_laws()) {
     for (const ForceParameter& parameter : law->parameters) {

@@ -8,8 +8,8 @@
 
 namespace glidelab::sim {
 
-/// Reads `law` and the keys of that law (law_list.h) from one [[configuration.force]]. `mass_kg` turns a value over the
-/// mass into the value. What is wrong is recorded in the file; the term then holds NaN and must not be used before
+/// Reads `law` and the keys of that law (law_list.h) from one [[configuration.force]]. A value given over the mass is
+/// multiplied by `mass_kg`. Errors are recorded in the file; the term then holds NaN and must not be used before
 /// finish().
 std::shared_ptr<const ForceTerm> read_force(const base::TomlTable& table, double mass_kg);
 

@@ -18,7 +18,8 @@ namespace glidelab::sim {
 
 namespace {
 
-// Between two requested times. A motion of any length takes some thousand; more means that a force is not what it says.
+// Steps between two requested times. A motion of any length takes a few thousand; more means that a force is not what
+// it claims to be.
 constexpr long kMaxSteps = 100'000;
 
 OdeVector read(N_Vector vector) {
@@ -58,7 +59,7 @@ struct CvodesSolver::Memory {
     if (context != nullptr) SUNContext_Free(&context);
   }
 
-  // Runs a call-back: 0 done, 1 not finite (CVODES tries a smaller step), -1 thrown (rethrown behind CVODES).
+  // Runs a callback: 0 done, 1 not finite (CVODES tries a smaller step), -1 thrown (rethrown after CVODES returns).
   template <class Call>
   int guarded(Call&& call) {
     try {
@@ -82,7 +83,8 @@ struct CvodesSolver::Memory {
     auto& memory = *static_cast<Memory*>(self);
     return memory.guarded([&] {
       const OdeMatrix jacobian = memory.system.jacobian(read(y));
-      Eigen::Map<Eigen::MatrixXd>(SM_DATA_D(matrix), jacobian.rows(), jacobian.cols()) = jacobian;  // by columns, both
+      Eigen::Map<Eigen::MatrixXd>(SM_DATA_D(matrix), jacobian.rows(), jacobian.cols()) = jacobian;  // both are
+                                                                                                    // column-major
       return jacobian.allFinite();
     });
   }

@@ -1,11 +1,11 @@
-/// CVODES (SUNDIALS) behind one owner of its memory.
+/// CVODES (SUNDIALS), wrapped in one owner of its memory.
 ///
 ///     dy/dt = rate(y), autonomous, up to kMostComponents components; stops at a root of event(y).
 ///
-/// With a Jacobian: backward differentiation formulas of order 1 to 5 with Newton's method. Without one, for what is
-/// not stiff: Adams' formulas of order 1 to 12 with functional iteration.
+/// With a Jacobian: backward differentiation formulas of order 1 to 5 with Newton's method. Without one, for systems
+/// that are not stiff: Adams formulas of order 1 to 12 with functional iteration.
 ///
-/// Nothing is printed: what CVODES reports becomes the text of a NumericalError with time, step and tolerances.
+/// Nothing is printed: CVODES' report becomes the text of a NumericalError with time, step and tolerances.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ struct OdeSystem {
   std::function<OdeVector(const OdeVector&)> rate;
   std::function<OdeMatrix(const OdeVector&)> jacobian;  ///< d rate[i] / d y[j]; empty: Adams
   std::function<double(const OdeVector&)> event;        ///< empty: no event
-  int event_crossing = 0;                               ///< +1 where it rises, -1 where it falls
+  int event_crossing = 0;                               ///< +1: rising; -1: falling
   double relative_tolerance = 0.0;
   OdeVector absolute_tolerance;  ///< of each component
 };
@@ -35,20 +35,20 @@ struct OdeState {
 
 class CvodesSolver {
  public:
-  /// Ready to move `system` from (t, y). NumericalError where CVODES refuses or there is no memory.
+  /// Prepares to move `system` from (t, y). NumericalError if CVODES refuses or there is no memory.
   CvodesSolver(OdeSystem system, double t_s, const OdeVector& y);
   ~CvodesSolver();
   CvodesSolver(CvodesSolver&&) noexcept;
   CvodesSolver& operator=(CvodesSolver&&) noexcept;
 
-  /// The state at `t_s` (later than all before, and than the start by more than rounding), or at the event that comes
-  /// first. After an event, restart. NumericalError where a step fails.
+  /// The state at `t_s`, or at an event that comes first. `t_s` must be later than all times before, and later than the
+  /// start by more than rounding. After an event, restart. NumericalError if a step fails.
   OdeState advance(double t_s);
 
-  /// Starts anew with another system of the same size and kind: the order falls to 1 and no history is kept.
+  /// Starts again with another system of the same size and kind: the order falls to 1 and no history is kept.
   void restart(OdeSystem system, double t_s, const OdeVector& y);
 
-  /// Steps taken since the construction.
+  /// Steps taken since construction.
   long steps() const;
 
  private:

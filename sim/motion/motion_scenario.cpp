@@ -131,7 +131,7 @@ ConfigurationSetup read_configuration(const TomlTable& table, double gravity_m_s
   return setup;
 }
 
-// One set-up of the track has one inclination, and one reading of it.
+// One set-up of the track has one inclination and one reading of it.
 void check_groups(const std::vector<TomlTable>& tables, const std::vector<ConfigurationSetup>& setups) {
   std::map<std::string, std::size_t> first_of;
   for (std::size_t i = 0; i < setups.size(); ++i) {

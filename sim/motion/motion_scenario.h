@@ -1,5 +1,5 @@
 /// The motions of a scenario: which gliders, under which forces, launched how, and the true K/m, mu and terminal
-/// velocity, with which an analysis is compared. What the camera sees of them is render's.
+/// velocity, with which an analysis is compared. render/ models what the camera sees of them.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 namespace glidelab::sim {
 
 /// K/m and mu of a body whose forces are viscous and Coulomb terms and nothing else (several of one kind add up; none
-/// of a kind is 0). mu is that of sliding.
+/// of a kind is 0). mu is the sliding coefficient.
 struct LinearLaw {
   double k_over_m_1_s = 0.0;
   double mu = 0.0;
@@ -21,9 +21,9 @@ struct LinearLaw {
 std::optional<LinearLaw> linear_law(const Body& body);
 
 /// The speed v > 0 at which the net force vanishes and falls through zero, so that the glider settles to it: for
-/// viscous and Coulomb friction (m g sin(alpha) - mu N) / K. Of several the lowest. Nothing where there is none up to
-/// 1000 m/s, or where the force at v = 0 is 0 within rounding and falls. Found by bisection to the last bit between
-/// neighbours of a logarithmic grid, 64 speeds a decade from 1 nm/s: two zeros closer than that are missed.
+/// viscous and Coulomb friction (m g sin(alpha) - mu N) / K. If there are several, the lowest. Empty if there is none
+/// up to 1000 m/s, or if the force at v = 0 is 0 within rounding and falls. Found by bisection to the last bit between
+/// neighbours of a logarithmic grid with 64 speeds per decade from 1 nm/s: two zeros closer than that are missed.
 std::optional<double> limit_speed_m_s(const Body& body);
 
 enum class Launched { up, down, released };
@@ -54,8 +54,8 @@ struct MotionScenario {
 };
 
 /// Reads `format`, `name`, `gravity_m_s2` and [[configuration]] with its [[configuration.force]] and
-/// [[configuration.clip]] (docs/reference/scenario.md). What is wrong is recorded in the file and thrown by its
-/// finish(); the caller reads its own tables and calls that.
+/// [[configuration.clip]] (docs/reference/scenario.md). Errors are recorded in the file and thrown by its finish(); the
+/// caller reads its own tables and then calls finish().
 MotionScenario read_motions(const base::TomlTable& root);
 
 }  // namespace glidelab::sim

@@ -87,7 +87,7 @@ Eigen::Vector3d Slide::rate(const Eigen::Vector3d& y) const {
 
 Eigen::Matrix3d Slide::jacobian(const Eigen::Vector3d& y) const {
   const double v = speed_m_s(y[1]);
-  // Not nearer to rest than where rate() takes the ratio; there all but the ratio is 0.
+  // No nearer to rest than where rate() takes the ratio; there everything but the ratio is 0.
   const double u = variable_ == Variable::speed ? v : direction_ * std::max(std::abs(v), kSpeedOfRatio);
   const Force force = force_at(u);
   double rate_by_variable = force.slope_n_s_m / body_.mass_kg;
@@ -119,10 +119,10 @@ OdeSystem Slide::system(double relative_tolerance, double absolute_tolerance) co
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-// Shorter than this, nothing changes that a double could show, and products in CVODES would underflow.
+// In a shorter step nothing changes within a double's precision, and products in CVODES would underflow.
 constexpr double kShortestStep = 1e-100;  // s
-// Times the absolute tolerance: the speed below which a slope that is infinite at rest is straightened. At 1 Newton's
-// method was seen to stall in some of 10000 random motions, at 100 in none of 24000.
+// Times the absolute tolerance: the speed below which a slope that is infinite at rest is made linear. At 1, Newton's
+// method stalled in some of 10000 random motions; at 100, in none of 24000.
 constexpr double kLeastSpeed = 100.0;
 
 void require(bool good, const std::string& key, double found, const std::string& expected) {
@@ -143,7 +143,7 @@ void check(const Body& body, double x0_m, double v0_m_s, std::span<const double>
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const double t = times_s[i];
     const bool rises = std::isfinite(t) && t >= 0.0 && t > before;
-    if (!rises) {  // to put the words together for each of them would take as long as to simulate
+    if (!rises) {  // composing the message for each of them would take as long as the simulation
       require(false, fmt::format("times_s[{}]", i), t,
               i == 0 ? "a time that is not negative" : fmt::format("a time later than {}", before));
     }
@@ -155,7 +155,7 @@ Mode sliding(double sign) {
   return sign < 0.0 ? Mode::slide_up : Mode::slide_down;
 }
 
-// One motion on its way through its modes.
+// One motion, passing through its modes.
 class Motion {
  public:
   Motion(const Body& body, double x0_m, double v0_m_s, std::span<const double> times_s, const SolverOptions& options)
@@ -186,7 +186,7 @@ class Motion {
     trajectory_.dissipated_j = dissipated_j;
   }
 
-  // No force here depends on time, so what sticks stays.
+  // No force here depends on time, so a glider that sticks stays.
   void stay() {
     while (!done()) record(start_[0], 0.0, 0.0, start_[2]);
   }
@@ -206,7 +206,7 @@ class Motion {
     trajectory_.changes.push_back({t_s, x_m, before, mode_});
   }
 
-  // To v = 0, or to the last time.
+  // Slides until v = 0 or the last time.
   void slide() {
     const Slide slide(body_, static_cast<int>(mode_), kLeastSpeed * options_.absolute_tolerance);
     const double start_a = slide.acceleration_m_s2(start_[1]);
@@ -214,7 +214,7 @@ class Motion {
       come_to_rest(start_s_, start_[0], start_[2]);
       return;
     }
-    // CVODES refuses a first step that is lost in rounding.
+    // CVODES refuses a first step that vanishes in rounding.
     while (!done() && next_s() - start_s_ <= std::max(8.0 * kEpsilon * next_s(), kShortestStep)) {
       record(start_[0], start_[1], start_a, start_[2]);
     }
@@ -225,7 +225,7 @@ class Motion {
       const OdeState reached = solver_->advance(t_s);
       const double v = slide.speed_m_s(reached.y[1]);
       const double a = slide.acceleration_m_s2(v);
-      // A root that rounding put a little behind the requested time is at that time.
+      // A root that rounding put slightly after the requested time counts as being at that time.
       const bool at_rest = slide.stops() && std::abs(v) <= 100.0 * kEpsilon * t_s * std::abs(a);
       if (reached.at_event || at_rest) {
         come_to_rest(reached.t_s, reached.y[0], reached.y[2]);
@@ -271,7 +271,7 @@ std::string_view name_of(Mode mode) {
 
 Mode mode_at_rest(const Body& body) {
   const double load = load_at_rest_n(body);
-  // Equal up to rounding counts as held: mu = tan(alpha) is a fair thing to write down.
+  // Equality up to rounding counts as held: mu = tan(alpha) is a legitimate input.
   if (std::abs(load) <= holding_n(body) * (1.0 + 8.0 * kEpsilon)) return Mode::stick;
   return sliding(load);
 }

@@ -1,12 +1,12 @@
-/// The motion of a body as a hybrid system: slide up, slide down, stick; each slide is one stretch that the solver
-/// moves.
+/// The motion of a body as a hybrid system: slide up, slide down, stick; the solver integrates each slide as one
+/// stretch.
 ///
 ///     m dv/dt = m g sin(alpha) + sum of forces(v, sign v)     while sliding;     v = 0     while sticking.
 ///
 /// v = 0 is a root of the sliding modes. At a root the glider sticks where |m g sin(alpha) + smooth forces at rest|
-/// does not exceed what static friction holds, else it slides on with the sign of the net force; the solver is
-/// reinitialised there. sign(v) is never smoothed. The forces depend on v only, so a glider that has come to rest
-/// stays, and one that has reversed never does so again. Method: CVODES, BDF with Newton and the analytic slope
+/// does not exceed what static friction holds; otherwise it slides on with the sign of the net force; the solver is
+/// reinitialised there. sign(v) is never smoothed. The forces depend on v only, so a glider that has come to rest stays
+/// at rest, and one that has reversed never reverses again. Method: CVODES, BDF with Newton and the analytic slope
 /// (Slide::jacobian), tolerances in SolverOptions.
 #pragma once
 
@@ -25,17 +25,17 @@ namespace glidelab::sim {
 ///
 ///     y = (x, w, E)     x' = v,     m v' = net force(v, direction),     E' = -(net force - m g sin(alpha)) v
 ///
-/// v depends on nothing but itself, so |v| rises or falls all along, and whether it can reach 0 in finite time is known
-/// from the force at v -> 0, F0:
-///   * F0 against the direction: it does, and v = 0 is a root. The variable is w = v.
-///   * F0 along the direction: it does not; no root. w = v.
-///   * F0 = 0 (a level track without Coulomb friction): only where a force falls no faster than |v|^p, p < 1. Then
-///     w = |v|^(1-p), which goes through 0 at a finite rate. Else |v| falls for ever, and w = ln |v| keeps it accurate
-///     and its sign sure, so that rounding never makes a false root.
+/// v depends only on itself, so |v| rises or falls throughout, and whether it can reach 0 in finite time is known from
+/// the force at v -> 0, F0:
+///   * F0 against the direction: |v| reaches 0, and v = 0 is a root. The variable is w = v.
+///   * F0 along the direction: it does not, and there is no root. w = v.
+///   * F0 = 0 (a level track without Coulomb friction): it does only where a force falls no faster than |v|^p, p < 1.
+///     Then w = |v|^(1-p), which goes through 0 at a finite rate. Otherwise |v| falls for ever, and w = ln |v| keeps it
+///     accurate and its sign certain, so that rounding never makes a false root.
 ///
 /// Where w = v, a term with an infinite slope at rest is a straight line between 0 and `least_speed_m_s`, a little
-/// above the absolute tolerance of v: no solver resolves it there. It changes v by less than that speed (1e-12 m/s as
-/// simulate() has it, which is 1e-11 m over 10 s).
+/// above the absolute tolerance of v: no solver resolves it there. This changes v by less than that speed (1e-12 m/s in
+/// simulate(), which is 1e-11 m over 10 s).
 class Slide {
  public:
   /// `direction` is +1 or -1.
@@ -75,8 +75,8 @@ enum class Mode { slide_up = -1, stick = 0, slide_down = 1 };
 /// "slide_up", "stick", "slide_down".
 std::string_view name_of(Mode mode);
 
-/// What a body at v = 0 does: it sticks where |load at rest| <= what static friction holds (equality within rounding),
-/// else it slides with the sign of the load.
+/// What a body at v = 0 does: it sticks if |load at rest| <= what static friction holds (equality within rounding);
+/// otherwise it slides with the sign of the load.
 Mode mode_at_rest(const Body& body);
 
 struct State {
@@ -107,14 +107,14 @@ struct SolverOptions {
   double absolute_tolerance = 1e-14;  ///< of x in m and v in m/s
 };
 
-/// With the standard tolerances, and speeds and distances as on a track: positions within 1e-9 m over 10 s, and the
-/// time of a reversal within 1e-9 s where the glider comes to v = 0 with 1 mm/s² or more (an error dv makes one of dv /
-/// a).
+/// With the standard tolerances, and with speeds and distances typical of a track, positions are within 1e-9 m over 10
+/// s. The time of a reversal is within 1e-9 s if the glider comes to v = 0 with 1 mm/s² or more (an error dv makes one
+/// of dv / a).
 ///
 /// Moves the body from (x0, v0) at t = 0 and returns its state at each of `times_s` (rising, not negative). At a
-/// requested time that is the instant of a reversal, the mode is the one after it. InputError where a number is not
-/// finite or the times do not rise; NumericalError with time, step and tolerance where CVODES fails; what a term throws
-/// passes through.
+/// requested time that is the instant of a reversal, the mode is the one after it. InputError if a number is not finite
+/// or the times do not rise; NumericalError with time, step and tolerance if CVODES fails. Exceptions thrown by a term
+/// pass through.
 Trajectory simulate(const Body& body, double x0_m, double v0_m_s, std::span<const double> times_s,
                     const SolverOptions& options = {});
 

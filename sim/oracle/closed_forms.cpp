@@ -68,7 +68,7 @@ std::optional<double> first_stop(const DryTrack& track, double v0, StopTime&& st
   return stop_time(sign_of(v0) * track.drive_m_s2 - track.friction_m_s2, std::abs(v0));
 }
 
-// Runs up to v = 0, and from there back or not at all.
+// Runs up to v = 0, and from there back or stays.
 template <class RunFrom, class StopTime>
 State piecewise(const DryTrack& track, double x0, double v0, double t, RunFrom&& run_from, StopTime&& stop_time) {
   const auto slide = [&](int direction, double start_s, double from_m, double speed0) -> State {
@@ -98,7 +98,7 @@ double phi1(double z) {
 }
 
 double phi2(double z) {
-  // (expm1(z) - z) / z² loses digits below |z| = 1; the series to z^18 / 20! has none to lose there (1 / 21! < 1e-19).
+  // (expm1(z) - z) / z² loses digits below |z| = 1; the series to z^18 / 20! loses none there (1 / 21! < 1e-19).
   if (std::abs(z) > 1.0) return (std::expm1(z) - z) / (z * z);
   double sum = 0.0;
   for (int n = 20; n >= 2; --n) sum = (1.0 + z * sum) / n;  // Horner: 1/2 (1 + z/3 (1 + z/4 (…)))
@@ -188,7 +188,7 @@ State power_law_motion(double k_1_s, double n, double x0_m, double v0_m_s, doubl
   const double f = k_1_s * std::pow(speed0, n - 1.0);
   const double log_ratio = -f * t_s * log1p_over(-(1.0 - n) * f * t_s);
   const double speed = speed0 * std::exp(log_ratio);
-  // way = (speed0^(2-n) - speed^(2-n)) / ((2-n) k)
+  // distance = (speed0^(2-n) - speed^(2-n)) / ((2-n) k)
   const double way = std::pow(speed0, 2.0 - n) / k_1_s * -log_ratio * phi1((2.0 - n) * log_ratio);
   return {t_s, x0_m + direction * way, direction * speed, -direction * k_1_s * std::pow(speed, n),
           direction < 0 ? Mode::slide_up : Mode::slide_down};

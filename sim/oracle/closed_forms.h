@@ -1,10 +1,10 @@
-/// Motions that can be written down, from the paper's equations and for single drag laws.
+/// Motions in closed form, from the paper's equations and for single drag laws.
 ///
 /// Frame and signs as everywhere: x positive downhill, friction opposes v. All rates are per mass: k = K/m in 1/s,
-/// q = c/m in 1/m, accelerations in m/s². Every formula goes over into its limit (k -> 0, q -> 0, no net acceleration,
-/// n -> 1) without a threshold at which the value jumps: differences are taken by expm1 and log1p.
+/// q = c/m in 1/m, accelerations in m/s². Every formula passes into its limit (k -> 0, q -> 0, no net acceleration, n
+/// -> 1) without a threshold at which the value jumps: differences are taken by expm1 and log1p.
 ///
-/// These are the oracle of simulate(), and share nothing with it but State.
+/// These are the oracle for simulate(), and share only State with it.
 #pragma once
 
 #include <optional>
@@ -38,28 +38,28 @@ Kinematics uniform_motion(double a_m_s2, double x0_m, double v0_m_s, double t_s)
 /// dv/dt = a0 - k v for any k >= 0: viscous_motion() with v_lim = a0 / k, and uniform_motion() at k = 0.
 Kinematics linear_motion(double a0_m_s2, double k_1_s, double x0_m, double v0_m_s, double t_s);
 
-/// When linear_motion() comes to v = 0; nothing where it does not (t = 0 where v0 = 0).
+/// When linear_motion() comes to v = 0; empty if it does not (t = 0 if v0 = 0).
 std::optional<double> linear_stop_time_s(double a0_m_s2, double k_1_s, double v0_m_s);
 
-/// What acts on the glider beside a drag that vanishes at rest, per mass.
+/// What acts on the glider besides a drag that vanishes at rest, per mass.
 struct DryTrack {
   double drive_m_s2 = 0.0;     ///< g sin(alpha), and constant forces
   double friction_m_s2 = 0.0;  ///< mu g cos(alpha), against the motion
-  double holding_m_s2 = 0.0;   ///< mu_static g cos(alpha), the most that is held at rest
+  double holding_m_s2 = 0.0;   ///< mu_static g cos(alpha), the largest force held at rest
 };
 
 DryTrack dry_track(double incline_rad, double mu, double mu_static, double gravity_m_s2);
 
-/// dv/dt = drive - k v - sign(v) friction (equation (8)), piece by piece: exponentials up to v = 0; there it sticks
-/// where |drive| <= holding (equality within rounding), else slides on with the sign of the drive. It comes to v = 0 at
-/// most once, for after that v grows.
+/// dv/dt = drive - k v - sign(v) friction (equation (8)), piece by piece: exponentials up to v = 0. There it sticks if
+/// |drive| <= holding (equality within rounding); otherwise it slides on with the sign of the drive. It comes to v = 0
+/// at most once, because v grows afterwards.
 State viscous_coulomb_motion(const DryTrack& track, double k_1_s, double x0_m, double v0_m_s, double t_s);
 
-/// When viscous_coulomb_motion() first comes to v = 0; nothing where it does not, or v0 = 0.
+/// When viscous_coulomb_motion() first comes to v = 0; empty if it does not, or if v0 = 0.
 std::optional<double> viscous_coulomb_stop_time_s(const DryTrack& track, double k_1_s, double v0_m_s);
 
-/// dv/dt = drive -+ friction - q v |v|: tangent while it is slowed down to v = 0, hyperbolic tangent (or cotangent,
-/// above v_lim) towards v_lim, with the same rule at v = 0.
+/// dv/dt = drive -+ friction - q v |v|: tangent while it slows down to v = 0, hyperbolic tangent (or cotangent, above
+/// v_lim) towards v_lim, with the same rule at v = 0.
 State quadratic_coulomb_motion(const DryTrack& track, double q_1_m, double x0_m, double v0_m_s, double t_s);
 
 std::optional<double> quadratic_coulomb_stop_time_s(const DryTrack& track, double q_1_m, double v0_m_s);
@@ -67,7 +67,7 @@ std::optional<double> quadratic_coulomb_stop_time_s(const DryTrack& track, doubl
 /// dv/dt = -k v |v / (1 m/s)|^(n-1) and nothing else, k > 0. For n < 1 it stops at power_law_stop_time_s() and sticks.
 State power_law_motion(double k_1_s, double n, double x0_m, double v0_m_s, double t_s);
 
-/// |v0|^(1-n) / ((1-n) k) for n < 1; nothing for n >= 1, or v0 = 0.
+/// |v0|^(1-n) / ((1-n) k) for n < 1; empty for n >= 1 or v0 = 0.
 std::optional<double> power_law_stop_time_s(double k_1_s, double n, double v0_m_s);
 
 /// dv/dt = -k v / (1 + (v/v_c)²) and nothing else, k > 0: the time from v0 to v (of one sign, |v| <= |v0|, not 0),

@@ -13,18 +13,18 @@
 namespace glidelab::sim {
 namespace {
 
-using ByLawAndStart = Eigen::Matrix<double, 2, 5>;  // by k, d, f, x0, v0
+using ByLawAndStart = Eigen::Matrix<double, 2, 5>;  // derivatives by k, d, f, x0, v0
 constexpr int kMostEvents = 100000;
-constexpr double kRounding = 1e-12;  // of the accelerations: a net one below that is none
+constexpr double kRounding = 1e-12;  // of the accelerations: a net one below this counts as zero
 
-/// Everything at one instant: where it is, which way it goes (0: it sticks), and how both depend on the parameters.
+/// The state at one instant: position, direction of motion (0: it sticks), and how both depend on the parameters.
 struct Instant {
   double t_s = 0.0, x_m = 0.0, v_m_s = 0.0;
   int direction = 0;
   ByLawAndStart by;
 };
 
-/// Of the law while it moves in one direction, on a piece of the drive.
+/// The law while the glider moves in one direction, on one piece of the drive.
 struct Sliding {
   double k, a0_m_s2, b_m_s3;
   int direction;
@@ -34,7 +34,7 @@ struct Sliding {
     return v0 * std::exp(z) + a0_m_s2 * t * phi1(z) + b_m_s3 * t * t * phi2(z);
   }
 
-  /// The first time in [0, until] at which v = 0 and the glider would turn, from `v0` in this direction or 0.
+  /// The first time in [0, until] at which v = 0 and the glider would turn. `v0` is in this direction or 0.
   std::optional<double> stop(double v0, double until, double least_m_s2) const {
     if (v0 == 0.0 && direction * a0_m_s2 < -least_m_s2) return 0.0;  // it stopped where the last piece ended
     const auto against = [&](double t) { return direction * speed(v0, t) < 0.0; };
@@ -51,10 +51,10 @@ struct Sliding {
     } else {
       return {};
     }
-    // From rest it has set off: v = 0 at 0 is no stop.
+    // It has set off from rest: v = 0 at time 0 is not a stop.
     if (low == 0.0 && v0 == 0.0) return {};
     for (int i = 0; i < 200 && high - low > 4.0 * std::numeric_limits<double>::epsilon() * high; ++i) {
-      // Newton's step, where it stays within the bracket.
+      // Newton's step, if it stays within the bracket.
       const double middle = 0.5 * (low + high);
       const double value = speed(v0, middle), by_t = slope_at(v0, middle);
       double next = by_t != 0.0 ? middle - value / by_t : middle;
@@ -115,7 +115,7 @@ class DrivenMotion {
   }
 
  private:
-  /// The end of the piece of the drive in which t lies, or infinity.
+  /// The end of the piece of the drive that contains t, or infinity.
   double end_of_piece(double t) {
     while (next_ < recorded_.t_s.size() && recorded_.t_s[next_] <= t) ++next_;
     return next_ < recorded_.t_s.size() ? recorded_.t_s[next_] : std::numeric_limits<double>::infinity();
@@ -137,7 +137,7 @@ class DrivenMotion {
 
   int direction_at_rest(double pull) const { return std::abs(pull) <= friction_ ? 0 : pull > 0.0 ? 1 : -1; }
 
-  /// To `until`, the end of the piece, or the next event, whichever comes first.
+  /// Advances to `until`, the end of the piece, or the next event, whichever comes first.
   void advance(double until) {
     const double to = std::min(until, end_of_piece(at_.t_s)), length = to - at_.t_s;
     const double p = pull(at_.t_s), b = rise(at_.t_s);
@@ -157,7 +157,7 @@ class DrivenMotion {
     at_.by.row(1) *= before != 0.0 ? after / before : 0.0;
   }
 
-  /// At rest until the drive exceeds the friction.
+  /// Stays at rest until the drive exceeds the friction.
   void stay(double p, double b, double to) {
     const double end = p + b * (to - at_.t_s);
     at_.by.row(1).setZero();
@@ -179,7 +179,7 @@ class DrivenMotion {
 
   double k_, drive_, friction_;
   const RecordedDrive& recorded_;
-  std::size_t next_ = 0;  ///< of the samples, the first after the current instant
+  std::size_t next_ = 0;  ///< index of the first sample after the current instant
   int events_ = 0;
   Instant at_;
 };

@@ -1,4 +1,4 @@
-/// Motion under viscous and Coulomb friction and a drive that was recorded, with its derivatives in closed form.
+/// Motion under viscous and Coulomb friction and a recorded drive, with derivatives in closed form.
 ///
 ///     dv/dt = d + p(t) - k v - s f,     s = sign(v),     p(t) linear between its samples
 ///
@@ -8,8 +8,9 @@
 ///     e = exp(-k t),  phi = (1 - e)/k,  psi = (t - phi)/k,  chi = (t²/2 - psi)/k
 ///
 /// v has at most one extremum on a piece, so its zeros are bracketed by the piece's ends and that extremum. At v = 0
-/// the glider sticks where |d + p| <= f, until the drive exceeds f, else it turns; the derivatives jump as the head of
-/// sensitivity.h says, and are 0 in v when it sets off (the net force is 0 then). All formulas go over into k = 0.
+/// the glider sticks if |d + p| <= f, until the drive exceeds f; otherwise it turns. The derivatives jump as described
+/// at the top of sensitivity.h; those of v are 0 when it sets off (the net force is 0 then). All formulas pass smoothly
+/// into k = 0.
 #pragma once
 
 #include <span>
@@ -19,14 +20,14 @@
 
 namespace glidelab::sim {
 
-/// p at rising times, linear between them; before the first and after the last sample it stays.
+/// p at rising times, linear between them; before the first and after the last sample it is constant.
 struct RecordedDrive {
   std::vector<double> t_s;
   std::vector<double> p_m_s2;
 };
 
-/// As track_motion_sensitive(), which it is where p = 0: from (x0, v0) at t = 0, by k, d, f, x0, v0, in this order, at
-/// each of `times_s` (rising, not negative). NumericalError where a number is not finite.
+/// As track_motion_sensitive(), with which it agrees for p = 0: from (x0, v0) at t = 0, derivatives by k, d, f, x0, v0,
+/// in this order, at each of `times_s` (rising, not negative). NumericalError if a number is not finite.
 std::vector<SensitiveState> driven_track_sensitive(double k_1_s, double drive_m_s2, double friction_m_s2, double x0_m,
                                                    double v0_m_s, std::span<const double> times_s,
                                                    const RecordedDrive& recorded);

@@ -111,7 +111,7 @@ class SensitiveMotion {
     return system;
   }
 
-  /// To v = 0, or to the last time.
+  /// Slides until v = 0 or the last time.
   void slide() {
     const int direction = static_cast<int>(mode_);
     const double shortest = 8.0 * std::numeric_limits<double>::epsilon();
@@ -226,7 +226,7 @@ SensitiveState state_at(const Law& law, const Phase& phase, double t_s) {
 std::optional<Phase> next_phase(const Law& law, const Phase& phase) {
   if (phase.direction == 0) return std::nullopt;
   const double before = law.net(phase.direction);
-  if (phase.v_m_s == 0.0) return std::nullopt;  // it has just set off, and gathers speed
+  if (phase.v_m_s == 0.0) return std::nullopt;  // it has just set off and is gathering speed
   const auto stop_s = linear_stop_time_s(before, law.k, phase.v_m_s);
   if (!stop_s) return std::nullopt;
   const SensitiveState rest = state_at(law, phase, phase.start_s + *stop_s);

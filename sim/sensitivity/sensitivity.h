@@ -1,17 +1,17 @@
-/// How a motion changes with the parameters of its law and with its start: by the solver, and in closed form on a
-/// track.
+/// How a motion changes with the parameters of its law and with its initial state: by the solver, and in closed form on
+/// a track.
 ///
 /// With p the parameters, then x0, then v0, and S = d(x, v)/dp:
 ///
 ///     Sx' = Sv,     Sv' = (da/dx) Sx + (da/dv) Sv + da/dp                                    (while it slides)
 ///
-/// Where v comes to 0 at the time T, T itself depends on p, dT/dp = -Sv / a(T-), so that S jumps (saltation; Aizerman
-/// and Gantmacher 1958):
+/// If v comes to 0 at time T, T itself depends on p, dT/dp = -Sv / a(T-), so that S jumps (saltation; Aizerman and
+/// Gantmacher 1958):
 ///
 ///     Sx stays,     Sv(T+) = Sv(T-) a(T+) / a(T-)      slides back
 ///     Sx stays,     Sv(T+) = 0, and both stay so      sticks
 ///
-/// x has no jump in its derivative for v = 0 on both sides.
+/// The derivative of x does not jump, because v = 0 on both sides.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@
 
 namespace glidelab::sim {
 
-/// m/s² and its derivatives at one state of sliding.
+/// The acceleration in m/s² and its derivatives, at one state of sliding.
 struct LawValue {
   double a_m_s2 = 0.0;
   double by_x_1_s2 = 0.0;
@@ -81,14 +81,14 @@ struct SensitiveState {
   double x_m = 0.0;
   double v_m_s = 0.0;
   Mode mode = Mode::stick;
-  /// Of x (first row) and v, by the law's parameters, x0 and v0.
+  /// Derivatives of x (first row) and v by the law's parameters, x0 and v0.
   Eigen::Matrix<double, 2, Eigen::Dynamic> by_parameter;
 };
 
-/// A motion, and how it changes with every parameter of its law and with its start: S moved together with (x, v) by
-/// Adams' formulas. From (x0, v0) at t = 0, at each of `times_s` (rising, not negative). A law with more than
-/// (kMostComponents - 2) / 2 - 2 parameters is a std::logic_error; NumericalError where CVODES fails. A glider that
-/// sticks stays: the law does not depend on time.
+/// A motion, and how it changes with every parameter of its law and with its initial state: S is integrated together
+/// with (x, v) by Adams formulas. From (x0, v0) at t = 0, at each of `times_s` (rising, not negative). A law with more
+/// than (kMostComponents - 2) / 2 - 2 parameters is a std::logic_error; NumericalError if CVODES fails. A glider
+/// that sticks stays: the law does not depend on time.
 std::vector<SensitiveState> simulate_sensitive(const MotionLaw& law, double x0_m, double v0_m_s,
                                                std::span<const double> times_s,
                                                const SolverOptions& options = {1e-10, 1e-12});
@@ -105,7 +105,7 @@ std::vector<SensitiveState> simulate_sensitive(const MotionLaw& law, double x0_m
 /// 0). All formulas go over into k = 0.
 ///
 /// By k, d, f, x0, v0, in this order, at each of `times_s` (rising, not negative). From v0 = 0 the glider sticks or
-/// moves with the drive. NumericalError where a number is not finite.
+/// moves with the drive. NumericalError if a number is not finite.
 std::vector<SensitiveState> track_motion_sensitive(double k_1_s, double drive_m_s2, double friction_m_s2, double x0_m,
                                                    double v0_m_s, std::span<const double> times_s);
 

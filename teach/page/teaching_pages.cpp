@@ -17,7 +17,7 @@
 namespace glidelab::teach {
 namespace {
 
-/// With the digits that a distance needs: up to 20, scaled by 2e4 m where k is small.
+/// Written with the digits that a distance needs: up to 20, scaled by 2e4 m if k is small.
 std::string array_of(const std::vector<double>& values) {
   return fmt::format("[{:.15g}]", fmt::join(values, ","));
 }
@@ -74,7 +74,7 @@ std::string numbers(const std::vector<double>& values) {
 
 }  // namespace
 
-// Names are text of the page over the film: no text of a file is in the script.
+// Names are page text over the film: no text from a file enters the script.
 std::string film_figure(const LawStudy& study, const LawFilm& film) {
   std::string data = fmt::format("{{\"rate\":{},\"motions\":[", kFramesPerSecond), names;
   for (std::size_t i = 0; i < study.motions.size(); ++i) {
@@ -167,7 +167,7 @@ Plot phase_plot(const LawStudy& study) {
       const LawMotion& motion = study.motions[m];
       PlotData path{fmt::format("path{}", m), {}};
       for (std::size_t i = 0; i < motion.v_m_s.size(); ++i) {
-        // A jump at v = 0 is no line.
+        // A jump at v = 0 is not drawn as a line.
         if (i > 0 && motion.v_m_s[i] * motion.v_m_s[i - 1] <= 0.0 && motion.v_m_s[i - 1] != 0.0)
           path.rows.push_back({});
         path.rows.push_back({motion.v_m_s[i], motion.a_m_s2[i]});
@@ -186,7 +186,7 @@ Plot phase_plot(const LawStudy& study) {
   return {Drawing{script, data}, "phase_caption", "a(v) of " + study.name};
 }
 
-/// As report::figures() has them, with captions in all languages.
+/// As in report::figures(), with captions in all languages.
 Html plots_of(const LawStudy& study) {
   Html html("<div class=\"figures large\">\n");
   for (const Plot& plot : {position_plot(study), phase_plot(study)}) {
@@ -215,7 +215,7 @@ std::string equilibrium_text(const LawStudy& study) {
   return text;
 }
 
-/// What the head of a scenario says, in all languages where it is one of the program's own.
+/// The text at the head of a scenario, in all languages if it is one of the program's own.
 std::string scenario_words(const std::string& text) {
   const std::string key = key_of(text, "scenario");
   return key.empty() ? symbols_html(text) : words(key);

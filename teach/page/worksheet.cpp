@@ -20,12 +20,12 @@ using report::color;
 using report::gnuplot_quoted;
 using report::PlotData;
 
-// Of the sheet, A4 in points.
+// Size of the sheet, A4 in points.
 constexpr int kWidth = 595, kHeight = 842;
 constexpr double kLine = 15.0;                                  // from one line of text to the next
 constexpr double kAnswerLine = 24.0;                            // for writing by hand
 constexpr std::size_t kCharacters = 74, kTitleCharacters = 46;  // in a line
-// Sizes of type as gnuplot's PDF takes them: half as many points on paper.
+// Font sizes for gnuplot's PDF: half as many points on paper.
 constexpr int kType = 19, kSmall = 17, kTitle = 30;
 constexpr double kLeft = 0.085, kRight = 0.935;
 
@@ -41,7 +41,7 @@ std::string number(const std::string& language, double value, int digits) {
   return replaced(replaced(text, "-", "−"), ".", texts_of(language).at("decimal"));
 }
 
-/// The text in lines that fit the sheet.
+/// The text split into lines that fit the sheet.
 std::vector<std::string> lines_of(const std::string& text, std::size_t most = kCharacters) {
   std::vector<std::string> lines(1);
   std::size_t length = 0;
@@ -59,7 +59,7 @@ std::vector<std::string> lines_of(const std::string& text, std::size_t most = kC
   return lines;
 }
 
-/// gnuplot: the texts and rules of a sheet, from above.
+/// gnuplot: the texts and rules of a sheet, from top to bottom.
 class Sheet {
  public:
   void text(double from, const std::string& text, int size, std::string_view ink = "#000000") {

@@ -15,14 +15,14 @@ struct Worksheet {
   std::string answers;  ///< for the teacher; PDF as well
 };
 
-/// The questions and their answers as they are printed, in one of language_codes().
+/// The questions and their answers as printed, in one of language_codes().
 struct WorksheetTexts {
   std::string title, answers_title;
   std::array<std::string, 3> questions, answers;
 };
 WorksheetTexts worksheet_texts(const LawStudy& study, const std::string& language);
 
-/// One of each study. EnvironmentError if gnuplot fails.
+/// One worksheet for each study. EnvironmentError if gnuplot fails.
 std::vector<Worksheet> worksheets(const std::vector<LawStudy>& studies, const std::string& language);
 
 }  // namespace glidelab::teach

@@ -7,7 +7,7 @@
 namespace glidelab::teach {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of differences of a (m/s²) or of slopes (1/s), whose values are some units
+constexpr double kRounding = 1e-9;  // of differences of a (m/s²) or of slopes (1/s), whose values are of order one
 
 }  // namespace
 

@@ -11,18 +11,18 @@
 namespace glidelab::teach {
 
 struct LawAnswers {
-  std::size_t curve = 0;              ///< of study.curves, that the questions are about
+  std::size_t curve = 0;              ///< index in study.curves of the curve that the questions are about
   double v1_m_s = 0.0, v2_m_s = 0.0;  ///< 1, 2 or 5 times a power of ten, and twice that
   double slope1_1_s = 0.0, slope2_1_s = 0.0;
   double jump_m_s2 = 0.0;
   double mu = 0.0;
   bool flat() const;      ///< no slope
-  bool straight() const;  ///< the two slopes are one, to rounding
+  bool straight() const;  ///< the two slopes are equal within rounding
   bool jumps() const;     ///< by more than rounding
 };
 
-/// The curve is the first one with a terminal velocity, or the last, of those that have a part at v > 0.
-/// std::logic_error where none has.
+/// Of the curves with a part at v > 0, the first one with a terminal velocity is used, otherwise the last one.
+/// std::logic_error if there is none.
 LawAnswers answers_of(const LawStudy& study);
 
 }  // namespace glidelab::teach

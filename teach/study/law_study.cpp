@@ -22,7 +22,7 @@ namespace {
 constexpr double kSlowest = 1e-9;  // m/s
 constexpr int kPerDecade = 256;
 
-/// What takes a glider on the side s of v = 0 farther from it.
+/// The force that drives a glider on side s of v = 0 away from v = 0.
 double outward_n(const sim::Body& body, int s, double speed) {
   return s * sim::net_force_n(body, s * speed, s);
 }
@@ -164,7 +164,7 @@ LawStudy study_law(const std::filesystem::path& path) {
     study.x_apart_m = largest_difference(two[0].t_s, two[0].x_m, two[1].t_s, two[1].x_m);
     const LawCurve &a = study.curves[0], &b = study.curves[1];
     if (!a.down_v_m_s.empty() && !b.down_v_m_s.empty()) {
-      // As far as both go.
+      // Over the range that both cover.
       const double end = std::min(a.down_v_m_s.back(), b.down_v_m_s.back());
       double apart = 0.0;
       for (std::size_t i = 0; i < a.down_v_m_s.size() && a.down_v_m_s[i] <= end; ++i) {
@@ -179,12 +179,11 @@ LawStudy study_law(const std::filesystem::path& path) {
 namespace {
 
 constexpr double kDistance = 3.0;      // m, of the camera
-constexpr double kBesideGlider = 0.1;  // m, that is seen beyond the outermost glider's middle
+constexpr double kBesideGlider = 0.1;  // m, visible beyond the outermost glider's middle
 constexpr double kAboveTrack = 0.06;   // m, above and below the line of motion: the glider, and the bar under it
-constexpr int kLeastHalf = 8;          // px of a row's height, where motions go so far that gliders are dots
-constexpr double kWhite =
-    400.0;                     // code of white, so that the wall is of a middle grey; what is brighter than 255 is 255
-constexpr double kCrf = 26.0;  // of H.264; the image stands still but for the gliders
+constexpr int kLeastHalf = 8;          // px, half of a row's height, for motions so long that gliders are dots
+constexpr double kWhite = 400.0;       // code of white, so that the wall is medium grey; codes above 255 become 255
+constexpr double kCrf = 26.0;          // of H.264; only the gliders move in the image
 
 std::vector<sim::State> states(const sim::ConfigurationSetup& configuration, const sim::MotionSetup& motion,
                                double rate_hz) {
@@ -195,7 +194,8 @@ std::vector<sim::State> states(const sim::ConfigurationSetup& configuration, con
   return sim::simulate(configuration.body, motion.x0_m, motion.v0_m_s, times).states;
 }
 
-/// The scenario before the film's camera. Every configuration is a set-up of its own, as its track is inclined.
+/// The scenario as seen by the film's camera. Every configuration is a set-up of its own, because its track is
+/// inclined.
 render::Scenario before_camera(render::Scenario scenario, double farthest_m, int width_px) {
   double steepest = 0.0;
   for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
@@ -214,7 +214,7 @@ render::Scenario before_camera(render::Scenario scenario, double farthest_m, int
   return render::ideal_of(scenario);
 }
 
-/// Draws one motion's frames into its row of the film's images, one after the other.
+/// Draws one motion's frames into its row of the film's images, one after another.
 class Row {
  public:
   Row(const render::ClipSet& set, std::size_t clip, std::vector<sim::State> states)

@@ -14,11 +14,11 @@
 namespace glidelab::teach {
 namespace {
 
-constexpr double kStep = 0.1;      // of tau, in units of the time in which u changes by itself
+constexpr double kStep = 0.1;      // of tau, in units of the time in which u changes by its own size
 constexpr double kFirst = 1e-4;    // the shortest step of tau towards u = 0
-constexpr double kNear = 0.25;     // of the time that is left to it
+constexpr double kNear = 0.25;     // of the remaining time to it
 constexpr double kSettled = 1e-9;  // of the limit's value
-constexpr double kLeg = 0.1;       // of u: so far it falls within one leg
+constexpr double kLeg = 0.1;       // of u: its fall within one leg
 constexpr int kDrawn = 72;
 constexpr int kReferencePoints = 6;
 
@@ -33,7 +33,7 @@ void add_drag(sim::Body& body, double k, double n) {
   }
 }
 
-/// A body of unit mass with unit gravity on a wall: the drive is +1, -1 or nothing.
+/// A body of unit mass with unit gravity on a vertical track: the drive is +1, -1 or zero.
 sim::Body unit_body(double drive, double n) {
   sim::Body body;
   body.mass_kg = 1.0;
@@ -43,23 +43,23 @@ sim::Body unit_body(double drive, double n) {
   return body;
 }
 
-/// Times up to `end` at which the orbit from u0 is kept: steps of a tenth of the time in which u changes by itself,
-/// that of a drag u^n alone or 1 if less. Where n is no whole number, u^n has no Taylor series at u = 0: near the
-/// instant `rest` of that the steps are shorter.
+/// Times up to `end` at which the orbit from u0 is stored: steps of a tenth of the time in which u changes by its own
+/// size (that of a drag u^n alone, or 1 if less). If n is not an integer, u^n has no Taylor series at u = 0: near
+/// `rest`, the instant at which u = 0, the steps are shorter.
 std::vector<double> times(double drive, double n, double u0, double end, std::optional<double> rest) {
   std::vector<double> tau = {0.0};
   while (tau.back() < end) {
     double own = n > 1.0 ? std::pow(u0, 1.0 - n) + (n - 1.0) * tau.back() : 1.0;
     if (drive != 0.0) own = std::min(own, 1.0);
-    double step = n == 0.0 ? 1.0 : kStep * own;  // without a drag all is a parabola
+    double step = n == 0.0 ? 1.0 : kStep * own;  // without drag everything is a parabola
     if (rest && n != std::round(n)) step = std::min(step, std::max(kFirst, kNear * std::abs(*rest - tau.back())));
     tau.push_back(std::min(end, tau.back() + step));
   }
   return tau;
 }
 
-/// Up to where it comes to rest, if it does. Every leg starts anew at a distance of 0, and the distances are added up
-/// from the end: so small ones keep their digits beside large ones.
+/// The orbit until it comes to rest, if it does. Every leg starts again at a distance of 0, and the distances are added
+/// up from the end, so that small ones keep their digits next to large ones.
 Orbit solved(double drive, double n, double u0, const std::vector<double>& tau) {
   const sim::Body body = unit_body(drive, n);
   const auto point = [&](double at, double u, double way, double slope) {
@@ -108,7 +108,7 @@ LawOrbits orbits_of(std::string name, double n) {
     law.free = orbit(0.0, n, 1.0, kLongest);
     return law;
   }
-  // Near the limit u - 1 falls as exp(-n tau).
+  // Near the limit, u - 1 falls as exp(-n tau).
   const double settling = -std::log(kSettled) / n;
   const double from_afar = n > 1.0 ? 2.0 / (n - 1.0) : std::log(kFastest);
   law.rising = orbit(1.0, n, 0.0, settling);
@@ -136,7 +136,7 @@ ReferenceMotion reference(const PhaseExplorer& explorer, std::size_t law, double
   return motion;
 }
 
-/// Every slider at either end, and the level track and the start at rest.
+/// Every slider at both ends, and the level track and the start at rest.
 void add_corners(PhaseExplorer& explorer) {
   for (std::size_t law = 0; law < explorer.laws.size(); ++law) {
     for (const double drag : {kDragRange.low, kDragRange.high}) {

@@ -27,7 +27,7 @@ std::vector<std::string> split(const std::string& id) {
   return {id.substr(0, plus), id.substr(plus + 3)};
 }
 
-/// Json::exception where something is missing or of another type.
+/// Json::exception if something is missing or of the wrong type.
 BlindVerdict verdict_of(const Json& document) {
   BlindVerdict verdict;
   verdict.verdict = document.at("verdict");
@@ -88,9 +88,9 @@ void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict) {
 
 namespace {
 
-constexpr double kModerate = 15.0, kStrong = 50.0;  // log likelihood, as the targets have them
+constexpr double kModerate = 15.0, kStrong = 50.0;  // log likelihood, as in the targets
 constexpr double kSameShrink = 0.95;
-constexpr double kClearGap = 3.0;  // standard errors: a shrink of less is noise over noise
+constexpr double kClearGap = 3.0;  // standard errors: a smaller reduction is noise over noise
 constexpr std::size_t kBins = 10;
 
 std::set<std::string> classes_of(const BlindOutcome& outcome) {
@@ -103,7 +103,7 @@ const std::vector<std::string>& library_of(const BlindOutcome& outcome) {
   return outcome.filmed ? filmed_effects() : library_effects();
 }
 
-/// What a way of deciding says of one case: none, unknown, or names (the first first).
+/// The answer of one decision method to one case: none, unknown, or names (in order).
 struct Saying {
   std::string word;  // none, unknown, effect, failed
   std::vector<std::string> names;
@@ -130,14 +130,15 @@ const BlindRanked* most(const std::vector<BlindRanked>& ranking, std::size_t siz
   return best;
 }
 
-/// The effect whose refit lowers the residuals most; it always names one.
+/// Names the effect whose refit lowers the residuals most; it always names one.
 Saying of_best_residual(const BlindVerdict& verdict) {
   if (verdict.verdict == "failed") return {"failed", {}};
   const BlindRanked* best = most(verdict.ranking, 1, "", 0.0);
   return best == nullptr ? Saying{"none", {}} : Saying{"effect", best->ids};
 }
 
-/// Forward selection by Schwarz's criterion: one effect if it lowers it, a second one if that lowers it further.
+/// Forward selection by Schwarz's criterion: one effect if it lowers the criterion, a second one if that lowers it
+/// further.
 Saying of_stepwise_bic(const BlindVerdict& verdict) {
   if (verdict.verdict == "failed") return {"failed", {}};
   const double price = 0.5 * std::log(std::max(2.0, verdict.points));
@@ -178,7 +179,7 @@ void count_saying(const BlindOutcome& outcome, const Saying& saying, BlindMethod
   }
 }
 
-/// Picking among all effects, none and unknown with equal odds: expected shares, as if of 10,000 tries.
+/// Random choice among all effects, none and unknown with equal odds: expected shares, written as if of 10,000 trials.
 BlindMethod picking(const std::vector<BlindOutcome>& outcomes) {
   BlindMethod method{"picking at random", {}, {}, {}, {}};
   constexpr std::size_t kTries = 10000;
@@ -202,7 +203,7 @@ BlindMethod picking(const std::vector<BlindOutcome>& outcomes) {
   return method;
 }
 
-/// The likeliest word of a verdict with its probability, classes of effects summed up.
+/// The most likely word of a verdict with its probability, summed over classes of effects.
 std::pair<std::string, double> likeliest(const BlindVerdict& verdict, bool filmed) {
   std::map<std::string, double> sums = {{"none", verdict.none}, {"unknown", verdict.unknown}};
   for (const BlindRanked& ranked : verdict.ranking) {
@@ -354,7 +355,7 @@ BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
     add_case(outcome, score);
     add_confusion(outcome, score);
   }
-  // Both of two effects: also where one of them is named as an equal of what is.
+  // Whether both of two effects are named, also if one is named as an equivalent of another.
   BlindShare both;
   for (const BlindOutcome& outcome : outcomes) {
     if (outcome.kind != BlindKind::pair) continue;
@@ -374,7 +375,7 @@ std::string verdict_without(const BlindOutcome& outcome) {
   if (!outcome.left_out) throw std::logic_error("a case that was not diagnosed without its effect");
   const BlindVerdict& without = *outcome.left_out;
   if (without.verdict != "effect") return without.verdict;
-  // Equals of the truth on these data, as the full diagnosis says it, may take its place.
+  // Effects that the full diagnosis calls equivalent to the truth on these data may replace it.
   const std::set<std::string> named = named_by(outcome);
   const bool truth_named = named.contains(true_class(outcome));
   if (truth_named && named.contains(blind_class(without.effects.front().id, outcome.filmed))) return "equivalent";
@@ -393,7 +394,7 @@ std::vector<std::string> variables_of(const std::string& effect) {
       {diagnose::ids::load_independent_friction, {"mass_kg", "direction", "v_m_s"}},  // -sign(v) F0, by mass
       {diagnose::ids::direction_asymmetry, {"direction", "v_m_s"}},
       {diagnose::ids::track_bow, place},
-      {diagnose::ids::damping_gradient, {"x_m", "v_m_s"}},  // a drag by place
+      {diagnose::ids::damping_gradient, {"x_m", "v_m_s"}},  // a position-dependent drag
       {diagnose::ids::rotational_inertia, {"mass_kg", "a_m_s2"}},
       {diagnose::ids::tether, place},
       {diagnose::ids::base_vibration, time},

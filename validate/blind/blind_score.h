@@ -21,7 +21,7 @@ struct BlindNamed {
   std::string id;
   double probability = 0.0;
   std::vector<std::string> equivalent_to;
-  double joint = 0.0;  ///< probability that it or one of those acts
+  double joint = 0.0;  ///< probability that it or one of its equivalents acts
 };
 
 struct BlindRanked {
@@ -32,7 +32,7 @@ struct BlindRanked {
   std::optional<double> gap_after;
 };
 
-/// What a diagnosis.json says; "failed" with `why` where there is none.
+/// The content of a diagnosis.json; "failed" with `why` if there is none.
 struct BlindVerdict {
   std::string verdict;  ///< none, effect, unknown, failed
   std::string why;
@@ -44,14 +44,14 @@ struct BlindVerdict {
   BlindSequence sequence;
 };
 
-/// InputError where the file is not a diagnosis.
+/// InputError if the file is not a diagnosis.
 BlindVerdict read_blind_verdict(const std::filesystem::path& diagnosis_json);
 
-/// Takes effects that the folder itself tells of out of what a verdict names: what held them besides others counts for
-/// the others, what held them alone for none.
+/// Removes effects that the folder itself states from the names of a verdict: an explanation that contained them with
+/// others counts for the others, one that contained only them counts for none.
 void set_aside(const std::vector<std::string>& told, BlindVerdict& verdict);
 
-inline constexpr double kSureName = 0.8;  ///< probability; a name with more is a sure one
+inline constexpr double kSureName = 0.8;  ///< probability above which a name is certain
 
 struct BlindOutcome {
   std::size_t index = 0;
@@ -59,34 +59,34 @@ struct BlindOutcome {
   std::vector<BlindCause> causes;
   std::size_t clips = 0;
   BlindVerdict verdict;
-  std::optional<BlindVerdict> left_out;  ///< with the true effect taken from the list
+  std::optional<BlindVerdict> left_out;  ///< with the true effect removed from the list
   bool filmed = false;
   std::optional<EverydayTruth> everyday;  ///< of an everyday case
-  std::optional<double> seconds;          ///< that its diagnosis took, where it was measured
+  std::optional<double> seconds;          ///< duration of its diagnosis, if measured
 };
 
-/// The word by which effects are counted. Two pairs of effects are the same thing on tracks and count as one
+/// The word under which an effect is counted. Two pairs of effects are indistinguishable on tracks and count as one
 /// (effects.md, "Which cannot be told apart"): scale_error and frame_rate_error, camera_motion and base_vibration.
-/// Images tell the second pair apart.
+/// Images distinguish the second pair.
 std::string blind_class(const std::string& id, bool filmed);
-/// That of the one cause.
+/// The class of the single cause.
 std::string true_class(const BlindOutcome& outcome);
-/// All that a verdict names, as classes: its effects and their equals.
+/// Everything that a verdict names, as classes: its effects and their equivalents.
 std::set<std::string> named_by(const BlindOutcome& outcome);
 
-/// "weak" (a gain of less than 15 in log likelihood), "moderate" (15 to 50) or "strong" (more); of a pair by its weaker
-/// cause.
+/// "weak" (a gain of less than 15 in log likelihood), "moderate" (15 to 50) or "strong" (more); for a pair that of the
+/// weaker cause.
 std::string_view strength_word(const BlindOutcome& outcome);
 
 struct BlindShare {
   std::size_t of = 0, yes = 0;
-  /// 0 of none.
+  /// 0 if there are none.
   double share() const { return of == 0 ? 0.0 : static_cast<double>(yes) / static_cast<double>(of); }
-  /// Its 95 % interval (Clopper and Pearson); 0 to 1 of none.
+  /// Its 95 % interval (Clopper and Pearson); 0 to 1 if there are none.
   ProportionInterval interval95() const { return proportion_interval(yes, of, 0.95); }
 };
 
-/// How often one way of deciding is right.
+/// How often one decision method is right.
 struct BlindMethod {
   std::string name;
   BlindShare none, outside, pair;
@@ -99,7 +99,7 @@ struct ReliabilityBin {
   BlindShare right;
 };
 
-/// One line of a table of confusions.
+/// One line of a confusion matrix.
 struct ConfusionRow {
   std::string truth;
   std::map<std::string, std::size_t> said;  ///< first name, none, unknown, failed
@@ -107,32 +107,33 @@ struct ConfusionRow {
 
 struct BlindScore {
   std::vector<BlindMethod> methods;              ///< the diagnosis first
-  std::map<std::string, BlindShare> in_set;      ///< single cases: truth among what is named, by strength
-  std::map<std::string, BlindShare> exact;       ///< single cases: the very id first, by strength
+  std::map<std::string, BlindShare> in_set;      ///< single cases: truth among the names, by strength
+  std::map<std::string, BlindShare> exact;       ///< single cases: the exact id comes first, by strength
   std::map<std::string, BlindShare> recognised;  ///< outside: unknown, by strength
   BlindShare false_alarm;                        ///< none: anything else
   BlindShare wrong_name;                         ///< outside: a sure name (kSureName)
   BlindShare where;                              ///< outside and unknown: the true variable among the regions
-  BlindShare where_first;                        ///< outside and unknown: it is that of the first one
+  BlindShare where_first;                        ///< outside and unknown: the true variable is that of the first region
   std::vector<ReliabilityBin> reliability;       ///< ten of equal width, from 0 to 1
   double calibration_error = 0.0;                ///< expected: mean |stated - right| over cases
-  /// Single and strong, and the gap that the true effect's own fit closes is clear: the diagnosis' closes 95 % of it.
+  /// Single and strong cases in which the true effect's own fit clearly reduces the gap: the diagnosis closes 95 % of
+  /// that.
   BlindShare shrunk;
-  std::map<std::string, BlindShare> left_out;  ///< by each word of verdict_without()
-  BlindShare left_out_where;                   ///< unknown of those: the first region is in a variable of the effect
+  std::map<std::string, BlindShare> left_out;  ///< by the words of verdict_without()
+  BlindShare left_out_where;                   ///< of those, unknown: the first region is in a variable of the effect
   std::vector<ConfusionRow> confusion;
   std::size_t failed = 0;
 };
 
-/// Every case counts; one that could not be diagnosed as wrong, but not among the probabilities.
+/// Every case counts; one that could not be diagnosed counts as wrong, but not in the probabilities.
 BlindScore score_blind(const std::vector<BlindOutcome>& outcomes);
 
-/// "unknown", "none", "failed", "equivalent" (an equal of the truth on these data, as the full diagnosis says),
-/// "another name", "another name, probability over 0.8". std::logic_error of a case that was not diagnosed without it.
+/// "unknown", "none", "failed", "equivalent" (the full diagnosis calls it equivalent to the truth on these data),
+/// "another name", "another name, probability over 0.8". std::logic_error for a case that was not diagnosed without it.
 std::string verdict_without(const BlindOutcome& outcome);
 
-/// The variables over which an effect of the list can be seen to act (`where` of a diagnosis.json, "clip" for a region
-/// of one clip), as effects.md has it; none of an effect that no region can show (an inclination alone, single frames).
+/// The variables in which an effect of the list can show (`where` of a diagnosis.json, "clip" for a region of one
+/// clip), as in effects.md; none for an effect that no region can show (an inclination alone, single frames).
 std::vector<std::string> variables_of(const std::string& effect);
 
 }  // namespace glidelab::validate

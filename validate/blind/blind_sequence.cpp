@@ -9,7 +9,7 @@ namespace {
 
 using SequenceJson = nlohmann::json;
 
-/// The value of a key; null where it is missing.
+/// The value of a key; null if it is missing.
 const SequenceJson& value_of(const SequenceJson& object, const std::string& key) {
   static const SequenceJson none;
   return object.contains(key) ? object.at(key) : none;

@@ -1,5 +1,5 @@
-/// What a diagnosis.json says of causes in their order: `explained`, `remainder`, `traces`, `levels`, `recovered`
-/// (result files). A key that is missing or null counts as empty.
+/// The causes of a diagnosis.json in their order: `explained`, `remainder`, `traces`, `levels`, `recovered` (result
+/// files). A key that is missing or null counts as empty.
 #pragma once
 
 #include <map>
@@ -22,7 +22,7 @@ struct BlindInterval {
 struct BlindRecovered {
   std::string group;
   double mass_kg = 0.0, incline_deg = 0.0;          ///< as stated
-  std::map<std::string, BlindInterval> interval95;  ///< by key (k_over_m_1_s, mu, alpha_deg, v_lim_m_s), where told
+  std::map<std::string, BlindInterval> interval95;  ///< by key (k_over_m_1_s, mu, alpha_deg, v_lim_m_s), if stated
 };
 
 struct BlindSequence {
@@ -33,7 +33,7 @@ struct BlindSequence {
   std::vector<BlindRecovered> recovered;
 };
 
-/// Json::exception where something that is there lacks a part or is of another type.
+/// Json::exception if an existing entry is incomplete or of the wrong type.
 BlindSequence read_blind_sequence(const nlohmann::json& diagnosis);
 
 }  // namespace glidelab::validate

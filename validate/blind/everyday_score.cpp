@@ -13,7 +13,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kHalf = 0.5;         // of the excess: what a claim is about
+constexpr double kHalf = 0.5;         // of the excess: a claim concerns this share
 constexpr double kClearErrors = 2.0;  // standard errors
 constexpr std::size_t kCalibrationBins = 10;
 
@@ -73,7 +73,7 @@ void add_saying(const BlindOutcome& outcome, const EverydaySaying& saying, Every
   add(method.main_first[of][strength], named && is_cause(outcome, 0, names.front().id));
   add(method.main_in_set[of][strength], named && is_cause_or_alike(outcome, 0, names.front()));
   if (kind == EverydayClass::two) {
-    // Two names, one for each: a set that holds both is one name.
+    // Two names, one for each: a set that contains both counts as one name.
     bool both = false;
     for (std::size_t a = 0; saying.claims && a < names.size(); ++a) {
       for (std::size_t b = 0; b < names.size(); ++b) {
@@ -104,7 +104,7 @@ bool is_fair(const BlindOutcome& outcome, const EverydaySaying& saying) {
   return fair > 0.0 && fair >= kHalf * all;
 }
 
-/// What a diagnosis states of its verdict, and whether that is right.
+/// The stated probability of a verdict, and whether the verdict is right.
 std::pair<double, bool> stated_and_right(const BlindOutcome& outcome) {
   const BlindVerdict& verdict = outcome.verdict;
   const EverydayClass kind = outcome.everyday->kind;
@@ -121,7 +121,7 @@ std::pair<double, bool> stated_and_right(const BlindOutcome& outcome) {
   return {unknown ? verdict.unknown : verdict.none, unknown && kind == EverydayClass::outside};
 }
 
-/// The mean of |sum of p - how many are right| where each is right with its p: over the distribution of that number.
+/// The mean of |sum of p - number right| if each is right with its p, over the distribution of that number.
 double error_by_chance(const std::vector<double>& stated) {
   std::vector<double> right{1.0};  // the probability of 0, 1, ... right ones
   double sum = 0.0;
@@ -157,7 +157,7 @@ EverydayCalibration calibration_of(const std::vector<std::pair<double, bool>>& s
 }
 
 void add_coverage(const BlindOutcome& outcome, EverydayScore& score) {
-  constexpr double kSameMass = 1e-6, kSameIncline = 1e-3;  // kg, degrees: as a file states them
+  constexpr double kSameMass = 1e-6, kSameIncline = 1e-3;  // kg, degrees: precision of the values in a file
   for (const BlindRecovered& told : outcome.verdict.sequence.recovered) {
     const auto& all = outcome.everyday->configurations;
     const auto truth = std::find_if(all.begin(), all.end(), [&](const EverydayConfiguration& one) {

@@ -46,14 +46,14 @@ void check(const BlindOptions& options) {
   throw base::InputError(base::Issue{"", 0, "--only", fmt::format("\"{}\"", options.only), "one of " + known});
 }
 
-/// What makes two runs the same but for their number of cases.
+/// Checks the settings that two runs must share, except for their number of cases.
 void check_same_run(const BlindOptions& options, const fs::path& out) {
   Ordered wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
   if (options.pictures) wanted["pictures"] = true;
   if (options.everyday) wanted["everyday"] = true;
   const fs::path file = out / "run.json";
   if (!fs::exists(file)) {
-    for (const char* name : {"cases", "diagnoses", "truth"}) {  // whose parts are made anew where they are not whole
+    for (const char* name : {"cases", "diagnoses", "truth"}) {  // whose parts are made again if incomplete
       if (!fs::exists(out / name)) continue;
       throw base::InputError(base::Issue{(out / name).string(), 0, "--out", "a folder that no run of blind made",
                                          "an empty folder, or that of an earlier run (it has a run.json)"});
@@ -70,7 +70,7 @@ void check_same_run(const BlindOptions& options, const fs::path& out) {
 }
 
 constexpr const char* kDiagnosis = "diagnosis.json";  // in the folder of a diagnosis,
-constexpr const char* kFailure = "failure.txt";       // and what is there where it failed
+constexpr const char* kFailure = "failure.txt";       // and its replacement if it failed
 constexpr const char* kSeconds = "seconds.txt";
 
 bool is_diagnosed(const fs::path& folder) {
@@ -84,7 +84,7 @@ void diagnose_into(const fs::path& folder, const Diagnoser& diagnose, const fs::
   if (!failure.empty()) base::write_file(folder / kFailure, failure);
 }
 
-/// The same, and how long it took: that is measured once, when the case is diagnosed.
+/// The same, with its duration: measured once, when the case is diagnosed.
 void diagnose_timed(const fs::path& folder, const Diagnoser& diagnose, const fs::path& experiment) {
   const auto start = std::chrono::steady_clock::now();
   diagnose_into(folder, diagnose, experiment, {});
@@ -101,7 +101,7 @@ std::optional<double> seconds_in(const fs::path& folder) {
   throw base::InputError(base::Issue{file.string(), 0, "", "\"" + text + "\"", "a number of seconds"});
 }
 
-/// Less what the folder itself tells of.
+/// The verdict without what the folder itself states.
 BlindVerdict verdict_in(const fs::path& folder, const std::vector<std::string>& told) {
   BlindVerdict verdict;
   if (fs::exists(folder / kFailure)) {
@@ -114,7 +114,7 @@ BlindVerdict verdict_in(const fs::path& folder, const std::vector<std::string>& 
   return verdict;
 }
 
-/// A case of either sort.
+/// A case of either kind.
 struct Made {
   BlindKind kind = BlindKind::none;
   std::vector<BlindCause> causes;
@@ -157,7 +157,7 @@ Made make_case(const BlindOptions& options, const fs::path& out, std::size_t ind
           {}};
 }
 
-/// One whole case; what it leaves on disk is complete once the truth is there.
+/// One whole case; its files are complete once the truth exists.
 BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::size_t index, const Diagnoser& diagnose,
                       const FilmRenderer& render) {
   const Made one = make_case(options, out, index, render);

@@ -1,5 +1,5 @@
-/// Blind cases, one after the other or a few at once: made, diagnosed by another process, and only then their truth
-/// written down; in the end all are scored.
+/// Blind cases, one after another or a few at once: each is made, diagnosed by another process, and only then its truth
+/// is written; finally all are scored.
 ///
 ///     OUT/run.json                     what was asked for; a run with other seeds or effects is refused
 ///     OUT/cases/0012/                  the experiment folder: all that the diagnosing process is told of
@@ -10,7 +10,7 @@
 ///
 /// With images a case is rendered in OUT/making-0012/, which is gone before the diagnosis begins.
 ///
-/// Run again, it goes on where it stopped: a case counts as done when its truth is there.
+/// A repeated run continues where the last one stopped: a case counts as done when its truth exists.
 #pragma once
 
 #include <cstdint>
@@ -30,22 +30,22 @@ inline constexpr std::size_t kMostBlindCases = 100000;
 struct BlindOptions {
   std::uint64_t seed = 1;
   std::size_t cases = 0;
-  bool leave_out = false;  ///< diagnose each case of one effect once more, its effect taken from the list
+  bool leave_out = false;  ///< diagnose each case of one effect again, with its effect removed from the list
   std::string only;        ///< an effect that every case has
-  bool pictures = false;   ///< filmed experiments in place of tracks
+  bool pictures = false;   ///< filmed experiments instead of tracks
   bool everyday = false;   ///< tracks with several small imperfections (everyday_case.h)
   int jobs = 1;
 };
 
-/// Diagnoses the folder and leaves diagnosis.json in `out`, in another process; returns "" or what went wrong.
+/// Diagnoses the folder and leaves diagnosis.json in `out`, in another process; returns "" or the error.
 using Diagnoser = std::function<std::string(const std::filesystem::path& folder, const std::filesystem::path& out,
                                             const std::vector<std::string>& without)>;
 
-/// How many of the cases are whole in `out`: a run goes on behind them.
+/// How many cases are complete in `out`: a run continues after them.
 std::size_t kept_cases(const BlindOptions& options, const std::filesystem::path& out);
 
-/// InputError for no cases, for an unknown effect, for choices that exclude each other, and where OUT holds another
-/// run. `render` is for images only.
+/// InputError for no cases, for an unknown effect, for choices that exclude each other, and if OUT holds another run.
+/// `render` is for images only.
 std::vector<BlindOutcome> run_blind(const BlindOptions& options, const std::filesystem::path& out,
                                     const Diagnoser& diagnose, const base::Progress& progress = base::no_progress,
                                     const FilmRenderer& render = {});

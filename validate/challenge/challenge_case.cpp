@@ -25,15 +25,15 @@ namespace fs = std::filesystem;
 
 constexpr double kFilmedAtRest_s = 0.3;
 constexpr std::size_t kFewestFrames = 30;
-constexpr int kMostDesigns = 200;  // of which one at least has clips that are long enough
+constexpr int kMostDesigns = 200;  // designs tried until one has clips that are long enough
 
-/// How a level draws: what its gliders and its camera may be.
+/// How a level draws: the ranges of its gliders and its camera.
 struct LevelDesign {
   std::size_t pairs = 1;  ///< of an upward and a downward clip
   double reach_m = 1.2;   ///< a clip ends where the glider is farther from the middle
   double longest_s = 2.5;
   double least_k = 1.5, most_k = 4.0, least_mu = 0.003, most_mu = 0.015, least_deg = 2.5, most_deg = 5.0;
-  double level_part = 0.0;  ///< of the cases have a level track
+  double level_part = 0.0;  ///< fraction of the cases with a level track
   std::vector<double> rates_hz = {200.0};
   double least_noise_m = 2e-5, most_noise_m = 2e-5;
   double dropped_fraction = 0.0;
@@ -69,14 +69,14 @@ struct Launch {
   double x0_m = 0.0, v0_m_s = 0.0, duration_s = 0.0;
 };
 
-/// All that a case of tracks or a film is made of.
+/// Everything that makes up a case of tracks or a film.
 struct Drawn {
   double k_1_s = 0.0, mu = 0.0, incline_deg = 0.0, stated_deg = 0.0, mass_kg = 0.0, rate_hz = 0.0, noise_m = 0.0;
   double exposure_s = 0.0, focal_px = 0.0, camera_x_m = 0.0;
   std::vector<Launch> launches;
 };
 
-/// Ten digits: the file is then the same where another machine rounds another way.
+/// Rounds to ten digits: the file is then the same on machines that round differently.
 double rounded(double value) {
   return std::stod(fmt::format("{:.10g}", value));
 }
@@ -134,7 +134,7 @@ render::Scenario scenario_of(const LevelDesign& design, const Drawn& drawn, rend
   return render::read_scenario(scenario_text(design, drawn), "challenge.toml", checks);
 }
 
-/// Until it is out of reach or has rested for a while; whole frames.
+/// Duration until it is out of reach or has rested for a while, in whole frames.
 double seconds_on_track(const TrueClip& clip, const LevelDesign& design, double rate_hz) {
   std::size_t k = 0;
   double rested_s = 0.0;

@@ -24,7 +24,7 @@ constexpr const char* kChallengeFile = "challenge.json";
 constexpr const char* kRunFile = "run.json";
 constexpr const char* kResultsFile = "results.json";
 
-/// 64 hexadecimal digits, as coreutils' sha256sum prints them; anybody can check them with it.
+/// 64 hexadecimal digits, as coreutils' sha256sum prints them; anyone can verify them with it.
 std::string sha256_of(const fs::path& file) {
   constexpr std::size_t kDigits = 64;
   const base::TemporaryFolder scratch("hash");
@@ -53,7 +53,7 @@ Ordered json_of(const std::vector<ChallengeConfiguration>& configurations) {
   return list;
 }
 
-/// Reads it as `read` does; InputError with what nlohmann says of a document that is not as this program writes it.
+/// Reads it by `read`; InputError with nlohmann's message for a document that is not as this program writes it.
 template <typename Read>
 auto read_as(const fs::path& file, const Read& read) {
   const std::string text = base::read_file(file);
@@ -129,7 +129,7 @@ Challenge read_challenge(const fs::path& folder) {
 }
 
 std::vector<std::vector<ChallengeConfiguration>> read_sealed_truth(const fs::path& file, const Challenge& challenge) {
-  static_cast<void>(base::read_file(file));  // says so where it is not there
+  static_cast<void>(base::read_file(file));  // throws if it does not exist
   const std::string hash = sha256_of(file);
   if (hash != challenge.truth_sha256) {
     refuse(file, "", fmt::format("a file of SHA-256 {}", hash),

@@ -1,14 +1,14 @@
-/// A challenge on the disk: cases that everybody may have, and a truth that is sealed until the answers are in.
+/// A challenge on disk: public cases, and a truth that is sealed until the answers are in.
 ///
 ///     OUT/challenge.json    {"format": 1, "version", "level", "cases", "truth_sha256"}
 ///     OUT/case-000/, …      experiment folders (challenge_case.h)
 ///     OUT.truth.json        {"format": 1, "version", "level", "seed", "cases": [[{"clips", "k_over_m_1_s", …}]]}
 ///
-/// The hash of the truth's file is known from the start, so that nobody can alter the truth when the answers are known.
-/// The seed stands in the truth alone: who has it makes the same cases and their truth again.
+/// The hash of the truth's file is known from the start, so the truth cannot be altered once the answers are known. The
+/// seed appears only in the truth: with it, the same cases and their truth can be made again.
 ///
 ///     RESULTS/run.json               {"format": 1, "name", "command", "cases": [{"failure", "what", "seconds"}]}
-///     RESULTS/case-000/results.json  an answer (fit/outside/estimator_results.h); not there where the run failed
+///     RESULTS/case-000/results.json  an answer (fit/outside/estimator_results.h); missing if the run failed
 #pragma once
 
 #include <cstddef>
@@ -39,25 +39,25 @@ std::string case_name(std::size_t index);
 /// OUT.truth.json beside OUT.
 std::filesystem::path truth_file_of(const std::filesystem::path& folder);
 
-/// Writes the folder's contents (it exists and is empty); the text of the truth's file. EnvironmentError where
+/// Writes the folder's contents (it exists and is empty) and returns the text of the truth's file. EnvironmentError if
 /// `sha256sum` cannot be run.
 std::string make_challenge(ChallengeLevel level, std::uint64_t seed, std::size_t cases,
                            const std::filesystem::path& folder, int jobs,
                            const base::Progress& progress = base::no_progress);
 
-/// InputError for a folder that is no challenge of this version.
+/// InputError for a folder that is not a challenge of this version.
 Challenge read_challenge(const std::filesystem::path& folder);
 
-/// What is true of each configuration of each case. InputError if the file is not the one that was sealed.
+/// The truth for each configuration of each case. InputError if the file is not the sealed one.
 std::vector<std::vector<ChallengeConfiguration>> read_sealed_truth(const std::filesystem::path& file,
                                                                    const Challenge& challenge);
 
-/// An answer to one case: how the run went, and results.json (empty where it failed).
+/// An answer to one case: the outcome of the run, and results.json (empty if it failed).
 struct ChallengeAnswer {
   fit::OutsideRun run;
   std::string json;
 };
-/// Solves a case: its folder lies by itself.
+/// Solves a case, whose folder lies on its own.
 using ChallengeSolver = std::function<ChallengeAnswer(const std::filesystem::path& folder)>;
 
 /// Solves every case and writes run.json and the answers into `results` (exists, empty).
@@ -66,17 +66,17 @@ std::vector<fit::OutsideRun> run_challenge(const std::filesystem::path& folder, 
                                            const std::filesystem::path& results, int jobs,
                                            const base::Progress& progress = base::no_progress);
 
-/// Somebody's answers to all cases.
+/// One entrant's answers to all cases.
 struct ChallengeEntrant {
   std::string name;
   std::string command;                       ///< empty without run.json
-  std::vector<core::AnalysisResults> cases;  ///< all undetermined where there is no answer, with why
+  std::vector<core::AnalysisResults> cases;  ///< all undetermined, with the reason, if there is no answer
   std::vector<fit::OutsideRun> runs;         ///< of each case
-  bool timed = false;                        ///< run.json says how long each took
+  bool timed = false;                        ///< run.json gives the duration of each
 };
 
-/// Without run.json the name is the folder's, and a case without results.json counts as one that failed. InputError
-/// if there is no answer at all, or run.json is not one of this challenge's.
+/// Without run.json the name is the folder's, and a case without results.json counts as failed. InputError if there is
+/// no answer at all, or if run.json does not belong to this challenge.
 ChallengeEntrant read_entrant(const std::filesystem::path& results, const std::filesystem::path& folder,
                               const Challenge& challenge);
 

@@ -20,13 +20,13 @@ namespace {
 constexpr double kAlpha = 0.05;
 constexpr std::size_t kResamples = 2000;
 
-/// What an entrant said where something is true.
+/// An entrant's answer to a quantity that has a true value.
 struct Answer {
   double truth = 0.0;
   std::optional<core::Estimate> said;
 };
 
-/// Of one quantity: answers of each entrant, case by case, in the order of the truth's configurations.
+/// For one quantity: answers of each entrant, case by case, in the order of the truth's configurations.
 using Answers = std::vector<std::vector<Answer>>;
 
 const core::ConfigurationResult& result_of(const core::AnalysisResults& results,
@@ -58,7 +58,7 @@ double score_of(const Answer& answer) {
   return interval_score(answer.said->low95, answer.said->high95, answer.truth);
 }
 
-/// A mean of the answers by `of`, and its interval: cases are drawn again, with all their answers.
+/// A mean of the answers by `of`, and its interval: cases are resampled with all their answers.
 ScoredMean resampled(const Answers& answers, const std::function<double(const Answer&)>& of,
                      const std::function<double(double)>& shown) {
   std::vector<double> sums, counts;
@@ -120,7 +120,7 @@ ChallengeRow row_of(std::size_t entrant, const Answers& answers) {
   return row;
 }
 
-/// Above 0 where the first is better in this case, below where it is worse.
+/// Positive if the first is better in this case, negative if it is worse.
 int better(const std::vector<Answer>& one, const std::vector<Answer>& other) {
   int more = 0;
   double lower = 0.0;
@@ -146,7 +146,7 @@ std::vector<ChallengeDuel> duels_of(const std::vector<Answers>& all) {
       duels.push_back(duel);
     }
   }
-  // Holm: the k-th smallest of n counts n - k + 1 times, and no less than those before it.
+  // Holm: the k-th smallest of n is multiplied by n - k + 1, and is no less than those before it.
   std::vector<ChallengeDuel*> by_p;
   for (ChallengeDuel& duel : duels) by_p.push_back(&duel);
   std::ranges::sort(by_p, {}, &ChallengeDuel::p);

@@ -54,7 +54,7 @@ void CanvasPool::give(std::shared_ptr<Canvas> canvas) {
 
 namespace {
 
-/// The canvases of one clip: those that nobody looks at any more are drawn on again.
+/// The canvases of one clip: those no longer in use are drawn on again.
 class Canvases {
  public:
   Canvases(std::shared_ptr<CanvasPool> pool, cv::Size size, int type)
@@ -186,7 +186,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of the experiment and its truth; clips where `clips`, else empty files in their place, as in that of stills.
+/// Files of the experiment and its truth; with `clips` also the clips, otherwise empty files in their place, as for
+/// stills.
 core::Experiment rendered(const render::Scenario& scenario, const fs::path& folder, std::uint64_t seed, int jobs,
                           bool clips, const std::shared_ptr<const render::Stage>& stage,
                           const base::Progress& progress) {
@@ -201,7 +202,7 @@ core::Experiment rendered(const render::Scenario& scenario, const fs::path& fold
   return core::read_experiment(pictures);
 }
 
-/// Tracks have no use for a plumb line.
+/// Tracks do not use a plumb line.
 render::Scenario without_plumb(render::Scenario scenario) {
   scenario.plumb.reset();
   return scenario;
@@ -214,7 +215,7 @@ FilmStudio::FilmStudio(const render::Scenario& with_plumb, std::uint64_t seed, i
     : folder_("run"), progress_(std::move(progress)), stage_(std::move(stage)) {
   const render::Scenario scenario = without_plumb(with_plumb);
   if (!stage_) stage_ = render::set_stage(scenario, jobs, [this] { progress_("stage", 0.0); });
-  // The images stay in memory; empty files keep their places.
+  // The images stay in memory; empty files stand in for them.
   const fs::path pictures = folder_.path() / "e";
   std::map<fs::path, cv::Mat> stills;
   std::mutex mutex;

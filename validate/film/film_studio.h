@@ -1,4 +1,4 @@
-/// Clips drawn in memory and tracked, before a camera that is calibrated from drawn stills.
+/// Clips drawn in memory and tracked, with a camera calibrated from drawn stills.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -20,19 +20,19 @@
 
 namespace glidelab::validate {
 
-/// A frame's pixels and what of them is drawn; the rest is 0.
+/// A frame's pixels and the region that is drawn; the rest is 0.
 struct Canvas {
   cv::Mat picture;
   std::vector<cv::Rect> drawn;
 
-  /// All 0 again.
+  /// Resets all pixels to 0.
   void clear();
 };
 
 /// Whether the caller, who holds this pointer, is the only one that refers to the canvas or its pixels.
 bool is_free(const std::shared_ptr<Canvas>& canvas);
 
-/// Images in memory that frames are drawn on, reused by later frames and clips: allocating a new one costs as much as
+/// Images in memory on which frames are drawn, reused by later frames and clips: allocating a new one costs as much as
 /// the drawing. Shared between clips, also on different threads. All canvases have one size and depth; no others are
 /// kept.
 class CanvasPool {
@@ -48,9 +48,9 @@ class CanvasPool {
   std::vector<std::shared_ptr<Canvas>> all_;
 };
 
-/// The frames of one clip of the set, from the renderer in memory, where the analysis expects a file's: the same codes.
-/// With colour wanted they are grey in all three channels, as a grey file gives them. Frames are drawn on canvases of
-/// the pool. InputError for a lossy codec, whose file holds other codes.
+/// The frames of one clip of the set, from the renderer in memory, in place of the analysis' file: the codes are the
+/// same. If colour is requested they are grey in all three channels, as from a grey file. Frames are drawn on canvases
+/// of the pool. InputError for a lossy codec, whose file contains other codes.
 std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render::ClipSet> set, std::size_t clip,
                                                    std::uint64_t seed, bool with_color = false,
                                                    std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());
@@ -62,20 +62,19 @@ core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, st
 
 /// A camera with its calibration, for any number of recordings: of scenarios whose stills are those of the first
 /// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills stay
-/// in memory; experiment.toml and what goes through a file lie in a folder of its own under the system's folder for
-/// temporary files, which goes with it. One thread at a time.
+/// in memory; experiment.toml and everything that needs a file lie in a separate folder below the system's temporary
+/// folder, which is removed with the object. One thread at a time.
 class FilmStudio {
  public:
-  /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio before the same scene
-  /// may be given. `progress` is called with every image and, in film(), every few frames, from any thread.
+  /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio for the same scene may
+  /// be given. `progress` is called with every image and, in film(), every few frames, from any thread.
   FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
              std::shared_ptr<const render::Stage> stage = nullptr, base::Progress progress = base::no_progress);
 
   /// The scenario's clips with the noise of this seed, tracked, with the truth of the scenario. A lossy codec's clips
-  /// are written and read back. The truth's positions count from the track's reference point, the tracks' from the
-  /// pattern.
-  /// With `lens`, that camera stands in place of the calibrated one, as if it were known without error; where the plane
-  /// lies is still found from the drawn pattern.
+  /// are written and read back. The truth's positions are relative to the track's reference point, the tracks' to the
+  /// pattern. With `lens`, that camera replaces the calibrated one, as if it were known without error; the position of
+  /// the plane is still found from the drawn pattern.
   MadeTracks film(const render::Scenario& scenario, std::uint64_t seed, int jobs,
                   const std::optional<core::CameraModel>& lens = std::nullopt);
 
@@ -89,10 +88,10 @@ class FilmStudio {
   core::SeenPattern pattern_;
 };
 
-/// The scenario's camera in the analysis' form; nothing for a rational lens, which that form does not have.
+/// The scenario's camera in the analysis' form; empty for a rational lens, which that form does not include.
 std::optional<core::CameraModel> true_camera(const render::Camera& camera);
 
-/// One recording with a calibration of its own; the stage of another before the same scene may be given.
+/// One recording with its own calibration; the stage of another for the same scene may be given.
 MadeTracks film_tracks(const render::Scenario& scenario, std::uint64_t seed, int jobs,
                        const base::Progress& progress = base::no_progress,
                        std::shared_ptr<const render::Stage> stage = nullptr);

@@ -15,7 +15,7 @@
 namespace glidelab::validate {
 namespace {
 
-/// What the analysis found the positions of each clip of the truth to scatter by.
+/// The noise of the positions of each clip of the truth, as found by the analysis.
 std::vector<double> noise_of(const core::AnalysisResults& results, const Truth& truth) {
   std::vector<double> noise_sd_m;
   for (const TrueClip& clip : truth.clips) {

@@ -23,12 +23,12 @@ struct ValidationOptions {
 struct ValidationResult {
   core::AnalysisResults results;
   Comparison comparison;          ///< with wall_s of rendering, analysis and comparison
-  std::string outside_json = {};  ///< results.json of the outside estimator; empty where there is none or it failed
+  std::string outside_json = {};  ///< results.json of the outside estimator; empty if there is none or it failed
 };
 
 /// Renders into `experiment_dir` and `truth_dir` (both exist and are empty), analyses the first, and only then reads
-/// the second. An outside estimator gets a copy of the first (outside_runs.h). Throws what rendering and analysis
-/// throw.
+/// the second. An outside estimator gets a copy of the first (outside_runs.h). Throws the errors of rendering and
+/// analysis.
 ValidationResult run_validation(const render::Scenario& scenario, const std::filesystem::path& experiment_dir,
                                 const std::filesystem::path& truth_dir, const ValidationOptions& options,
                                 const base::Progress& progress = base::no_progress);

@@ -12,7 +12,7 @@
 namespace glidelab::validate {
 namespace {
 
-/// By the cubic through the four nearest of the track's own times; nothing outside them.
+/// Interpolates by the cubic through the four nearest of the track's own times; empty outside them.
 std::optional<double> at_time(const core::TrackData& track, double t_s) {
   constexpr double kSameTime_s = 1e-9;  // s: rounding of times
   const auto& times = track.t_s;
@@ -39,7 +39,7 @@ double size_of(const diagnose::Diagnosis& diagnosis, std::string_view id, std::s
   return 0.0;
 }
 
-/// x as a wrong scale or perspective shows it, where one is named: (1 + e) x and x / (1 + p x), x of the data.
+/// x as seen with a wrong scale or perspective, if one is named: (1 + e) x and x / (1 + p x), x of the data.
 void see(const diagnose::Diagnosis& diagnosis, MadeTracks& made) {
   const double e = size_of(diagnosis, diagnose::ids::scale_error, "e"),
                p = size_of(diagnosis, diagnose::ids::perspective_error, "p_1_m");

@@ -50,7 +50,7 @@ double rms(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Mean information of four places of the centre within a pixel.
+/// Mean information over four positions of the centre within a pixel.
 double centre_sd_px(core::DiscImage disc) {
   double information = 0.0;
   const double reach_px = disc.radius_px + 3.0 * disc.blur_px + 2.0;
@@ -69,9 +69,9 @@ double centre_sd_px(core::DiscImage disc) {
 std::vector<double> predicted_noise_m(const render::Scenario& scenario, const Truth& truth,
                                       const WithoutLimit& without) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  constexpr double kSharp_px = 0.1;        // a lens is not sharper; the bound needs an edge
+  constexpr double kSharp_px = 0.1;        // no lens is sharper; the bound needs a finite edge
   constexpr double kSmallest_px = 1.0;     // radius: below it a disc is a dot without an edge of its own
-  constexpr double kNegligible_e2 = 1e-6;  // where all noise is thought away
+  constexpr double kNegligible_e2 = 1e-6;  // used when all noise is removed
   const Pixel pixel = pixel_of(scenario, without);
   std::vector<double> noise_m;
   for (const TrueClip& clip : truth.clips) {
@@ -139,7 +139,7 @@ core::ClipSetup clip_setup(const sim::ConfigurationSetup& configuration, const s
   return setup;
 }
 
-/// When the frames of the file were taken, and what the file says.
+/// When the frames of the file were taken, and the times stated in the file.
 struct FrameTimes {
   std::vector<double> true_s;
   std::vector<double> stated_s;
@@ -173,7 +173,7 @@ MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed) {
       const render::FrameClock clock(scenario.recording.clock, scenario.recording.frame_rate_hz, seed,
                                      static_cast<std::uint32_t>(made.tracks.size()));
       const FrameTimes times = frame_times(scenario.recording, clock, render::frame_count(scenario.recording, motion));
-      // A duplicated frame has the instant of the one before: simulate() wants each once.
+      // A duplicated frame has the same instant as the previous one: simulate() needs each instant once.
       std::vector<double> instants = times.true_s;
       instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
       const sim::Trajectory trajectory = sim::simulate(configuration.body, motion.x0_m, motion.v0_m_s, instants);

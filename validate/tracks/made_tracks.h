@@ -1,10 +1,10 @@
 /// The motions of a scenario as tracks: x at the times of the frames, with white noise, and no images.
 ///
-/// They are for studies that run estimators thousands of times. The frames come when the scenario's clock says
-/// (dropped, duplicated, late ones too), and their times are what the file would say: frame j at j / rate, or its stamp
-/// where the rate is variable. Of the camera nothing else is in it: no exposure, lens, shutter, calibration or plumb.
-/// `noise_sd_m` stands for all of that, and predicted_noise_m() says how large it is before anything is rendered. x
-/// counts from the track's reference point, as in the scenario.
+/// They are for studies that run estimators thousands of times. The frames follow the scenario's clock (including
+/// dropped, duplicated and late ones), and their times are those that the file would state: frame j at j / rate, or its
+/// stamp if the rate is variable. Nothing else of the camera is modelled: no exposure, lens, shutter, calibration or
+/// plumb line. `noise_sd_m` represents all of that, and predicted_noise_m() predicts its size before anything is
+/// rendered. x is measured from the track's reference point, as in the scenario.
 #pragma once
 
 #include <cstdint>
@@ -20,45 +20,44 @@
 
 namespace glidelab::validate {
 
-/// What of a camera can be thought away, one at a time.
+/// Limitations of a camera that can be hypothetically removed, one at a time.
 struct WithoutLimit {
   bool shot_noise = false;
   bool camera_noise = false;  ///< read noise, dark signal, quantisation, fixed patterns
   bool motion_blur = false;
-  double finer = 1.0;  ///< pixels a metre, times this; each with the light of the old ones
+  double finer = 1.0;  ///< factor on the pixels per metre; each pixel keeps its amount of light
 };
 
 /// How well a camera can locate the marker: the bound of the marker's centre (core/pictures/marker/marker.h) for the
-/// scenario's light, sensor, distance and speed, as metres in the plane of motion. It is the standard deviation of a
-/// position for each clip of the truth, infinite where the marker is no brighter than the wall or smaller than two
-/// pixels.
+/// scenario's light, sensor, distance and speed, in metres in the plane of motion. It is the standard deviation of a
+/// position for each clip of the truth, infinite if the marker is no brighter than the wall or smaller than two pixels.
 ///
 ///     variance of a pixel = shot + dark + read^2 + quantisation^2 + (PRNU signal)^2 + DSNU^2,
 ///
-/// taken as the mean of that on the marker and on the wall. The marker moves by L = v exposure in a frame, which blurs
-/// its edge like a normal one of variance L^2 / 12. Lens blur, tone curves, a mosaic, codecs and the calibration are
-/// not in it; rendered runs have them.
+/// taken as the mean of the values on the marker and on the wall. The marker moves by L = v exposure in a frame, which
+/// blurs its edge like a normal distribution of variance L^2 / 12. Lens blur, tone curves, a mosaic, codecs and the
+/// calibration are not included; rendered runs have them.
 std::vector<double> predicted_noise_m(const render::Scenario& scenario, const Truth& truth,
                                       const WithoutLimit& without = {});
 
 struct MadeTracks {
   std::vector<core::ClipSetup> setups;
-  std::vector<core::TrackData> tracks;  ///< without noise as they are made
+  std::vector<core::TrackData> tracks;  ///< without noise when first made
   Truth truth;                          ///< true times of the frames
   double gravity_m_s2 = 9.80665;
 };
 
-/// Without noise. The seed is that of the clock. NumericalError if a motion cannot be moved.
+/// Makes tracks without noise. The seed is that of the clock. NumericalError if a motion cannot be simulated.
 MadeTracks make_tracks(const render::Scenario& scenario, std::uint64_t seed);
 
-/// The same tracks with independent normal deviates added; a duplicated frame repeats its own. Clip c draws by
-/// its number (random_use.h).
+/// The same tracks with independent normal deviates added; a duplicated frame repeats its deviate. Clip c draws by its
+/// number (random_use.h).
 MadeTracks with_noise(const MadeTracks& clean, double noise_sd_m, std::uint64_t seed);
 /// The same with a standard deviation for each track (as many as there are: asserted).
 MadeTracks with_noise(const MadeTracks& clean, const std::vector<double>& noise_sd_m, std::uint64_t seed);
 
-/// The phase diagram of every clip and the configurations, as core::analyze() does it with tracks from files: by any of
-/// its methods, or with a bandwidth (chosen where there is none).
+/// The phase diagram of every clip and the configurations, as in core::analyze() with tracks from files: by any of its
+/// methods, with a given or a chosen bandwidth.
 core::AnalysisResults analyze_tracks(const MadeTracks& made, const core::MotionOptions& how, int jobs = 1);
 core::AnalysisResults analyze_tracks(const MadeTracks& made, std::optional<double> bandwidth_s, int jobs = 1);
 

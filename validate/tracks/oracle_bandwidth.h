@@ -4,7 +4,7 @@
 ///     h* = least of the mean over the points of  bias(t; h)^2 + variance(t; h)
 ///
 /// with the bias from smoothing the true positions and the variance from the weights and the true noise, both exact;
-/// no noise is drawn. Points nearer to an end than a tenth of the stretch do not count, as in the rules.
+/// no noise is drawn. Points within a tenth of the stretch of an end do not count, as in the rules.
 #pragma once
 
 #include <optional>
@@ -31,16 +31,16 @@ struct OracleBandwidth {
   double mean_square_m2_s4 = 0.0;
 };
 
-/// Searched from 1.2 median time steps to a fifth of the longest stretch, to a part in 1000.
+/// Searched from 1.2 median time steps to a fifth of the longest stretch, to one part in 1000.
 std::optional<OracleBandwidth> best_bandwidth(const std::vector<TrueStretch>& stretches,
                                               const std::vector<double>& autocovariance);
 
-/// The phase diagram in which every clip has its best bandwidth, for the stretches that an analysis finds and the noise
-/// that it estimates. NumericalError if a clip has none.
+/// The phase diagram in which every clip has its best bandwidth, for the stretches found and the noise estimated by an
+/// analysis. NumericalError if a clip has none.
 core::AnalysisResults with_best_bandwidths(const MadeTracks& made);
 
-/// Root mean square of the smoothed acceleration minus the true one over the points that count, as they fell out in
-/// this clip; empty if none counts. The clip's frames are the truth's.
+/// RMS of the smoothed acceleration minus the true one over the points that count in this clip; empty if none counts.
+/// The clip's frames must be those of the truth.
 std::optional<double> acceleration_error_m_s2(const core::ClipResult& clip, const TrueClip& truth);
 
 }  // namespace glidelab::validate

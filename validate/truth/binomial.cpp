@@ -6,7 +6,7 @@
 namespace glidelab::validate {
 namespace {
 
-/// The p at which `tail`, which rises with p, is `level`.
+/// The p at which `tail`, which rises with p, equals `level`.
 template <class Tail>
 double where(double level, const Tail& tail) {
   double low = 0.0, high = 1.0;

@@ -5,7 +5,7 @@
 
 namespace glidelab::validate {
 
-/// P(X <= k) of n trials with probability p; k < 0 gives 0. By summing the terms.
+/// P(X <= k) for n trials with probability p; k < 0 gives 0. Computed by summing the terms.
 double binomial_cdf(long k, std::size_t n, double p);
 
 /// Two-sided: twice the smaller tail, at most 1.

@@ -105,7 +105,7 @@ RestitutionComparison compare_positions(const core::AnalysisResults& results, co
     const TrueClip& expected = truth_of(clip, truth);
     for (std::size_t frame = 0; frame < clip.motion.size(); ++frame) {
       const core::MotionPoint& point = clip.motion[frame];
-      // With a rolling shutter a marker off the middle row is seen a little before or after the frame's time.
+      // With a rolling shutter a marker off the middle row is seen slightly before or after the frame's time.
       const double late_s = point.t_s - expected.t_s[frame];
       const double x_m = expected.x_m[frame] +
                          late_s * (expected.v_m_s[frame] + 0.5 * late_s * expected.a_m_s2[frame]) - expected.x_origin_m;

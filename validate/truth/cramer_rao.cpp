@@ -12,10 +12,10 @@
 namespace glidelab::validate {
 namespace {
 
-// Reciprocal condition of the scaled information below which rounding is all that tells the parameters apart.
+// Reciprocal condition number of the scaled information below which only rounding distinguishes the parameters.
 constexpr double kDetermined = 1e-11;
 
-/// Of k, d, f; or of k and a0 = d - direction f where the motion goes one way.
+/// Information on k, d, f; or on k and a0 = d - direction f if the motion is in one direction only.
 struct Information {
   Eigen::MatrixXd of_three = Eigen::MatrixXd::Zero(3, 3);
   bool up = false, down = false;
@@ -44,7 +44,7 @@ void add_clip(const TrueClip& clip, const sim::TrackLaw& law, double noise_sd_m,
   information.of_three += base::transposed_product(own, own) / (noise_sd_m * noise_sd_m);
 }
 
-/// Nothing if it does not determine all its parameters.
+/// Empty if it does not determine all its parameters.
 std::optional<Eigen::MatrixXd> covariance_of(const Eigen::MatrixXd& information) {
   if (!(information.diagonal().minCoeff() > 0.0)) return std::nullopt;
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
@@ -80,7 +80,7 @@ LeastSd least_sd(const TrueConfiguration& configuration, const std::vector<const
   for (std::size_t c = 0; c < clips.size(); ++c) add_clip(*clips[c], law, noise_sd_m[c], information);
   if (!information.up && !information.down) return least;
   if (information.up != information.down) {
-    // One way: d and f act as a0 = d - direction f alone, whose derivative is that by d.
+    // One direction only: d and f act only through a0 = d - direction f, whose derivative is that by d.
     const auto covariance = covariance_of(information.of_three.topLeftCorner(2, 2));
     if (!covariance) return least;
     least.k_over_m_1_s = std::sqrt((*covariance)(0, 0));

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// One object of the file with its place ("configurations[2]."), which records what is wrong and goes on.
+/// One object of the file with its path ("configurations[2]."), which records errors and continues.
 class Reader {
  public:
   Reader(const json& value, std::string file, std::string prefix, std::vector<base::Issue>& issues)
@@ -86,7 +86,7 @@ class Reader {
   }
   void reject(const char* key, const json* found, std::string expected) const {
     constexpr std::size_t kShown = 40;  // characters: enough to recognise a value, short enough for one line
-    // Not the text of an array or an object: writing one that is nested a million deep needs a stack as deep.
+    // Not the text of an array or an object: writing one nested a million deep needs an equally deep stack.
     const bool large = found != nullptr && found->is_structured() && !found->empty();
     std::string shown = found == nullptr ? "nothing" : large ? std::string("an ") + found->type_name() : found->dump();
     if (shown.size() > kShown) shown = shown.substr(0, kShown) + "…";

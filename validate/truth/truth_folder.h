@@ -4,7 +4,7 @@
 ///                                        "camera": {…}}
 ///     NAME.truth/trajectory-<clip>.csv  t_s,x_m,v_m_s,a_m_s2,mode; row k is frame k, middle of its exposure
 ///
-/// Only this room reads it. Angles stay in degrees: they are compared with what a person reads.
+/// Only this room reads it. Angles stay in degrees, because they are compared with values shown to the user.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 namespace glidelab::validate {
 
 /// One mass on one inclination. A quantity that the scenario does not have (v_lim on a level track, mu without Coulomb
-/// friction, K/m of a law that is not linear) is empty.
+/// friction, K/m for a law that is not linear) is empty.
 struct TrueConfiguration {
   std::string name;
   double mass_kg = 0.0;
@@ -32,7 +32,7 @@ struct TrueConfiguration {
 struct TrueClip {
   std::string name;
   std::string configuration;
-  double x_origin_m = 0.0;  ///< of the analysis' x on the track's axis: x_analysis = x_track - x_origin
+  double x_origin_m = 0.0;  ///< origin of the analysis' x on the track's axis: x_analysis = x_track - x_origin
   std::vector<double> t_s;  ///< one for each frame
   std::vector<double> x_m;  ///< on the track's axis
   std::vector<double> v_m_s;
@@ -46,8 +46,8 @@ struct Truth {
   std::vector<TrueClip> clips;
 };
 
-/// Reads `truth_dir`/truth.json and the trajectories that it names. Keys that are not listed above are not looked at.
-/// InputError with file and key for all that is missing, of the wrong type, not finite, or does not fit together.
+/// Reads `truth_dir`/truth.json and the trajectories that it names. Keys not listed above are ignored. InputError with
+/// file and key for everything that is missing, of the wrong type, not finite, or inconsistent.
 Truth read_truth(const std::filesystem::path& truth_dir);
 
 }  // namespace glidelab::validate

@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 
-// Each rule, by the constant that its rule_*.cpp defines.
+// The rules, each by the constant that its rule_*.cpp defines.
 #define GLIDELAB_BANDWIDTH_RULES(RULE) \
   RULE(kLeaveOneOut)                   \
   RULE(kGeneralisedCrossValidation)    \
@@ -56,8 +56,8 @@ void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string
 
 namespace {
 
-constexpr double kMostPart = 0.2;  // of the longest part, that a bandwidth may be
-constexpr double kTrim = 0.1;      // of each part at each end
+constexpr double kMostPart = 0.2;  // largest bandwidth, as a fraction of the longest part
+constexpr double kTrim = 0.1;      // fraction of each part left out at each end
 constexpr std::size_t kEnough = 400;
 
 }  // namespace
@@ -98,7 +98,7 @@ std::optional<std::size_t> least(const std::vector<double>& criterion) {
 }
 
 std::optional<std::size_t> widest_local_least(const std::vector<double>& criterion) {
-  std::optional<std::size_t> last;  // with a value, going down
+  std::optional<std::size_t> last;  // the last bandwidth with a value, going down
   for (std::size_t i = criterion.size(); i-- > 0;) {
     if (std::isnan(criterion[i])) continue;
     if (last && criterion[i] > criterion[*last]) return last;

@@ -1,11 +1,11 @@
-/// Rules that choose the bandwidth of the local cubic from data: the table that names each once, and the scan of
+/// Rules that choose the bandwidth of the local cubic from data: the table that names each rule once, and the scan of
 /// bandwidths that they share.
 ///
-/// Every rule has a rule_*.cpp of its own, which begins with what it minimises and its source. `cv`, `gcv`,
-/// `cv-correlated` and `rsc` judge x; their h is converted to that for a by the constants of local_polynomial.h, which
-/// holds where x'''' varies little over the kernel. All rules here judge single points and know nothing of lines; the
-/// default of `analyze`, choose_bandwidth() of rule_lines.h, is chosen for the lines. The paper took its rule from its
-/// reference [15], which is not in its text; none of these is claimed to be it.
+/// Every rule has a rule_*.cpp of its own, which begins with the criterion that it minimises and its source. `cv`,
+/// `gcv`, `cv-correlated` and `rsc` judge x; their h is converted to that for a by the constants of local_polynomial.h,
+/// which holds where x'''' varies little over the kernel. All rules here judge single points and know nothing about
+/// lines; the default of `analyze`, choose_bandwidth() of rule_lines.h, serves the lines. The paper took its rule from
+/// its reference [15] and does not state it; none of these rules is claimed to be it.
 ///
 /// To add a rule: rule_<name>.cpp, which defines its BandwidthRule, and one line in bandwidth_rule.cpp.
 #pragma once
@@ -40,52 +40,52 @@ struct LocalBandwidth {
 };
 
 struct BandwidthPick {
-  double bandwidth_s = 0.0;           ///< one for all points; of a local rule the median
+  double bandwidth_s = 0.0;           ///< one for all points; for a local rule the median
   std::string method;                 ///< one line for a reader
-  std::vector<LocalBandwidth> local;  ///< of a local rule only
+  std::vector<LocalBandwidth> local;  ///< for a local rule only
 };
 
 struct BandwidthRule {
   std::string_view name;     ///< in options and files
-  std::string_view words;    ///< what it does: "leave-one-out cross-validation of x"
+  std::string_view words;    ///< what the rule does: "leave-one-out cross-validation of x"
   std::string_view assumes;  ///< "white noise"
-  /// Nothing where the motion is too short for any bandwidth.
+  /// Empty if the motion is too short for any bandwidth.
   std::optional<BandwidthPick> (*choose)(const BandwidthProblem& problem) = nullptr;
 };
 
-/// In the order in which people see them.
+/// In the order in which they are shown.
 const std::vector<BandwidthRule>& bandwidth_rules();
 
-/// Null where there is no rule of the name.
+/// Null if there is no rule of that name.
 const BandwidthRule* find_bandwidth_rule(std::string_view name);
 
-/// The name of the default, which serves the lines and is no rule of this table (rule_lines.h).
+/// The name of the default, which serves the lines and is not a rule of this table (rule_lines.h).
 inline constexpr std::string_view kLinesRule = "lines";
 
-/// What a person may ask for: kLinesRule, then the table's names.
+/// What a user may ask for: kLinesRule, then the table's names.
 std::vector<std::string> bandwidth_choices();
 
 /// InputError for a bandwidth that is not a time above 0, and for a rule's name that is neither empty nor in the table.
 void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string& rule);
 
 inline constexpr double kLeastBandwidthSteps = 1.2;  ///< time steps; a narrower kernel holds fewer than five points
-inline constexpr double kBandwidthRatio = 1.1;       ///< from one bandwidth that is tried to the next
+inline constexpr double kBandwidthRatio = 1.1;       ///< ratio of successive bandwidths tried
 
-/// A point of a part, by its index there.
+/// A point of a part, given by its index there.
 struct Probe {
   std::size_t part = 0;
   std::size_t point = 0;
 };
 
-/// What bandwidth rules share: the bandwidths that are tried, and the points that are looked at.
+/// What the bandwidth rules share: the bandwidths tried, and the points at which the criterion is evaluated.
 class BandwidthScan {
  public:
   explicit BandwidthScan(const BandwidthProblem& problem);
 
   /// From kLeastBandwidthSteps time steps to a fifth of the longest part.
   const std::vector<double>& grid() const { return grid_; }
-  /// At most some 400 in all parts, evenly; a tenth of each part at both ends is left out, where kernels are incomplete
-  /// and their variance would dominate the criterion.
+  /// At most about 400 in all parts, evenly spaced. A tenth of each part at both ends is left out, because kernels
+  /// there are incomplete and their variance would dominate the criterion.
   const std::vector<Probe>& probes() const { return probes_; }
   const BandwidthProblem& problem() const { return problem_; }
 
@@ -101,14 +101,14 @@ class BandwidthScan {
   std::vector<Probe> probes_;
 };
 
-/// The place of the grid's smallest value, NaN left out. Nothing where all are NaN.
+/// The index of the grid's smallest value, ignoring NaN. Empty if all are NaN.
 std::optional<std::size_t> least(const std::vector<double>& criterion);
 
 /// The widest of the grid's local minima. Cross-validation often has spurious ones at narrow bandwidths, especially
 /// with correlated noise; the widest is the better one (Hall and Marron 1991, J. R. Stat. Soc. B 53, 245).
 std::optional<std::size_t> widest_local_least(const std::vector<double>& criterion);
 
-/// " (the widest tried)" and the like, where a choice lies at an end of the grid.
+/// " (the widest tried)" or similar, if a choice lies at an end of the grid.
 std::string at_edge(const std::vector<double>& grid, std::size_t chosen);
 
 }  // namespace glidelab::core

@@ -1,5 +1,5 @@
-// Cross-validation of the local cubic: of x, converted to the bandwidth for a. Where the criterion has several local
-// minima the widest bandwidth's counts.
+// Cross-validation of the local cubic: of x, converted to the bandwidth for a. If the criterion has several local
+// minima, that of the widest bandwidth is used.
 //
 //   cv             CV(h) = mean ((x_j - xs_j) / (1 - w_jj))^2, with w_jj the weight of a point in its own smoothed
 //   value:
@@ -7,7 +7,7 @@
 //                  renormalised (Stone 1974).
 //   gcv            GCV(h) = mean (x_j - xs_j)^2 / (1 - mean w_jj)^2 (Craven and Wahba 1979).
 //   cv-correlated  With the kernel u^2 exp(-u^2), which gives a point no weight in its own value and little to its
-//                  neighbours', the residual sum of squares is least at about the right h also where the noise of
+//                  neighbours', the residual sum of squares is least at about the right h even if the noise of
 //                  neighbours is correlated; that h times 1.0143 is the Gaussian kernel's (De Brabanter, De Brabanter,
 //                  Suykens, De Moor 2011, JMLR 12, 1955-1976).
 #include <fmt/format.h>
@@ -21,8 +21,8 @@
 namespace glidelab::core {
 namespace {
 
-/// Residuals of the probes and the weights of the points in their own smoothed values; nothing where a kernel holds
-/// too few points.
+/// Residuals of the probes and the weights of the points in their own smoothed values; empty if a kernel holds too few
+/// points.
 struct Residuals {
   std::vector<double> residual, own_weight;
 };

@@ -1,14 +1,14 @@
-// Rules that watch how a changes with the bandwidth, point by point.
+// Rules that examine how a changes with the bandwidth, point by point.
 //
 //   ebbs  Ruppert 1997 (J. Am. Stat. Assoc. 92, 1049): at each point the estimates a(t; h) of nine neighbouring
 //         bandwidths are fitted by c_0 + c_1 h^2; c_1 h^2 is the bias at h, and the mean over points of variance +
-//         bias^2 is minimised. The variance is exact for the noise as estimated, correlated or not.
+//         bias^2 is minimised. The variance is exact for the estimated noise, correlated or not.
 //   ici   Intersection of confidence intervals (Goldenshluger and Nemirovski 1997; Katkovnik 1999): at each point the
 //         widest h for which all a(t; h') +- kIciWidth sd(h'), h' <= h, have a value in common. Local: h varies along
 //         the motion. Theory gives the width's order, not its value: with bias ~ h^2 and sd ~ h^-2.5 (their ratio at
-//         the best h is sqrt(5)/2) the intervals, their noise apart, part at the best h for a width of 0.17, and at 1.6
-//         times it for 1.25; but narrow ones part by chance long before. 1.25 was chosen on a glider that slows down
-//         (tests/core/motion/bandwidth/test_bandwidth_rule.cpp), and serves the other motions there.
+//         the best h is sqrt(5)/2) the intervals, apart from their noise, separate at the best h for a width of 0.17,
+//         and at 1.6 times it for 1.25; but narrow ones separate by chance long before. 1.25 was chosen on a glider
+//         that slows down (tests/core/motion/bandwidth/test_bandwidth_rule.cpp), and serves the other motions there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace {
 
 constexpr double kIciWidth = 1.25;  // standard deviations
 
-/// a and its variance at every probe (inner) for every bandwidth (outer) of the grid; where a kernel holds too few
-/// points the variance is infinite.
+/// a and its variance at every probe (inner) for every bandwidth (outer) of the grid; if a kernel holds too few points,
+/// the variance is infinite.
 struct Estimates {
   std::vector<std::vector<double>> a, variance;
 };

@@ -15,13 +15,13 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kNoiseOfPoints = 0.0125;       // wanted: noise of a over its standard deviation along the line
-constexpr double kSlopeSeen = 3.0;              // standard deviations of K/m from which a line is not level
-constexpr double kBiasAllowed = 0.0035;         // of the lines' size, for the sake of quieter points
-constexpr double kNoiseAllowed = 1.25;          // growth of the lines' variance, for the sake of quieter points
-constexpr double kShareOfTime = 0.1;            // of the free time, below which a direction does not count
-constexpr double kPointsPerBandwidth = 3.0;     // points closer together say the same
-constexpr std::size_t kFewestOfLaw = 8;         // points that count, for a pilot law
+constexpr double kNoiseOfPoints = 0.0125;       // target: noise of a over its standard deviation along the line
+constexpr double kSlopeSeen = 3.0;              // standard deviations of K/m above which a line is not level
+constexpr double kBiasAllowed = 0.0035;         // of the lines' size, allowed for quieter points
+constexpr double kNoiseAllowed = 1.25;          // growth of the lines' variance, allowed for quieter points
+constexpr double kShareOfTime = 0.1;            // of the free time; below it a direction does not count
+constexpr double kPointsPerBandwidth = 3.0;     // closer points add no information
+constexpr std::size_t kFewestOfLaw = 8;         // usable points needed for a pilot law
 constexpr double kSpreadAboveRounding = 1e-12;  // of v, over its mean square
 
 double time_of(const Motion& motion, const FreeStretch& stretch) {
@@ -30,8 +30,8 @@ double time_of(const Motion& motion, const FreeStretch& stretch) {
 
 struct Errors {
   double bandwidth_s = 0.0;
-  double random = 0.0;       // mean squared error of the lines by noise, m^2/s^4, sum over directions
-  double biased = 0.0;       // the same by the kernel's bias
+  double random = 0.0;       // mean squared error of the lines from noise, m^2/s^4, sum over directions
+  double biased = 0.0;       // the same from the kernel's bias
   double bias_share = 0.0;   // bias of a line over its size, of the worse direction
   double noise_share = 0.0;  // noise of a over its standard deviation along the line, of the noisier direction
   double square() const { return random + biased; }
@@ -63,7 +63,7 @@ class Scan {
 
   double longest_s() const { return longest_s_; }
 
-  /// Nothing where a direction that counts has no line.
+  /// Empty if a direction that counts has no line.
   std::optional<Errors> at(double bandwidth_s) {
     const auto stride =
         static_cast<std::size_t>(std::max(1.0, std::floor(bandwidth_s / (kPointsPerBandwidth * motion_.step_s))));
@@ -91,7 +91,7 @@ class Scan {
     return errors;
   }
 
-  /// Noise of a over the standard deviation of a along the line; none where the line may well be level.
+  /// Noise of a over the standard deviation of a along the line; 0 if the line may be level.
   double noise_share(const LineFit& line, const LineInput& input) const {
     if (std::abs(line.k_over_m_1_s.value) < kSlopeSeen * std::sqrt(line.parts.var_k)) return 0.0;
     RowVariance variance(noise_.autocovariance);
@@ -123,11 +123,12 @@ struct Law {
   double k = 0.0, a0 = 0.0;
 };
 
-/// The law of one direction, through the points that count, or all where too few do; nothing where there are none.
+/// The law of one direction, fitted to the points that count, or to all points if too few count; empty if there are
+/// none.
 ///
-/// The kernel's bias goes with k^2, which noise makes too large by the variance of k: that is taken off (down to a
-/// constant, where k cannot be told from 0). The residuals say how large it is, each point counting as an independent
-/// one; the smoothed a of neighbours cancel rather than add, so that it is rather less.
+/// The kernel's bias scales with k^2, which noise makes too large by the variance of k. That variance is subtracted
+/// (leaving a constant if k is not distinguishable from 0). It is estimated from the residuals, each point counting as
+/// independent. The smoothed a of neighbours cancel rather than add, so the true variance is somewhat smaller.
 std::optional<Law> law_of_direction(const std::vector<StretchPoint>& points, int direction) {
   RowVariance variance({1.0});
   for (const bool only_used : {true, false}) {
@@ -186,7 +187,7 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
        scan.has_directions() && 2.0 * kKernelMargin * h < scan.longest_s(); h *= kBandwidthRatio) {
     auto errors = scan.at(h);
     if (!errors) continue;
-    // The bias grows with h; where its estimate falls again, v(t) and its noise have made it so.
+    // The bias grows with h; if its estimate falls again, this is due to v(t) and its noise.
     if (!tried.empty()) errors->biased = std::max(errors->biased, tried.back().biased);
     tried.push_back(*errors);
   }

@@ -1,8 +1,8 @@
-// plug-in: h^9 = 5 R_2 s^2 dt / mean(x''''^2), R_2 = 3/(8 sqrt(pi)) (local_polynomial.h): the least mean square error
-// of a with one h for all points. x'''' comes from one polynomial of order 6 through each part (order p + 3: Fan and
-// Gijbels 1996, section 4.2; Ruppert, Sheather and Wand 1995 fit it in blocks); the noise's share of its square is
-// subtracted. Where x'''' does not rise above the noise by two standard deviations of its mean square, the widest
-// bandwidth is taken, and the method says so. Correlated noise counts by its sum over all lags.
+// plug-in: h^9 = 5 R_2 s^2 dt / mean(x''''^2), R_2 = 3/(8 sqrt(pi)) (local_polynomial.h): it minimises the mean square
+// error of a with one h for all points. x'''' comes from one polynomial of order 6 through each part (order p + 3: Fan
+// and Gijbels 1996, section 4.2; Ruppert, Sheather and Wand 1995 fit it in blocks); the noise's share of its square is
+// subtracted. If x'''' does not rise above the noise by two standard deviations of its mean square, the widest
+// bandwidth is taken, and the method says so. Correlated noise enters by its sum over all lags.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace {
 constexpr int kGlobalOrder = 6;
 constexpr double kCurvatureSeen = 2.0;  // standard deviations by which the mean square of x'''' must stand out
 
-/// Sums over the points of a part: of x''''^2 as fitted, of its expectation by noise, and the variance of the first
-/// sum.
+/// Sums over the points of a part: of x''''^2 as fitted, of its expectation from noise alone, and the variance of the
+/// first sum.
 struct FourthDerivative {
   double square = 0.0, by_noise = 0.0, variance = 0.0;
   std::size_t points = 0;
@@ -34,7 +34,7 @@ FourthDerivative fourth_derivative(const MotionPart& part, double noise_variance
   for (const double t : part.t_s) u.push_back((t - middle) / half);
   const auto basis = OrthogonalPolynomials::make(kGlobalOrder, u, one);
   if (!basis) return sums;
-  std::vector<double> coefficient;  // of p_k over its norm's root: independent, of the noise's variance
+  std::vector<double> coefficient;  // of p_k over the root of its norm: independent, with the noise's variance
   for (int k = 0; k <= kGlobalOrder; ++k) {
     double projection = 0.0;
     for (std::size_t i = 0; i < n; ++i) projection += basis->at_points(k)[i] * (part.x_m[i] - part.x_m[0]);

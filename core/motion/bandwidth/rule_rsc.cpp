@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kCubic = 3;
 
-/// RSC at one point; NaN where the kernel holds too few points.
+/// RSC at one point; NaN if the kernel holds too few points.
 double residual_squares(const MotionPart& part, std::size_t point, double bandwidth_s) {
   const double at = part.t_s[point], reach = kKernelReach * bandwidth_s;
   std::vector<double> u, kernel, x;

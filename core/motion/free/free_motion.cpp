@@ -13,11 +13,11 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestPoints = 6;
-constexpr std::size_t kEnoughPoints = 400;  // more are thinned: the candidates times the points are looked at
-constexpr double kPartOfSize = 0.25;        // of the line's size that a point may lie off
-constexpr double kDeviations = 5.0;         // standard deviations that a point may lie off
+constexpr std::size_t kEnoughPoints = 400;  // more are thinned: the cost is candidates times points
+constexpr double kPartOfSize = 0.25;        // tolerance of a point, as a fraction of the line's size
+constexpr double kDeviations = 5.0;         // tolerance of a point, in standard deviations
 
-/// Least squares through the points for which `counts(i)`; a level line where their v hardly differ.
+/// Least squares through the points for which `counts(i)` is true; a level line if their v hardly differ.
 template <typename Counts>
 std::optional<ConsensusLine> fit(const LawPoints& points, std::size_t from, std::size_t to, const Counts& counts) {
   double n = 0.0, v = 0.0, a = 0.0, vv = 0.0, va = 0.0;
@@ -41,8 +41,8 @@ bool agrees(const LawPoints& points, const ConsensusLine& line, std::size_t i) {
   return std::abs(points.a_m_s2[i] - line.at(points.v_m_s[i])) <= line.tolerance(points.sd_m_s2[i]);
 }
 
-/// Size and scatter over the points that agree with the line at a scatter of 1: taken over what a wider tolerance lets
-/// in, both would feed on themselves.
+/// Size and scatter over the points that agree with the line at a scatter of 1: a wider tolerance would let in more
+/// points and so widen itself.
 void measure(const LawPoints& points, ConsensusLine& line) {
   std::vector<double> sizes, offs;
   line.scatter = 1.0;
@@ -86,7 +86,7 @@ std::optional<ConsensusLine> find_consensus(const LawPoints& all) {
        length = std::max(length + 1, 3 * length / 2)) {
     for (std::size_t from = 0; from + length <= n; from += std::max<std::size_t>(1, length / 4)) {
       auto line = fit(points, from, from + length, [](std::size_t) { return true; });
-      line->size_m_s2 = typical;  // one size for all candidates: a steep one must not buy agreement with it
+      line->size_m_s2 = typical;  // one size for all candidates: a steep line must not gain agreement by its size
       std::size_t agree = 0;
       for (std::size_t i = 0; i < n; ++i) agree += agrees(points, *line, i);
       if (agree > most) {
@@ -110,13 +110,14 @@ std::optional<ConsensusLine> find_consensus(const LawPoints& all) {
 namespace {
 
 constexpr double kNearEvent = 3.0;               // pilot bandwidths within which the pilot mixes both sides
-constexpr double kLeastStretchBandwidths = 4.0;  // a stretch shorter than this is no motion to fit
+constexpr double kLeastStretchBandwidths = 4.0;  // a stretch shorter than this is not fitted
 constexpr std::size_t kLeastStretchPoints = 8;
 constexpr double kLeastShareAlong =
-    0.05;  // of the points against the launch: below that, what moves along it does not count
+    0.05;  // of the points against the launch: below that, motion along it does not count
 constexpr double kLeastOfLongest = 0.574;  // of the longest: 4^(-2/5), see the header
 
-/// Of every point, 0 at rest. What is stated to be free motion is no rest: it goes on as the motion beside it.
+/// The direction of every point, 0 at rest. Motion that is stated to be free is not rest: it continues the adjacent
+/// motion.
 std::vector<int> directions(const MotionRuns& runs, const ClipSetup& setup) {
   std::vector<int> direction = runs.direction;
   for (const PointRange& range : ranges_of(runs.direction)) {
@@ -205,8 +206,8 @@ class Finder {
            span_s(range) >= kLeastStretchBandwidths * pilot_.bandwidth_s;
   }
 
-  /// Hand before the first real stretch, stop after it. What is too short to be a stretch and lies between handled
-  /// points is handled as well.
+  /// Before the first real stretch it is the hand, after it a stop. A piece too short to be a stretch between handled
+  /// points is handled too.
   void name_handling(const std::vector<char>& handled) {
     std::vector<int> kind(n_);  // direction of free motion, 0 at rest, 2 handled
     for (std::size_t i = 0; i < n_; ++i) kind[i] = handled[i] ? 2 : direction_[i];
@@ -224,12 +225,12 @@ class Finder {
                           ((r > 0 && is_handled(r - 1)) || (r + 1 < ranges.size() && is_handled(r + 1)));
       if (kind[range.from] != 2 && !sliver) continue;
       const bool before = range.from < first_real;
-      if ((before && setup_.start_s) || (range.from >= last_real && setup_.end_s)) continue;  // the user's word
+      if ((before && setup_.start_s) || (range.from >= last_real && setup_.end_s)) continue;  // as stated by the user
       fill_range(reason_, range, before ? LeftOut::hand : LeftOut::stop);
     }
   }
 
-  /// What moves against the direction of the launch, before anything moves with it, is the hand.
+  /// Motion against the direction of the launch, before any motion along it, is the hand.
   void leave_out_backswing(FreeMotion& free) {
     if (setup_.start_s || motion_.forced) return;
     int launched = 0;
@@ -254,7 +255,7 @@ class Finder {
     AgainstLaunch found;
     found.direction = -launched;
     found.share = share_of_free(against);
-    if (end == n_) {  // it never moves as launched: nothing to tell a hand from
+    if (end == n_) {  // it never moves in the launch direction, so a hand cannot be told apart
       if (static_cast<double>(with) > kLeastShareAlong * static_cast<double>(against)) return;
       free.against_launch = found;
       return;
@@ -364,7 +365,7 @@ std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeS
                                    const std::vector<std::vector<double>>& shared_m, double margin_s) {
   std::vector<FreeBlock> blocks;
   const auto middle_of = [&](std::size_t s) { return stretches[s].first + stretches[s].count / 2; };
-  bool cut = false;  // the block goes on from the middle of its first stretch
+  bool cut = false;  // the block starts in the middle of its first stretch
   for (std::size_t s = 0; s < stretches.size();) {
     std::size_t end = s + 1;
     while (end < stretches.size() && turns_into(stretches[end - 1], stretches[end])) ++end;

@@ -1,4 +1,4 @@
-/// The free parts of a measured motion: not in the hand, not at rest, not against a stop or a bumper, and each in one
+/// The free parts of a measured motion: not in the hand, not at rest, not against a stop or a bumper, each in one
 /// direction.
 ///
 /// A first smoothing (the pilot) takes the smallest bandwidth at which the noise of a is 10 % of the median |a| of the
@@ -6,16 +6,16 @@
 ///  - Directions, reversals and rests are told apart (motion_events.h).
 ///  - Hand, stop: the points (v, a) of one direction of free motion lie about one line. For each direction the line is
 ///    taken on which most points agree (candidates: lines through parts of the motion that are contiguous in time). A
-///    point is not free where its a is off that line by more than a quarter of the line's own size AND by more than the
-///    noise and the common scatter of the points allow (five standard deviations). Before the first free stretch that
-///    is the hand, later a stop. What deviates less is left in: it is physics, not handling.
-///  - A stretch of duration T determines its acceleration with a standard deviation proportional to T^(-5/2). What is
-///    four times worse than the longest of its direction (T below 0.57 of it) is left out: least squares gives all
-///    points one weight, so its points would add noise and no information.
-///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. A
-///    launch whose direction is not stated has no wrong direction.
+///    point is not free if its a is off that line by more than a quarter of the line's own size AND by more than the
+///    noise and the common scatter of the points allow (five standard deviations). Before the first free stretch this
+///    is the hand, later a stop. Smaller deviations are left in: they are physics, not handling.
+///  - A stretch of duration T determines its acceleration with a standard deviation proportional to T^(-5/2). A stretch
+///    whose standard deviation is four times that of the longest of its direction (T below 0.57 of it) is left out:
+///    least squares gives all points the same weight, so its points would add noise and no information.
+///  - A stretch of the wrong direction before the first one in the direction of the launch is the hand's backswing. If
+///    the direction of the launch is not stated, there is no wrong direction.
 ///
-/// Assumptions: most of what moves is free; a hand or a bumper differs from free motion by more than a quarter. Each
+/// Assumptions: most of the motion is free; a hand or a bumper differs from free motion by more than a quarter. Each
 /// stretch is later smoothed with its own points alone, so that no kernel reaches over a reversal, a rest, an impact or
 /// a release; the times of these need to be known only well enough to keep the far side out.
 #pragma once
@@ -30,14 +30,14 @@
 
 namespace glidelab::core {
 
-/// Points of one direction in the order of time; `sd` is the standard deviation of a by the noise of the positions.
+/// Points of one direction in order of time; `sd` is the standard deviation of a due to the noise of the positions.
 struct LawPoints {
   std::vector<double> v_m_s;
   std::vector<double> a_m_s2;
   std::vector<double> sd_m_s2;
 };
 
-/// The line a = a0 - k v that most points of one direction agree with, regardless of the outliers.
+/// The line a = a0 - k v with which most points of one direction agree, regardless of outliers.
 struct ConsensusLine {
   double a0_m_s2 = 0.0;
   double k_1_s = 0.0;
@@ -49,7 +49,7 @@ struct ConsensusLine {
 };
 
 /// Candidates are the least-squares lines through runs of consecutive points; the one with the most points within its
-/// tolerance wins and is refitted to them. Nothing for fewer than six points.
+/// tolerance wins and is refitted to them. Empty for fewer than six points.
 std::optional<ConsensusLine> find_consensus(const LawPoints& points);
 
 /// Points first … first + count - 1 of the motion, all moving freely in one direction.
@@ -57,40 +57,40 @@ struct FreeStretch {
   std::size_t first = 0;
   std::size_t count = 0;
   int direction = 0;
-  LeftOut start = LeftOut::kernel_end;  ///< what lies before it: kernel_end or kernel_reversal
-  LeftOut end = LeftOut::kernel_end;    ///< what lies behind it
-  LeftOut whole = LeftOut::used;        ///< short_stretch where none of it counts
+  LeftOut start = LeftOut::kernel_end;  ///< what precedes it: kernel_end or kernel_reversal
+  LeftOut end = LeftOut::kernel_end;    ///< what follows it
+  LeftOut whole = LeftOut::used;        ///< short_stretch if none of it counts
 };
 
-/// Whether the motion turns between two stretches that follow each other, with no point between.
+/// Whether the motion turns between two consecutive stretches, with no point in between.
 bool turns_into(const FreeStretch& before, const FreeStretch& after);
 
 struct FreeMotion {
-  std::vector<FreeStretch> stretches;  ///< in the order of time; they share no point
+  std::vector<FreeStretch> stretches;  ///< in order of time; they share no point
   std::vector<LeftOut> reason;         ///< of every point; `used` within the stretches
   double pilot_bandwidth_s = 0.0;
   std::optional<AgainstLaunch> against_launch;
 };
 
-/// The setup's start_s and end_s, where given, are trusted: nothing after start_s counts as hand, nothing before end_s
-/// as stop or rest, and with both everything between them is free, at rest or not.
+/// The setup's start_s and end_s, if given, are trusted: nothing after start_s counts as hand, nothing before end_s as
+/// stop or rest, and with both everything between them is free, at rest or not.
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
 
 /// Free stretches joined where the motion turns.
 ///
-/// Stretches that follow each other across a reversal make one block. Where a block borders on something that is not
-/// free (a hand, a stop, a rest), `margin_s` of it is left out: the border is known to about a bandwidth. Blocks of
-/// fewer than kFewestBlockPoints, and those in which no stretch counts, are left out.
+/// Consecutive stretches across a reversal make one block. If a block borders on something that is not free (a hand, a
+/// stop, a rest), `margin_s` of it is left out: the border is known to about a bandwidth. Blocks of fewer than
+/// kFewestBlockPoints, and those in which no stretch counts, are left out.
 ///
-/// Where a recorded force drives the glider to and fro, a block ends in the middle of its third stretch, where it is
-/// fast, and the next begins there: over more than two turns, a law that lacks something makes the fit end in a local
+/// If a recorded force drives the glider to and fro, a block ends in the middle of its third stretch, where the glider
+/// is fast, and the next block begins there: over more than two turns, an incomplete law makes the fit end in a local
 /// minimum with the wrong sequence of turns.
 std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s);
 
 inline constexpr std::size_t kFewestBlockPoints = 8;
 
-/// The force of a track over the mass, at its samples from the block's first point to its last.
+/// The force of a track divided by the mass, at its samples from the block's first point to its last.
 RecordedForce force_over(const FreeBlock& block, const TrackData& track, double mass_kg, double mass_sd_kg);
 
 }  // namespace glidelab::core

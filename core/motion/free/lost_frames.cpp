@@ -14,18 +14,19 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kBefore = 4, kBehind = 4;  // positions that a cubic goes through on either side
-constexpr std::size_t kFewestBehind = 2;         // where another loss follows soon
-constexpr std::size_t kFewestInWindow = 6;       // of both
+constexpr std::size_t kBefore = 4, kBehind = 4;  // positions on either side to which a cubic is fitted
+constexpr std::size_t kFewestBehind = 2;         // if another loss follows soon
+constexpr std::size_t kFewestInWindow = 6;       // on both sides together
 constexpr int kMostPoints = kBefore + 1 + kBehind;
-constexpr double kEvidence = 50.0;      // variances by which a loss lessens the sum of squares
-constexpr double kExplained = 4.0;      // standard deviations of the noise that residuals may have
-constexpr double kOfDistance = 0.1;     // of the distance in a frame that they may be: a law that changes at a reversal
-constexpr double kOfFrame = 1.0 / 7.0;  // that the jump may be from a whole number of frames
-constexpr double kMarkerMissing = 2.0;  // frames without a marker that a window may hold
+constexpr double kEvidence = 50.0;      // variances by which a loss lowers the sum of squares
+constexpr double kExplained = 4.0;      // allowed residual, in standard deviations of the noise
+constexpr double kOfDistance = 0.1;     // allowed residual, as a fraction of the distance per frame: a law may change
+                                        // at a reversal
+constexpr double kOfFrame = 1.0 / 7.0;  // allowed deviation of the jump from a whole number of frames
+constexpr double kMarkerMissing = 2.0;  // allowed frames without a marker in a window
 constexpr double kUniform = 0.1;        // of the step
 constexpr double kUnit = 1.0 / static_cast<double>(kBefore);  // of a step: keeps the design's columns alike
-constexpr int kTurnRounds = 4;                                // to the place of a turn
+constexpr int kTurnRounds = 4;                                // iterations for the time of a turn
 constexpr Eigen::Index kFewestAtTurn = 7;                     // points
 
 bool is_uniform(const std::vector<double>& t_s, double step_s) {
@@ -35,10 +36,11 @@ bool is_uniform(const std::vector<double>& t_s, double step_s) {
   return step_s > 0.0;
 }
 
-/// The positions of a window around a pair of neighbouring frames, in units of kBefore steps from the first one behind.
+/// The positions of a window around a pair of neighbouring frames, in units of kBefore steps from the first one after
+/// the gap.
 struct Window {
   std::vector<double> u, y_m;
-  std::size_t before = 0;  ///< points before the pair's gap
+  std::size_t before = 0;  ///< points before the gap
 };
 
 Window window_of(std::span<const double> t_s, std::span<const double> y_m, std::size_t before, double step_s) {
@@ -50,14 +52,14 @@ Window window_of(std::span<const double> t_s, std::span<const double> y_m, std::
   return window;
 }
 
-/// The cubic through the positions of a window, those behind the pair at later times. Where it turns among them the
-/// acceleration may step, as dry friction makes it: a fifth parameter.
+/// The cubic through the positions of a window, with those after the gap at later times. If the motion turns within the
+/// window, the acceleration may step, as with dry friction: a fifth parameter.
 struct CubicFit {
   double squares = 0.0;   ///< of the residuals
-  double freedom = 1.0;   ///< points more than parameters
-  double off = 0.0;       ///< frames by which those behind lie later still, to first order
-  double off_gain = 0.0;  ///< its variance in units of the noise's
-  double distance = 0.0;  ///< in one frame, behind the pair
+  double freedom = 1.0;   ///< points minus parameters
+  double off = 0.0;       ///< further delay of the points after the gap in frames, to first order
+  double off_gain = 0.0;  ///< its variance over the noise's
+  double distance = 0.0;  ///< per frame, after the gap
 };
 
 using Design = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostPoints, 5>;
@@ -68,7 +70,7 @@ double speed_at(const Parameters& c, double u, double turn) {
   return c[1] + u * (2.0 * c[2] + 3.0 * c[3] * u) + (c.size() > 4 ? c[4] * std::max(0.0, u - turn) : 0.0);
 }
 
-/// Where the speed changes its sign inside the window, if it does once.
+/// The time at which the speed changes sign inside the window, if it does so once.
 std::optional<double> turn_of(const Parameters& c, const std::vector<double>& u, double turn) {
   constexpr int kHalvings = 30;
   double low = u[1], high = u[u.size() - 2];
@@ -80,7 +82,7 @@ std::optional<double> turn_of(const Parameters& c, const std::vector<double>& u,
   return 0.5 * (low + high);
 }
 
-/// The first `before` points keep their times, the others are `lost` frames later.
+/// The first `before` points keep their times; the others are `lost` frames later.
 CubicFit cubic_through(const Window& window, int lost) {
   const auto n = static_cast<Eigen::Index>(window.u.size());
   std::vector<double> u = window.u;
@@ -118,7 +120,7 @@ CubicFit cubic_through(const Window& window, int lost) {
   return fit;
 }
 
-/// How many frames are lost between the two sides; 0 where nothing says so.
+/// How many frames are lost between the two sides; 0 without evidence of a loss.
 int lost_between(const Window& window, double noise_m) {
   const double variance = noise_m * noise_m;
   const double without = cubic_through(window, 0).squares;
@@ -138,8 +140,8 @@ int lost_between(const Window& window, double noise_m) {
   return best > 0 && explains && whole ? best : 0;
 }
 
-/// Whether one cubic explains point i and those around it so well that nothing is lost before it or beside it: in a
-/// window with fewer of these points a cubic leaves no more.
+/// Whether one cubic explains point i and those around it well enough that nothing is lost before it or next to it: in
+/// a window with fewer of these points the residuals can be no larger.
 bool is_smooth(const Motion& motion, const std::vector<double>& t_s, std::size_t i, double step_s) {
   const std::size_t before = std::min(i, kBefore), behind = std::min(kBehind, t_s.size() - i - 1), first = i - before;
   const auto n = static_cast<Eigen::Index>(before + 1 + behind);
@@ -156,16 +158,16 @@ bool is_smooth(const Motion& motion, const std::vector<double>& t_s, std::size_t
   return y.tail(n - 4).squaredNorm() < kEvidence * motion.noise_m * motion.noise_m;
 }
 
-/// Whether a window of these points holds hardly a frame without a marker.
+/// Whether a window of these points has hardly any frame without a marker.
 bool is_close(const Motion& motion, std::size_t first, std::size_t count, double step_s) {
   const double span_s = motion.t_s[first + count - 1] - motion.t_s[first];
   return span_s <= (static_cast<double>(count) + kMarkerMissing) * step_s;
 }
 
-/// Frames that are lost before point i of a motion whose points are at the times t_s; 0 where nothing says so.
+/// Number of frames lost before point i of a motion whose points are at the times t_s; 0 without evidence of a loss.
 int lost_before(const Motion& motion, const std::vector<double>& t_s, std::size_t i, double step_s) {
   const std::size_t before = std::min(i, kBefore), first = i - before;
-  // Fewer points behind where the whole window does not say: another loss may follow.
+  // Uses fewer points after the gap if the whole window does not decide: another loss may follow.
   for (std::size_t behind = std::min(kBehind, t_s.size() - i); behind >= kFewestBehind; --behind) {
     const std::size_t count = before + behind;
     if (count < kFewestInWindow) break;
@@ -177,12 +179,13 @@ int lost_before(const Motion& motion, const std::vector<double>& t_s, std::size_
   return 0;
 }
 
-/// Frames that are lost before and behind point i, where it stands alone between two losses.
+/// Frames lost before and after point i, if it stands alone between two losses.
 struct Beside {
   int before = 0, behind = 0;
 };
 
-/// Those around it say how many are missing in all; then it lies, by their cubic, behind some of them.
+/// The points around it tell how many frames are missing in all; their cubic then tells how many of these precede point
+/// i.
 std::optional<Beside> lost_beside(const Motion& motion, const std::vector<double>& t_s, std::size_t i, double step_s) {
   const std::size_t before = std::min(i, kBefore), behind = std::min(kBehind, t_s.size() - i - 1), first = i - before;
   const std::size_t count = before + 1 + behind;
@@ -212,7 +215,7 @@ std::optional<Beside> lost_beside(const Motion& motion, const std::vector<double
   return Beside{lost, all - lost};
 }
 
-/// Those that are known and what is found beside them, in the order of time.
+/// The known losses and those found in addition, in order of time.
 std::vector<LostFrames> losses_of(const Motion& motion, std::vector<LostFrames> known, double step_s) {
   std::vector<double> t = motion.t_s;
   for (double& at : t) at = put_right(at, known, step_s);
@@ -233,7 +236,7 @@ std::vector<LostFrames> losses_of(const Motion& motion, std::vector<LostFrames> 
   return known;
 }
 
-/// Outliers that have no other beside them: behind a jump several positions look like some.
+/// Outliers without a neighbouring outlier: after a jump several positions look like outliers.
 std::vector<std::size_t> single_outliers(const Motion& motion) {
   const std::vector<std::size_t> outliers = find_outliers(motion);
   std::vector<std::size_t> single;
@@ -250,7 +253,7 @@ std::vector<std::size_t> single_outliers(const Motion& motion) {
 std::vector<LostFrames> find_lost_frames(const TrackData& track, const Motion& motion) {
   const double step = median_step(track.frame_t_s);
   if (!is_uniform(track.frame_t_s, step) || !(motion.noise_m > 0.0)) return {};
-  // A position beside a jump may look like an outlier: what is found with all of them is put right first.
+  // A position next to a jump may look like an outlier, so losses found with all positions are corrected first.
   const std::vector<LostFrames> plain = losses_of(motion, {}, step);
   Motion right = motion;
   for (double& at : right.t_s) at = put_right(at, plain, step);

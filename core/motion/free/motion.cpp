@@ -12,7 +12,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of the largest position: some thousand epsilon
+constexpr double kRounding = 1e-12;  // of the largest position: a few thousand epsilon
 
 }  // namespace
 
@@ -31,7 +31,7 @@ Motion motion_of(const TrackData& track, double mass_kg) {
     }
   }
   motion.noise_m = pilot_noise(motion.t_s, motion.y_m);
-  // Not below what rounding makes of sums over a kernel: a constant must not look like a motion.
+  // Not below the rounding error of sums over a kernel: a constant must not look like a motion.
   for (const double y : motion.y_m) motion.noise_m = std::max(motion.noise_m, kRounding * std::abs(y));
   return motion;
 }
@@ -60,11 +60,11 @@ constexpr double kThreshold = 6.0;   // standard deviations
 constexpr double kAgreement = 3.0;   // standard deviations
 
 struct Prediction {
-  double off = 0.0;        // of the point from the neighbours' cubic
-  double gain = 0.0;       // variance of the prediction in units of the noise's
+  double off = 0.0;        // distance of the point from the neighbours' cubic
+  double gain = 0.0;       // variance of the prediction over the noise's
   double scatter = 0.0;    // standard deviation of the neighbours about their cubic
-  std::size_t worst = 0;   // the neighbour that lies off most
-  double worst_off = 0.0;  // by how much
+  std::size_t worst = 0;   // the neighbour that is farthest off
+  double worst_off = 0.0;  // its distance
 };
 
 /// By the polynomial of `Coefficients` coefficients through the neighbours.
@@ -95,7 +95,8 @@ Prediction predict(const Motion& motion, std::size_t j, const std::vector<std::s
   return prediction;
 }
 
-/// The motion before the point (step -1) or after it (+1) runs smoothly into it: at an impact one of the two does.
+/// Whether the motion before the point (step -1) or after it (+1) runs smoothly into it: at an impact one of the two
+/// does.
 bool continues(const Motion& motion, std::size_t j, int step) {
   std::vector<std::size_t> neighbours;
   for (std::size_t reach = 1; reach <= kOneSide; ++reach) {
@@ -119,7 +120,7 @@ bool is_outlier(const Motion& motion, std::size_t j, const std::vector<char>& dr
     const Prediction prediction = predict<4>(motion, j, neighbours);
     const double scale = std::max(motion.noise_m, prediction.scatter) * std::sqrt(1.0 + prediction.gain);
     if (prediction.off > kThreshold * scale) return !continues(motion, j, -1) && !continues(motion, j, 1);
-    // Neighbours that agree, or too many that do not: the point is no worse than they are.
+    // The neighbours agree, or too many do not: the point is no worse than they are.
     if (without == kAllowedAmongNeighbours || prediction.scatter < kAgreement * motion.noise_m) return false;
     neighbours.erase(neighbours.begin() + static_cast<std::ptrdiff_t>(prediction.worst));
   }

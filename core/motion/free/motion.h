@@ -1,4 +1,4 @@
-/// The measured motion of one clip, from which its analysis starts, and the outliers among its points.
+/// The measured motion of one clip, the starting point of its analysis, and the outliers among its points.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace glidelab::core {
 
-/// Points in the order of time. `y_m` is the position minus the motion that the known force alone would give,
+/// Points in order of time. `y_m` is the position minus the motion that the known force alone would cause,
 ///
 ///     y(t) = x(t) - integral integral F/m,   so that   y'' = a - F/m   is what gravity and friction do,
 ///
@@ -29,13 +29,13 @@ Motion motion_of(const TrackData& track, double mass_kg);
 /// The same without the points of the given indices (rising).
 Motion without(const Motion& motion, const std::vector<std::size_t>& points);
 
-/// Single positions that lie off the motion (something else was mistaken for the marker in one frame): the indices of
-/// points that are off the cubic through their ten nearest neighbours by more than six standard deviations of that
-/// prediction: of the noise, or of the neighbours' own scatter about the cubic, whichever is larger. At a release or a
-/// jump the neighbours scatter as much as the point, and into an impact's own point the motion before or after it runs
-/// smoothly (the parabola of five neighbours on one side, within three standard deviations): nothing there is an
-/// outlier. Up to two of the neighbours may be outliers themselves. For normal noise one point in 1e9 is taken by
-/// mistake.
+/// Single positions that lie off the motion, because something else was mistaken for the marker in one frame. Returns
+/// the indices of points that are off the cubic through their ten nearest neighbours by more than six standard
+/// deviations of that prediction, taken from the noise or from the neighbours' own scatter about the cubic, whichever
+/// is larger. At a release or a jump the neighbours scatter as much as the point. At an impact, the motion before or
+/// after runs smoothly into the point (the parabola of five neighbours on one side, within three standard deviations).
+/// Nothing there is an outlier. Up to two of the neighbours may be outliers themselves. For normal noise one point in
+/// 1e9 is taken by mistake.
 std::vector<std::size_t> find_outliers(const Motion& motion);
 
 }  // namespace glidelab::core

@@ -15,12 +15,12 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kNoiseShare = 0.10;      // of the median |a| that its noise may be
-constexpr double kLongestPart = 12.0;     // of the moving time that the bandwidth may be
-constexpr double kGrowth = 1.15;          // from one bandwidth to the next
+constexpr double kNoiseShare = 0.10;      // largest noise of a, as a fraction of the median |a|
+constexpr double kLongestPart = 12.0;     // largest bandwidth: the moving time over this
+constexpr double kGrowth = 1.15;          // ratio of successive bandwidths
 constexpr double kStillDeviations = 5.0;  // of v: one point in 1e6 by chance
 
-/// Robust standard deviation of x about the smoothed x; more than the pilot noise where the noise is correlated.
+/// Robust standard deviation of x about the smoothed x; more than the pilot noise if the noise is correlated.
 double residual_noise(const Motion& motion, const std::vector<std::optional<SmoothedPoint>>& smoothed,
                       double weight_of_own_point) {
   std::vector<double> off;
@@ -87,7 +87,7 @@ Pilot first_smoothing(const Motion& motion) {
 
 namespace {
 
-constexpr double kLeastMotion = 20.0;    // standard deviations of a position that a run must cover to be motion
+constexpr double kLeastMotion = 20.0;    // a run must cover this many standard deviations of a position to be motion
 constexpr double kRestBandwidths = 3.0;  // a reversal is still for less than one pilot bandwidth
 constexpr std::size_t kRestPoints = 6;
 constexpr double kRestGrowth = 3.0;  // standard deviations of a position
@@ -127,7 +127,7 @@ class RunFinder {
     }
   }
 
-  /// Next to no slope and curvature of x in the middle part of the range.
+  /// Whether x has almost no slope and curvature in the middle part of the range.
   bool is_rest(const PointRange& range) const {
     if (range.size() < kRestPoints || span_s(range) < kRestBandwidths * pilot_.bandwidth_s) return false;
     const std::size_t cut = range.size() / 5;
@@ -143,8 +143,8 @@ class RunFinder {
       x[r] = motion_.x_m[i] - motion_.x_m[middle.from];
     }
     const Eigen::Vector3d fit = base::least_squares(design, x);
-    // fit[1] is the distance over half the range, fit[2] how far its ends lie off: next to none is a fifth of the speed
-    // that counts as still, or what a position's noise covers.
+    // fit[1] is the distance over half the range, fit[2] the deviation of its ends. "Almost none" is a fifth of the
+    // speed that counts as still, or what a position's noise covers.
     const double little = std::max(0.2 * kStillShare * pilot_.top_speed_m_s * half_s, kRestGrowth * motion_.noise_m);
     return std::abs(fit[1]) <= little && std::abs(fit[2]) <= little;
   }
@@ -177,7 +177,7 @@ class RunFinder {
 
   void rest(const PointRange& range) { fill_range(resting_, range, char{1}); }
 
-  /// Points of no significant v that do not rest belong to the run before or after.
+  /// Points without significant v that do not rest belong to the run before or after.
   void settle_between_runs() {
     for (const PointRange& range : ranges_of(direction_)) {
       if (direction_[range.from] != 0) continue;
@@ -209,8 +209,8 @@ class RunFinder {
       fill_range(direction_, first, before);
       return fill_range(direction_, second, after);
     }
-    // On one side is an end of the data or a rest. What covers too little distance there to be motion is rest, if it is
-    // long.
+    // One side is an end of the data or a rest. A piece that covers too little distance there to be motion is rest, if
+    // it is long.
     const int known = before != 0 ? before : after;
     const PointRange& outer = before != 0 ? first : second;
     const PointRange& inner = before != 0 ? second : first;
@@ -238,9 +238,9 @@ MotionRuns find_runs(const Motion& motion, const Pilot& pilot) {
 namespace {
 
 constexpr int kSteps = 40;
-constexpr double kSettled = 1e-9;        // a step of t*, of the window
-constexpr double kAlmostSettled = 1e-4;  // will do after kSteps
-constexpr double kFarthest = 0.8;        // t* from the window's middle
+constexpr double kSettled = 1e-9;        // a step of t*, as a fraction of the window
+constexpr double kAlmostSettled = 1e-4;  // suffices after kSteps
+constexpr double kFarthest = 0.8;        // largest distance of t* from the window's middle
 constexpr std::ptrdiff_t kFewestOnASide = 5;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -253,7 +253,7 @@ struct Fit {
   double squares = 0.0;
 };
 
-/// Columns that a stop does not have are kept at zero by a one on the diagonal.
+/// Columns that a stop does not have are held at zero by a one on the diagonal.
 void pin(Matrix6& normal, EventKind kind) {
   if (kind == EventKind::turns) return;
   for (const int i : {4, 5}) {
@@ -289,7 +289,7 @@ Fit linear_fit(const std::vector<double>& u, const std::vector<double>& x, doubl
     fit.normal += d * d.transpose();
     right += d * x[i];
   }
-  fit.normal(1, 1) = 1.0;  // t* is held
+  fit.normal(1, 1) = 1.0;  // t* is held fixed
   pin(fit.normal, kind);
   fit.parameters = base::solve_positive(fit.normal, right);
   fit.parameters[1] = at;
@@ -318,7 +318,8 @@ std::optional<EventTime> estimate_event(std::span<const double> t_s, std::span<c
   mean /= static_cast<double>(x.size());
   for (double& value : x) value -= mean;
 
-  // The sum of squares over t* may have more than one valley: the best of a coarse walk, then Gauss and Newton.
+  // The sum of squares over t* may have more than one valley: a coarse scan finds the best, then Gauss-Newton refines
+  // it.
   Fit best = linear_fit(u, x, 0.0, kind);
   for (int i = -12; i <= 12; ++i) {
     const Fit fit = linear_fit(u, x, 0.05 * i, kind);
@@ -331,7 +332,7 @@ std::optional<EventTime> estimate_event(std::span<const double> t_s, std::span<c
   };
   base::FitOptions options;
   options.most_iterations = kSteps;
-  options.take_every_step = true;  // the coarse walk ends so close by that no step needs to be held back
+  options.take_every_step = true;  // the coarse scan ends so close that no step needs damping
   const auto try_step = [&](const Point& here, double) {
     Matrix6 normal = Matrix6::Zero();
     Vector6 right = Vector6::Zero();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kFewestResiduals = 40;
 constexpr int kPasses = 4;
-constexpr double kLeastShare = 0.1;  // of the mean variance that is left at any speed: a line has no floor of its own
+constexpr double kLeastShare = 0.1;  // of the mean variance, kept at any speed: a line has no floor of its own
 
 struct Line {
   double a = 0.0, b = 0.0, sd_b = 0.0;

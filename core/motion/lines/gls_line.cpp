@@ -16,7 +16,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLeastPieceBandwidths = 4.0;  // bandwidths that a piece must last
+constexpr double kLeastPieceBandwidths = 4.0;  // minimum duration of a piece, in bandwidths
 constexpr std::size_t kFewestPoints = 8;
 constexpr std::size_t kFewestNodes = 3;
 constexpr int kSteps = 60;
@@ -80,11 +80,11 @@ class Fit {
   const Eigen::Matrix2d& information() const { return information_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
 
-  /// Gauss and Newton's step of k, and the standard deviation of k.
+  /// The Gauss-Newton step of k, and the standard deviation of k.
   double step() const { return -0.5 * gradient_ * inverse_k(); }
   double sd() const { return std::sqrt(inverse_k()); }
 
-  /// Change of (k, a0) by a change of a + k v at the nodes of every piece.
+  /// Change of (k, a0) due to a change of a + k v at the nodes of every piece.
   template <typename Change>
   Eigen::Vector2d moved_by(const Change& change) const {
     Eigen::Vector2d score = Eigen::Vector2d::Zero();
@@ -131,7 +131,7 @@ std::optional<Fit> settle(const std::vector<LineNodes>& nodes, double k) {
   return {};
 }
 
-/// Noise, and what whitened residuals scatter beyond it.
+/// The noise, and the scatter of whitened residuals beyond it.
 void set_random_part(const Fit& fit, LineUncertainty& parts) {
   const Eigen::Matrix2d inverse = fit.information().inverse();
   Eigen::Matrix2d covariance = inverse;
@@ -164,13 +164,13 @@ void set_random_part(const Fit& fit, LineUncertainty& parts) {
   parts.var_a0 = covariance(1, 1);
 }
 
-/// Delete-one-piece jackknife, where it gives more (line_fit.h).
+/// The delete-one-piece jackknife, if it gives more (line_fit.h).
 void compare_with_piece_jackknife(const Fit& fit, LineUncertainty& parts) {
   if (fit.pieces().size() < kFewestPieces) return;
   std::vector<Eigen::Vector2d> moved;
   for (const Fit::Piece& piece : fit.pieces()) {
     const Eigen::Matrix2d rest = fit.information() - piece.design.transpose() * piece.design;
-    if (!(rest.determinant() > 1e-9 * fit.information().determinant())) return;  // one piece holds the line alone
+    if (!(rest.determinant() > 1e-9 * fit.information().determinant())) return;  // one piece alone determines the line
     moved.push_back(rest.inverse() * (piece.design.transpose() * piece.rho));
   }
   widen_by_jackknife(moved, parts);

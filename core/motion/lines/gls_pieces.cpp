@@ -12,8 +12,8 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kWindow = 3.0;      // bandwidths on both sides of an event that its time is estimated from
-constexpr double kDeviations = 2.0;  // of the event's time that are left out
+constexpr double kWindow = 3.0;      // bandwidths on both sides of an event, used to estimate its time
+constexpr double kDeviations = 2.0;  // margin left out around an event, in standard deviations of its time
 
 std::optional<EventTime> event_between(const Motion& motion, std::size_t from, std::size_t border, std::size_t to,
                                        EventKind kind, double bandwidth_s, const std::vector<double>& autocovariance) {
@@ -70,7 +70,7 @@ std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free,
 
 namespace {
 
-constexpr double kPivot = 1e-9;  // least pivot of C over its diagonal
+constexpr double kPivot = 1e-9;  // smallest allowed pivot of C over its diagonal
 
 using Vector = Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;

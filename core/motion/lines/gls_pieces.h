@@ -1,5 +1,5 @@
-/// What the generalised line (gls_line.h) is fitted to: free stretches up to the estimated times at which they turn or
-/// come to rest, their nodes, and what is known of their noise.
+/// The data to which the generalised line (gls_line.h) is fitted: free stretches up to the estimated times at which
+/// they turn or come to rest, their nodes, and what is known about their noise.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -15,17 +15,17 @@
 
 namespace glidelab::core {
 
-/// Points first … first + count - 1 of the motion: free, of one direction, up to the events at their ends.
+/// Points first … first + count - 1 of the motion: free, in one direction, up to the events at their ends.
 struct FreePiece {
   std::size_t first = 0;
   std::size_t count = 0;
   int direction = 0;
 };
 
-/// The stretches up to their estimated ends. Where a stretch turns into the reversed one or comes to rest the event's
+/// The stretches up to their estimated ends. If a stretch turns into the reversed one or comes to rest, the event's
 /// time is estimated from three bandwidths on both sides (motion_events.h), and the stretch reaches up to two standard
-/// deviations from it; where that fails, and at other borders (a hand, a bumper), a bandwidth is left out. At the
-/// data's own ends nothing is.
+/// deviations from it. If that fails, and at other borders (a hand, a bumper), a bandwidth is left out. At the ends of
+/// the data nothing is left out.
 std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free, double bandwidth_s,
                                    const std::vector<double>& autocovariance);
 
@@ -33,7 +33,7 @@ struct GlsInput {
   double bandwidth_s = 0.0;
   std::vector<double> autocovariance;
   std::vector<double> noise_factor = {};  ///< of every point of the motion (stretch_noise.h); empty: 1
-  double k_start_1_s = 0.0;               ///< where the search for k begins
+  double k_start_1_s = 0.0;               ///< start value of the search for k
   double scale_sd_relative = 0.0;
   double mass_kg = 0.0;  ///< with a known force only
   double mass_sd_kg = 0.0;
@@ -50,10 +50,10 @@ struct NodeResidual {
 };
 
 /// The nodes of one piece for the generalised line: smoothed points about a bandwidth apart with the parts of their
-/// covariance, and what the line's own law makes of them.
+/// covariance, and their prediction under the line's own law.
 class LineNodes {
  public:
-  /// `count` nodes from the first to the last point of the piece; fewer where points are fewer.
+  /// `count` nodes from the first to the last point of the piece; fewer if there are fewer points.
   LineNodes(const Motion& motion, const FreePiece& piece, const GlsInput& input, std::size_t count);
 
   int count() const { return static_cast<int>(v_.size()); }
@@ -65,14 +65,14 @@ class LineNodes {
   /// Lower triangles of C(k) and of dC/dk.
   Eigen::SparseMatrix<double> covariance(double k) const { return aa_ + 2.0 * k * av_ + k * k * vv_; }
   Eigen::SparseMatrix<double> covariance_slope(double k) const { return 2.0 * av_ + 2.0 * k * vv_; }
-  /// Every pivot of C(k) is above 1e-9 of its diagonal; below that, nodes carry the same information.
+  /// Whether every pivot of C(k) is above 1e-9 of its diagonal; below that, nodes carry the same information.
   bool well_conditioned(double k) const;
 
   NodeResidual residual(double k) const;
 
-  /// Change of a + k v by a displacement of all the motion's points.
+  /// Change of a + k v due to a displacement of all the motion's points.
   Eigen::VectorXd change(const std::vector<double>& displacement, double k) const;
-  /// With a known force: change of a by one relative change of the mass, and the kernel's bias of a under a law.
+  /// With a known force: change of a due to a unit relative change of the mass, and the kernel's bias of a under a law.
   Eigen::VectorXd force_part() const;
   Eigen::VectorXd law_bias(const std::vector<double>& law_m_s2) const;
 

@@ -70,7 +70,7 @@ void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, dou
 
 constexpr std::size_t kFewestBlocks = 8;
 
-/// How many of `count` residuals are worth an independent one: their noise is correlated over the kernel.
+/// Effective number of independent residuals among `count`: their noise is correlated over the kernel.
 double independent(const std::vector<double>& weights, std::size_t count) {
   double sum = 0.0, variance = 0.0;
   for (std::size_t lag = 0; lag < weights.size(); ++lag) {
@@ -82,7 +82,7 @@ double independent(const std::vector<double>& weights, std::size_t count) {
   return std::max(1.0, static_cast<double>(count) / sum);
 }
 
-/// Sets parts.scatter, and widens the covariance where it is above what noise leaves.
+/// Sets parts.scatter, and widens the covariance if the scatter exceeds that of the noise.
 void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& line,
                 const std::vector<double>& autocovariance, LineUncertainty& parts) {
   const std::size_t n = input.v_m_s.size();
@@ -107,7 +107,7 @@ void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Ei
   if (blocks < 3.0) return;
   const Eigen::Matrix2d wider = inverse * sum * inverse * ((1.0 - 1.0 / scatter.ratio) * blocks / (blocks - 2.0));
   const double total = parts.var_a0 + wider(1, 1);
-  // Welch and Satterthwaite: the part from the blocks has blocks - 2 degrees of freedom.
+  // Welch-Satterthwaite: the part from the blocks has blocks - 2 degrees of freedom.
   parts.degrees = std::max(1.0, (blocks - 2.0) * total * total / (wider(1, 1) * wider(1, 1)));
   parts.var_k += wider(0, 0);
   parts.cov += wider(0, 1);
@@ -116,8 +116,8 @@ void add_misfit(const LineInput& input, const Eigen::Matrix2d& inverse, const Ei
 
 constexpr std::size_t kFewestStretches = 4;
 
-/// Delete-one-stretch jackknife: how far the line moves when one stretch is left out. It knows of no noise model, and
-/// replaces the covariance where it is the larger one.
+/// Delete-one-stretch jackknife: how far the line moves when one stretch is left out. It uses no noise model, and
+/// replaces the covariance if it is the larger one.
 void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& normal, const Eigen::Vector2d& line,
                             LineUncertainty& parts) {
   std::vector<Eigen::Vector2d> without;
@@ -131,7 +131,7 @@ void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& norma
       score += design * (input.a_m_s2[to] - design.dot(line));
     }
     const Eigen::Matrix2d rest = normal - part;
-    if (!(rest.determinant() > 1e-9 * normal.determinant())) return;  // one stretch holds the line alone
+    if (!(rest.determinant() > 1e-9 * normal.determinant())) return;  // one stretch alone determines the line
     without.push_back(-(rest.inverse() * score));
     from = to;
   }
@@ -154,7 +154,7 @@ Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, 
       for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += k_1_s * known->v[i];
       variance = noise_variance(weights, autocovariance);
     }
-    // Noise that changes with the speed changes little over a kernel.
+    // Speed-dependent noise changes little over a kernel.
     const std::size_t middle = input.rows[j].first + weights.size() / 2;
     const double factor = input.noise_factor.empty() ? 1.0 : input.noise_factor[middle];
     expected += factor * factor * variance;
@@ -260,7 +260,7 @@ bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertain
 
 namespace {
 
-/// Variance of a for a complete kernel over uniform points of the median step, in units of the noise's.
+/// Variance of a over that of the noise, for a complete kernel over uniform points of the median step.
 double complete_variance(double step_s, double bandwidth_s) {
   const auto half = static_cast<std::size_t>(std::ceil(kKernelReach * bandwidth_s / step_s)) + 1;
   std::vector<double> t(2 * half + 1);
@@ -315,7 +315,7 @@ std::vector<StretchPoint> smooth_stretches(const Motion& motion, const std::vect
 
 std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                    const std::vector<double>& law_m_s2, const std::vector<StretchPoint>& points) {
-  std::vector<double> place(motion.t_s.size(), 0.0);  // double integral of the law, anew in each stretch
+  std::vector<double> place(motion.t_s.size(), 0.0);  // double integral of the law, restarted in each stretch
   for (const FreeStretch& stretch : stretches) {
     double v = 0.0, x = 0.0;
     for (std::size_t i = stretch.first + 1; i < stretch.first + stretch.count; ++i) {
@@ -346,7 +346,7 @@ LineInput line_input(const Motion& motion, const std::vector<StretchPoint>& poin
     input.rows.push_back(*point.row);
     input.stretch.push_back(point.stretch);
     input.bias_a_m_s2.push_back(bias[j]);
-    // a - F/m with F/m = x'' - y''; a heavier glider has less of it.
+    // a - F/m with F/m = x'' - y''; for a heavier glider F/m is smaller.
     const double of_force = mass_sd_kg > 0.0 ? (point.x.a_m_s2 - point.y.a_m_s2) * mass_sd_kg / mass_kg : 0.0;
     input.mass_part_m_s2.push_back(of_force);
   }

@@ -11,10 +11,10 @@ namespace {
 
 constexpr int kMostSteps = 12;
 constexpr double kBiasSettled = 1e-3;  // of the standard deviation of k and of a0
-constexpr double kLargest = 0.5;       // share of k, or of two of its standard deviations, that its bias may be
+constexpr double kLargest = 0.5;       // largest bias of k, as a fraction of k or of two of its standard deviations
 constexpr double kDifference = 1e-3;   // relative step of the derivatives of the bias
 
-/// Points of one stretch, and the measured positions that their kernels reach.
+/// Points of one stretch, and the measured positions within reach of their kernels.
 struct Part {
   std::size_t first = 0, end = 0;  // of the input's points
   std::size_t from = 0, to = 0;    // of the positions
@@ -101,7 +101,7 @@ class OwnLaw {
   Eigen::Matrix2d slope(const Eigen::Vector2d& law) const {
     Eigen::Matrix2d slope;
     for (int i = 0; i < 2; ++i) {
-      const double step = kDifference * (std::abs(law[i]) + 1e-3);  // 1e-3: in 1/s or m/s², where the law has none
+      const double step = kDifference * (std::abs(law[i]) + 1e-3);  // 1e-3: in 1/s or m/s², if the law's value is 0
       Eigen::Vector2d above = law, below = law;
       above[i] += step;
       below[i] -= step;

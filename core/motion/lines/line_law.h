@@ -1,7 +1,7 @@
-/// The law of one line: the motion that it makes, and the bias that smoothing and least squares have under it.
+/// The law of one line: the motion under it, and the bias of smoothing and least squares under it.
 ///
 /// A line a = a0 - k v is the law dv/dt = a0 - k v, whose motion in each stretch of one direction is known in closed
-/// form but for x_0, v_0:
+/// form except for x_0, v_0:
 ///
 ///     x = x_0 + v_0 phi(t) + a0 psi(t),
 ///     phi = (1 - exp(-k t)) / k,     psi = (t - phi) / k,     phi' = 1 - k phi,     psi' = phi,
@@ -41,15 +41,16 @@ inline LawFunctions law_functions(double k_1_s, double t_s) {
 ///     bias(k, a0) = (k' - k, a0' - a0) + bias of noise in v,      (k, a0) = line - bias(k, a0)  by fixed point.
 ///
 /// (A kernel leaves noise in v, which pulls the slope towards zero: -(A'A)^-1 (sum of k var v_j + cov(v_j, a_j), 0).)
-/// The random covariance of what is left is G C G', G = (1 + d bias / d(k, a0))^-1.
+/// The random covariance of the corrected line is G C G', G = (1 + d bias / d(k, a0))^-1.
 ///
 /// It holds where the law does: the smoothed points must lie about the law's own smoothed points no further than the
 /// noise explains (chi2_ratio_limit), and the bias of k must be less than half of k, or of two of its standard
-/// deviations. Otherwise, and with a known force (v then obeys no such law), there is nothing to subtract, and nothing
-/// is returned.
+/// deviations. Otherwise, and with a known force (v then obeys no such law), there is nothing to subtract, and the
+/// result is empty.
 std::optional<LawBias> law_bias(const LineInput& input, const LineFit& line, const std::vector<double>& autocovariance);
 
-/// The line with its bias subtracted (itself where there is none to subtract), its uncertainty including what is left.
+/// The line with its bias subtracted (unchanged if there is none to subtract); its uncertainty includes that of the
+/// subtraction.
 LineFit without_law_bias(LineFit line);
 
 }  // namespace glidelab::core

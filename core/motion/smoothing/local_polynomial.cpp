@@ -12,15 +12,14 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kUniform = 1e-9;  // steps that differ by less than this part are one step
+constexpr double kUniform = 1e-9;  // steps that differ by less than this fraction count as equal
 constexpr std::size_t kMostPolynomials = 6;
 
 bool has_tails(Kernel kernel) {
   return kernel == Kernel::gaussian || kernel == Kernel::bimodal;
 }
 
-/// The weights of points at u (in bandwidths) with the kernel's values; false where they do not determine the
-/// polynomial.
+/// The weights of points at u (in bandwidths) with the kernel's values; false if they do not determine the polynomial.
 bool polynomial_weights(int order, const std::vector<double>& u, const std::vector<double>& kernel, double bandwidth_s,
                         KernelWeights& weights) {
   const auto basis = OrthogonalPolynomials::make(order, u, kernel);
@@ -119,7 +118,7 @@ bool LocalPolynomial::interior(std::size_t j) const {
   return half_ > 0 && j >= half_ && j + half_ < t_s_.size() && run_[j + half_] >= 2 * half_;
 }
 
-/// Of a point whose window has the uniform step the kernel's values are known (its weights are exact for any kernel).
+/// If a point's window has the uniform step, the kernel's values are known (its weights are exact for any kernel).
 std::optional<KernelRow> LocalPolynomial::general_row(double at_s, std::optional<std::size_t> point) const {
   const auto from = std::lower_bound(t_s_.begin(), t_s_.end(), at_s - reach_s_);
   const auto to = std::upper_bound(from, t_s_.end(), at_s + reach_s_);
@@ -154,7 +153,7 @@ std::optional<KernelRow> LocalPolynomial::row_of_point(std::size_t j) const {
 
 void LocalPolynomial::filter(std::span<const double> values, std::size_t from, std::size_t to,
                              std::vector<std::optional<SmoothedPoint>>& out) const {
-  constexpr std::size_t kBlock = 512;  // outputs at a time: the three sums stay in the cache while the taps go by
+  constexpr std::size_t kBlock = 512;  // outputs at a time: the three sums stay in the cache while the taps are applied
   std::array<double, kBlock> x{}, v{}, a{};
   const bool has_a = !filter_->a.empty();
   const double* const wx = filter_->x.data() + half_;
@@ -204,7 +203,7 @@ std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<cons
 SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values) {
   const KernelWeights& weights = *row.weights;
   assert(row.first + weights.x.size() <= values.size());
-  // About the first value, so that a far origin costs no digits.
+  // Relative to the first value, so that a distant origin costs no digits.
   const double origin = values[row.first];
   using Numbers = Eigen::Map<const Eigen::ArrayXd>;
   const auto count = static_cast<Eigen::Index>(weights.x.size());

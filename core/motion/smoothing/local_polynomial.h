@@ -1,9 +1,9 @@
-/// Local polynomials: x, v and a at a time from measured positions, by a kernel (paper, equations 10 to 12, for any
-/// order and kernel).
+/// Local polynomials: x, v and a at a given time from measured positions, by a kernel (paper, equations 10 to 12, for
+/// any order and kernel).
 ///
 /// At a time t the polynomial  sum_k b_k u^k / k!,  u = t_i - t,  k = 0 … order,  is fitted to the positions x_i with
-/// the weights  w_i K(u / h); then x = b_0, v = b_1, a = b_2. All three are linear in the x_i, and the weights of the
-/// sums are exact for any times: not uniform, with gaps, at an end. Kernels (unnormalised; s = u / h):
+/// the weights w_i K(u / h); then x = b_0, v = b_1, a = b_2. All three are linear in the x_i, and the weights of the
+/// sums are exact for any times: non-uniform, with gaps, at an end. Kernels (unnormalised; s = u / h):
 ///
 ///     gaussian      exp(-s^2 / 2)      cut off at `reach` bandwidths (6: a weight of 1.5e-8)
 ///     epanechnikov  1 - s^2            |s| < 1
@@ -15,11 +15,11 @@
 ///
 ///     b_d = sum_k p_k^(d)(0) sum_i K_i p_k(u_i) x_i / sum_i K_i p_k(u_i)^2,
 ///
-/// which needs no matrix and loses no digits at an end, where powers of u nearly agree. Where many points of uniform
+/// which needs no matrix and loses no digits at an end, where powers of u are nearly equal. If many points of uniform
 /// step and weight are smoothed, the weights are one filter, applied as such.
 ///
-/// Covariances are exact for noise of a given autocovariance, white or not, times a factor of each point's own.
-/// Asymptotic variance and bias: docs/guide/bandwidth.md; Fan and Gijbels 1996, section 3.2.
+/// Covariances are exact for noise of a given autocovariance, white or not, times a factor for each point. Asymptotic
+/// variance and bias: docs/guide/bandwidth.md; Fan and Gijbels 1996, section 3.2.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,16 +66,17 @@ struct SmoothedPoint {
   double a_m_s2 = 0.0;  ///< NaN for order 1, which has none
 };
 
-/// The smoother of one set of times. Units are those of a position; any other series over the same times will do.
+/// The smoother of one set of times. Units are those of a position; any other series over the same times can be
+/// smoothed.
 class LocalPolynomial {
  public:
   /// Times that rise strictly; options in their range (asserted).
   LocalPolynomial(std::span<const double> t_s, PolynomialOptions options);
 
-  /// The weights at any time; nothing where fewer than order + 2 points lie within reach or they do not determine the
+  /// The weights at any time; empty if fewer than order + 2 points lie within reach or they do not determine the
   /// polynomial.
   std::optional<KernelRow> row(double at_s) const;
-  /// The same at the time of point j, cheap where the filter serves.
+  /// The same at the time of point j; cheap if the filter applies.
   std::optional<KernelRow> row_of_point(std::size_t j) const;
 
   /// At the times of all points; values.size() is that of the times (asserted).
@@ -94,18 +95,18 @@ class LocalPolynomial {
   std::vector<double> t_s_;
   PolynomialOptions options_;
   double reach_s_ = 0.0;
-  std::size_t half_ = 0;                         // taps to each side of the filter; 0 where there is none
-  std::vector<std::size_t> run_;                 // run_[j]: points before j that follow each other at the uniform step
-  std::vector<double> kernel_;                   // at whole uniform steps, where there are any
+  std::size_t half_ = 0;                         // taps on each side of the filter; 0 if there is none
+  std::vector<std::size_t> run_;                 // run_[j]: number of consecutive points before j at the uniform step
+  std::vector<double> kernel_;                   // at whole uniform steps, if there are any
   std::shared_ptr<const KernelWeights> filter_;  // weights of 2 half_ + 1 points
 };
 
-/// The sums of a row over `values`, which are those of all points.
+/// The sums of a row over `values`, given at all points.
 SmoothedPoint weighted_sums(const KernelRow& row, std::span<const double> values);
 
 /// Noise of the positions: cov(n_i, n_j) = factor_i factor_j gamma(|i - j|), gamma 0 beyond its last lag.
 struct SeriesNoise {
-  std::vector<double> autocovariance;  ///< at lags of 0, 1, … points; a single number where the noise is white
+  std::vector<double> autocovariance;  ///< at lags of 0, 1, … points; a single number if the noise is white
   std::vector<double> factor;          ///< of every point; empty: 1
 };
 
@@ -119,7 +120,7 @@ Eigen::Matrix3d point_covariance(const KernelRow& row, const KernelRow& other, c
 /// Variance of sum_i w_i n_i for noise n with the autocovariance gamma[0], gamma[1], … at lags of 0, 1, … points.
 double noise_variance(std::span<const double> weights, std::span<const double> autocovariance);
 
-/// The variances of rows by one noise; points that share a filter share the work.
+/// The variances of rows for one noise; points that share a filter share the work.
 class RowVariance {
  public:
   explicit RowVariance(std::vector<double> autocovariance) : autocovariance_(std::move(autocovariance)) {}
@@ -138,10 +139,11 @@ class RowVariance {
 };
 
 /// The local cubic with a Gaussian kernel, which is the paper's case (equations 10 to 12): the smoother of one set of
-/// times, which rise strictly; bandwidth above 0 (asserted). u = t_i - t turns the paper's sign, so that c is v.
+/// times, which rise strictly; bandwidth above 0 (asserted). u = t_i - t has the opposite sign to the paper's, so that
+/// c is v.
 ///
-/// The kernel is cut off at kKernelReach = 6 bandwidths, where its weight is 1.5e-8 and what is left out changes a by
-/// less than 1e-5 of the kernel's own smoothing. With uniform times of step dt, far from an end and for h of several dt
+/// The kernel is cut off at kKernelReach = 6 bandwidths, where its weight is 1.5e-8; the omitted part changes a by less
+/// than 1e-5 of the kernel's own smoothing. With uniform times of step dt, far from an end and for h of several dt
 /// (white noise of standard deviation s; Fan and Gijbels 1996, section 3.2):
 ///
 ///     var x = 0.4760 s^2 dt / h      var v = 0.4849 s^2 dt / h^3     var a = 0.2116 s^2 dt / h^5
@@ -186,14 +188,14 @@ inline constexpr KernelConstants kGaussianA{2, 0.5, 3.0 / 8.0 * std::numbers::in
 inline constexpr KernelConstants kBimodalX{0, -5.0 / 32.0,
                                            105.0 / 64.0 * std::numbers::inv_sqrtpi / std::numbers::sqrt2};
 
-/// The bandwidth that serves `wanted` where h serves `given`: the same x'''' and noise.
+/// The bandwidth that is optimal for `wanted` if h is optimal for `given`, with the same x'''' and noise.
 inline double convert_bandwidth(double h, const KernelConstants& given, const KernelConstants& wanted) {
   return h * std::pow(wanted.best_h9() / given.best_h9(), 1.0 / 9.0);
 }
 
-/// Least of the residual squares criterion s^2 (1 + 4 V) + bias part (Fan and Gijbels 1995): its h^9 x''''^2/(s^2 dt).
-/// The residuals' bias part is C (x''''/4!)^2 h^8 with C = 4! = the norm of the Hermite polynomial He_4; so
-/// 8 C (x''''/24)^2 h^7 = 4 R_0 s^2 dt / h^2.
+/// Minimum of the residual squares criterion s^2 (1 + 4 V) + bias part (Fan and Gijbels 1995): its h^9 x''''^2/(s^2
+/// dt). The residuals' bias part is C (x''''/4!)^2 h^8 with C = 4! = the norm of the Hermite polynomial He_4; so 8 C
+/// (x''''/24)^2 h^7 = 4 R_0 s^2 dt / h^2.
 inline constexpr double kResidualSquaresH9 = 4.0 * kGaussianX.variance * 24.0 * 24.0 / (8.0 * 24.0);
 
 }  // namespace glidelab::core

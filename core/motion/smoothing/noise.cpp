@@ -22,8 +22,8 @@ double autocorrelation(const std::vector<double>& filter, std::size_t lag) {
   return sum;
 }
 
-/// p = 1 - s on a uniform grid of the step; no longer than a series of so many points, beside which nothing is smoothed
-/// (a gap in the times makes the bandwidth long beside the step).
+/// p = 1 - s on a uniform grid of the step; no longer than a series of the given number of points, beyond which there
+/// is nothing to smooth (a gap in the times makes the bandwidth long compared with the step).
 std::vector<double> residual_filter(double bandwidth_s, double step_s, std::size_t points) {
   const double reach = std::ceil(kKernelReach * bandwidth_s / step_s) + 1.0;
   const auto half = static_cast<std::size_t>(std::min(reach, static_cast<double>(points)));
@@ -75,7 +75,7 @@ bool looks_white(const Residuals& residuals, const std::vector<double>& passed) 
     const double off = residuals.product[lag] / residuals.product[0] - passed[lag] / passed[0];
     chi2 += off * off * static_cast<double>(residuals.count);
   }
-  // Four standard deviations of chi^2, to allow for residuals that the filter itself correlates a little.
+  // Four standard deviations of chi^2, because the filter itself slightly correlates the residuals.
   const auto degrees = static_cast<double>(lags);
   return chi2 < degrees + 4.0 * std::sqrt(2.0 * degrees);
 }
@@ -111,7 +111,7 @@ Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, d
 }  // namespace
 
 double rounding_step(std::span<const double> x_m) {
-  constexpr int kMostParts = 8;  // the smallest change may be several steps: of a motion that is never slow
+  constexpr int kMostParts = 8;  // the smallest change may be several steps if the motion is never slow
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < x_m.size(); ++i) {
     const double change = std::abs(x_m[i] - x_m[i - 1]);
@@ -129,7 +129,7 @@ double rounding_step(std::span<const double> x_m) {
   for (int parts = 1; parts <= most; ++parts) {
     if (fits(least / parts)) return least / parts;
   }
-  // Of a motion that is never slow the last decimal place is seen in the numbers themselves.
+  // If the motion is never slow, the last decimal place is seen in the numbers themselves.
   constexpr int kMostPlaces = 9;
   double step = 1.0;
   for (int places = 0; places <= kMostPlaces; ++places, step = std::pow(10.0, -places)) {

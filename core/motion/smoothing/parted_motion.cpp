@@ -10,7 +10,7 @@
 namespace glidelab::core {
 namespace {
 
-/// Of a derivative at a start, in range d! / longest^d: 4 or so is that of an exponential of some e-folds.
+/// Size of a derivative at a start, in units of range d! / longest^d: an exponential of a few e-folds has about 4.
 constexpr double kSize = 5.0;
 
 template <int N>
@@ -71,7 +71,7 @@ bool MotionParts::breaks_stand(const SmoothedPart& part) const {
 
 template <int N>
 PartedMotion<N>::PartedMotion(const MotionParts& parts) : parts_(parts) {
-  // What doubles cannot tell apart is no noise.
+  // Differences below double precision are not noise.
   const double rounding = std::numeric_limits<double>::epsilon() * parts.range_m;
   least_variance_ = std::max(rounding * rounding, std::numeric_limits<double>::min());
   const SmoothingInput& input = parts.input;

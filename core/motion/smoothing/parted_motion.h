@@ -11,12 +11,12 @@
 
 namespace glidelab::core {
 
-/// One part with its own breaks and the times that are wanted in it.
+/// One part with its own breaks and the requested times within it.
 struct SmoothedPart {
   SeriesPart points;
   std::vector<double> breaks_s;
   std::vector<double> at_s;
-  std::size_t first_at = 0;  ///< of at_s in the input's
+  std::size_t first_at = 0;  ///< index of its first at_s in the input
 };
 
 /// The parts of an input that have kFewestSmoothed positions. The input is kept by reference.
@@ -32,7 +32,7 @@ struct MotionParts {
   double step_s = 0.0;     ///< the mean one
   double longest_s = 0.0;  ///< part
   double range_m = 0.0;    ///< of all positions
-  double points = 0.0;     ///< how many the parts have
+  double points = 0.0;     ///< number of points in all parts
 };
 
 /// How the motion is smoothed by a process of one order.
@@ -54,12 +54,12 @@ class PartedMotion {
   explicit PartedMotion(const MotionParts& parts);
 
   const MotionParts& parts() const { return parts_; }
-  /// s^2, as stated or of the greatest likelihood.
+  /// s^2, as stated or of maximum likelihood.
   double noise_variance(const ChainFit& fit) const;
   ChainFit fit(const Smoothness& how) const;
-  /// -2 log of the marginal likelihood. What nothing is known of at a part's start and at a break that may jump by
-  /// anything counts as normal, of standard deviation kSize range d! / longest^d for derivative d, so that orders can
-  /// be compared; x and v are flat.
+  /// -2 log of the marginal likelihood. The unknowns at a part's start, and at a break with a free jump, count as
+  /// normal with the standard deviation kSize range d! / longest^d for derivative d, so that orders can be compared; x
+  /// and v have flat priors.
   double minus_two_log_likelihood(const Smoothness& how) const;
   std::vector<ChainPosterior<N>> posteriors(const Smoothness& how) const;
 
@@ -74,7 +74,7 @@ class PartedMotion {
 template <int N>
 SmoothedSums sums_of(const std::vector<ChainPosterior<N>>& posteriors, const MotionParts& parts);
 
-/// Moves each break to the next time at which the smoothed v is 0; the farthest that one moved.
+/// Moves each break to the nearest time at which the smoothed v is 0; returns the largest displacement.
 template <int N>
 double refine_breaks(const std::vector<ChainPosterior<N>>& posteriors, MotionParts& parts);
 

@@ -12,16 +12,17 @@
 namespace glidelab::core {
 namespace {
 
-/// Lengths that differ by less than this part are one: so even times differ as doubles.
+/// Lengths that differ by less than this fraction count as equal: uniform times differ by that much as doubles.
 constexpr double kOneLength = 1e-9;
-/// Of the quadrature: exact for polynomials of degree 29, and for |k h| up to 4 to 1e-16.
+/// Nodes of the quadrature: exact for polynomials of degree 29, and to 1e-16 for |k h| up to 4.
 constexpr unsigned kNodes = 15;
 
 double factorial(int n) {
   return n < 2 ? 1.0 : n * factorial(n - 1);
 }
 
-/// phi_m(z), 0 <= m <= N - 1: the last by its series, the others from phi_m = z phi_(m+1) + 1/m!; for large z upwards.
+/// phi_m(z), 0 <= m <= N - 1: the last by its series, the others from phi_m = z phi_(m+1) + 1/m!; for large z in upward
+/// recurrence.
 template <int N>
 Eigen::Matrix<double, N, 1> phi(double z) {
   Eigen::Matrix<double, N, 1> made;
@@ -54,7 +55,8 @@ Eigen::Matrix<double, N, N> transition(double h, double rate) {
 template <int N>
 Eigen::Matrix<double, N, N> unit_root(double rate) {
   using Rule = boost::math::quadrature::gauss<double, kNodes>;
-  Eigen::MatrixXd rows(kNodes, N);  // the last state first: its root is lower, and upper once it is turned back
+  Eigen::MatrixXd rows(kNodes, N);  // the last state first: its root is lower triangular, and upper once the order is
+                                    // restored
   int filled = 0;
   const auto add = [&](double at, double weight) {
     const Eigen::Matrix<double, N, 1> f = phi<N>(-rate * at);
@@ -70,8 +72,8 @@ Eigen::Matrix<double, N, N> unit_root(double rate) {
   return base::upper_factor(rows).transpose().reverse();
 }
 
-/// The root for h = 1 as a polynomial of k h, for |k h| up to kSmall: times that are not even need it at every step.
-/// Its derivatives are of order 1, so that the interpolation errs by less than 1e-16.
+/// The root for h = 1 as a polynomial of k h, for |k h| up to kSmall: non-uniform times need it at every step. Its
+/// derivatives are of order 1, so that the interpolation error is below 1e-16.
 template <int N>
 class SmallRoot {
  public:

@@ -7,8 +7,8 @@
 ///     F_ij = h^(j-i) / (j-i)!  (j < N - 1),     F_i,N-1 = f_(N-1-i)(h),     f_m(s) = s^m phi_m(-k s),
 ///     cov(w_i, w_j) = q integral_0^h f_(N-1-i)(s) f_(N-1-j)(s) ds.
 ///
-/// For k = 0 that is the integrated Wiener process of order N. The root of the covariance is made from Gauss-Legendre
-/// nodes without forming it, so that no digits are lost.
+/// For k = 0 that is the integrated Wiener process of order N. The root of the covariance is computed from
+/// Gauss-Legendre nodes without forming the covariance, so that no digits are lost.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ struct ProcessStep {
   Matrix root;  ///< an upper triangle R with R R' = cov w for q = 1
 };
 
-/// Steps of one rate; neighbouring steps of one length share the work.
+/// Steps for one rate; neighbouring steps of equal length share the work.
 template <int N>
 class ProcessSteps {
  public:

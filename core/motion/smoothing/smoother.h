@@ -1,14 +1,14 @@
-/// The smoothers: positions in; x, v and a with their standard deviations out, and how strongly they were smoothed.
+/// The smoothers: positions in; x, v and a with their standard deviations out, and the strength of the smoothing.
 ///
 ///     local-polynomial  the local cubic of the paper, whose bandwidth is given (local_polynomial.h)
 ///     kalman            an integrated Wiener or Ornstein-Uhlenbeck process, its strength by marginal likelihood
 ///     spline            the spline of the same process, its strength by generalised cross-validation
 ///
 /// The last two are one posterior (wiener_chain.h) with two ways to choose its strength; wiener_smoother.cpp has both.
-/// All three are linear in the positions once the strength is chosen, so that the effect of any noise and of any
+/// All three are linear in the positions once the strength is chosen, so the effect of any noise and of any
 /// displacement on v and a follows from the rows.
 ///
-/// Standard deviations: of the local polynomial those of the noise alone; of the other two those of the posterior,
+/// Standard deviations: for the local polynomial those of the noise alone; for the other two those of the posterior,
 /// which include what smoothing may remove from a(t).
 #pragma once
 
@@ -26,16 +26,17 @@ namespace glidelab::core {
 struct SmoothingInput {
   std::vector<double> t_s;  ///< rising strictly, of any spacing
   std::vector<double> x_m;
-  std::optional<double> noise_sd_m = {};   ///< of a position of factor 1; without a value it is estimated
+  std::optional<double> noise_sd_m = {};   ///< for a position of factor 1; estimated if not given
   std::vector<double> noise_factor = {};   ///< of each position, above 0; empty: 1
-  std::vector<std::size_t> starts = {};    ///< rising: points at which the motion starts anew (0 is understood)
+  std::vector<std::size_t> starts = {};    ///< rising: points at which the motion starts afresh (0 is implied)
   std::vector<double> breaks_s = {};       ///< rising: where v = 0 and a may jump, to a step or two
-  std::vector<double> at_s = {};           ///< rising: other times within the parts of the motion that are wanted
+  std::vector<double> at_s = {};           ///< rising: other requested times within the parts of the motion
   std::optional<double> bandwidth_s = {};  ///< of the local polynomial (asserted there), and of no other
   std::vector<double> along_m = {};        ///< another series at the same times, to be smoothed by the same weights
-  bool rows = false;                       ///< whether they are wanted
-  bool rate_in_rows = false;               ///< whether rows follow the noise through the rate k too, for a covariance
-  bool simultaneous = false;               ///< whether the simultaneous band is wanted
+  bool rows = false;                       ///< whether rows are requested
+  bool rate_in_rows = false;               ///< whether rows include the effect of the noise through the rate k, for a
+                                           ///< covariance
+  bool simultaneous = false;               ///< whether the simultaneous band is requested
 };
 
 /// Positions that kalman and spline need in one part of the motion, and on each side of a break.
@@ -48,11 +49,11 @@ struct SmoothedState {
 
 struct SmoothedSeries {
   SmoothingStrength strength;
-  std::vector<std::optional<SmoothedState>> points;  ///< nothing where a part has fewer than kFewestSmoothed positions
-  std::vector<std::optional<SmoothedState>> at;      ///< of at_s; nothing outside of the parts as well
+  std::vector<std::optional<SmoothedState>> points;  ///< empty if a part has fewer than kFewestSmoothed positions
+  std::vector<std::optional<SmoothedState>> at;      ///< of at_s; also empty outside the parts
   std::vector<std::optional<SmoothedState>> along, along_at;  ///< the same of `along_m`, with the same deviations
-  /// Of the points, over all positions, where wanted. Where kernels reach over much of a motion neighbours tell the
-  /// same, and a few hundred points spread over it have one.
+  /// Rows of the points, over all positions, if requested. If kernels reach over much of a motion, neighbours carry the
+  /// same information, and only a few hundred points spread over it have a row.
   std::vector<std::optional<KernelRow>> rows;
 };
 
@@ -64,11 +65,11 @@ class Smoother {
   virtual bool takes_bandwidth() const = 0;
 
   /// Times rise strictly, vectors are of one length, parts are not empty (asserted). A break without kFewestSmoothed
-  /// positions on both sides within its part is none.
+  /// positions on both sides within its part is ignored.
   virtual SmoothedSeries smooth(const SmoothingInput& input) const = 0;
 };
 
-/// A part of the positions that is one motion.
+/// A part of the positions that forms one motion.
 struct SeriesPart {
   std::size_t first = 0, count = 0;
 };

@@ -1,4 +1,4 @@
-/// The list of smoothers, which names each once.
+/// The list of smoothers; it names each once.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace glidelab::core {
 
-/// In the order in which people see them; the first is the default.
+/// In the order in which they are shown; the first is the default.
 const std::vector<const Smoother*>& smoothers();
 std::vector<std::string> smoother_names();
-/// Null where there is none of the name.
+/// Null if there is none of that name.
 const Smoother* find_smoother(std::string_view name);
 
 inline constexpr std::string_view kLocalPolynomial = "local-polynomial";

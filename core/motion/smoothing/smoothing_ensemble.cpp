@@ -17,7 +17,7 @@ double student_quantile(double freedom, double p) {
   return std::isinf(freedom) ? kNormal : base::student_t_quantile(freedom, p);
 }
 
-/// exp(-u^2 / 2), or what it is on the mean over a variance that is estimated.
+/// exp(-u^2 / 2), or its mean over an estimated variance.
 double tail(double u2, double freedom) {
   return std::isinf(freedom) ? std::exp(-0.5 * u2) : std::pow(1.0 + u2 / freedom, -0.5 * freedom);
 }
@@ -28,9 +28,10 @@ double beyond(double u, double freedom) {
   return base::student_t_tail(freedom, u);
 }
 
-/// What the crossings of one side need between two nodes, but for c.
+/// Data for the crossings of one side between two nodes, without c.
 struct Crossing {
-  double sd, off;  // of the band; of the member's mean from the band's middle: both over the member's own sd
+  double sd, off;  // sd of the band, and offset of the member's mean from the band's middle, both over the member's own
+                   // sd
   double angle;    // arc cosine of the correlation of a here and at the next node
 };
 
@@ -41,7 +42,7 @@ double crossings(const std::vector<std::vector<Crossing>>& parts, double c, doub
       expected += beyond(c * part.front().sd - sign * part.front().off, freedom);
       for (const Crossing& at : part) {
         const double u = std::max(c * at.sd - sign * at.off, 0.0);
-        // The mean over angles 0 … angle of u^2 / (1 + cos) is u^2 / 2 (1 + angle^2 / 12) to the order that matters.
+        // The mean over angles 0 … angle of u^2 / (1 + cos) is u^2 / 2 (1 + angle^2 / 12) to the required order.
         expected += at.angle / (2.0 * std::numbers::pi) * tail(u * u * (1.0 + at.angle * at.angle / 12.0), freedom);
       }
     }

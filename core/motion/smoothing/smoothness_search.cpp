@@ -14,12 +14,12 @@ constexpr double kTauRatio = 1.5;
 constexpr double kLeastTau = 0.3;     // steps: interpolation
 constexpr double kGreatestTau = 0.5;  // of the longest part
 constexpr double kRateWidth = 3.0;    // of the prior, over the longest part
-constexpr double kWidest = 5.0;       // standard deviation of k, over the longest part
+constexpr double kWidest = 5.0;       // largest standard deviation of k, over the longest part
 constexpr double kFastest = 0.3;      // rate, per step
 constexpr double kGrowing = 10.0;     // e-folds over the longest part
 constexpr double kOutOfReach = 60.0;  // of -2 log
 constexpr int kBrentBits = 8;
-/// Odds beforehand that a motion follows the process without its noise. With them the bands of made gliders hold
+/// Prior odds that a motion follows the process without its noise. With these odds the bands of simulated gliders hold
 /// (docs/evidence/peers.md).
 constexpr double kSpike = 3.0;
 
@@ -30,13 +30,13 @@ double greatest_tau(const MotionParts& parts) {
   return std::max(kGreatestTau * parts.longest_s, 2.0 * least_tau(parts));
 }
 
-/// Of k: Cauchy's.
+/// Prior density of k: Cauchy.
 double prior_density(const MotionParts& parts, double rate_1_s) {
   const double scale = kRateWidth / parts.longest_s;
   return 1.0 / (std::numbers::pi * scale * (1.0 + std::pow(rate_1_s / scale, 2)));
 }
 
-/// By parabolas through three rates, a standard deviation apart.
+/// Finds k by parabolas through three rates, a standard deviation apart.
 template <int N>
 AtTau best_rate(const PartedMotion<N>& motion, Smoothness how, double rate_1_s, double width_1_s) {
   constexpr int kMost = 12;
@@ -123,7 +123,7 @@ std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Ra
     }
     return made;
   }
-  // Rates of both signs, from those that hardly matter to those that decay within tau.
+  // Rates of both signs, from negligible ones to those that decay within tau.
   AtTau last{{tau(first), 0.0, jump_1_s2}, 0.5 / parts.longest_s, least};
   least = value(first, 0.0);
   for (double rate = 0.5 / parts.longest_s; rate < std::min(0.5 / tau(first), kFastest / parts.step_s); rate *= 2.0) {
@@ -204,7 +204,7 @@ std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best) {
   constexpr double kStep = 0.8;       // standard deviations of log tau
   const double from = std::log(least_tau(motion.parts())), to = std::log(greatest_tau(motion.parts()));
   const double middle = std::log(best.how.tau_s), widest = std::log(kTauRatio);
-  // The standard deviation of log tau to the side on which -2 log rises faster.
+  // The standard deviation of log tau on the side where -2 log rises faster.
   double rise = 0.0;
   constexpr double kTry = 0.05;
   for (const double off : {-kTry, kTry}) {
@@ -224,7 +224,7 @@ std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best) {
       made.push_back(last);
     }
   }
-  // Each stands for a step of log tau.
+  // Each represents a step of log tau.
   for (AtTau& one : made) one.minus_two_log -= 2.0 * std::log(step);
   return made;
 }

@@ -1,8 +1,8 @@
-/// The size tau and the rate k of the process by marginal likelihood (parted_motion.h): k for each tau, and what the
-/// positions say of both.
+/// The size tau and the rate k of the process by marginal likelihood (parted_motion.h): k for each tau, and the
+/// posterior of both.
 ///
 /// Prior: log tau is flat from 0.3 steps to half the longest part, and k over a width of kRateWidth / longest part. At
-/// half the part and above all tau are alike: the motion is an exact one of the process without noise.
+/// half the part and above, all tau are equivalent: the motion is an exact one of the process without noise.
 #pragma once
 
 #include <cmath>
@@ -12,17 +12,17 @@
 
 namespace glidelab::core {
 
-/// The likeliest k at one tau.
+/// The most likely k at one tau.
 struct AtTau {
   Smoothness how;
-  double rate_sd_1_s = 0.0;    ///< of k, which is nearly normal; 0 where there is none
-  double minus_two_log = 0.0;  ///< of the posterior of tau, k integrated out
+  double rate_sd_1_s = 0.0;    ///< of k, which is nearly normal; 0 if there is no rate
+  double minus_two_log = 0.0;  ///< for the posterior of tau, with k integrated out
 };
 
 enum class Rate { none, any };
 
-/// The likeliest k (or none) for taus that rise by a factor of 1.5, from that which is best for k = 0. `others`: rates
-/// that may be near the likeliest.
+/// The most likely k (or none) for taus that rise by a factor of 1.5, starting from the best tau for k = 0. `others`:
+/// rates that may be near the most likely one.
 template <int N>
 std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Rate rate,
                              const std::vector<double>& others);
@@ -31,20 +31,20 @@ std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Ra
 template <int N>
 AtTau at_tau(const PartedMotion<N>& motion, double tau_s, const AtTau& neighbour);
 
-/// The most probable tau near one.
+/// The most probable tau near a given one.
 template <int N>
 AtTau refined(const PartedMotion<N>& motion, const AtTau& near);
 
-/// The likeliest standard deviation of the jumps of a, and tau and k with it.
+/// The most likely standard deviation of the jumps of a, with its tau and k.
 template <int N>
 AtTau with_jump(const PartedMotion<N>& motion, AtTau near);
 
-/// Points of a sum over tau, from the most probable one to both sides as far as they matter; their weights follow from
-/// `minus_two_log`.
+/// Points of a sum over tau, from the most probable one to both sides as far as they contribute; their weights follow
+/// from `minus_two_log`.
 template <int N>
 std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best);
 
-/// The motion without noise of the process, which is as probable beforehand as all taus together.
+/// The motion without process noise, which is a priori as probable as all taus together.
 template <int N>
 AtTau exact(const PartedMotion<N>& motion, const AtTau& best);
 

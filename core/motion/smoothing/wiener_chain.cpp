@@ -13,15 +13,15 @@ namespace glidelab::core {
 namespace {
 
 constexpr double kFaded = 1e-10;   // of a row's largest weight
-constexpr double kOneStep = 1e-9;  // steps that differ by less than this part are one step
-constexpr double kSettled = 1e-9;  // gains and covariances that differ by less than this part are one
+constexpr double kOneStep = 1e-9;  // steps that differ by less than this fraction count as equal
+constexpr double kSettled = 1e-9;  // gains and covariances that differ by less than this fraction count as equal
 
 template <int N>
 using Square = Eigen::Matrix<double, N, N>;
 template <int N>
 using Column = Eigen::Matrix<double, N, 1>;
 
-/// Rotates the row (h, right) into the upper triangle; what is left of its right side.
+/// Rotates the row (h, right) into the upper triangle; returns the remainder of its right side.
 template <int N>
 double rotate_in(Square<N>& upper, Column<N>& z, Column<N> row, double right) {
   for (int i = 0; i < N; ++i) {
@@ -40,12 +40,11 @@ double rotate_in(Square<N>& upper, Column<N>& z, Column<N> row, double right) {
   return right;
 }
 
-/// The rows of one step: N that know the noise of the step and N that know the state before; columns of both and the
-/// right side.
+/// The rows of one step: N for the noise of the step and N for the previous state; columns for both and the right side.
 template <int N>
 using StepRows = Eigen::Matrix<double, 2 * N, 2 * N + 1>;
 
-/// The upper triangle of rows whose top left is diagonal and whose top right is 0, by reflections of those entries that
+/// The upper triangle of rows whose top left is diagonal and whose top right is 0, by reflections of the entries that
 /// are not 0.
 template <int N>
 void triangulate(StepRows<N>& rows) {
@@ -71,19 +70,19 @@ void triangulate(StepRows<N>& rows) {
   for (int i = 0; i < N; ++i) reflect(N + i, N + i + 1, N - 1 - i, N + i);
 }
 
-/// Far from ends and breaks, over even times, the filter's triangle no longer changes, and a step is linear in z and in
-/// the position.
+/// Far from ends and breaks, over uniform times, the filter's triangle no longer changes, and a step is linear in z and
+/// in the position.
 template <int N>
 struct Steady {
   bool reached = false;
   Square<N> next = Square<N>::Zero(),
-            noise = Square<N>::Zero();  // z of the next node, and what the step's noise has on its right side, of z
+            noise = Square<N>::Zero();  // maps z to z of the next node, and z to the right side of the step's noise
   Column<N> next_of_y = Column<N>::Zero(),
-            left = Column<N>::Zero();  // of the position over its noise; the innovation of z
+            left = Column<N>::Zero();  // coefficients of the position over its noise; the innovation as a function of z
   double left_of_y = 0.0, log_determinant = 0.0;
 
   Steady() = default;
-  /// From the rows of a step before they are a triangle.
+  /// Built from the rows of a step before they are made triangular.
   Steady(const StepRows<N>& whole, double per_noise) : reached(true) {
     const Column<N> row = per_noise * Column<N>::Unit(0);
     Square<N> upper;
@@ -117,7 +116,7 @@ double log_square(double value) {
   return 2.0 * std::log(std::abs(value));
 }
 
-/// The part by which two matrices differ, beside the units of their entries.
+/// The relative difference of two matrices, with the units of their entries taken into account.
 template <int N>
 bool alike(const Square<N>& a, const Square<N>& b, const Column<N>& row_unit, const Column<N>& column_unit) {
   for (int i = 0; i < N; ++i) {
@@ -142,7 +141,7 @@ double ChainFit::minus_two_log_likelihood(double noise_variance_m2) const {
          squares_m2 / noise_variance_m2;
 }
 
-/// What one step backwards needs: state_k = gain state_(k+1) + offset + root N(0, 1).
+/// Data for one backward step: state_k = gain state_(k+1) + offset + root N(0, 1).
 template <int N>
 struct WienerChain<N>::Step {
   Matrix gain;
@@ -173,7 +172,7 @@ template <typename Visit>
 ChainFit WienerChain<N>::filter(const WienerRatio& ratio, Matrix& last, Vector& right, Visit&& visit) const {
   ChainFit fit;
   fit.freedom = -N;
-  fit.log_determinant = 0.5 * N * (N - 1) * log_square(unit_s_);  // what nothing is known of is in SI units
+  fit.log_determinant = 0.5 * N * (N - 1) * log_square(unit_s_);  // the unknown (diffuse) parameters are in SI units
   const double root_density = std::sqrt(ratio.density * std::pow(unit_s_, 2 * N - 1));
   const double rate = ratio.rate_1_s * unit_s_;
   ProcessSteps<N> steps(rate);
@@ -300,7 +299,7 @@ ChainPosterior<N> WienerChain<N>::posterior(const WienerRatio& ratio) const {
     made.covariance_[k] =
         steps[k].gain * made.covariance_[k + 1] * steps[k].gain.transpose() + steps[k].root * steps[k].root.transpose();
   }
-  // Back from the units within: derivatives are per unit of time.
+  // Converts back from internal units: derivatives are per unit of time.
   Vector unit;
   for (int d = 0; d < N; ++d) unit[d] = std::pow(unit_s_, -d);
   const Vector per_unit = unit.cwiseInverse();
@@ -351,7 +350,7 @@ double ChainPosterior<N>::residual_squares_m2() const {
 
 template <int N>
 std::vector<KernelRow> ChainPosterior<N>::rows(const std::vector<std::size_t>& nodes) const {
-  // settled[k]: nodes before k that look alike: uniform steps, all measured with one noise, the same gain and
+  // settled[k]: number of equivalent nodes before k: uniform steps, all measured with one noise, the same gain and
   // covariance.
   std::vector<std::size_t> settled(size(), 0);
   for (std::size_t k = 2; k + 1 < size(); ++k) {
@@ -367,7 +366,7 @@ std::vector<KernelRow> ChainPosterior<N>::rows(const std::vector<std::size_t>& n
     }
   }
   std::vector<KernelRow> made;
-  std::size_t known_node = 0, known_from = 0, known_to = 0;  // of the row before: its node, the nodes that it reaches
+  std::size_t known_node = 0, known_from = 0, known_to = 0;  // of the previous row: its node, the nodes that it reaches
   for (const std::size_t j : nodes) {
     if (!made.empty() && j > known_node && nodes_[j].point) {
       const std::size_t by = j - known_node;
@@ -392,7 +391,7 @@ std::vector<KernelRow> ChainPosterior<N>::rows(const std::vector<std::size_t>& n
       largest = std::max(largest, size_here);
       return size_here > kFaded * largest;
     };
-    // cov(state_i, state_j) = G_i cov(state_(i+1), state_j) for i < j; to the other side the same from the left.
+    // cov(state_i, state_j) = G_i cov(state_(i+1), state_j) for i < j; on the other side the same from the left.
     Matrix between = covariance_[j];
     bool going = take(j, between.col(0).template head<3>(), right);
     for (std::size_t k = j; going && k-- > 0;) {

@@ -6,20 +6,20 @@
 ///
 ///     dx^(k) = x^(k+1) dt,   dx^(N-1) = sqrt(q) dW,        y_i = x(t_i) + n_i,   n_i ~ N(0, (s f_i)^2),
 ///
-/// with nothing known of the state at the start. With a rate k, x^(N-1) decays (dx^(N-1) = -k x^(N-1) dt + …): for N =
-/// 3 that is the integrated Ornstein-Uhlenbeck process, whose motion without noise is the one under constant and
-/// viscous friction. Steps of any length are exact (process_step.h), for times of any spacing, with times among them at
-/// which nothing was measured. At a break x and v go on, while a jumps by N(0, j^2), what decays with it, and the
-/// derivative m above it by N(0, (j / u^m)^2) more, or all by anything (j infinite). The posterior mean is the
-/// smoothing spline of degree 2N - 1 that makes
+/// with nothing known about the state at the start. With a rate k, x^(N-1) decays (dx^(N-1) = -k x^(N-1) dt + …): for N
+/// = 3 that is the integrated Ornstein-Uhlenbeck process, whose motion without noise is that under constant and viscous
+/// friction. Steps of any length are exact (process_step.h), for times of any spacing, including times at which nothing
+/// was measured. At a break x and v are continuous, while a jumps by N(0, j^2), taking along what decays with it, and
+/// the m-th derivative above it jumps by an additional N(0, (j / u^m)^2); for infinite j all jumps are free. The
+/// posterior mean is the smoothing spline of degree 2N - 1 that makes
 ///
 ///     sum ((y_i - x(t_i)) / f_i)^2 + (s^2 / q) integral (x^(N))^2 dt
 ///
 /// least (Wahba 1978, J. R. Stat. Soc. B 40, 364; Wecker and Ansley 1983, J. Am. Stat. Assoc. 78, 81).
 ///
 /// Computed in O(n) by a square-root information filter (Bierman 1977, chapters V and X): every step is a QR
-/// decomposition of 2N rows, so that nothing known at the start and q near 0 cost no digits, and the eliminated rows
-/// are the smoother,
+/// decomposition of 2N rows, so that neither an unknown start nor q near 0 costs digits, and the eliminated rows are
+/// the smoother,
 ///
 ///     state_k = G_k state_(k+1) + g_k + noise of covariance D_k.
 ///
@@ -47,11 +47,11 @@ struct WienerRatio {
   double rate_1_s = 0.0;                                       ///< k, at which x^(N-1) decays
 };
 
-/// A time of a chain: of a measured position, of a break, or one at which the motion is wanted.
+/// A time of a chain: of a measured position, of a break, or one at which the motion is requested.
 struct ChainNode {
   double t_s = 0.0;
-  std::optional<std::size_t> point;  ///< whose position it holds
-  bool after_break = false;          ///< a jumps between the node before (at the same time) and this one
+  std::optional<std::size_t> point;  ///< the point whose position it holds
+  bool after_break = false;          ///< a jumps between the previous node (at the same time) and this one
 };
 
 /// Positions of one continuous motion. Times rise strictly.
@@ -60,23 +60,23 @@ struct ChainData {
   std::span<const double> x_m;
   std::span<const double> factor;  ///< f of each position, above 0; empty: 1
   std::vector<double> breaks_s;    ///< rising, each with N positions before and after
-  std::vector<double> at_s;        ///< rising: other times that are wanted
+  std::vector<double> at_s;        ///< rising: other requested times
 };
 
-/// Sums of which marginal likelihoods are made; those of several chains add up.
+/// Sums from which marginal likelihoods are formed; those of several chains add up.
 struct ChainFit {
-  double freedom = 0.0;          ///< positions without the parameters that nothing is known of: N, and the free jumps
+  double freedom = 0.0;          ///< number of positions minus that of the unknown parameters: N, and the free jumps
   double squares_m2 = 0.0;       ///< of the whitened innovations at s = 1
   double log_determinant = 0.0;  ///< of their covariance at s = 1
 
   ChainFit& operator+=(const ChainFit& other);
-  /// s^2 of the greatest likelihood.
+  /// s^2 of maximum likelihood.
   double noise_variance() const { return squares_m2 / freedom; }
   /// -2 log of the (restricted, for the diffuse start) marginal likelihood, with s^2 = `noise_variance_m2`.
   double minus_two_log_likelihood(double noise_variance_m2) const;
 };
 
-/// Mean and covariance (at s = 1) of the states at the chain's nodes, and how these are correlated.
+/// Mean and covariance (at s = 1) of the states at the chain's nodes, and the correlations between them.
 template <int N>
 class ChainPosterior {
  public:
@@ -140,7 +140,7 @@ class WienerChain {
   std::vector<ChainNode> nodes_;
   std::vector<double> x_m_, factor_;
   double origin_m_ = 0.0;
-  double unit_s_ = 1.0;  // of time within: the mean step
+  double unit_s_ = 1.0;  // internal unit of time: the mean step
 };
 
 template <int N>

@@ -20,15 +20,16 @@ namespace {
 
 enum class StrengthBy { likelihood, cross_validation };
 
-constexpr double kMostRows = 300.0;        // of a motion whose kernels reach far; else
-constexpr double kRowsOfParameter = 10.0;  // for each parameter that the smoothing amounts to
+constexpr double kMostRows = 300.0;        // for a motion whose kernels reach far; otherwise
+constexpr double kRowsOfParameter = 10.0;  // for each effective parameter of the smoothing
 constexpr int kLeastOrder = 3, kOrders = 3;
 constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kMatters = 20.0;       // of -2 log: orders less probable than that by e^-10 are left out
+constexpr double kMatters = 20.0;       // of -2 log: orders that are less probable by a factor e^-10 are left out
 constexpr double kLeastWeight = 1e-3;   // of a member, over the most probable one
 constexpr double kBreakSettled = 1e-4;  // of a step
 constexpr int kBreakPasses = 6, kBreakSearches = 3;
-constexpr double kCostOfParameter = 1.4;  // of cross-validation (Kim and Gu 2004): 1 follows the noise now and then
+constexpr double kCostOfParameter = 1.4;  // of cross-validation (Kim and Gu 2004): a value of 1 occasionally follows
+                                          // the noise
 
 /// Calls what(order), an integral constant, for every order, or for one.
 template <typename What>
@@ -47,7 +48,7 @@ struct Choice {
   AtTau at;
 };
 
-/// The likeliest process of each order, any jump of a at a break.
+/// The most likely process of each order, with a free jump of a at a break.
 std::vector<Choice> search(const MotionParts& parts, std::vector<double> rates_1_s) {
   std::vector<Choice> found;
   for_orders([&](auto order) {
@@ -64,7 +65,7 @@ const Choice& likeliest(const std::vector<Choice>& all) {
                            [](const Choice& a, const Choice& b) { return a.at.minus_two_log < b.at.minus_two_log; });
 }
 
-/// Moves the breaks to where v = 0 until they stay; the farthest that one moved at first.
+/// Moves the breaks to where v = 0 until they stay; returns the largest displacement of the first iteration.
 double settle_breaks(MotionParts& parts, const Choice& choice) {
   double first = 0.0;
   for_order(choice.order, [&](auto order) {
@@ -94,7 +95,7 @@ std::pair<double, AtTau> add_members(const PartedMotion<N>& motion, const AtTau&
       of_sum += weight;
       chosen = {of_sum, likeliest_one};
     }
-    // k by Gauss and Hermite's rule of three points.
+    // k by the three-point Gauss-Hermite rule.
     for (const auto& [off, share] :
          {std::pair{0.0, 2.0 / 3.0}, {std::sqrt(3.0), 1.0 / 6.0}, {-std::sqrt(3.0), 1.0 / 6.0}}) {
       if (at.rate_sd_1_s == 0.0 && off != 0.0) continue;
@@ -115,7 +116,7 @@ double cross_validation(const SmoothedSums& sums) {
   return sums.points * sums.squares_m2 / std::pow(sums.points - kCostOfParameter * sums.trace, 2);
 }
 
-/// The tau of the least criterion, k the likeliest at each.
+/// The tau that minimises the criterion, with the most likely k at each tau.
 template <int N>
 std::pair<double, AtTau> by_cross_validation(const PartedMotion<N>& motion, Rate rate,
                                              const std::vector<double>& rates_1_s) {
@@ -148,7 +149,7 @@ std::pair<double, AtTau> by_cross_validation(const PartedMotion<N>& motion, Rate
   return best;
 }
 
-/// The bandwidth of the local cubic whose a has as much noise as the posterior's where that has least.
+/// The bandwidth of the local cubic whose a is as noisy as that of the posterior where the latter is least noisy.
 template <int N>
 double like_bandwidth(const std::vector<ChainPosterior<N>>& posteriors, double step_s) {
   const ChainPosterior<N>* best = nullptr;
@@ -166,13 +167,13 @@ double like_bandwidth(const std::vector<ChainPosterior<N>>& posteriors, double s
   return std::pow(kGaussianA.variance * step_s / squares, 0.2);
 }
 
-/// x, v and a of every node, and x of every point of the input, by k.
+/// Derivatives by k of x, v and a of every node, and of x of every point of the input.
 struct OfRate {
   std::vector<std::vector<Eigen::Array3d>> nodes;
-  std::vector<double> point_gain;  ///< dk / dy of every point: k is the likeliest of these positions
+  std::vector<double> point_gain;  ///< dk / dy of every point: k is the most likely for these positions
 };
 
-/// k follows the noise of the positions as dk/dy_i = (sd k / s)^2 (dx_i/dk) / f_i^2, for the derivative of -log
+/// k follows the noise of the positions as dk/dy_i = (sd k / s)^2 (dx_i/dk) / f_i^2, because the derivative of -log
 /// likelihood by y is the residual over its variance.
 template <int N>
 OfRate of_rate(const PartedMotion<N>& motion, const AtTau& at, double noise_variance) {
@@ -201,7 +202,7 @@ OfRate of_rate(const PartedMotion<N>& motion, const AtTau& at, double noise_vari
       residual[i] = (parts.input.x_m[i] - middle) / (factor * factor);
     }
   }
-  // Of these positions themselves the gain makes nothing, so that rows still give the smoothed motion.
+  // For these positions themselves the gain contributes nothing, so that rows still give the smoothed motion.
   double of_gain = 0.0, of_residual = 0.0;
   for (std::size_t i = 0; i < residual.size(); ++i) {
     of_gain += made.point_gain[i] * parts.input.x_m[i];
@@ -211,7 +212,7 @@ OfRate of_rate(const PartedMotion<N>& motion, const AtTau& at, double noise_vari
   return made;
 }
 
-/// A row with what its motion follows the noise through k, over all points.
+/// A row including the response of its motion to the noise through k, over all points.
 KernelRow with_rate(const KernelRow& row, const Eigen::Array3d& by_rate, const std::vector<double>& point_gain) {
   KernelWeights weights{point_gain, point_gain, point_gain};
   const std::array<std::vector<double>*, 3> to{&weights.x, &weights.v, &weights.a};
@@ -223,7 +224,7 @@ KernelRow with_rate(const KernelRow& row, const Eigen::Array3d& by_rate, const s
   return {0, std::make_shared<const KernelWeights>(std::move(weights))};
 }
 
-/// Of every so many points of a part.
+/// The rows of every n-th point of a part.
 template <int N>
 void fill_rows(const ChainPosterior<N>& posterior, const SmoothedPart& part, std::size_t every,
                std::vector<std::optional<KernelRow>>& rows) {
@@ -355,7 +356,7 @@ class WienerSmoother final : public Smoother {
       SmoothingInput other = parts.input;
       other.x_m = parts.input.along_m;
       MotionParts along(other);
-      along.parts = parts.parts;  // with the breaks as they were found
+      along.parts = parts.parts;  // with the breaks as found
       const std::vector<ChainPosterior<N>> of_other = PartedMotion<N>(along).posteriors(chosen.at.how);
       for (std::size_t p = 0; p < parts.parts.size(); ++p) {
         fill(of_other[p], sd[p], parts.parts[p], made.along, made.along_at);
@@ -384,7 +385,7 @@ class WienerSmoother final : public Smoother {
     }
   }
 
-  /// A node of a break, before or behind it.
+  /// A node of a break, before or after it.
   template <int N>
   static bool is_break(const ChainPosterior<N>& posterior, std::size_t k) {
     const ChainNode& node = posterior.node(k);

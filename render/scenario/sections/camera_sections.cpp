@@ -16,13 +16,13 @@ namespace {
 using base::kRadPerDegree;
 using base::TomlTable;
 
-/// The frame time, and a billionth for what the decimals of a rate and of a time round.
+/// The frame time, plus a billionth for the rounding of a rate's and a time's decimals.
 double longest_exposure_s(double frame_rate_hz) {
   return (1.0 + 1e-9) / frame_rate_hz;
 }
 
-/// Of an image. The scene is drawn from a table of all pixels' rays, 40 bytes each beside its copy in OpenGL, and Mesa
-/// takes textures of up to 1 GiB.
+/// Largest number of pixels of an image. The scene is drawn from a table of all pixels' rays, 40 bytes each in addition
+/// to its copy in OpenGL, and Mesa accepts textures of up to 1 GiB.
 constexpr long kMostPixels = 8192L * 4096L;
 
 void read_lens(const TomlTable& camera, Lens& lens) {
@@ -153,7 +153,8 @@ void check_overlap(const TomlTable& table, const Recording& recording) {
   const ClockSetup& clock = recording.clock;
   const double rate_hz = recording.frame_rate_hz * (1.0 + 1e-6 * clock.rate_error_ppm);
   const double free_s = longest_exposure_s(rate_hz) - recording.exposure_s - 2.0 * kLargestJitter * clock.jitter_s;
-  const bool refused = recording.exposure_s > longest_exposure_s(recording.frame_rate_hz);  // of [camera] already
+  const bool refused = recording.exposure_s > longest_exposure_s(recording.frame_rate_hz);  // already reported for
+                                                                                            // [camera]
   if (free_s < 0.0 && !refused) {
     table.reject(clock.jitter_s > 0.0 ? "jitter_s" : "rate_error_ppm",
                  fmt::format("exposures of {} s every {} s that overlap", recording.exposure_s, 1.0 / rate_hz),

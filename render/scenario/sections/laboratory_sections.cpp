@@ -1,4 +1,4 @@
-/// [calibration], [marker], [track], [scene] and [plumb]: what stands before the camera. Ideal frames show the same
+/// [calibration], [marker], [track], [scene] and [plumb]: the scene in front of the camera. Ideal frames show the same
 /// scene.
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ void read_calibration(const std::optional<TomlTable>& table, Scenario& scenario)
     if (columns == std::floor(columns) && rows == std::floor(rows) && columns >= rows) {
       pattern.inner_columns = static_cast<int>(columns);
       pattern.inner_rows = static_cast<int>(rows);
-    } else if (std::isfinite(columns)) {  // else it is an error already
+    } else if (std::isfinite(columns)) {  // otherwise it is already an error
       table->reject("inner_corners", fmt::format("[{}, {}]", (*corners)[0], (*corners)[1]),
                     "two whole numbers, the larger one first");
     }

@@ -1,4 +1,4 @@
-/// [vignetting], [focus], [light] and [mount]: what the optics, the lamps and the tripod do to the image.
+/// [vignetting], [focus], [light] and [mount]: the effects of optics, lamps and tripod on the image.
 #include <fmt/format.h>
 
 #include <algorithm>

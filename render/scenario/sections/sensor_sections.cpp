@@ -66,7 +66,8 @@ void read_tone(const TomlTable& table, ToneCurve& tone) {
       tone = {ToneCurve::Kind::table, tone.gamma, from, to};
       return;
     }
-    // Refused, and linear: what is read next computes with the curve, and must not look into a table that is not there.
+    // The curve is refused and set to linear: code that follows computes with the curve and must not use a missing
+    // table.
     table.reject("tone_to", fmt::format("{} numbers, beside {} in tone_from", to.size(), from.size()),
                  "as many in both, rising from 0 to 1");
   }
@@ -166,7 +167,7 @@ void read_codec(const std::optional<TomlTable>& table, Scenario& scenario) {
   read_container(*table, scenario);
 }
 
-/// With more than 8 bits only PNG holds the codes, and not every container holds time stamps.
+/// With more than 8 bits only PNG can store the codes, and not every container stores time stamps.
 void settle_codec(const TomlTable& root, Scenario& scenario) {
   const bool deep = scenario.sensor.bit_depth > 8;
   if (const std::optional<TomlTable> table = root.maybe_table("codec"); !table) {

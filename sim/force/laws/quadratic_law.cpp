@@ -1,4 +1,4 @@
-/// -c v |v|: drag of the air at high Reynolds number.
+/// -c v |v|: air drag at high Reynolds number.
 #include "sim/force/law_list.h"
 
 namespace glidelab::sim {
@@ -7,7 +7,7 @@ namespace {
 class QuadraticForce final : public ForceTerm {
  public:
   explicit QuadraticForce(double c_kg_m) : c_kg_m_(c_kg_m) {}
-  // d v² rather than v |v|: the same on the side where it counts, and smooth beyond v = 0.
+  // d v² rather than v |v|: the same on the side that counts, and smooth beyond v = 0.
   double force_n(double v_m_s, int direction, const Contact&) const override {
     return -direction * c_kg_m_ * v_m_s * v_m_s;
   }

@@ -1,5 +1,5 @@
-/// -d mu N (1 + (s - 1) exp(-(v / v_s)²)), s >= 1: friction that falls from s mu N at rest to mu N well above v_s. It
-/// holds s mu N.
+/// -d mu N (1 + (s - 1) exp(-(v / v_s)²)), s >= 1: friction that falls from s mu N at rest to mu N well above v_s. At
+/// rest it holds s mu N.
 #include <cmath>
 
 #include "sim/force/law_list.h"

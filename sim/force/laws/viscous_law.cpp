@@ -1,4 +1,4 @@
-/// -K v: the eddy-current brake at low speed, and the drag of air at low Reynolds number.
+/// -K v: the eddy-current brake at low speed, and air drag at low Reynolds number.
 #include "sim/force/law_list.h"
 
 namespace glidelab::sim {

@@ -20,14 +20,14 @@ namespace {
 // Of 100 cases: 20 nominal, 50 with one effect, 12 with two, 18 with one outside.
 constexpr double kNone = 0.20, kSingle = 0.70, kPair = 0.82;
 constexpr double kLeastGain = 8.0, kMostGain = 1500.0;  // a factor of 3000 of all, and of odds from 1 to a thousand
-constexpr double kLeastPairGain = 30.0;                 // what each of two would gain beside the other
+constexpr double kLeastPairGain = 30.0;                 // gain of each of two causes beside the other
 constexpr int kMostDraws = 400;
 
 BlindCause cause_of(const BlindEffect& effect, double size, double gain) {
   return {effect.id, size, effect.truth ? effect.truth(size) : std::map<std::string, double>{}, effect.variable, gain};
 }
 
-/// Draws effects for a design; false where they cannot be seen in it.
+/// Draws effects for a design; false if they cannot be seen in it.
 bool draw_causes(BlindCase& one, const BlindDraw& draw, BlindRandom& random, std::vector<BlindEffect>& effects) {
   if (one.kind == BlindKind::none) return true;
   const BlindDetection detection(one.design);
@@ -45,9 +45,9 @@ bool draw_causes(BlindCase& one, const BlindDraw& draw, BlindRandom& random, std
   if (many == 1) return true;
   for (std::size_t e = 0; e < 2; ++e) {
     const BlindEffect &mine = effects[e], &other = effects[1 - e];
-    if (mine.gain || other.gain) continue;  // of single frames: nothing smooth takes it up
+    if (mine.gain || other.gain) continue;  // affects single frames: nothing smooth absorbs it
     one.causes[e].gain = detection.gain_beside({&mine, one.causes[e].size}, {&other, one.causes[1 - e].size});
-    if (one.causes[e].gain < 0.5 * kLeastPairGain) return false;  // the two look alike here
+    if (one.causes[e].gain < 0.5 * kLeastPairGain) return false;  // the two look the same here
   }
   return true;
 }
@@ -55,7 +55,7 @@ bool draw_causes(BlindCase& one, const BlindDraw& draw, BlindRandom& random, std
 void film_case(BlindCase& one, const std::vector<BlindEffect>& effects, BlindRandom& random) {
   std::vector<BlindPut> puts;
   for (std::size_t e = 0; e < effects.size(); ++e) puts.push_back({&effects[e], one.causes[e].size});
-  // A camera films on when the glider rests: positions there are those of the rest.
+  // A camera keeps filming when the glider rests: positions there are those at rest.
   for (std::size_t c = 0; c < one.design.clips.size(); ++c) {
     BlindFilm film = nominal_film(one.design, one.design.clips[c]);
     for (const BlindPut& put : puts) put.effect->put(put.size, c, film);

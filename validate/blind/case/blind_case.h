@@ -1,4 +1,4 @@
-/// One blind case: an experiment with a known truth, of which only the folder is shown to the diagnosis.
+/// One blind case: an experiment with a known truth; the diagnosis sees only its folder.
 ///
 /// Drawn from (seed, index) alone: a design; nothing, one effect, two, or one outside the library; a strength by its
 /// detectability, the log likelihood that the right model gains on the nominal one fitted to the same positions
@@ -26,12 +26,12 @@ std::string_view word(BlindKind kind);
 struct BlindCause {
   std::string id;
   double size = 0.0;                         ///< in the effect's own unit
-  std::map<std::string, double> parameters;  ///< as effects.md has them; empty outside the library
-  std::string variable;                      ///< of what is outside: where it lies
-  double gain = 0.0;                         ///< log likelihood, beside the other one where there are two
+  std::map<std::string, double> parameters;  ///< as in effects.md; empty outside the library
+  std::string variable;                      ///< for an outside effect: the variable in which it lies
+  double gain = 0.0;                         ///< log likelihood, beside the other one if there are two
 };
 
-/// What is drawn for every case, of tracks and of clips.
+/// What is drawn for every case, with tracks or clips.
 struct DrawnCase {
   std::uint64_t seed = 0;
   std::size_t index = 0;
@@ -51,7 +51,7 @@ struct BlindDraw {
   std::string only;  ///< an effect that every case has; empty: all kinds
 };
 
-/// NumericalError where no design of many shows the wanted effect.
+/// NumericalError if none of many designs shows the requested effect.
 BlindCase make_blind_case(std::uint64_t seed, std::size_t index, const BlindDraw& draw = {});
 
 /// experiment.toml and tracks/*.csv, nothing else; the folder is made.

@@ -14,7 +14,7 @@
 
 namespace glidelab::validate {
 
-// The standard leaves its distributions to each library; the engine alone is the same everywhere.
+// The C++ standard leaves distributions to each library; only the engine is the same everywhere.
 double uniform(BlindRandom& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
@@ -25,7 +25,7 @@ double log_uniform(BlindRandom& random, double low, double high) {
 
 double normal(BlindRandom& random) {
   const double u = uniform(random, 0.0, 1.0), angle = uniform(random, 0.0, 2.0 * std::numbers::pi);
-  return std::sqrt(-2.0 * std::log1p(-u)) * std::cos(angle);  // Box and Muller
+  return std::sqrt(-2.0 * std::log1p(-u)) * std::cos(angle);  // Box-Muller
 }
 
 namespace {
@@ -37,7 +37,7 @@ constexpr double kTolerance = 1e-11;                                        // m
 constexpr double kLongestStep = 2e-3, kFirstStep = 1e-4, kRestStep = 2e-4;  // s
 constexpr int kHalvings = 60;                                               // of 2 ms: to rounding
 constexpr double kRunsAway = 1e3;                                           // m
-constexpr int kMostSteps = 1'000'000;  // of one motion: 200 s at rest; a mass of nothing under a drag takes billions
+constexpr int kMostSteps = 1'000'000;  // of one motion: 200 s at rest; a vanishing mass under drag would take billions
 
 BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
   const double weight = law.mass_kg * law.gravity_m_s2;
@@ -48,7 +48,7 @@ BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
   return terms;
 }
 
-/// 1 or -1: which way it leaves from rest; 0: it stays.
+/// The direction in which it leaves rest, 1 or -1; 0: it stays.
 int way_from_rest(const BlindLaw& law, double x, double t) {
   const BlindTerms terms = terms_of(law, x, 0.0, t);
   const double net = terms.drive_n - terms.drag_n;

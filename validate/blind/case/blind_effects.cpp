@@ -11,7 +11,7 @@
 namespace glidelab::validate {
 namespace {
 
-/// A change of what is seen, the same in all clips.
+/// A change of the seen positions, the same in all clips.
 BlindEffect view_effect(double largest, std::function<double(double size, double x)> see,
                         std::function<std::map<std::string, double>(double)> truth) {
   BlindEffect effect;
@@ -119,7 +119,7 @@ BlindEffect tails(const BlindDesign& design, BlindRandom& random) {
   effect.truth = [](double size) { return std::map<std::string, double>{{"fraction", size}}; };
   effect.gain = [=](double size, double, const std::vector<std::vector<double>>&) {
     // Those off by z0 = 3.5 and more (in units of the noise) are seen: log of the two densities' ratio, on average
-    // over the wide part, less what the narrow part loses.
+    // over the wide part, minus the loss of the narrow part.
     double n = 0.0, gain = 0.0, square = 0.0;
     for (std::size_t c = 0; c < lot.size(); ++c) {
       for (std::size_t k = 0; k < lot[c].size(); ++k) {

@@ -29,12 +29,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kKnot_s = 1e-3;   // between states of a path, as the renderer's own (clip_motion.h)
-constexpr double kSlope_m = 1e-6;  // over which the slope of a displacement is taken
+constexpr double kKnot_s = 1e-3;   // between states of a path, as in the renderer (clip_motion.h)
+constexpr double kSlope_m = 1e-6;  // interval for the slope of a displacement
 
 using ShownAt = std::function<double(double x_m)>;
 
-/// The body during a frame's exposure where it is shown.
+/// The body during a frame's exposure, at the position where it is shown.
 render::FrameMotion moved_to(render::FrameMotion motion, const ShownAt& shown_at) {
   for (double& x : motion.x_m) x = shown_at(x);
   motion.middle.x_m = shown_at(motion.middle.x_m);
@@ -55,7 +55,7 @@ render::FrameMotion moved_to(render::FrameMotion motion, const ShownAt& shown_at
   return motion;
 }
 
-/// The images of a clip, one after the other.
+/// The images of a clip, one after another.
 using Pictures = std::function<std::optional<cv::Mat>()>;
 
 Pictures as_filed(const fs::path& clip, double rate_hz) {
@@ -100,7 +100,7 @@ void file_anew(const BlindScene& scene, std::size_t c, const Pictures& pictures,
   writer->finish();
 }
 
-/// Replaces the whole line "key = …"; takes it out for an empty value.
+/// Replaces the whole line "key = …"; removes it for an empty value.
 void state(std::string& text, const BlindStated& stated) {
   const std::string key = "\n" + stated.key + " = ";
   const std::size_t at = text.find(key);

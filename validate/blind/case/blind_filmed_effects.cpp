@@ -16,7 +16,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kLeastOfWanted = 0.8;  // part of the wanted size that is taken where the camera cannot do more
+constexpr double kLeastOfWanted = 0.8;  // fraction of the wanted size that is accepted if the camera cannot do more
 
 double top_speed(const BlindScene& scene) {
   double top = 0.0;
@@ -43,7 +43,7 @@ std::optional<BlindCause> long_exposure(double wanted, BlindScene& scene, BlindR
   BlindCamera& camera = scene.camera;
   const double stated_s = camera.exposure_s;
   const double usual_s = std::hypot(0.4 * stated_s, 0.2 / camera.px_per_m() / top_speed(scene));
-  // Rows that are read one after the other must still end within the frame time.
+  // Rows that are read one after another must still end within the frame time.
   const double largest_s = 0.85 / camera.rate_hz - camera.line_s * camera.height_px - stated_s;
   auto cause = by_pictures(diagnose::ids::exposure_blur, usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s, wanted,
                            "exposure_s");
@@ -73,7 +73,7 @@ std::optional<BlindCause> flicker(double wanted, BlindScene& scene, BlindRandom&
   const BlindCamera& camera = scene.camera;
   const double hz = uniform(random, 0.0, 1.0) < 0.7 ? (uniform(random, 0.0, 1.0) < 0.5 ? 100.0 : 120.0)
                                                     : uniform(random, 8.0, 0.45 * camera.rate_hz);
-  // What the frames see of it must be a wave: five periods in the shortest clip, and not a multiple of the rate.
+  // The frames must sample it as a wave: five periods in the shortest clip, and not a multiple of the rate.
   const double folded = std::abs(hz - camera.rate_hz * std::round(hz / camera.rate_hz));
   double shortest_s = 10.0;
   for (const BlindClip& clip : scene.motion.clips) {
@@ -127,17 +127,17 @@ namespace {
 using Put = std::function<std::optional<BlindCause>(double wanted, BlindScene&, BlindRandom&)>;
 using Parameters = std::map<std::string, double>;
 
-/// Of the effects of tracks: drawn with a size of the wanted gain, told to `film`.
+/// For effects of tracks: drawn with a size of the wanted gain, and passed to `film`.
 Put as_in_tracks(std::string id, std::function<void(const BlindEffect&, double size, BlindScene&)> film) {
   return [=](double wanted, BlindScene& scene, BlindRandom& random) -> std::optional<BlindCause> {
     BlindEffect effect = draw_effect(id, scene.motion, random);
-    // The renderer's clock is at most a tenth wrong.
+    // The renderer's clock is off by at most a tenth.
     if (id == diagnose::ids::frame_rate_error) effect.largest = std::min(effect.largest, 0.09);
-    // Exposures that follow each other must not overlap, each up to six standard deviations off its time.
+    // Successive exposures must not overlap, even if each is six standard deviations off its time.
     if (id == diagnose::ids::timestamp_jitter) {
       const double exposed_s = scene.camera.exposure_s + scene.camera.line_s * scene.camera.height_px;
       effect.largest = std::min(effect.largest, (1.0 / scene.camera.rate_hz - exposed_s) / 12.0);
-      if (!(effect.largest > 0.0)) return std::nullopt;  // a shutter that is open for the whole frame time
+      if (!(effect.largest > 0.0)) return std::nullopt;  // the shutter is open for the whole frame time
     }
     const auto strength = size_for(BlindDetection(scene.motion), effect, wanted);
     if (!strength) return std::nullopt;
@@ -147,7 +147,8 @@ Put as_in_tracks(std::string id, std::function<void(const BlindEffect&, double s
   };
 }
 
-/// A law of the renderer in place of one of the usual two, or beside them, by the parameters of effects.md.
+/// A force law of the renderer instead of one of the usual two, or in addition to them, by the parameters of
+/// effects.md.
 Put as_law(std::string id, std::function<void(const Parameters&, double mass_kg, double alpha_rad, BlindForces&)> set) {
   return as_in_tracks(id, [=](const BlindEffect& effect, double size, BlindScene& scene) {
     const BlindDesign& design = scene.motion;
@@ -158,7 +159,7 @@ Put as_law(std::string id, std::function<void(const Parameters&, double mass_kg,
   });
 }
 
-/// A drag that is multiplied in each clip, as the change of forces itself says.
+/// A drag multiplied by a factor in each clip, as given by the change of forces.
 Put as_drag_factor(std::string id) {
   return as_in_tracks(id, [](const BlindEffect& effect, double size, BlindScene& scene) {
     for (std::size_t c = 0; c < scene.forces.size(); ++c) {
@@ -171,7 +172,7 @@ Put as_drag_factor(std::string id) {
   });
 }
 
-/// A displacement that goes with the place alone: the images are pulled by it.
+/// A displacement that depends on position alone: the glider is shown displaced.
 Put as_warp(std::string id) {
   return as_in_tracks(id, [](const BlindEffect& effect, double size, BlindScene& scene) {
     scene.retouch.rewritten = true;
@@ -186,7 +187,7 @@ Put as_warp(std::string id) {
   });
 }
 
-/// Dust on the magnets, an iron part beside one of the runs: a friction that differs from clip to clip.
+/// Dust on the magnets, an iron part near one of the runs: a friction that differs from clip to clip.
 std::optional<BlindCause> friction_of_each_run(double wanted, BlindScene& scene, BlindRandom& random) {
   std::vector<double> share;
   for (std::size_t c = 0; c < scene.motion.clips.size(); ++c) share.push_back(std::clamp(normal(random), -2.0, 2.0));
@@ -203,7 +204,7 @@ std::optional<BlindCause> friction_of_each_run(double wanted, BlindScene& scene,
   return BlindCause{effect.id, strength->size, {}, "clip", strength->gain};
 }
 
-/// An image that is put together of two, which do not quite meet: a step in the place.
+/// An image stitched from two parts that do not quite match: a step in position.
 std::optional<BlindCause> seam_in_picture(double wanted, BlindScene& scene, BlindRandom& random) {
   const double at = uniform(random, -0.25, 0.25);
   const auto see = [at](double size, double x) { return x + 0.5 * size * std::tanh((x - at) / 0.02); };
@@ -238,7 +239,7 @@ void lose_frames(const BlindEffect& effect, double size, BlindScene& scene) {
   }
 }
 
-/// The camera's own sway or turn; what stands 0.6 m behind the track moves less by a sway.
+/// The camera's own sway or turn; a scene 0.6 m behind the track moves less by a sway.
 std::optional<BlindCause> shaken_camera(double wanted, BlindScene& scene, BlindRandom& random) {
   const bool pans = uniform(random, 0.0, 1.0) < 0.5;
   const double phase_deg = uniform(random, 0.0, 360.0);

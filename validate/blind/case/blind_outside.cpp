@@ -37,7 +37,7 @@ BlindEffect rough_patch(const BlindDesign&, BlindRandom& random) {
   });
 }
 
-/// Magnets in a row below the track: a force that swings along x.
+/// A row of magnets below the track: a force that oscillates along x.
 BlindEffect cogging(const BlindDesign&, BlindRandom& random) {
   const double period = log_uniform(random, 0.04, 0.25), phase = uniform(random, 0.0, kTurn);
   return force_effect("x_m", 3.0, [=](double size) -> BlindChange {
@@ -66,7 +66,7 @@ BlindEffect sticky_seam(const BlindDesign&, BlindRandom& random) {
   });
 }
 
-/// Something that resonates at one speed, such as a wheel out of balance in its bearing.
+/// A resonance at one speed, such as an unbalanced wheel in its bearing.
 BlindEffect drag_hump(const BlindDesign&, BlindRandom& random) {
   const double speed = uniform(random, 0.25, 0.9), width = uniform(random, 0.05, 0.15);
   return force_effect("v_m_s", 2.0, [=](double size) -> BlindChange {
@@ -83,7 +83,7 @@ BlindEffect warming_up(const BlindDesign&, BlindRandom& random) {
   });
 }
 
-/// A load that swings on the glider and dies away: a decaying wave after each launch, in step with it.
+/// A load that swings on the glider and decays: a damped wave after each launch, in phase with it.
 BlindEffect swinging_load(const BlindDesign&, BlindRandom& random) {
   const double hz = uniform(random, 2.0, 5.0), time = uniform(random, 0.2, 0.5), phase = uniform(random, 0.0, kTurn);
   return force_effect("t_s", 3.0, [=](double size) -> BlindChange {
@@ -93,7 +93,7 @@ BlindEffect swinging_load(const BlindDesign&, BlindRandom& random) {
   });
 }
 
-/// Gusts: a random acceleration with a memory of a tenth of a second or two, each clip its own.
+/// Gusts: a random acceleration with a correlation time of a tenth or two of a second, different in each clip.
 BlindEffect gusts(const BlindDesign& design, BlindRandom& random) {
   constexpr double kStep = 0.01;
   const double memory = uniform(random, 0.06, 0.2), keep = std::exp(-kStep / memory);
@@ -119,7 +119,7 @@ BlindEffect gusts(const BlindDesign& design, BlindRandom& random) {
   return effect;
 }
 
-/// The magnets' gap changes from run to run: each clip a drag of its own.
+/// The magnets' gap changes from run to run: each clip has its own drag.
 BlindEffect drag_of_each_run(const BlindDesign& design, BlindRandom& random) {
   std::vector<double> factor;
   for (std::size_t c = 0; c < design.clips.size(); ++c) factor.push_back(normal(random));
@@ -141,20 +141,20 @@ BlindEffect drag_by_load(const BlindDesign& design, BlindRandom&) {
   });
 }
 
-/// A pane with a flaw before the track: everything seen through it is displaced.
+/// A flawed pane in front of the track: everything seen through it is displaced.
 BlindEffect flawed_pane(const BlindDesign&, BlindRandom& random) {
   const double at = uniform(random, -0.2, 0.4), width = uniform(random, 0.03, 0.12);
   return view_effect("x_m", 0.02, [=](double size, double x, double) { return x + size * bell((x - at) / width); });
 }
 
-/// Centres that are drawn to the middle of a pixel: a displacement with the pixel's period.
+/// Centres pulled towards the middle of a pixel: a displacement with the pixel's period.
 BlindEffect pixel_locking(const BlindDesign&, BlindRandom& random) {
   const double pixel = uniform(random, 0.008, 0.03), phase = uniform(random, 0.0, kTurn);
   return view_effect("x_m", 0.003,
                      [=](double size, double x, double) { return x + size * std::sin(kTurn * x / pixel + phase); });
 }
 
-/// A tripod that sags: the image drifts, faster at first, each clip its own way.
+/// A sagging tripod: the image drifts, faster at first, differently in each clip.
 BlindEffect sagging_tripod(const BlindDesign& design, BlindRandom& random) {
   std::vector<double> share;
   for (std::size_t c = 0; c < design.clips.size(); ++c) share.push_back(normal(random));
@@ -169,7 +169,7 @@ BlindEffect sagging_tripod(const BlindDesign& design, BlindRandom& random) {
   return effect;
 }
 
-/// A camera's clock that slows down while it warms: times stretch with the square of the time in the clip.
+/// A camera clock that slows down as it warms up: times stretch with the square of the time in the clip.
 BlindEffect drifting_clock(const BlindDesign&, BlindRandom& random) {
   const double sign = either_sign(random);
   BlindEffect effect;
@@ -181,7 +181,7 @@ BlindEffect drifting_clock(const BlindDesign&, BlindRandom& random) {
   return effect;
 }
 
-// The last four were added when the diagnosis was finished: nothing of it was looked at with them before its last run.
+// The last four were added when the diagnosis was finished: it was not tested with them before its last run.
 
 /// A hump in the track, a few centimetres long: the slope swings up and down again.
 BlindEffect bump_in_track(const BlindDesign& design, BlindRandom& random) {
@@ -204,7 +204,7 @@ BlindEffect lost_cushion(const BlindDesign&, BlindRandom& random) {
   });
 }
 
-/// A stand that is moved between the clips: each one is seen at another scale.
+/// A camera stand moved between clips: each clip has a different scale.
 BlindEffect scale_of_each_clip(const BlindDesign& design, BlindRandom& random) {
   std::vector<double> share;
   for (std::size_t c = 0; c < design.clips.size(); ++c) share.push_back(normal(random));

@@ -1,6 +1,7 @@
-/// Effects that no library has: smooth, local, periodic and random ones, in x, v, t, mass and place in the image.
+/// Effects that are in no library: smooth, local, periodic and random ones, in x, v, t, mass and position in the image.
 ///
-/// They test whether a diagnosis knows when it does not know. None of them may ever be added to what it can name.
+/// They test whether a diagnosis recognises what it does not know. None of them may ever be added to the effects that
+/// it can name.
 #pragma once
 
 #include <vector>

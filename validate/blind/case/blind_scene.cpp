@@ -55,17 +55,17 @@ double least_noise_m(const BlindCamera& camera, double v_m_s) {
   return core::least_centre_sd_px(disc, disc.radius_px + 3.0 * disc.blur_px + 2.0) / camera.px_per_m();
 }
 
-/// What clips with nothing wrong were seen to err by besides (28 cases of seeds 3000 and 4000): pixels that differ and
-/// the place between two of them, more so with a tone curve; the blocks of MJPEG (quality 86 to 91: 0.005 to 0.0075
-/// px); H.264 (crf 14 to 20: 0.02 to 0.046 px, which last for some eight frames and so weigh twice as much on what is
-/// slow).
+/// Additional errors observed in clips with nothing wrong (28 cases of seeds 3000 and 4000): differing pixels and the
+/// position between two of them, more so with a tone curve; the blocks of MJPEG (quality 86 to 91: 0.005 to 0.0075 px);
+/// H.264 (crf 14 to 20: 0.02 to 0.046 px, which last for about eight frames and so weigh twice as much on slow
+/// effects).
 double added_px(const BlindCamera& camera) {
   if (camera.codec == "h264") return 0.07;
   if (camera.codec == "mjpeg") return 0.006;
   return camera.tone == "linear" ? 0.001 : 0.002;
 }
 
-/// Frames until the glider has left the image or rests.
+/// Number of frames until the glider has left the image or is at rest.
 std::size_t frames_of(const BlindDesign& design, BlindClip clip) {
   clip.frames = kMostFilmedFrames;
   const BlindFilm film = nominal_film(design, clip);
@@ -102,7 +102,7 @@ void draw_clips(BlindDesign& design, const BlindCamera& camera, BlindRandom& ran
     for (std::size_t m = 0; m < design.masses.size(); ++m) {
       for (int r = 0; r < 2 * repeats; ++r) {
         const bool up = r % 2 == 0;
-        // Four pairs: on the level one way only, so that there are six clips at most.
+        // Four pairs; on the level track one direction only, so that there are six clips at most.
         if (pairs == 4 && g == 0 && up) continue;
         BlindClip clip{fmt::format("clip-{}", design.clips.size() + 1), g, m, 0.0, 0.0, camera.rate_hz, 0};
         clip.v0_m_s = up ? -uniform(random, 0.6, 1.3) : uniform(random, 0.3, 1.0);

@@ -1,9 +1,9 @@
-/// What stands before the camera in a filmed blind case, and the camera: drawn, and written as a scenario of the
-/// renderer, together with what experiment.toml is to say otherwise and what is done to the images afterwards.
+/// The scene and the camera of a filmed blind case: drawn at random and written as a scenario of the renderer, together
+/// with altered statements of experiment.toml and later changes to the images.
 ///
 /// A small experiment: 640 x 240 pixels 1.2 to 1.4 m from the track, 100 to 240 Hz, 2 to 6 clips of 40 to 150 frames,
 /// one or two masses, a level track, an inclined one or both; a sensor of 8,000 to 60,000 electrons, sometimes a tone
-/// curve or a rolling shutter (stated), and a file without loss or with little of it.
+/// curve or a rolling shutter (stated), and a file with little or no loss.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct BlindCamera {
   double rate_hz = 0.0;
   double exposure_s = 0.0;
   double focal_px = 0.0;
-  double x_m = 0.0, y_m = 0.0, z_m = 0.0;  ///< where it stands; it looks at (0, 0.03, 0)
-  double k1 = 0.0;                         ///< of the lens, which the calibration sees
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;  ///< position; it looks at (0, 0.03, 0)
+  double k1 = 0.0;                         ///< of the lens, included in the calibration
   double line_s = 0.0;                     ///< above 0: rolling
   double full_well_e = 0.0, read_noise_e = 0.0, prnu = 0.0;
   std::string tone;   ///< "linear", "gamma" or "bt709"
@@ -33,7 +33,7 @@ struct BlindCamera {
   double px_per_m() const { return focal_px / z_m; }
 };
 
-/// The forces of one clip as the renderer's laws have them.
+/// The forces of one clip, as laws of the renderer.
 struct BlindForces {
   double k_n_s_m = 0.0, mu = 0.0;
   std::string drag_law = "viscous", drag_keys;          ///< keys besides k_n_s_m, whole lines
@@ -41,36 +41,36 @@ struct BlindForces {
   std::string more;                                     ///< further tables of forces
 };
 
-/// A line of experiment.toml that says something else than the camera did.
+/// A line of experiment.toml that differs from what the camera did.
 struct BlindStated {
   std::string key;
-  std::string value;  ///< as TOML; empty: the line is taken out
+  std::string value;  ///< as TOML; empty: the line is removed
 };
 
-/// What is done to the images after they were taken, and before they are filed.
+/// Changes to the images after they were taken and before they are stored.
 struct BlindRetouch {
-  bool rewritten = false;  ///< the clips are filed anew, without loss
-  /// By clip: where a point at x (on the track) is shown instead. Empty: nowhere else.
+  bool rewritten = false;  ///< the clips are rewritten without loss
+  /// By clip: the position at which a point at x (on the track) is shown instead. Empty: not displaced.
   std::vector<std::function<double(double x_m)>> shown_at;
-  /// By clip and frame: 1 where the frame is not filed. Empty: all are.
+  /// By clip and frame: 1 if the frame is not stored. Empty: all are stored.
   std::vector<std::vector<char>> lost;
 };
 
 struct BlindScene {
-  /// Its noise is the least that the sensor allows together with what tracker and codec were seen to add; its
-  /// calibration as sure as those of such scenes are.
+  /// Its noise is the bound set by the sensor, plus the observed contribution of tracker and codec; the uncertainty of
+  /// its calibration is typical of such scenes.
   BlindDesign motion;
   BlindCamera camera;
   std::vector<BlindForces> forces;  ///< of each clip
   double gradient_1_m = 0.0, flicker_depth = 0.0, flicker_hz = 100.0;
-  double jitter_s = 0.0, rate_error = 0.0;  ///< how much faster than stated the camera runs, relative
+  double jitter_s = 0.0, rate_error = 0.0;  ///< relative excess of the camera's rate over the stated one
   std::string mount;                        ///< tables of mount motions
-  std::size_t spare_frames = 0;             ///< filmed beyond the design's, for those that are lost
+  std::size_t spare_frames = 0;             ///< filmed in addition to the design's, to replace lost ones
   std::vector<BlindStated> stated;
   BlindRetouch retouch;
 };
 
-/// `lossless`: the file is one without loss.
+/// `lossless`: the file is stored without loss.
 BlindScene draw_scene(BlindRandom& random, bool lossless);
 
 /// The scenario of a scene, for `glidelab render`.

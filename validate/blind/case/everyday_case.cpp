@@ -21,20 +21,20 @@ namespace {
 constexpr double kOne = 0.50, kTwo = 0.70, kDirt = 0.85;  // of 100 cases 50, 20, 15 and 15
 constexpr double kMostExcess = 40.0;                      // a gap of 6.4
 constexpr int kMostEverydayDraws = 600;
-constexpr int kDesignsPerCause = 8;    // of which none may show an effect that moves a track little
+constexpr int kDesignsPerCause = 8;    // designs tried per cause: none may show a weak effect
 constexpr double kLongestTrack = 1.3;  // m, on either side of the middle
 constexpr double kFilmedAtRest = 0.3;  // s
 constexpr double kFirstGuess = 0.2;    // of the largest size
 constexpr double kNoExcess = 1e-12;
 
-/// What a case asks for; it stays while designs are drawn.
+/// The requirements of a case; they stay fixed while designs are drawn.
 struct Wanted {
   EverydayClass kind = EverydayClass::one;
   bool strong = false;
   std::string only;
 };
 
-/// Frames until it leaves the track or has rested for a while; what the causes do to that is little.
+/// Number of frames until the glider leaves the track or has rested for a while; the causes hardly affect this.
 std::size_t frames_on_track(const BlindDesign& design, const BlindClip& clip, double origin) {
   const BlindFilm film = nominal_film(design, clip);
   const auto motion = blind_motion(film.law, clip.x0_m, clip.v0_m_s, film.true_t_s);
@@ -52,8 +52,8 @@ double seen_share(const std::vector<double>& shares) {
   return sum;
 }
 
-/// The size of an effect that makes this excess to first order, to a tenth, looked for from `guess` on; none where its
-/// largest does not reach it.
+/// The size of an effect that causes this excess to first order, within a tenth, searched for from `guess`; empty if
+/// its largest size does not reach it.
 std::optional<double> size_of_excess(const BlindDetection& detection, const BlindEffect& effect, double wanted,
                                      double guess) {
   constexpr double kNearWanted = 0.1;
@@ -75,12 +75,12 @@ std::optional<double> size_of_excess(const BlindDetection& detection, const Blin
   return std::nullopt;
 }
 
-/// What a case consists of before it is filmed.
+/// The parts of a case before it is filmed.
 struct Drawn {
   std::vector<BlindEffect> effects;
   std::vector<double> sizes;
   std::vector<EverydayDirt> dirt;
-  std::vector<double> own_excess;  // of each at size 1 of its effect
+  std::vector<double> own_excess;  // excess of each at size 1 of its effect
   double dirt_size = 0.0;
   BlindEffect all_dirt;
 
@@ -96,7 +96,7 @@ struct Drawn {
   }
 };
 
-/// Shares by their definition, the main cause moved to the front; false where they are not as wanted.
+/// Shares by their definition, the main cause moved to the front; false if they are not as wanted.
 bool measure(const BlindDetection& detection, const Wanted& wanted, Drawn& drawn, EverydayTruth& truth) {
   const auto nominal = detection.excess(drawn.everything(), {});
   if (!nominal) return false;

@@ -1,14 +1,15 @@
-/// One everyday experiment with a known truth: one cause, two, none or one outside the list, and several small
-/// imperfections besides (everyday_dirt.h).
+/// One everyday experiment with a known truth: one cause, two, none or one outside the list, plus several small
+/// imperfections (everyday_dirt.h).
 ///
-/// Drawn from (seed, index) alone. Of 100 cases 50 have one cause, 20 two, 15 dirt alone, 15 a cause outside. The
-/// causes make an excess of the squared gap (blind_strength.h: g² - 1 of held-out clips, without noise) of 1.5 to 4 in
-/// moderate cases and 4 to 40 in strong ones. With X(L) that excess for a law L that has the named causes in it,
+/// Drawn from (seed, index) alone. Of 100 cases, 50 have one cause, 20 two, 15 only imperfections ("dirt"), 15 a cause
+/// outside the list. The causes produce an excess of the squared gap (blind_strength.h: g² - 1 of held-out clips,
+/// without noise) of 1.5 to 4 in moderate cases and 4 to 40 in strong ones. With X(L) that excess for a law L that
+/// contains the named causes,
 ///
 ///     share of cause i = (X(causes before i) - X(those and i)) / X(nominal),      the main cause first,
 ///     share of dirt    = X(all causes) / X(nominal),                              between 0.02 and 0.30.
 ///
-/// The second of two causes has a share of a quarter or more. Dirt alone is as large as it would be beside a cause.
+/// The second of two causes has a share of a quarter or more. Dirt alone is as large as it would be next to a cause.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +38,8 @@ struct ActingDirt {
   std::string id;
   double size = 0.0;
   std::string unit;
-  double excess = 0.0;               ///< its own beside nothing, taken to grow as the square of its size
-  std::vector<std::string> effects;  ///< fair names for it
+  double excess = 0.0;               ///< when acting alone, assumed to grow as the square of its size
+  std::vector<std::string> effects;  ///< acceptable names for it
 };
 
 struct EverydayTruth {
@@ -47,7 +48,7 @@ struct EverydayTruth {
   double excess = 0.0;                           ///< g² - 1 of the nominal law, of everything that acts
   std::vector<double> shares;                    ///< of the causes, the main one first
   double remainder = 1.0;                        ///< dirt's
-  std::vector<std::vector<std::string>> equals;  ///< of each cause: other ids that are the same law here
+  std::vector<std::vector<std::string>> equals;  ///< of each cause: other ids that give the same law here
   std::vector<ActingDirt> dirt;
   std::vector<EverydayConfiguration> configurations;
 };
@@ -64,7 +65,7 @@ struct EverydayDraw {
 /// The class of a case, without making it.
 EverydayClass everyday_class(std::uint64_t seed, std::size_t index);
 
-/// NumericalError where no design of many shows the wanted causes.
+/// NumericalError if none of many designs shows the wanted causes.
 EverydayCase make_everyday_case(std::uint64_t seed, std::size_t index, const EverydayDraw& draw = {});
 
 /// 4 to 12 clips at 25 to 240 Hz on up to 2.6 m of track, noise of 0.05 to 1.5 mm, one to three masses, one or two

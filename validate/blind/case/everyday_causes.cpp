@@ -13,7 +13,7 @@ namespace {
 
 using Parameters = std::map<std::string, double>;
 
-constexpr double kLeastFactor = 0.15;  // of a friction or drag that is its own: it stays one
+constexpr double kLeastFactor = 0.15;  // of a separate friction or drag: it must remain one
 
 double way_of(double v) {
   return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0;
@@ -54,7 +54,7 @@ BlindEffect drag_of_direction(const BlindDesign&, BlindRandom& random) {
   return effect;
 }
 
-/// Of all frames of the nominal motions.
+/// Mean over all frames of the nominal motions.
 double mean_over_design(const BlindDesign& design, const std::function<double(double)>& of_x) {
   double sum = 0.0, many = 0.0;
   for (const BlindClip& clip : design.clips) {
@@ -136,7 +136,7 @@ BlindEffect scatter_of_clips(const BlindDesign& design, BlindRandom& random) {
   return effect;
 }
 
-/// In the outer part of where the nominal motions are, so that some clips reach it and come back.
+/// Placed in the outer part of the range of the nominal motions, so that some clips reach it and come back.
 BlindEffect bumper(const BlindDesign& design, BlindRandom& random) {
   const double end = either_sign(random), share = uniform(random, 0.72, 0.93);
   std::vector<double> x;
@@ -220,7 +220,7 @@ std::vector<std::string> equals_of(const std::string& id, const BlindDesign& des
   add(diagnose::ids::scale_error, diagnose::ids::frame_rate_error);
   add(diagnose::ids::camera_motion, diagnose::ids::base_vibration);
   if (id == diagnose::ids::tether || down) add(diagnose::ids::tether, diagnose::ids::end_stop);
-  // Two frictions of two configurations on one slope: mu_j m_j g cos(alpha) is mu m_j g cos(alpha) + F_0.
+  // Two frictions of two configurations on the same slope: mu_j m_j g cos(alpha) is mu m_j g cos(alpha) + F_0.
   if (design.groups.size() == 1 && design.masses.size() == 2)
     add(diagnose::ids::load_independent_friction, diagnose::ids::configuration_friction);
   return equal;

@@ -1,7 +1,8 @@
-/// Main causes of everyday experiments: those of the clean blind cases that move a track, and those that a rig has.
+/// Main causes of everyday experiments: those of the clean blind cases that affect a track, and those typical of an
+/// apparatus.
 ///
-/// The laws of effects.md that the clean cases lack, written here anew, with s the size and z a deviate drawn for the
-/// case (of sd 1):
+/// The laws of effects.md that the clean cases lack, implemented independently, with s the size and z a deviate drawn
+/// for the case (of sd 1):
 ///
 ///     direction_dependent_drag   K (1 + s sign(v))
 ///     place_friction             mu (1 + s z(x)), z a sum of waves with mean 0 over the positions of the design
@@ -19,20 +20,20 @@
 
 namespace glidelab::validate {
 
-/// Ids of effects.md that move a track: without those of the noise and the time of single frames.
+/// Ids of effects.md that affect a track, without those of the noise and of the times of single frames.
 const std::vector<std::string>& everyday_effects();
-/// Ids of what is outside the list. What is a friction by place or a drag by clip or configuration is not among them:
-/// the list has that.
+/// Ids of effects outside the list. Position-dependent friction and drag by clip or configuration are not among them:
+/// the list has these.
 const std::vector<std::string>& everyday_outside();
 
-/// One of either; std::out_of_range for another id.
+/// Draws an effect of either list; std::out_of_range for another id.
 BlindEffect draw_everyday_effect(const std::string& id, const BlindDesign& design, BlindRandom& random);
 
 /// A clip's configuration: the same number for clips of one mass and one group.
 std::size_t configuration_of(const BlindDesign& design, const BlindClip& clip);
 
-/// Other ids that are the same law on a design, whatever their parameters: naming one of them is as right. `down` says
-/// whether an end_stop is at the downhill end, where a tether is the same.
+/// Other ids that give the same law on a design for any parameters: naming one of them is equally right. `down` says
+/// whether an end_stop is at the downhill end, where a tether is equivalent.
 std::vector<std::string> equals_of(const std::string& id, const BlindDesign& design, bool down);
 
 /// Smooth random function of x: four waves of lengths between `shortest` and `longest`, of rms 1 over all x.

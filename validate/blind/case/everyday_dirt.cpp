@@ -9,7 +9,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kDecade = 0.1;  // of the most: the least amplitude that is drawn
+constexpr double kDecade = 0.1;  // of the maximum: the smallest amplitude drawn
 
 using DirtPut = std::function<void(double amplitude, std::size_t clip, BlindFilm& film)>;
 
@@ -181,11 +181,12 @@ BlindEffect all_of_dirt(const std::vector<EverydayDirt>& dirt) {
 }
 
 EverydayNoise draw_noise(double noise_sd_m, bool clicked, bool rounded, BlindRandom& random) {
-  constexpr double kFinest = 5e-4, kCoarsest = 5e-3;  // steps that rulers and motion sensors have
+  constexpr double kFinest = 5e-4, kCoarsest = 5e-3;  // steps of rulers and motion sensors
   EverydayNoise noise;
   double left = noise_sd_m * noise_sd_m;
   if (rounded) {
-    // Up to where the noise hardly takes a position over a step: sd of a step's uniform error 0.9 of the whole.
+    // Up to the point where noise hardly carries a position over a step: the sd of a step's uniform error is 0.9 of the
+    // total.
     const double most = std::min(kCoarsest, 0.9 * std::sqrt(12.0) * noise_sd_m);
     if (most > kFinest) {
       noise.rounded_m = log_uniform(random, std::max(kFinest, 0.3 * most), most);

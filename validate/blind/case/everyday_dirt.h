@@ -1,8 +1,8 @@
-/// The small imperfections of an experiment as a student records it; none of them is on the list.
+/// The small imperfections of an experiment recorded by a student; none of them is on the list.
 ///
-/// Each is an alteration of forces or of what is seen by an amplitude below its most. Each gets a part of the excess
-/// that dirt is to make, between a fourth and four times another's, as far as its most allows; then all grow with one
-/// common size until they make that excess together. `s a` is the amplitude at that size, z a deviate of each clip:
+/// Each alters forces or seen positions with an amplitude below its maximum. Each gets a part of the total excess of
+/// the dirt, between a quarter of and four times another's, as far as its maximum allows; then all grow with one common
+/// size until together they make that excess. `s a` is the amplitude at that size, z a deviate of each clip:
 ///
 ///     scattered_friction   mu (1 + s a z)                         a up to 15 %
 ///     wavy_track           slope + s a waves(x), 0.15 to 1.2 m    a up to 4 mrad
@@ -13,8 +13,8 @@
 ///     bad_clip             one clip is kicked (s a for 30 to 80 ms, a up to 4 m/s²), or its friction is 1 + s a times,
 ///                          a up to 1.5
 ///
-/// Noise is no gap: what is random from frame to frame (the tracker's noise, a hand that clicks, rounding) is counted
-/// in the noise of a position, and has no part of the excess.
+/// Noise does not contribute to the gap: anything random from frame to frame (the tracker's noise, manual clicks,
+/// rounding) counts as noise of a position and has no part in the excess.
 #pragma once
 
 #include <algorithm>
@@ -29,33 +29,33 @@ struct EverydayDirt {
   std::string id;
   double amplitude = 0.0;  ///< in `unit`, at size 1 of `effect`
   std::string unit;
-  std::vector<std::string> effects;  ///< ids of effects.md that are a fair name for it
-  BlindEffect effect;                ///< `largest` where the amplitude is the most
+  std::vector<std::string> effects;  ///< ids of effects.md that are acceptable names for it
+  BlindEffect effect;                ///< `largest` at the maximum amplitude
   double part = 1.0;                 ///< size of `effect` at the common size 1
 
   /// Size of `effect` at a common size.
   double size_at(double common) const { return std::min(common * part, effect.largest); }
 };
 
-/// What is random in single positions; noise_sd_m of the design is the sd of all three together.
+/// Random errors of single positions; noise_sd_m of the design is the sd of all three together.
 struct EverydayNoise {
   double white_sd_m = 0.0;
-  double clicked_sd_m = 0.0;    ///< of a hand that clicks; 0: positions are not clicked
-  double clicked_frames = 0.0;  ///< over which its error is forgotten (1/e)
+  double clicked_sd_m = 0.0;    ///< of manual clicks; 0: positions are not clicked
+  double clicked_frames = 0.0;  ///< correlation length of its error (1/e)
   double rounded_m = 0.0;       ///< step; 0: not rounded
 };
 
-/// `many` of the list, none that `without` names as an effect of the list that would be a fair name for it.
+/// Draws `many` from the list, excluding any for which an effect in `without` would be an acceptable name.
 std::vector<EverydayDirt> draw_dirt(std::size_t many, const std::vector<std::string>& without,
                                     const BlindDesign& design, BlindRandom& random);
 
-/// All of them as one effect, by their common size.
+/// All of them as one effect, with their common size.
 BlindEffect all_of_dirt(const std::vector<EverydayDirt>& dirt);
 
-/// One or two kinds (or none) of a total of noise_sd_m.
+/// Noise of one or two kinds (or none), with a total of noise_sd_m.
 EverydayNoise draw_noise(double noise_sd_m, bool clicked, bool rounded, BlindRandom& random);
 
-/// The positions with the noise on them.
+/// The positions with added noise.
 std::vector<double> with_noise(std::vector<double> x_m, const EverydayNoise& noise, BlindRandom& random);
 
 }  // namespace glidelab::validate

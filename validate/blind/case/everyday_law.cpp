@@ -50,7 +50,7 @@ BlindTerms law_terms(const BlindDesign& design, std::size_t clip, const std::vec
   return terms;
 }
 
-/// The first root of `net` above rest; none where it does not move off, or nothing holds it below 50 m/s.
+/// The first root of `net` above rest; empty if the glider does not set off, or if nothing limits it below 50 m/s.
 std::optional<double> first_balance(const std::function<double(double)>& net) {
   constexpr double kSlowest = 1e-6, kFastest = 50.0, kStep = 0.01;  // m/s
   constexpr int kRootHalvings = 60;

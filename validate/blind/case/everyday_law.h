@@ -1,6 +1,6 @@
-/// What is true of each configuration of an everyday experiment when its causes are part of the law.
+/// The true values of each configuration of an everyday experiment, with its causes part of the law.
 ///
-/// K, mu and alpha are the parameters of effects.md beside the cause's own: K of each configuration under
+/// K, mu and alpha are the parameters of effects.md besides the cause's own: K of each configuration under
 /// configuration_drag and at the middle of the data under damping_gradient, mu of each under configuration_friction,
 /// alpha at the middle under track_bow. The terminal velocity is the lowest v > 0 at which drive, drag and friction
 /// balance with the causes that are laws of speed or configuration.
@@ -20,13 +20,13 @@ struct EverydayConfiguration {
   std::string group;
   double mass_kg = 0.0, incline_deg = 0.0;  ///< as stated
   double k_over_m_1_s = 0.0, mu = 0.0, alpha_deg = 0.0;
-  std::optional<double> v_lim_m_s;  ///< none where it comes to rest, or has none
+  std::optional<double> v_lim_m_s;  ///< empty if it comes to rest, or has none
 };
 
-/// Nothing where there is none.
+/// Empty if there is none.
 std::optional<double> true_value(const EverydayConfiguration& of, core::Measurand which);
 
-/// Of every configuration that has a clip, in the order of the clips. `x_m`: positions of each clip.
+/// The values of every configuration that has a clip, in the order of the clips. `x_m`: positions of each clip.
 std::vector<EverydayConfiguration> everyday_configurations(const BlindDesign& design,
                                                            const std::vector<BlindPut>& causes,
                                                            const std::vector<std::vector<double>>& x_m);

@@ -62,7 +62,7 @@ std::vector<ErrorRecord> records_of(const std::vector<std::vector<QuantityCompar
   return records;
 }
 
-/// Logarithms of what one run's smoothing did to a clip.
+/// Logarithms that describe one run's smoothing of a clip.
 struct Smoothed {
   double log_bandwidth, log_a_error;
 };
@@ -173,10 +173,10 @@ namespace {
 
 using nlohmann::json;
 
-/// Keys of one object of the file, with an InputError that names what is wrong.
+/// Keys of one object of the file, with an InputError that names the error.
 class BaselineReader {
  public:
-  /// `where` comes before the keys in what is said.
+  /// `where` precedes the keys in messages.
   BaselineReader(const json& object, const std::filesystem::path& file, std::string where = {})
       : object_(object), file_(file), where_(std::move(where)) {
     if (!object.is_object()) fail("", object.type_name(), "an object that --write-baseline has made");

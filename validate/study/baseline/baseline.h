@@ -26,10 +26,10 @@ struct ErrorRecord {
   double sd = 0.0;
   double deviation = 0.0;     ///< mean of |error - mean|
   double deviation_sd = 0.0;  ///< standard deviation of |error - mean|
-  double efficiency = 0.0;    ///< (Cramér-Rao bound / rms error)²; 0 where there is no bound
+  double efficiency = 0.0;    ///< (Cramér-Rao bound / rms error)²; 0 if there is no bound
 };
 
-/// How the clips of the first estimator were smoothed, over the runs that have points which count.
+/// How the clips of the first estimator were smoothed, over the runs with points that count.
 struct SmoothingRecord {
   std::string clip;
   std::uint64_t runs = 0;
@@ -41,7 +41,7 @@ struct Baseline {
   std::string scenario;  ///< its text
   double noise_m = 0.0;
   std::uint64_t runs = 0;
-  std::optional<std::uint64_t> seed = {};  ///< of the noise; files of versions before it have none
+  std::optional<std::uint64_t> seed = {};  ///< of the noise; files of earlier versions have none
   std::vector<ErrorRecord> records;
   std::vector<SmoothingRecord> smoothing;
 };
@@ -53,18 +53,17 @@ struct BaselineOptions {
   int jobs = 1;
 };
 
-/// All results of one run's tracks, one for each estimator. Without clips in the first one nothing is said of
-/// smoothing.
+/// All results of one run's tracks, one for each estimator. If the first has no clips, smoothing is not recorded.
 using AnalyzeTracks = std::function<std::vector<core::AnalysisResults>(const MadeTracks&)>;
 
-/// By each of fit::judged_estimators().
+/// Results of each of fit::judged_estimators().
 std::vector<core::AnalysisResults> analyze_as_judged(const MadeTracks& made);
 
 Baseline measure_baseline(const render::Scenario& scenario, const std::string& scenario_text,
                           const BaselineOptions& options, const AnalyzeTracks& analyze = analyze_as_judged,
                           const base::Progress& progress = base::no_progress);
 
-/// A seed whose noise differs from the baseline's; for a baseline without a seed, from that of the default, 1.
+/// A seed whose noise differs from the baseline's; for a baseline without a seed, from that of the default seed, 1.
 std::uint64_t other_seed(const Baseline& then);
 
 std::string baseline_json(const Baseline& baseline);

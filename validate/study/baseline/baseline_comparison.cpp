@@ -24,7 +24,8 @@ std::string name_of(const ErrorRecord& record) {
   return fmt::format("{} {} {}", record.configuration, record.estimator, record.quantity);
 }
 
-/// One-sided p that the mean now is no larger, by Welch's t test. Each side: mean, standard deviation, number.
+/// One-sided p for the hypothesis that the mean is now no larger, by Welch's t test. Each side: mean, standard
+/// deviation, number.
 struct Side {
   double mean, sd, count;
 };
@@ -41,13 +42,13 @@ double p_of_spread(const ErrorRecord& then, const ErrorRecord& now) {
                    {now.deviation, now.deviation_sd, static_cast<double>(now.answers)});
 }
 
-/// That the mean error now is no farther from zero.
+/// p for the hypothesis that the mean error is now no farther from zero.
 double p_of_bias(const ErrorRecord& then, const ErrorRecord& now) {
   return p_of_mean({std::abs(then.mean), then.sd, static_cast<double>(then.answers)},
                    {std::abs(now.mean), now.sd, static_cast<double>(now.answers)});
 }
 
-/// One-sided p that the proportion now is no smaller.
+/// One-sided p for the hypothesis that the proportion is now no smaller.
 double p_of_proportion(std::uint64_t then, std::uint64_t of_then, std::uint64_t now, std::uint64_t of_now) {
   const double n = static_cast<double>(of_then), m = static_cast<double>(of_now);
   const double pooled = static_cast<double>(then + now) / (n + m);
@@ -61,7 +62,7 @@ double p_of_proportion(std::uint64_t then, std::uint64_t of_then, std::uint64_t 
   throw base::InputError(base::Issue{"baseline", 0, key, found, expected});
 }
 
-/// That both are of the same scenario, noise, quantities and clips.
+/// Checks that both are of the same scenario, noise, quantities and clips.
 void check_alike(const Baseline& then, const Baseline& now) {
   if (then.scenario != now.scenario) reject("scenario", "another scenario", "the scenario that it was made with");
   if (then.noise_m != now.noise_m) {
@@ -105,7 +106,7 @@ void compare_quantity(const ErrorRecord& then, const ErrorRecord& now, BaselineC
         part(then.covered, then.answers), part(now.covered, now.answers));
 }
 
-/// Errors of a(t) may not grow; the bandwidth may change neither way.
+/// Errors of a(t) may not grow; the bandwidth may change in neither direction.
 void compare_smoothing(const SmoothingRecord& then, const SmoothingRecord& now, BaselineComparison& comparison) {
   if (then.runs < 2 || now.runs < 2) return;
   const auto judge = [&](const char* quantity, const char* what, double p, double log_then, double log_now) {
@@ -126,12 +127,12 @@ void compare_smoothing(const SmoothingRecord& then, const SmoothingRecord& now, 
   comparison.power_doubled = std::min(comparison.power_doubled, power);
 }
 
-/// What a spread half as large again, and a bias of half a standard deviation, would be found with.
+/// The power to detect a spread larger by a factor of 1.5, and a bias of half a standard deviation.
 void tell_power(double runs_then, double runs_now, BaselineComparison& comparison) {
   if (!(runs_now > 2.0 && runs_then > 2.0)) return;
   constexpr double kLarger = 1.5, kBias = 0.5;
   const double needed = base::normal_upper_quantile(level_of(comparison));
-  // Of |z|, z standard normal: mean sqrt(2/pi), standard deviation sqrt(1 - 2/pi).
+  // For |z|, z standard normal: mean sqrt(2/pi), standard deviation sqrt(1 - 2/pi).
   constexpr double kMean = 0.7978845608, kSd = 0.6028102750;
   comparison.power_spread = base::normal_cdf(
       (kLarger - 1.0) * kMean / (kSd * std::sqrt(kLarger * kLarger / runs_now + 1.0 / runs_then)) - needed);
@@ -163,7 +164,7 @@ double z_above(double part) {
   return base::normal_upper_quantile(part);
 }
 
-/// The factor f of the header, the larger root of its square; nothing if no factor is large enough.
+/// The factor f of the header, the larger root of its square; empty if no factor is large enough.
 std::optional<double> factor_of(double mean, double sd, double z, double n, double m) {
   const double d2 = mean * mean, now = z * z * sd * sd / n, then = z * z * sd * sd / m;
   if (!(d2 > now)) return std::nullopt;
@@ -174,13 +175,13 @@ std::uint64_t rounded_up(double runs) {
   return static_cast<std::uint64_t>(std::ceil(runs));
 }
 
-/// Answers then and now with which errors `factor` times as large are found.
+/// Number of answers, both then and now, needed to detect errors `factor` times as large.
 std::uint64_t answers_for(double factor, double z, const ErrorRecord& before) {
   const double needed = z * before.deviation_sd / ((factor - 1.0) * before.deviation);
   return rounded_up(needed * needed * (factor * factor + 1.0));
 }
 
-/// The same of a logarithm with this standard deviation.
+/// The same for a logarithm with this standard deviation.
 std::uint64_t logs_for(double factor, double z, double sd) {
   const double needed = z * sd / std::log(factor);
   return rounded_up(2.0 * needed * needed);

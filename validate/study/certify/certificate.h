@@ -1,5 +1,5 @@
-/// What a certificate says: whether the stated intervals hold in recordings like this one, what each quantity's error
-/// is, and what limits it. report/ writes it as certify.json and a page.
+/// The content of a certificate: whether the stated intervals hold in recordings like this one, the error of each
+/// quantity, and what limits it. report/ writes it as certify.json and a page.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace glidelab::validate {
 struct CertifiedQuantity {
   std::string configuration;  ///< "0.335 kg, 4°"; empty: all together
   std::string quantity;
-  std::size_t asked = 0;   ///< values whose truth is known: twins times configurations
-  std::size_t failed = 0;  ///< of these without an estimate
+  std::size_t asked = 0;   ///< number of values with known truth: twins times configurations
+  std::size_t failed = 0;  ///< of these, without an estimate
   RunShare coverage;       ///< of the stated intervals of 95 %
   RunShare wide_coverage;  ///< the same with an interval of 99 % over all quantities (Bonferroni)
   RunMean bias_sds;        ///< error over stated sd
@@ -29,28 +29,28 @@ struct CertifiedQuantity {
   bool too_narrow() const { return answered() > 0 && wide_coverage.high < 0.95; }
 };
 
-/// How much less one quantity errs by a change.
+/// The reduction of one quantity's error by a change.
 struct QuantityFall {
   std::string quantity;
   RunFall fall;              ///< with an interval of 95 %
   bool significant = false;  ///< above 0 at 95 % over all changes and quantities (Bonferroni)
 };
 
-/// One thing taken away or made better, and the same twins recorded with it.
+/// One limitation removed or reduced, and the same twins recorded with this change.
 struct ChangedTwin {
   std::string limit;   ///< "noise", "calibration", "marker", "few clips", …
   std::string change;  ///< "the pixels' noise halved"
-  std::string advice;  ///< what a person can do: "Use a larger marker"
+  std::string advice;  ///< what the user can do: "Use a larger marker"
   std::size_t runs = 0;
   std::vector<QuantityFall> quantities;
   std::optional<RunFall> together;  ///< K/m, mu and alpha (those that have values), interval of 95 %
   bool stands_out = false;          ///< together, above 0 at 95 % over all changes (Bonferroni)
 };
 
-/// The twins that follow one of the explanations that the diagnosis weighed.
+/// The twins that follow one of the explanations weighed by the diagnosis.
 struct CertifiedExplanation {
-  std::vector<std::string> ids;  ///< effects that it holds; none: the nominal model
-  double probability = 1.0;      ///< of all that are recorded
+  std::vector<std::string> ids;  ///< effects that it contains; none: the nominal model
+  double probability = 1.0;      ///< among all explanations that are recorded
   std::size_t twins = 0;
   RunShare coverage;  ///< of K/m, mu and alpha
 
@@ -58,7 +58,7 @@ struct CertifiedExplanation {
   bool fails() const { return coverage.of > 0 && coverage.high < 0.95; }
 };
 
-/// What the recording has and its twins have not.
+/// A feature of the recording that its twins lack.
 struct NotInTwins {
   std::string what;  ///< an effect's id, or words
   std::string why;
@@ -67,21 +67,21 @@ struct NotInTwins {
 struct Certificate {
   std::size_t runs = 0;
   std::string estimator;
-  bool filmed = false;  ///< clips were filmed and tracked; else positions simulated
+  bool filmed = false;  ///< clips were filmed and tracked; otherwise positions were simulated
   std::size_t clips = 0;
   RunShare together;                                  ///< coverage of K/m, mu and alpha, in all configurations
   RunShare wide_together;                             ///< the same with the interval of CertifiedQuantity
-  std::vector<CertifiedExplanation> explanations;     ///< those that twins follow, the reported one first
+  std::vector<CertifiedExplanation> explanations;     ///< those that the twins follow, the reported one first
   std::vector<CertifiedQuantity> quantities;          ///< all configurations together: those with a truth
-  std::vector<CertifiedQuantity> configurations;      ///< each by itself, where there are several
-  std::vector<ChangedTwin> changes;                   ///< the largest fall together first
+  std::vector<CertifiedQuantity> configurations;      ///< each on its own, if there are several
+  std::vector<ChangedTwin> changes;                   ///< in order of the largest combined fall
   std::vector<std::string> causes;                    ///< ids: named by the diagnosis, and in the twin
   std::vector<NotInTwins> without;                    ///< of the recording, and not in its twins
   double recorded_noise_m = 0.0, twin_noise_m = 0.0;  ///< of positions: medians over clips
 
-  /// Of all K/m, mu, alpha together, and of each by itself.
+  /// Whether the intervals hold, for K/m, mu, alpha together and for each on its own.
   bool holds() const;
-  /// Nothing to count.
+  /// Whether there is nothing to count.
   bool empty() const { return together.of == 0; }
 };
 

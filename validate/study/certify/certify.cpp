@@ -35,7 +35,7 @@ struct Outcome {
   core::Quantity found;
 };
 
-/// Configuration by configuration of the truth, each with its quantities.
+/// The outcomes for each configuration of the truth, each with its quantities.
 struct TwinOutcome {
   std::vector<std::array<Outcome, kQuantityCount>> configurations;
   double noise_m = 0.0;
@@ -56,7 +56,7 @@ std::vector<Truth> truths_of(const RecordingTwin& twin, bool nominal = false) {
   return truths;
 }
 
-/// The twins, and what all of them share.
+/// The twins, and the data shared by all of them.
 struct Twins {
   const RecordingTwin& twin;
   std::vector<Truth> truths;  ///< by explanation
@@ -77,7 +77,7 @@ TwinOutcome outcome_of(const Twins& twins, const TwinChange& change, std::uint64
   try {
     results = analysis_of(record_twin(twins.twin, change, seed, twins.studios, twins.progress), twins.options);
     outcome.noise_m = median_noise(results);
-  } catch (const base::InputError& error) {  // a twin that an analysis refuses is one without values
+  } catch (const base::InputError& error) {  // a twin that the analysis refuses has no values
     why = error.what();
   } catch (const base::NumericalError& error) {
     why = error.what();
@@ -159,7 +159,7 @@ CertifiedQuantity certified(const Outcomes& outcomes, std::size_t quantity,
   return result;
 }
 
-/// Squared errors of the runs that answer with and without the change, over the configurations that do.
+/// Squared errors of the runs that answer both with and without the change, over the configurations that do.
 struct Squares {
   std::vector<double> before, after;
   std::vector<bool> known;
@@ -182,7 +182,7 @@ Squares squares_of(const Outcomes& before, const Outcomes& after, std::size_t qu
   return squares;
 }
 
-/// Of the runs in which all of these quantities are known; nothing of fewer than kFewestRuns.
+/// The fall over the runs in which all of these quantities are known; empty for fewer than kFewestRuns.
 std::optional<RunFall> fall_of_all(const std::vector<Squares>& all, double confidence) {
   constexpr std::size_t kFewestRuns = 5;
   std::vector<std::vector<double>> before(all.size()), after(all.size());
@@ -208,7 +208,7 @@ bool is_linear(const std::vector<sim::ConfigurationSetup>& configurations) {
                      [](const sim::ConfigurationSetup& setup) { return sim::linear_law(setup.body).has_value(); });
 }
 
-/// Effects of the likeliest explanation that has forces beside the law, less those of one that has none; nothing where
+/// Effects of the most likely explanation that has forces besides the law, without those of one that has none; empty if
 /// there is no such force.
 std::optional<std::vector<std::string>> causes_beside_law(const RecordingTwin& twin) {
   const TwinExplanation *likeliest = nullptr, *linear = nullptr;
@@ -300,7 +300,7 @@ std::vector<CertifiedExplanation> explanations_of(const RecordingTwin& twin, con
   return explanations;
 }
 
-/// The falls of one change; the tests count what all changes and quantities make together.
+/// The falls of one change; the tests are corrected for the total number of changes and quantities.
 ChangedTwin changed_twin(const WantedChange& wanted, const Outcomes& before, const Outcomes& after,
                          std::size_t changes) {
   ChangedTwin result;
@@ -327,7 +327,7 @@ ChangedTwin changed_twin(const WantedChange& wanted, const Outcomes& before, con
   return result;
 }
 
-/// "0.335 kg, 4°", with the twin's own name where that is another configuration's too.
+/// "0.335 kg, 4°", with the twin's own name added if another configuration has the same.
 std::vector<std::string> configuration_names(const render::Scenario& scenario) {
   std::vector<std::string> names;
   for (const sim::ConfigurationSetup& setup : scenario.motion.configurations) {
@@ -396,7 +396,7 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
     }
   }
   std::vector<double> noise_m;
-  for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);  // 0 of one that failed
+  for (const TwinOutcome& outcome : outcomes) noise_m.push_back(outcome.noise_m);  // 0 for one that failed
   certificate.twin_noise_m = core::median_of(std::move(noise_m));
   for (const WantedChange& change : wanted) {
     Twins with_change = twins;
@@ -413,13 +413,14 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
 
 namespace {
 
-/// Scales the pixels' noise until positions scatter as they do in the recording: by one twin that is filmed for that.
+/// Scales the pixels' noise, using one pilot twin filmed for this purpose, so that positions scatter as in the
+/// recording.
 void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
   constexpr double kAlike = 1.1, kFarthest = 4.0;
   TwinStudios studios(0);
   const Twins twins{twin, truths_of(twin), options, studios, progress};
   const TwinOutcome pilot = outcome_of(twins, {}, derived_seed(options.seed, kMostTwins));
-  if (!(pilot.noise_m > 0.0)) return;  // none of its clips could be used: the certificate says so
+  if (!(pilot.noise_m > 0.0)) return;  // none of its clips could be used: the certificate reports this
   const double factor = twin.noise_m / pilot.noise_m;
   if (factor > 1.0 / kAlike && factor < kAlike) return;
   if (factor < 1.0 / kFarthest || factor > kFarthest) {

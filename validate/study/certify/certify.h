@@ -1,9 +1,9 @@
-/// Can the stated intervals be trusted on this recording? Twins of it are recorded, analysed as it would be, and
+/// Can the stated intervals be trusted on this recording? Twins of it are recorded, analysed in the same way, and
 /// compared with their truth.
 ///
-/// Of n twins the stated 95 % intervals that hold the truth are counted (run_shares.h). Changes are then made one at a
-/// time to the twin, and the same seeds recorded again: how much the root mean square of the errors falls says what
-/// limits the recording. Source: Talts and others 2018, and Sailynoja and others 2025, who calibrate at the posterior.
+/// For n twins, the stated 95 % intervals that contain the truth are counted (run_shares.h). The twin is then changed
+/// in one respect at a time and recorded again with the same seeds: the reduction of the rms error shows what limits
+/// the recording. Source: Talts et al. 2018, and Sailynoja et al. 2025, who calibrate at the posterior.
 #pragma once
 
 #include <cstdint>
@@ -28,16 +28,16 @@ struct CertifyOptions {
   std::optional<double> bandwidth_s = {};
   std::uint64_t seed = 1;
   int jobs = 1;
-  bool changes = true;  ///< find what limits the recording, too
+  bool changes = true;  ///< also find what limits the recording
   core::TrackFileOptions bare = {};
 };
 
-/// InputError for what is wrong with a folder or file, for a table of lines, for fewer or more runs than kFewestTwins
-/// to kMostTwins, and where the fitted motions are no scenario that can be recorded.
+/// InputError for any error in a folder or file, for a table of lines, for a number of runs outside kFewestTwins to
+/// kMostTwins, and if the fitted motions are not a scenario that can be recorded.
 Certificate certify(const std::vector<std::filesystem::path>& folders, const CertifyOptions& options,
                     const base::Progress& progress = base::no_progress);
 
-/// The same of a twin that is made already.
+/// The same for a twin that already exists.
 Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& options,
                          const base::Progress& progress = base::no_progress);
 

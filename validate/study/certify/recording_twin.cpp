@@ -20,7 +20,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr std::size_t kFewestPlaces = 8;  // of a marker: fewer lie on no line (twin_camera.h)
+constexpr std::size_t kFewestPlaces = 8;  // of a marker: fewer do not define a line (twin_camera.h)
 
 bool is_filmed(const core::AnalysisResults& results, const std::vector<core::Experiment>& folders) {
   std::size_t i = 0;
@@ -33,7 +33,7 @@ bool is_filmed(const core::AnalysisResults& results, const std::vector<core::Exp
   return i > 0;
 }
 
-/// Variance and autocovariance as estimate_noise() models them, without what rounding makes.
+/// Variance and autocovariance as modelled by estimate_noise(), without the contribution of rounding.
 ClipNoise noise_of(const core::ClipResult& clip) {
   ClipNoise noise;
   noise.rounding_m = clip.rounding_m.value_or(0.0);
@@ -64,7 +64,7 @@ const core::ClipResult& clip_of(const core::AnalysisResults& results, const std:
   return results.clips.at(static_cast<std::size_t>(at));
 }
 
-/// Of every clip of the scenario what its positions were like, in the scenario's order.
+/// The noise of the positions of every clip of the scenario, in the scenario's order.
 std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,
                                 const render::Scenario& scenario) {
   std::vector<std::string> names;
@@ -87,7 +87,8 @@ std::vector<ClipNoise> clips_of(const core::AnalysisResults& results, const diag
   return clips;
 }
 
-/// Bodies and starts of the explanations that can be told as a scenario; its cameras and durations are the first one's.
+/// Bodies and starts of the explanations that can be expressed as a scenario; cameras and durations are those of the
+/// first one.
 std::vector<TwinExplanation> explanations_of(const diagnose::Diagnosis& diagnosis, const render::Scenario& scenario) {
   std::vector<TwinExplanation> explanations;
   for (const diagnose::LikelyTwin& likely : diagnosis.likely_twins) {
@@ -130,7 +131,7 @@ void scale_noise(render::Sensor& sensor, double factor) {
 
 namespace {
 
-/// Of a filmed recording: whether what is left comes from the clips or from filming is not known.
+/// For a filmed recording it is not known whether the remainder comes from the clips or from filming.
 void drop_remainders(RecordingTwin& twin) {
   bool any = false;
   for (TwinExplanation& one : twin.explanations) {
@@ -151,7 +152,7 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
     try {
       twin.scenario = render::read_scenario(diagnosis.twin, kName);
       twin.filmed = true;
-    } catch (const base::InputError& error) {  // what a camera of a scenario cannot see
+    } catch (const base::InputError& error) {  // the camera of a scenario cannot see it
       std::string why = error.what();
       std::replace(why.begin(), why.end(), '\n', ' ');
       twin.without.push_back({"images and calibration", why});
@@ -176,7 +177,7 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
   }
   drop_remainders(twin);
   if (!results.calibrations.empty()) {
-    constexpr std::size_t kFewest = 3, kMost = 99;  // that a scenario takes
+    constexpr std::size_t kFewest = 3, kMost = 99;  // limits of a scenario
     twin.scenario.pattern.views = static_cast<int>(std::clamp(results.calibrations.front().views_used, kFewest, kMost));
   }
   return twin;
@@ -192,13 +193,13 @@ std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed) {
 
 namespace {
 
-/// Whether frames are lost or uneven as the diagnosis named it: they then fall elsewhere in every twin.
+/// Whether frames are lost or unevenly spaced, as named by the diagnosis: they then differ in every twin.
 bool has_uneven_clock(const render::Scenario& scenario) {
   const render::ClockSetup& clock = scenario.recording.clock;
   return clock.jitter_s > 0.0 || clock.dropped_fraction > 0.0 || clock.duplicated_fraction > 0.0;
 }
 
-/// K/m and mu of the viscous and Coulomb terms where further forces act: what the law has beside the named causes.
+/// K/m and mu of the viscous and Coulomb terms if further forces act: the law without the named causes.
 void add_own_law(const render::Scenario& scenario, Truth& truth) {
   for (std::size_t c = 0; c < truth.configurations.size(); ++c) {
     TrueConfiguration& configuration = truth.configurations[c];
@@ -223,7 +224,7 @@ render::Scenario explained(const RecordingTwin& twin, std::size_t explanation) {
   return scenario;
 }
 
-/// Leaves the viscous and the Coulomb friction alone.
+/// Keeps only the viscous and the Coulomb friction.
 void take_out_causes(render::Scenario& scenario) {
   for (sim::ConfigurationSetup& configuration : scenario.motion.configurations) {
     std::erase_if(configuration.body.forces, [](const auto& term) { return !term->linear(); });
@@ -249,7 +250,7 @@ render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, st
   return scenario;
 }
 
-/// Of every clip of the scenario, as changed().
+/// The noise of every clip of the scenario, as in changed().
 std::vector<ClipNoise> changed_clips(const RecordingTwin& twin, const TwinChange& change) {
   std::vector<ClipNoise> clips;
   std::size_t at = 0;
@@ -271,12 +272,12 @@ std::vector<ClipNoise> changed_clips(const RecordingTwin& twin, const TwinChange
       twice.push_back(t_s);
     }
     clip.frame_s = std::move(twice);
-    clip.rho = std::sqrt(clip.rho);  // it lasts as long
+    clip.rho = std::sqrt(clip.rho);  // the correlation time stays the same
   }
   return clips;
 }
 
-/// The clip at its recorded times, as the clock of this twin has them.
+/// Computes the clip at its recorded times, according to this twin's clock.
 void move_at(const sim::Body& body, const sim::MotionSetup& motion, const std::vector<double>& frame_s, double rate,
              TrueClip& truth, core::TrackData& track) {
   truth.t_s.clear();
@@ -334,7 +335,7 @@ MadeTracks simulated(const RecordingTwin& twin, const TwinChange& change, const 
 
 namespace {
 
-/// The body of one clip, whose inclination, friction and drag are off by these accelerations and this part.
+/// The body of one clip, with inclination and friction changed by these accelerations and drag by this fraction.
 sim::Body scattered(sim::Body body, double incline_m_s2, double friction_m_s2, double drag) {
   const double normal_m_s2 = body.gravity_m_s2 * std::cos(body.incline_rad);
   for (auto& term : body.forces) {
@@ -351,7 +352,7 @@ sim::Body scattered(sim::Body body, double incline_m_s2, double friction_m_s2, d
   return body;
 }
 
-/// Displacements at these times by a white acceleration of the spectral density q, of a motion with the drag k (1/s).
+/// Displacements at these times due to a white acceleration of spectral density q, in a motion with drag k (1/s).
 std::vector<double> wander(const std::vector<double>& t_s, double q_m2_s3, double k_1_s, std::mt19937_64& engine) {
   std::normal_distribution<double> deviate(0.0, 1.0);
   std::vector<double> x_m;
@@ -375,7 +376,7 @@ double drag_1_s(const sim::Body& body) {
   return k_n_s_m / body.mass_kg;
 }
 
-/// Adds to the positions what the remainder changes in x.
+/// Adds to the positions the change in x due to the remainder.
 void add_remainder(const TwinExplanation& explanation, const render::Scenario& scenario, std::uint64_t seed,
                    MadeTracks& made) {
   if (explanation.leaves_nothing()) return;
@@ -387,7 +388,7 @@ void add_remainder(const TwinExplanation& explanation, const render::Scenario& s
       const double incline = explanation.force_m_s2 * deviate(engine);
       const double friction = explanation.force_m_s2 * deviate(engine), drag = explanation.drag * deviate(engine);
       const TrueClip& truth = made.truth.clips[c];
-      std::vector<double> instants = truth.t_s;  // a frame that is there twice has one
+      std::vector<double> instants = truth.t_s;  // a duplicated frame has one instant
       instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
       const sim::Body body = scattered(configuration.body, incline, friction, drag);
       const sim::Trajectory trajectory = sim::simulate(body, motion.x0_m, motion.v0_m_s, instants);

@@ -15,7 +15,7 @@ double sum_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Jackknife: the standard deviation of a figure from those without one run each.
+/// Jackknife: the standard deviation of a statistic from its values with one run left out each.
 double jackknife_sd(const std::vector<double>& without_one) {
   const auto n = static_cast<double>(without_one.size());
   if (without_one.size() < 2) return std::numeric_limits<double>::infinity();

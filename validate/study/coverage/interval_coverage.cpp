@@ -27,11 +27,11 @@ namespace {
 
 constexpr double kLevel = 0.95;
 
-/// What one estimator said of one quantity in one replicate.
+/// One estimator's answer for one quantity in one replicate.
 using Outcome = std::optional<core::Estimate>;
 
 /// The same scenario filmed with another clock of its kind: its rate is off by a normal deviate of the standard
-/// deviation that the estimators assume of clocks. Frames are lost as the scenario says.
+/// deviation that the estimators assume for clocks. Frames are lost as stated by the scenario.
 render::Scenario with_other_clock(render::Scenario scenario, std::uint64_t seed) {
   std::mt19937_64 engine = random_engine(RandomUse::clock_rate, seed);
   std::normal_distribution<double> deviate(0.0, core::kClockSdRelative);
@@ -39,7 +39,7 @@ render::Scenario with_other_clock(render::Scenario scenario, std::uint64_t seed)
   return scenario;
 }
 
-/// The bound with what the clock adds: K/m goes with its rate, accelerations with the square.
+/// The bound including the clock: K/m scales with its rate, accelerations with its square.
 LeastSd with_clock(LeastSd least, const TrueConfiguration& truth) {
   const double rate = core::kClockSdRelative;
   if (least.k_over_m_1_s) least.k_over_m_1_s = std::hypot(*least.k_over_m_1_s, rate * truth.k_over_m_1_s.value_or(0.0));
@@ -52,7 +52,7 @@ LeastSd with_clock(LeastSd least, const TrueConfiguration& truth) {
   return least;
 }
 
-/// Which of the results' configurations each true one is: by its first clip.
+/// The index among the results' configurations of each true one, identified by its first clip.
 std::vector<std::size_t> places_of(const Truth& truth, const core::AnalysisResults& results) {
   std::vector<std::size_t> places;
   for (const TrueConfiguration& configuration : truth.configurations) {
@@ -197,7 +197,7 @@ Coverage measure_coverage(const render::Scenario& scenario, const CoverageOption
 }
 
 CoverageBand band_of(double level, std::size_t n) {
-  // The least k with P(X <= k) at least `part`.
+  // The smallest k with P(X <= k) at least `part`.
   const auto quantile = [&](double part) {
     long low = -1, high = static_cast<long>(n);
     while (high - low > 1) {
@@ -211,11 +211,11 @@ CoverageBand band_of(double level, std::size_t n) {
 
 double arm_ratio(double level, double half95, double sd) {
   const double wanted = half95 / sd, upper = 0.5 * (1.0 + level);
-  constexpr double kMost = 1e6;  // degrees: as good as normal
+  constexpr double kMost = 1e6;  // degrees: practically normal
   if (!(wanted > core::student_t975(kMost))) {
     return base::normal_quantile(upper) / core::kNormal95;
   }
-  double low = 1.0, high = kMost;  // t falls with the degrees
+  double low = 1.0, high = kMost;  // t decreases with the degrees
   while (high - low > 1e-9 * high) {
     const double middle = std::sqrt(low * high);
     (core::student_t975(middle) > wanted ? low : high) = middle;

@@ -22,7 +22,7 @@ struct Line {
   double n = 0.0, r2 = 0.0;
 };
 
-/// a = a0 - k v through the points that the analysis uses; s² of the residuals, independent errors in a alone.
+/// a = a0 - k v through the points used by the analysis; s² from the residuals, with independent errors in a only.
 std::optional<Line> line_of(const std::vector<core::ClipResult>& all, const std::vector<std::string>& names,
                             int direction) {
   double n = 0.0, sum_v = 0.0, sum_a = 0.0, sum_vv = 0.0, sum_va = 0.0, sum_aa = 0.0;

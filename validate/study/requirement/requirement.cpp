@@ -55,7 +55,7 @@ void set_price(const Sweep& sweep, const std::vector<base::TomlScalar>& values, 
   }
 }
 
-/// Errors over targets, of the hardest.
+/// Error over target, for the hardest target.
 double hardest_found(const std::vector<TargetResult>& results, const std::vector<Target>& targets) {
   double most = 0.0;
   for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -64,19 +64,19 @@ double hardest_found(const std::vector<TargetResult>& results, const std::vector
   return most;
 }
 
-/// A point of the sweep on its way to a verdict.
+/// A point of the sweep that is being judged.
 struct Trial {
   Candidate candidate;
   std::uint64_t point = 0;
-  std::optional<Setting> setting;  ///< nothing if it was refused
+  std::optional<Setting> setting;  ///< empty if it was refused
   bool render = false;
   bool tracks_miss = false;
-  bool settled = false;                     ///< more rendered runs would change nothing
-  std::unique_ptr<RecordedRuns> runs = {};  ///< where it is rendered
+  bool settled = false;                     ///< more rendered runs would not change the verdict
+  std::unique_ptr<RecordedRuns> runs = {};  ///< if it is rendered
 };
 
 constexpr std::uint64_t kFewTrackRuns =
-    60;  // the largest error of 59 is a limit of the 95 % error, of any distribution
+    60;  // the largest of 59 errors is a limit of the 95 % error, for any distribution
 
 /// Options of the runs of one kind.
 RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
@@ -85,7 +85,7 @@ RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
   return options;
 }
 
-/// By the bound and, where given, by runs.
+/// Finds limits by the bound and, if given, by runs.
 void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& trial) {
   Candidate& candidate = trial.candidate;
   candidate.limits.clear();
@@ -99,7 +99,7 @@ void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& t
                    [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
 }
 
-/// By tracks, for good where nothing is to be rendered; else by fewer, where these decide.
+/// Judges by tracks: finally, if nothing is to be rendered; otherwise by fewer, if these decide.
 void judge_by_tracks(const Sweep& sweep, const RequirementOptions& options, Trial& trial) {
   const RequirementOptions as_tracks = options_of(options, Confirm::tracks);
   Candidate& candidate = trial.candidate;
@@ -114,7 +114,7 @@ void judge_by_tracks(const Sweep& sweep, const RequirementOptions& options, Tria
   if (!trial.render) find_limits(options, &runs, trial);
 }
 
-/// `work`, whose errors are the candidate's.
+/// Does `work`, whose errors become those of the candidate.
 template <typename Work>
 void as_candidate(Candidate& candidate, const Work& work) {
   try {
@@ -139,7 +139,7 @@ std::string codec_text(const render::Scenario& scenario) {
                                   : fmt::format("{} at crf {:.3g}", name, how.crf);
 }
 
-/// By the bound and, where that allows the target, by tracks.
+/// Tests a point by the bound and, if that allows the target, by tracks.
 Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions& options) {
   const std::vector<base::TomlScalar> values = values_of(sweep, point * sweep.replicates);
   Trial trial;
@@ -176,9 +176,9 @@ Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions
   return trial;
 }
 
-/// What it takes to take a scenario's stills and to render and read its clips, in nanoseconds of one core (about).
+/// Approximate cost of a scenario's stills and of rendering and reading its clips, in nanoseconds of one core.
 double work_of(const render::Scenario& scenario) {
-  constexpr double kStill = 25.0, kLossless = 1.5, kLossy = 20.0;  // ns a pixel
+  constexpr double kStill = 25.0, kLossless = 1.5, kLossy = 20.0;  // ns per pixel
   constexpr double kAnalysis = 3e8;                                // ns
   const double pixels = static_cast<double>(scenario.camera.width_px) * scenario.camera.height_px;
   return kAnalysis + pixels * (kStill * static_cast<double>(render::count_stills(scenario)) +
@@ -186,13 +186,13 @@ double work_of(const render::Scenario& scenario) {
                                    static_cast<double>(render::count_clips(scenario, 1).frames));
 }
 
-/// What it takes to draw what stands still, once for a camera; likewise.
+/// Cost of drawing the static scene, once per camera; likewise.
 double stage_work_of(const render::Scenario& scenario) {
-  constexpr double kStage = 700.0;  // ns a pixel
+  constexpr double kStage = 700.0;  // ns per pixel
   return kStage * static_cast<double>(scenario.camera.width_px) * scenario.camera.height_px;
 }
 
-/// From the smallest recording of all, which is made for that and thrown away.
+/// Estimated from the smallest recording of all, which is made for this purpose and discarded.
 ConfirmationSize size_of(const std::vector<Trial*>& trials, std::size_t points, const RequirementOptions& options) {
   ConfirmationSize size;
   size.points = points;
@@ -214,17 +214,17 @@ ConfirmationSize size_of(const std::vector<Trial*>& trials, std::size_t points, 
   return size;
 }
 
-/// Rendered runs of several points at the same time, on all threads.
+/// Rendered runs of several points concurrently, on all threads.
 class Rendering {
  public:
   Rendering(const RequirementOptions& options, const base::Progress& progress)
       : options_(options), progress_(progress) {}
 
-  /// So much more is going to be rendered.
+  /// Announces additional work to be rendered.
   void expect(double work) { expected_ = expected_ + work; }
 
-  /// Each gets `runs` in all. Those of as many points as there are threads alternate, so that no thread waits for what
-  /// another draws of the same one.
+  /// Each point gets `runs` in total. Runs of as many points as there are threads alternate, so that no thread waits
+  /// for another to draw the same point.
   void render(const std::vector<Trial*>& trials, std::uint64_t runs) {
     struct Task {
       Trial* trial;
@@ -264,8 +264,8 @@ class Rendering {
   std::atomic<double> done_ = 0.0, expected_ = 0.0;
 };
 
-/// By all rendered runs that it is given. What tracks, which are many, miss by their clock alone is not reached by a
-/// few rendered runs in which the clock did not show.
+/// Judges by all its rendered runs. A target that many tracks miss because of the clock alone is not reached by a few
+/// rendered runs in which the clock did not show.
 void judge_by_clips(const RequirementOptions& options, Trial& trial) {
   Candidate& candidate = trial.candidate;
   as_candidate(candidate, [&] {
@@ -274,7 +274,7 @@ void judge_by_clips(const RequirementOptions& options, Trial& trial) {
     trial.settled = candidate.verdict != Verdict::undecided;
     if (candidate.verdict != Verdict::reached || !trial.tracks_miss) return;
     if (options.runs < kRunsForQuantile) {
-      candidate.verdict = Verdict::undecided;  // for good
+      candidate.verdict = Verdict::undecided;  // final
     } else {
       trial.settled = trial.runs->planned() == options.runs;
     }
@@ -282,8 +282,8 @@ void judge_by_clips(const RequirementOptions& options, Trial& trial) {
   if (candidate.verdict == Verdict::refused) trial.settled = true;
 }
 
-/// Renders those that the bound allows: all of them kLeastRendered times, and those that are not decided then again and
-/// again; last, in full, the cheapest that reaches the targets.
+/// Renders those that the bound allows: all of them kLeastRendered times, then the undecided ones again and again;
+/// finally, in full, the cheapest that reaches the targets.
 void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, const base::Progress& progress,
                       std::vector<Trial>& trials) {
   std::vector<Trial*> chosen;
@@ -323,7 +323,7 @@ void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, con
     if (trial->candidate.verdict == Verdict::reached) break;
   }
   progress("rendered runs", 1.0);
-  // Rendered runs say what limits those that one would rather buy; for the dearer ones the bound is asked.
+  // For the cheaper points rendered runs show what limits them; for the more expensive ones the bound does.
   const auto buy =
       std::ranges::find(chosen, Verdict::reached, [](const Trial* trial) { return trial->candidate.verdict; });
   for (auto trial = chosen.begin(); trial != chosen.end(); ++trial) {
@@ -335,7 +335,8 @@ void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, con
   }
 }
 
-/// The hardest error of a setting as tracks, over the targets; infinite where it is refused or its clips are too short.
+/// The error over target of a setting as tracks, for the hardest target; infinite if it is refused or its clips are too
+/// short.
 double need_by_tracks(const Sweep& sweep, std::uint64_t point, const RequirementOptions& options,
                       const Setting& setting) {
   Candidate candidate;
@@ -346,9 +347,9 @@ double need_by_tracks(const Sweep& sweep, std::uint64_t point, const Requirement
                                                : hardest_found(candidate.results, options.targets);
 }
 
-/// What would do in place of the first that reaches the targets, where that errs much less than it may: half the frame
-/// rate again and again, and twice the noise again and again, as long as tracks, with what rendering adds to their
-/// error, keep within the target.
+/// Finds what would suffice instead of the first that reaches the targets, if that is much better than needed: the
+/// frame rate is halved repeatedly, and the noise doubled repeatedly, as long as tracks, including the error added by
+/// rendering, stay within the target.
 void find_enough(const Sweep& sweep, const RequirementOptions& options, Trial& trial) {
   Candidate& candidate = trial.candidate;
   const double found = hardest_found(candidate.results, options.targets);
@@ -358,7 +359,7 @@ void find_enough(const Sweep& sweep, const RequirementOptions& options, Trial& t
   RequirementOptions as_tracks = options_of(options, Confirm::tracks);
   as_tracks.runs = std::min(options.track_runs, kFewTrackRuns);
   const double now = need_by_tracks(sweep, trial.point, as_tracks, *trial.setting);
-  const double room = std::max(1.0, found / now);  // what rendering adds
+  const double room = std::max(1.0, found / now);  // the factor added by rendering
   constexpr int kHalvings = 10;
   for (int i = 1; i <= kHalvings; ++i) {
     Setting slow = *trial.setting;
@@ -395,7 +396,7 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
   requirement.track_runs = options.track_runs;
   requirement.runs = options.runs;
   const std::uint64_t points = point_count(sweep);
-  constexpr std::uint64_t kMost = 100000;  // they are held and shown together
+  constexpr std::uint64_t kMost = 100000;  // they are stored and shown together
   if (points > kMost) {
     throw base::InputError(base::Issue{sweep.file.string(), 0, "vary", fmt::format("{} combinations", points),
                                        fmt::format("at most {}", kMost)});
@@ -404,7 +405,7 @@ Requirement find_requirement(const Sweep& sweep, const RequirementOptions& optio
   std::atomic<std::uint64_t> done = 0;
   RequirementOptions one_thread = options;
   one_thread.jobs = 1;
-  one_thread.before_run = [&] {  // whoever wants to stop need not wait for all runs of a camera
+  one_thread.before_run = [&] {  // an interrupt need not wait for all runs of a camera
     if (options.before_run) options.before_run();
     progress("cameras", static_cast<double>(done) / static_cast<double>(points));
   };

@@ -90,7 +90,7 @@ std::vector<Limit> limits_of(const Setting& setting, double need, const std::vec
 
 namespace {
 
-/// Errors of one estimator in one quantity of one configuration, run by run; infinite where there is no answer.
+/// Errors of one estimator in one quantity of one configuration, run by run; infinite if there is no answer.
 struct Errors {
   std::string estimator, configuration, quantity;
   std::vector<double> errors;
@@ -127,7 +127,7 @@ void judge_errors(const std::vector<Errors>& all, const Target& target, double c
   }
 }
 
-/// Of one target, or of several: one that is missed decides.
+/// The verdict on one target or several: a single missed one decides.
 Verdict verdict_of(const std::vector<TargetResult>& results, const std::vector<Target>& targets) {
   bool sure = true;
   for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -155,7 +155,7 @@ MadeTracks RecordedRuns::tracks_of(const Setting& setting, const MadeTracks& cle
     return studio.film(setting.scenario, seed, 1,
                        setting.lens_known ? true_camera(setting.scenario.camera) : std::nullopt);
   }
-  // Clips of one scenario have about one noise: their root mean square.
+  // Clips of one scenario have about the same noise: their rms is used.
   const std::vector<double> noise_m = noise_of(setting, clean.truth);
   double square = 0.0;
   for (const double noise : noise_m) square += noise * noise / static_cast<double>(noise_m.size());

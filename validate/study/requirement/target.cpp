@@ -38,7 +38,7 @@ double variance_of(std::span<const double> values) {
   return square / static_cast<double>(values.size() - 1);
 }
 
-constexpr std::size_t kLeastForQuantile = 20;  // of fewer the 95 % quantile would be the largest
+constexpr std::size_t kLeastForQuantile = 20;  // with fewer, the 95 % quantile would be the largest
 
 /// `sizes` are the errors without their signs; their order is lost.
 double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
@@ -54,8 +54,8 @@ double rms_or_quantile(std::vector<double>& sizes, Measure measure) {
   return (measure == Measure::error95 ? core::kNormal95 : 1.0) * std::sqrt(square / static_cast<double>(n));
 }
 
-/// Sorted errors between which their 95 % quantile lies: one has at most k - 1 of n below the quantile with the
-/// probability binomial_cdf(k - 1, n, 0.95).
+/// Sorted errors between which their 95 % quantile lies: at most k - 1 of n are below the quantile with probability
+/// binomial_cdf(k - 1, n, 0.95).
 void set_quantile_limits(std::vector<double> sizes, double confidence, ErrorMeasure& measure) {
   std::sort(sizes.begin(), sizes.end());
   const std::size_t n = sizes.size();
@@ -71,7 +71,7 @@ void set_limits(const std::vector<double>& sizes, Measure of, double confidence,
   const bool many = 1.0 - std::pow(0.95, n) >= confidence;
   if (of == Measure::error95 && many) return set_quantile_limits(sizes, confidence, measure);
   if (of == Measure::error95 || (of == Measure::sd && sizes.size() < kRunsForQuantile)) {
-    // Of normal errors, so from their root mean square also where the value is one of the sorted errors.
+    // For normal errors, hence from their rms, even if the value is one of the sorted errors.
     double square = 0.0;
     for (const double size : sizes) square += size * size;
     const double normal = (of == Measure::error95 ? core::kNormal95 : 1.0) * std::sqrt(square / n);

@@ -26,15 +26,15 @@ const Axis* axis_of_masses(const Sweep& sweep) {
 std::string text_of(SqlStatement& rows, int column) {
   const auto number = rows.maybe_number(column);
   if (number && *number != 0.0) return base::number_text(*number);
-  const std::string text = rows.text(column);  // a word, which is 0 as a number, or 0
+  const std::string text = rows.text(column);  // a word (which is 0 as a number), or 0
   return text == "0.0" ? "0" : text;
 }
 
-/// Row's place: configuration, values of the other axes, bandwidth (s).
+/// Key of a row: configuration, values of the other axes, bandwidth (s).
 using MassRows = std::map<std::tuple<std::string, std::string, double>, MassRow>;
 
-/// Of each configuration, mass and combination of the other axes: mean and mean square of mu, their number, the truth
-/// and R². A run has one mu of a configuration, and R² of each of its clips: the least of these.
+/// For each configuration, mass and combination of the other axes: mean and mean square of mu, their number, the truth
+/// and R². A run has one mu per configuration, and an R² for each of its clips, of which the smallest is taken.
 std::string query_of(const Axis& masses, const std::vector<const Axis*>& others, std::size_t clips) {
   std::string columns;
   for (const Axis* other : others) columns += ", r." + sql_name(other->name);
@@ -58,13 +58,13 @@ MassPoint point_of(const SqlStatement& row) {
   point.mu = row.number(2);
   const auto n = static_cast<double>(row.integer(4));
   const double variance = row.number(3) - point.mu * point.mu;
-  constexpr double kRounding = 1e-12;  // of squares summed in double precision: exact replicates are alike
+  constexpr double kRounding = 1e-12;  // of squares summed in double precision: exact replicates are equal
   if (n > 1.0 && variance > kRounding * point.mu * point.mu) point.se = std::sqrt(variance / (n - 1.0));
   point.r2 = row.number(6);
   return point;
 }
 
-/// What the query gives, put into the rows of the bandwidth.
+/// Puts the result of the query into the rows of the bandwidth.
 void take_points(SqlStatement& select, const std::vector<const Axis*>& others, double bandwidth_s, MassRows& rows) {
   while (select.step()) {
     std::string with;
@@ -80,7 +80,7 @@ void take_points(SqlStatement& select, const std::vector<const Axis*>& others, d
   }
 }
 
-/// A published fall's answers, one of each combination of the other axes.
+/// Answers to a published fall, one for each combination of the other axes.
 std::vector<FallAnswer> answers_of(const PublishedFall& published, const std::vector<MassRow>& rows) {
   std::map<std::string, std::vector<MassRow>> by_others;
   for (const MassRow& row : rows) {
@@ -91,7 +91,7 @@ std::vector<FallAnswer> answers_of(const PublishedFall& published, const std::ve
   return answers;
 }
 
-/// Between two rows, `part` of the way.
+/// Interpolates between two rows at the fraction `part`.
 FallAt between(const MassRow& a, const MassRow& b, double part) {
   FallAt at;
   at.bandwidth_s = a.bandwidth_s + part * (b.bandwidth_s - a.bandwidth_s);
@@ -124,7 +124,7 @@ FallAnswer answer_of(const PublishedFall& published, const std::vector<MassRow>&
     if (!answer.whole && a.fall() < wanted && b.fall() >= wanted) {
       answer.whole = between(a, b, (wanted - a.fall()) / (b.fall() - a.fall()));
     }
-    if (a.r2() >= published.r2 && b.r2() < published.r2 && a.r2() < 1.0) {  // the widest, where R² comes back
+    if (a.r2() >= published.r2 && b.r2() < published.r2 && a.r2() < 1.0) {  // the widest at which R² comes back
       const double from = std::log(1.0 - a.r2()), to = std::log(1.0 - b.r2());
       answer.at_r2 = between(a, b, (std::log(1.0 - published.r2) - from) / (to - from));
     }

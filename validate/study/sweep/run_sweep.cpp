@@ -20,7 +20,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Hands out the missing runs in order, asking the database for what it has a piece at a time. One caller at a time.
+/// Hands out the missing runs in order, querying the database piece by piece for the runs that it has. One caller at a
+/// time.
 class MissingRuns {
  public:
   MissingRuns(SweepDatabase& database, const Shard& shard, std::uint64_t runs)
@@ -103,7 +104,7 @@ SweepOutcome run_sweep(const Sweep& sweep, SweepDatabase& database, const Shard&
   std::atomic<double> fraction_done = 0.0;
   progress("runs", 0.0);
   base::for_each_parallel(static_cast<std::size_t>(std::max(1, jobs)), jobs, [&](std::size_t) {
-    // A recording takes long enough that somebody may want to stop within it.
+    // A recording takes long enough that the user may want to stop during it.
     RunWorker worker(sweep, [&](std::string_view, double) { progress("runs", fraction_done); });
     while (true) {
       std::optional<std::uint64_t> run;

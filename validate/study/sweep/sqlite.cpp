@@ -104,7 +104,7 @@ bool SqlStatement::same_row(const SqlStatement& other, int columns) const {
     if (type == SQLITE_INTEGER && integer(i) != other.integer(i)) return false;
     if (type == SQLITE_FLOAT && number(i) != other.number(i)) return false;
     if (type == SQLITE_TEXT && text(i) != other.text(i)) return false;
-    if (type == SQLITE_BLOB) return false;  // no table has one
+    if (type == SQLITE_BLOB) return false;  // no table contains one
   }
   return true;
 }
@@ -141,7 +141,7 @@ Database::Database(const std::filesystem::path& file, Mode mode) : file_(file) {
     throw base::EnvironmentError(fmt::format("{}: cannot be opened: {}", file.string(), sqlite3_errstr(status)));
   }
   sqlite3_extended_result_codes(database, 1);
-  // A file's own code never runs, whoever opens it and whenever it got there.
+  // Code stored in a file never runs, whoever opens it and whenever it was put there.
   sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   constexpr int kPatience_ms = 10000;  // a reader's checkpoint, a copy of the file
@@ -159,7 +159,7 @@ Transaction::~Transaction() {
   try {
     database_.run("ROLLBACK");
   } catch (const std::exception&) {
-    // SQLite has rolled back already (a full disk does that); the error that led here is the one to report.
+    // SQLite has already rolled back (as on a full disk); the error that led here is the one to report.
   }
 }
 

@@ -1,8 +1,8 @@
-/// SQLite behind one file: a database and its statements, errors as exceptions.
+/// SQLite wrapped in one file: a database and its statements, errors as exceptions.
 ///
 /// A full disk, a file that cannot be read or written, and one that another process is writing are EnvironmentError
-/// with the file's name; a file that is no database, or a damaged one, is InputError. SQL that is wrong is a
-/// programmer's mistake: std::logic_error.
+/// with the file's name; a file that is not a database, or a damaged one, is InputError. Wrong SQL is a programmer's
+/// mistake: std::logic_error.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,18 @@ class SqlStatement {
   SqlStatement& bind(int parameter, double value);
   SqlStatement& bind(int parameter, std::string_view value);
   SqlStatement& bind_null(int parameter);
-  /// What stands in a column of another statement's row, of any type.
+  /// Binds a column of another statement's row, of any type.
   SqlStatement& bind_column(int parameter, const SqlStatement& other, int column);
-  /// NULL if there is none, or where the number is not finite.
+  /// NULL if there is none, or if the number is not finite.
   SqlStatement& bind(int parameter, const std::optional<double>& value);
 
   /// The next row; false at the end.
   bool step();
-  /// To its end, and ready to be bound again.
+  /// Runs to its end; the statement can then be bound again.
   void run();
   void reset();
 
-  /// The first `columns` of both rows are of the same types and values, numbers to the last bit.
+  /// Whether the first `columns` of both rows have the same types and values, numbers to the last bit.
   bool same_row(const SqlStatement& other, int columns) const;
   bool is_null(int column) const;
   std::int64_t integer(int column) const;
@@ -65,7 +65,7 @@ class Database {
   std::shared_ptr<sqlite3> database_;
 };
 
-/// From BEGIN to commit(); rolled back where it is left without.
+/// From BEGIN to commit(); rolled back if it is left without commit().
 class Transaction {
  public:
   explicit Transaction(Database& database) : database_(database) { database_.run("BEGIN IMMEDIATE"); }
@@ -79,7 +79,7 @@ class Transaction {
   bool open_ = true;
 };
 
-/// A name in double quotes, as SQL wants it of columns.
+/// A name in double quotes, as SQL requires for columns.
 std::string sql_name(std::string_view name);
 
 }  // namespace glidelab::validate

@@ -30,7 +30,7 @@ std::string shorten(const std::string& text) {
 
 namespace {
 
-constexpr const char* kEstimatorEntry = "estimator";  // only of a sweep that judges one of the command line's
+constexpr const char* kEstimatorEntry = "estimator";  // only for a sweep that judges an estimator of the command line
 
 }  // namespace
 
@@ -61,7 +61,7 @@ SweepEntries sweep_entries(Database& database) {
   return entries;
 }
 
-/// InputError, which says what differs, where the database has other entries.
+/// InputError, which says what differs, if the database has other entries.
 void check_entries(Database& database, const SweepEntries& expected) {
   SweepEntries found;
   if (has_entries(database)) found = sweep_entries(database);
@@ -82,7 +82,7 @@ void check_entries(Database& database, const SweepEntries& expected) {
   }
 }
 
-/// InputError if a row is of no run of the sweep, or of one that has another seed there.
+/// InputError if a row belongs to no run of the sweep, or to a run that has another seed there.
 void check_runs(Database& database, const Sweep& sweep) {
   const std::uint64_t count = run_count(sweep);
   const auto refuse = [&](std::int64_t run, const std::string& found, const std::string& expected) {
@@ -144,7 +144,7 @@ class RowsOfRun {
           database.prepare(fmt::format("SELECT * FROM {} WHERE run = ?1 ORDER BY 1, 2, 3, 4", table.name)));
     }
   }
-  /// The other has the same rows of the run.
+  /// Whether the other has the same rows for the run.
   bool same(std::int64_t run, RowsOfRun& other) {
     bool all = true;
     for (std::size_t t = 0; t < tables_.size() && all; ++t) {
@@ -171,7 +171,7 @@ bool has_run(const fs::path& file, std::int64_t run) {
   return database.prepare("SELECT 1 FROM run WHERE run = ?1").bind(1, run).step();
 }
 
-/// What is no database of this sweep is said before anything is taken.
+/// Files that are not databases of this sweep are reported before anything is copied.
 void check_file(const fs::path& file, const Sweep& sweep, const SweepEntries& expected) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
@@ -181,7 +181,7 @@ void check_file(const fs::path& file, const Sweep& sweep, const SweepEntries& ex
   check_database(database, sweep, expected);
 }
 
-/// Runs of a file that are in the database already, with the same rows. `before`: the files that were taken over.
+/// Runs of a file that are already in the database, with the same rows. `before`: the files already merged.
 std::set<std::int64_t> runs_alike(Database& into, Database& there, const std::vector<TableOfRuns>& tables,
                                   std::span<const fs::path> before) {
   RowsOfRun here_rows(into, tables), there_rows(there, tables);
@@ -206,7 +206,7 @@ std::set<std::int64_t> runs_alike(Database& into, Database& there, const std::ve
   return alike;
 }
 
-/// All rows of a table but those of the runs that are left out.
+/// Copies all rows of a table except those of the runs that are left out.
 void copy_rows(Database& into, Database& there, const TableOfRuns& table, const std::set<std::int64_t>& left_out) {
   std::string marks = "?1";
   for (int i = 2; i <= table.columns; ++i) marks += fmt::format(", ?{}", i);
@@ -252,7 +252,7 @@ WriterLock::WriterLock(const fs::path& database) {
 }
 
 WriterLock::~WriterLock() {
-  ::close(file_);  // the file stays: to remove it would let two processes lock two files of one name
+  ::close(file_);  // the file stays: removing it would let two processes lock two files of one name
 }
 
 SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std::string& version, const Shard& shard)

@@ -15,10 +15,10 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr std::size_t kMostGroups = 40;  // values of an axis that stand for themselves; more are put in bins
+constexpr std::size_t kMostGroups = 40;  // values of an axis that are kept separate; more are put into bins
 constexpr int kBins = 12;
 
-/// Of a group's or a combination's rows.
+/// Statistics of the rows of a group or a combination.
 constexpr const char* kStatistics =
     "count(*), count(s.value), avg(s.value - s.truth), avg((s.value - s.truth) * (s.value - s.truth)), "
     "avg(s.sd * s.sd), avg(s.least_sd * s.least_sd), "
@@ -70,7 +70,7 @@ ErrorStatistics statistics_of(const Moments& of) {
   return statistics;
 }
 
-/// A file without folder and extension.
+/// The name of a file without folder and extension.
 std::string label_of_word(const std::string& word) {
   const std::filesystem::path path(word);
   return path.extension() == ".toml" ? path.stem().string() : word;
@@ -116,8 +116,8 @@ bool any_drawn(const Sweep& sweep) {
          std::any_of(sweep.axes.begin(), sweep.axes.end(), [](const Axis& axis) { return axis.source.drawn(); });
 }
 
-/// A factorial point is a number whose digits are the places of the axes' values: without that of this axis it is the
-/// combination of the others.
+/// A factorial point is a number whose digits are the indices of the axes' values: without the digit of this axis it is
+/// the combination of the others.
 void set_combination(const Sweep& sweep, const Axis& axis, Grouping& grouping) {
   if (any_drawn(sweep)) return;
   std::uint64_t below = 1;
@@ -130,7 +130,7 @@ void set_combination(const Sweep& sweep, const Axis& axis, Grouping& grouping) {
   grouping.runs = sweep.replicates;
 }
 
-/// Sums of one group over the combinations that are compared.
+/// Sums of one group over the compared combinations.
 struct Sum {
   Moments total;
   std::uint64_t combinations = 0, with_least = 0, with_sds = 0;
@@ -163,7 +163,8 @@ struct Sum {
   }
 };
 
-/// Takes the rows of one series, combination by combination, and keeps sums by group alone: a sweep of any length.
+/// Reads the rows of one series, combination by combination, and keeps only sums by group: it works for a sweep of any
+/// length.
 class AlikeRuns {
  public:
   AlikeRuns(const Grouping& grouping, Series& series)
@@ -199,11 +200,11 @@ class AlikeRuns {
   Series& series_;
   std::vector<Sum> sums_;
   std::string combination_;
-  std::vector<std::pair<std::size_t, Moments>> here_;  // of this combination: the group's number, and what is there
+  std::vector<std::pair<std::size_t, Moments>> here_;  // for this combination: the group's number and its moments
   std::size_t wanted_ = 0;
 };
 
-/// Of those series whose runs do not all have an answer.
+/// Finds comparable statistics for those series whose runs do not all have an answer.
 void take_alike(Database& database, const Grouping& grouping, const std::string& configuration,
                 std::vector<Series>& all) {
   SqlStatement select = database.prepare(

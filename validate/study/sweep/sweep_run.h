@@ -17,15 +17,15 @@
 
 namespace glidelab::validate {
 
-/// A recovered quantity of one configuration beside its truth.
+/// A recovered quantity of one configuration with its truth.
 struct QuantityRow {
   std::string configuration;
   std::string estimator;  ///< Analysis::name()
   std::string quantity;   ///< a key of core::kQuantities
   std::optional<double> truth, value, sd, low95, high95;
-  std::optional<double> least_sd;  ///< Cramér-Rao bound; only of tracks, whose noise is known
+  std::optional<double> least_sd;  ///< Cramér-Rao bound; only for tracks, whose noise is known
   std::string why;                 ///< why there is no value
-  /// The value with the smoothing's bias in it; nothing if none was taken off.
+  /// The value including the smoothing's bias; empty if none was subtracted.
   std::optional<double> uncorrected = {};
 };
 
@@ -42,41 +42,40 @@ struct ClipRow {
 struct RunRecord {
   std::uint64_t run = 0, point = 0, replicate = 0, seed = 0;
   std::vector<base::TomlScalar> values;  ///< one for each axis
-  bool failed = false;                   ///< scenario, simulation or analysis refused it; `why` says what
+  bool failed = false;                   ///< scenario, simulation or analysis refused it; `why` gives the reason
   std::string why;
   std::vector<QuantityRow> quantities;
   std::vector<ClipRow> clips;
 };
 
-/// Evaluates runs, one after the other; one worker for each thread. What a run gives does not depend on those before
-/// it.
+/// Evaluates runs, one after another; one worker for each thread. A run's result does not depend on earlier runs.
 class RunWorker {
  public:
-  /// `progress` is called often while a recording is made; an exception from it comes out.
+  /// `progress` is called often while a recording is made; an exception from it is passed on.
   explicit RunWorker(const Sweep& sweep, base::Progress progress = base::no_progress)
       : sweep_(sweep), progress_(std::move(progress)) {}
-  /// InputError and NumericalError of a run are its outcome; EnvironmentError comes out.
+  /// InputError and NumericalError of a run are its outcome; EnvironmentError is passed on.
   RunRecord evaluate(std::uint64_t run);
 
  private:
   void fill(RunRecord& record);
   MadeTracks tracks_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
-  /// Of the record's point, whose stills have the noise of its first run's seed.
+  /// The studio of the record's point, whose stills have the noise of its first run's seed.
   FilmStudio& studio_for(const RunRecord& record, const std::string& text, const render::Scenario& scenario);
   std::shared_ptr<const render::Stage> stage_for(const RunRecord& record, const std::string& text,
                                                  const render::Scenario& scenario);
 
   const Sweep& sweep_;
   base::Progress progress_;
-  // Replicates of one point share their calibration where the sweep says so; what is drawn may change the scenario.
+  // Replicates of one point share their calibration if the sweep says so; drawn values may change the scenario.
   std::uint64_t studio_point_ = 0;
   std::string studio_of_;
   std::unique_ptr<FilmStudio> studio_;
-  // What stands still is the same in them anyway.
+  // The static scene is the same in them anyway.
   std::uint64_t stage_point_ = 0;
   std::string stage_of_;
   std::shared_ptr<const render::Stage> stage_;
-  // The motion of replicates of one point is the same, but for a clock that errs at random.
+  // The motion of replicates of one point is the same, except for random clock errors.
   std::string made_of_;
   MadeTracks made_;
 };

@@ -16,7 +16,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr int kAsTheyAre = 6;  // significant digits that a person still reads
+constexpr int kAsTheyAre = 6;  // significant digits that are still readable
 constexpr int kShownDigits = 4;
 
 bool digit_at(std::string_view text, std::size_t at) {
@@ -28,7 +28,7 @@ std::size_t behind_digits(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// Behind the number that begins with a digit at `from`.
+/// The position after the number that begins with a digit at `from`.
 std::size_t behind_number(std::string_view text, std::size_t from) {
   std::size_t at = behind_digits(text, from);
   if (at < text.size() && text[at] == '.' && digit_at(text, at + 1)) at = behind_digits(text, at + 1);
@@ -40,7 +40,7 @@ std::size_t behind_number(std::string_view text, std::size_t from) {
   return at;
 }
 
-/// The text with each number as `written` has it.
+/// The text with each number replaced by that of `written`.
 std::string rewritten(std::string_view text, const std::function<std::string(std::string_view)>& written) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
@@ -57,7 +57,7 @@ std::string rewritten(std::string_view text, const std::function<std::string(std
   return result;
 }
 
-/// Digits before a power of ten, without the zeros in front.
+/// Digits before a power of ten, without leading zeros.
 int significant_digits(std::string_view number) {
   int digits = 0;
   for (const char c : number.substr(0, number.find_first_of("eE"))) {
@@ -97,7 +97,7 @@ std::string with_rounded_numbers(std::string_view text) {
 
 namespace {
 
-/// The value below which the given part of a column lies, of `count` rows of one estimator.
+/// The value below which the given fraction of a column lies, over `count` rows of one estimator.
 std::optional<double> quantile_of(Database& database, const std::string& rows, const std::string& column,
                                   const std::string& estimator, std::uint64_t count, double part) {
   if (count == 0) return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<double> quantile_of(Database& database, const std::string& rows, c
   return select.maybe_number(0);
 }
 
-/// Of the clips of one configuration, or of all where none is named. `names` as clips_and_configurations() has them.
+/// Errors for the clips of one configuration, or for all if none is named. `names` as from clips_and_configurations().
 std::vector<AccelerationError> accelerations_of(Database& database, const std::vector<std::string>& names,
                                                 const std::string& configuration) {
   std::string counted = "c.estimator = ?1 AND c.a_rms_error_m_s2 IS NOT NULL";
@@ -164,8 +164,8 @@ std::vector<ChosenBandwidth> bandwidths_of(Database& database) {
   return all;
 }
 
-/// "6 runs with camera.frame_rate_hz = 120: …": what is wrong with a scenario names it at first. Of runs whose reasons
-/// differ in their numbers the first is shown.
+/// "6 runs with camera.frame_rate_hz = 120: …": errors of a scenario begin with its name. If reasons differ only in
+/// their numbers, the first is shown.
 std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
   constexpr std::size_t kShownKinds = 5;
   FailureKinds reasons;
@@ -216,7 +216,7 @@ std::vector<ConfigurationSummary> by_configuration_of(const Sweep& sweep, Databa
 
 namespace {
 
-/// A failed run left every quantity undetermined for the same reason: those of one are counted.
+/// A failed run left every quantity undetermined for the same reason: those of one quantity are counted.
 fit::OutsideTally outside_tally(const fit::OutsideEstimator& estimator, Database& database) {
   fit::OutsideTally tally = fit::tally_of(estimator, {});
   SqlStatement runs = database.prepare("SELECT count(DISTINCT run) FROM result WHERE estimator = ?1");

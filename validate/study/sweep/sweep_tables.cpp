@@ -101,7 +101,7 @@ namespace {
   throw base::InputError(base::Issue{database.file().string(), 0, where, found, expected});
 }
 
-/// The statement that made a table; nothing where there is none of the name.
+/// The statement that made a table; empty if there is none of that name.
 std::optional<std::string> made_by(Database& database, const std::string& table) {
   SqlStatement select = database.prepare("SELECT sql FROM sqlite_master WHERE type = 'table' AND name = ?1");
   if (!select.bind(1, std::string_view(table)).step()) return std::nullopt;
@@ -130,7 +130,7 @@ void check_table(Database& database, Database& model, const std::string& table) 
   refuse(database, where, *found, *expected);
 }
 
-/// An SQL condition: the value of a column is not of the type that it was made with. Numbers are finite.
+/// An SQL condition: the value of a column does not have the column's declared type. Numbers must be finite.
 std::string of_wrong_type(const std::string& column, const std::string& type) {
   const std::string name = sql_name(column);
   const std::string infinite = fmt::format("(typeof({0}) = 'real' AND abs({0}) > 1.7976931348623157e308)", name);

@@ -24,7 +24,7 @@ namespace {
 using base::TomlTable;
 using Kind = AxisSource::Kind;
 
-/// Rounded to whole numbers, neighbours of a short range would come twice.
+/// Rounded to whole numbers, neighbours in a short range would coincide.
 void check_apart(const TomlTable& table, const AxisSource& source) {
   if (!std::isfinite(source.from) || !std::isfinite(source.to)) return;
   const std::vector<base::TomlScalar> values = all_values(source);
@@ -71,7 +71,7 @@ void read_random(const TomlTable& axis, Design design, AxisSource& source) {
   source.sd = table.number(source.kind == Kind::normal ? "sd" : "sd_of_log", base::above(0.0));
 }
 
-/// "rolling, line_readout_s = 2e-05": words speak for themselves.
+/// "rolling, line_readout_s = 2e-05": words are shown without their key.
 std::string label_of(const std::vector<base::TomlAssignment>& keys) {
   std::string words, others;
   for (const auto& [path, value] : keys) {
@@ -114,7 +114,7 @@ void read_choices(const TomlTable& table, Axis& axis) {
   }
 }
 
-/// A value given twice would be a point that comes twice.
+/// A value given twice would make a duplicate point.
 void check_values_once(const TomlTable& table, const std::string& form, const std::vector<base::TomlScalar>& values) {
   for (std::size_t i = 1; i < values.size(); ++i) {
     const auto here = values.begin() + static_cast<std::ptrdiff_t>(i);
@@ -154,7 +154,7 @@ void read_source(const TomlTable& table, Design design, Axis& axis, const std::f
   } else if (form == "cameras") {
     axis.keys = {"camera_file"};
     for (const std::string& name : table.texts_or_none("cameras")) {
-      std::error_code ignored;  // what cannot be looked at says so when it is read
+      std::error_code ignored;  // a file that cannot be accessed fails when it is read
       const std::filesystem::path resolved = std::filesystem::weakly_canonical(folder / name, ignored);
       const std::filesystem::path path = resolved.empty() ? folder / name : resolved;
       if (!std::filesystem::is_directory(path, ignored)) {
@@ -176,7 +176,7 @@ void read_source(const TomlTable& table, Design design, Axis& axis, const std::f
   }
 }
 
-/// Keys that the form has no use for; asked for, they are not called unknown.
+/// Keys that do not apply to the form; they are requested, so that they are not reported as unknown.
 void refuse_beside(const TomlTable& table, const std::vector<std::string>& keys, const char* form,
                    const char* expected) {
   for (const std::string& key : keys) {
@@ -250,7 +250,7 @@ void read_analyses(const TomlTable& root, Sweep& sweep) {
   if (sweep.analyses.empty()) root.reject("estimators", "an empty list", "one or more");
 }
 
-/// As SQLite compares the names of columns: of the letters a to z, capitals are no others.
+/// Folds case as SQLite does for column names: only the letters A to Z.
 std::string folded(std::string name) {
   for (char& c : name) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -258,7 +258,7 @@ std::string folded(std::string name) {
   return name;
 }
 
-/// `tables`: of the axes.
+/// `tables`: those of the axes.
 void check_names(const std::vector<TomlTable>& tables, const Sweep& sweep) {
   const std::set<std::string> taken = {"run", "point", "replicate", "seed", "status", "why"};
   std::map<std::string, std::string> names;
@@ -283,7 +283,7 @@ void check_names(const std::vector<TomlTable>& tables, const Sweep& sweep) {
   }
 }
 
-/// One value of the scenario that two keys reach would be that of the later one, in a row that has both.
+/// If two keys reach the same value of the scenario, the later one would win in a row that has both.
 void check_reach(const Sweep& sweep) {
   std::map<std::string, const std::string*> reached;
   std::vector<base::Issue> issues;
@@ -294,7 +294,7 @@ void check_reach(const Sweep& sweep) {
       try {
         places = base::reached_by(sweep.scenario_text, sweep.scenario_file.string(), key);
       } catch (const base::InputError&) {
-        continue;  // try_values says what is wrong with it
+        continue;  // try_values reports the error
       }
       for (const std::string& place : places) {
         const auto [other, is_new] = reached.emplace(place, &key);
@@ -309,7 +309,7 @@ void check_reach(const Sweep& sweep) {
   if (!issues.empty()) throw base::InputError(std::move(issues));
 }
 
-/// Whether every run's noise of tracks comes from an axis.
+/// Whether the tracks' noise of every run comes from an axis.
 bool check_noise(const TomlTable& root, const Sweep& sweep) {
   bool any = false, of_every_run = false;
   for (const Axis& axis : sweep.axes) {
@@ -325,7 +325,8 @@ bool check_noise(const TomlTable& root, const Sweep& sweep) {
   return of_every_run;
 }
 
-/// As of a scenario a sweep (render/scenario/scenario.cpp): read apart, because asking for a key makes it a known one.
+/// Refuses a scenario in place of a sweep, the counterpart of render/scenario/scenario.cpp; read separately, because
+/// requesting a key makes it known.
 void refuse_scenario(const std::string& text, const std::filesystem::path& path) {
   const base::TomlFile file = base::TomlFile::parse(text, path.string());
   if (!file.root().has("configuration") || file.root().has("scenario") || file.root().has("vary")) return;

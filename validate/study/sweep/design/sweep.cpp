@@ -20,7 +20,7 @@ std::string Analysis::name() const {
 
 namespace {
 
-/// What random words are for; the last word of the counter.
+/// The use of random words; the last word of the counter.
 enum Purpose : std::uint32_t {
   kSeedOfRun = 0x5eed,
   kDraw = 0xd4a3,
@@ -42,7 +42,7 @@ double unit(std::uint64_t word) {
 }
 
 double sobol(std::size_t axis, std::size_t axes, std::uint64_t point, std::uint64_t shift) {
-  // Boost leaves out the sequence's first point, the origin, without which 2^m points are no net.
+  // Boost omits the sequence's first point, the origin, without which 2^m points are not a net.
   if (point == 0) return unit(shift);
   boost::random::sobol_engine<std::uint64_t, 64> engine(axes);
   engine.seed(point - 1);
@@ -53,7 +53,8 @@ double sobol(std::size_t axis, std::size_t axes, std::uint64_t point, std::uint6
 }  // namespace
 
 std::uint64_t permuted(std::uint64_t index, std::uint64_t count, std::uint64_t key) {
-  // Four rounds of Feistel's cipher on the least even number of bits that holds count, walked until it falls inside.
+  // Four rounds of a Feistel cipher on the smallest even number of bits that holds count, iterated until the result
+  // falls inside.
   const int half = std::max(1, (static_cast<int>(std::bit_width(count - 1)) + 1) / 2);
   const std::uint64_t mask = (std::uint64_t{1} << half) - 1;
   std::uint64_t value = index;
@@ -74,7 +75,7 @@ std::vector<base::TomlScalar> all_values(const AxisSource& source) {
   std::vector<base::TomlScalar> values;
   for (std::size_t i = 0; i < source.count; ++i) {
     if (i + 1 == source.count && i > 0) {
-      values.push_back(source.to);  // to the last bit
+      values.push_back(source.to);  // exact to the last bit
     } else {
       const double part = source.count == 1 ? 0.0 : static_cast<double>(i) / static_cast<double>(source.count - 1);
       const double value = source.kind == AxisSource::Kind::linear
@@ -133,7 +134,7 @@ std::uint64_t run_count(const Sweep& sweep) {
 }
 
 std::uint64_t seed_of(const Sweep& sweep, std::uint64_t run) {
-  return words(sweep.seed, run, 0, kSeedOfRun) >> 1;  // fits a signed number, as files have it
+  return words(sweep.seed, run, 0, kSeedOfRun) >> 1;  // fits a signed number, as used in files
 }
 
 std::vector<base::TomlScalar> values_of(const Sweep& sweep, std::uint64_t run) {

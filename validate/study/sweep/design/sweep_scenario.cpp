@@ -11,7 +11,7 @@
 namespace glidelab::validate {
 namespace {
 
-/// A camera's own values would stand behind those that the scenario writes itself, and not vary.
+/// A camera file's own values would be overridden by those in the scenario, and would not vary.
 void check_camera_is_free(const Sweep& sweep) {
   const base::TomlFile file = base::TomlFile::parse(sweep.scenario_text, sweep.scenario_file.string());
   const base::TomlTable root = file.root();
@@ -31,7 +31,7 @@ render::Scenario read(const Sweep& sweep, const std::string& text, const std::st
   try {
     return render::read_scenario(text, sweep.scenario_file, checks);
   } catch (const base::InputError& error) {
-    // Lines are those of the text that was put together; nobody has it before his eyes.
+    // Line numbers would refer to the composed text, which the user never sees.
     std::vector<base::Issue> issues = error.issues();
     for (base::Issue& issue : issues) {
       if (issue.file != sweep.scenario_file.string()) continue;
@@ -42,7 +42,7 @@ render::Scenario read(const Sweep& sweep, const std::string& text, const std::st
   }
 }
 
-/// What an axis puts in; of a choice, without the keys that only other choices have.
+/// The assignments of an axis; for a choice, keys that only other choices have are removed.
 std::vector<base::TomlAssignment> assignments_of(const Axis& axis, const base::TomlScalar& value) {
   std::vector<base::TomlAssignment> assignments;
   const auto chosen = std::find_if(axis.choices.begin(), axis.choices.end(),
@@ -88,7 +88,7 @@ RunScenario scenario_with(const Sweep& sweep, const std::vector<base::TomlScalar
   run.text = base::with_values(sweep.scenario_text, shown_as, assignments);
   const render::ScenarioChecks checks =
       sweep.level == Level::tracks ? render::ScenarioChecks::values : render::ScenarioChecks::all;
-  // Where the camera stands follows from its lens, which the camera's file may say.
+  // The camera's position follows from its lens, which the camera's file may state.
   run.scenario = read(sweep, run.text, shown_as, sweep.field_m ? render::ScenarioChecks::values : checks);
   if (sweep.field_m) {
     const render::Camera& camera = run.scenario.camera;
@@ -104,7 +104,7 @@ namespace {
 using Kind = AxisSource::Kind;
 using Values = std::vector<base::TomlScalar>;
 
-/// "configuration.force.mu": whichever of the tables it is.
+/// "configuration.force.mu": the path without the choice of a table.
 std::string without_picks(const std::string& path) {
   std::string bare;
   int depth = 0;
@@ -116,7 +116,7 @@ std::string without_picks(const std::string& path) {
   return bare;
 }
 
-/// The line of the sweep's file that puts `key` in; 0 where none does.
+/// The line of the sweep's file that sets `key`; 0 if none does.
 int line_of(const Axis& axis, const base::TomlScalar& value, const std::string& key) {
   const std::string bare = without_picks(key);
   const auto is_it = [&](const std::string& path) { return without_picks(path) == bare; };
@@ -147,7 +147,7 @@ void try_scenario(const Sweep& sweep, const Values& values, const Axis* tried, c
           if (choice.label == std::get<std::string>(*tried_value)) line = choice.line;
         }
       }
-      if (line == 0) continue;  // a mistake of the scenario's own
+      if (line == 0) continue;  // an error of the scenario itself
       issue.expected += fmt::format(" (in {})", issue.file);
       issue.file = sweep.file.string();
       issue.line = line;
@@ -156,7 +156,7 @@ void try_scenario(const Sweep& sweep, const Values& values, const Axis* tried, c
   }
 }
 
-/// As try_scenario(); of a range whose whole numbers would do, with that.
+/// As try_scenario(); for a range of which whole numbers would be accepted, the message says so.
 void try_value(const Sweep& sweep, Values values, std::size_t i) {
   const Axis& axis = sweep.axes[i];
   const base::TomlScalar value = values[i];
@@ -169,7 +169,7 @@ void try_value(const Sweep& sweep, Values values, std::size_t i) {
     try {
       scenario_with(sweep, values);
     } catch (const base::InputError&) {
-      throw error;  // not for want of being whole
+      throw error;  // not because it is not a whole number
     }
     std::vector<base::Issue> issues = error.issues();
     issues.front().expected += "; \"whole = true\" in the range rounds its values to whole numbers";
@@ -177,8 +177,8 @@ void try_value(const Sweep& sweep, Values values, std::size_t i) {
   }
 }
 
-/// A list, the grid of a range, or some values within it: its ends and, for a key that takes whole numbers, one that is
-/// not.
+/// A list, the grid of a range, or some values within it: its ends and one that is not a whole number, to detect keys
+/// that take only whole numbers.
 Values tried_values(const Sweep& sweep, const AxisSource& source) {
   if (source.kind == Kind::list) return source.values;
   constexpr double kGolden = 0.3819660112501051;  // of the range: hardly ever a whole number
@@ -198,11 +198,12 @@ void try_values(const Sweep& sweep) {
   const auto of_cameras = [](const Axis& axis) { return axis.keys == std::vector<std::string>{"camera_file"}; };
   const bool cameras = std::any_of(sweep.axes.begin(), sweep.axes.end(), of_cameras);
   if (!cameras) try_scenario(sweep, first, nullptr, nullptr);
-  constexpr std::size_t kTried = 200;  // of one axis; a longer one is a grid, whose ends and some between tell
+  constexpr std::size_t kTried = 200;  // of one axis; a longer one is a grid, for which the ends and some values in
+                                       // between suffice
   for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
     const Values values = tried_values(sweep, sweep.axes[i].source);
     const std::size_t step = 1 + values.size() / kTried;
-    // A camera that does not suit the scenario's view is a run's outcome, and no mistake of the sweep's.
+    // A camera that does not suit the scenario's view is a run's outcome, not an error of the sweep.
     Sweep as_tracks;
     const Sweep* tried = &sweep;
     if (of_cameras(sweep.axes[i])) {
