@@ -42,7 +42,7 @@ struct TrackData {
 
 /// Takes every point of a track from a file as a frame in which the object was seen; the frame rate is one over the
 /// median time step. Times that are uniform except for rounding to written digits are restored to their uniform values
-/// (written_times.h); a note says so if a digit is more than a thousandth of a frame.
+/// (even_times.h); a note says so if a digit is more than a thousandth of a frame.
 void take_rows_as_frames(TrackData& track);
 
 /// A motion given as numbers: rising times in seconds, positions in metres, and the known force in newtons (empty if
