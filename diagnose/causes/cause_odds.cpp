@@ -22,10 +22,6 @@ constexpr double kFurther = 2.0;                          // log odds against a 
 constexpr double kNotMeasured = -1.0;                     // a gap of nothing: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // between which a larger excess speaks for a cause
 
-bool names(const Hypothesis& hypothesis, std::size_t effect) {
-  return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
-}
-
 bool makes_a_gap(const Hypothesis& hypothesis) {
   return std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
                      [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
@@ -70,7 +66,7 @@ double tempered(double behind) {
 
 }  // namespace
 
-void weigh_by_share_left(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison) {
+void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison) {
   std::vector<Hypothesis>& all = comparison.all;
   const std::vector<SameCauses> groups = by_causes(all);
   double best = -std::numeric_limits<double>::infinity();
@@ -90,9 +86,9 @@ void weigh_by_share_left(const std::vector<double>& excess, double unnamed_exces
     if (one.unnamed && one.effects.empty()) {
       log += std::max(0.0, named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
     }
-    if (names(one, effect_index(ids::late_release))) log -= kLate;
-    if (names(one, effect_index(ids::clip_scatter))) log -= kScatter;
-    if (names(one, effect_index(ids::power_law_drag))) log += std::log(kAnyPower);
+    if (has(one, effect_index(ids::late_release))) log -= kLate;
+    if (has(one, effect_index(ids::clip_scatter))) log -= kScatter;
+    log += log_prior_odds(comparison, one);
     if (one.unnamed) log -= kUnnamed;
     logs.push_back(log);
   }

@@ -40,6 +40,6 @@ inline constexpr double kLargestExcess = 1e6;
 /// not measured; `unnamed_excess` is that of the likeliest function without a name beside nothing. A function without a
 /// name beside named causes counts towards their names, scatter of single positions alone towards nothing, because it
 /// makes no gap. Sets what each leaves of the excess (`left`).
-void weigh_by_share_left(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison);
+void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

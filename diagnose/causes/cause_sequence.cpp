@@ -141,29 +141,40 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   sequence.is_gap = is_above_floor(first);
   if (!sequence.is_gap) return sequence;
 
-  // What the verdict names, by falling share: of several, each alone first.
+  // What the verdict names: of several, each alone first.
   Step here = first;
   std::vector<std::pair<std::size_t, Step>> steps;                // each cause, and where it stands in its own step
   const std::size_t dropped = effect_index(ids::dropped_frames);  // they are in a fit's times
   std::vector<std::size_t> left = named.effects;
   if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
-  while (!left.empty()) {
-    std::optional<Step> best;
-    std::size_t which = 0;
+  // The best of these beside what stands so far, and which of `left` it is.
+  const auto best_of = [&](bool laws_only) {
+    std::optional<std::pair<std::size_t, Step>> best;
     for (std::size_t k = 0; k < left.size(); ++k) {
+      if (laws_only && differs_between_clips(left[k])) continue;
       std::vector<std::size_t> effects = here.fit.effects;
       if (left[k] != dropped) effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);
       if (!fit) continue;
       Step step = step_of(set, std::move(*fit));
-      if (best && step.gap >= best->gap) continue;
-      best = std::move(step);
-      which = k;
+      if (!best || step.gap < best->second.gap) best = {k, std::move(step)};
+    }
+    return best;
+  };
+  while (!left.empty()) {
+    // Laws that all clips have in common first: sizes of each clip would take up what these explain.
+    std::optional<std::pair<std::size_t, Step>> best;
+    for (const bool laws_only : {true, false}) {
+      best = best_of(laws_only);
+      if (!best) continue;
+      const double share = cause_of(left[best->first], first, here, best->second, is_one_clip(set)).share;
+      if (share > (steps.empty() ? kLeastShare : least_named)) break;
+      best.reset();
+      if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
     }
     if (!best) break;
-    const double share = cause_of(left[which], first, here, *best, is_one_clip(set)).share;
-    if (!(share > (steps.empty() ? kLeastShare : least_named))) break;
-    here = std::move(*best);
+    const std::size_t which = best->first;
+    here = std::move(best->second);
     steps.emplace_back(left[which], here);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
   }

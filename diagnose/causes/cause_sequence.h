@@ -4,10 +4,11 @@
 ///     share_i = (g²_{i-1} - g²_i) / (g²_0 - f²),       g the gap of held-out clips (held_out.h), g_0 of the nominal
 ///                                                      model, f the floor (floor_of(): 1, or less)
 ///
-/// The causes that a verdict names come first, the one with the largest share first of them; then others of the list,
-/// each fitted in full beside all before it, and what differs from clip to clip after the laws that all clips have in
-/// common. The gap is measured in the position noise alone, whichever remainder the causes were weighed with. Intervals
-/// are over clips (gap_sizes.h). A single clip is held out in quarters, and has no interval.
+/// The causes that a verdict names come first, then others of the list, each fitted in full beside all before it. In
+/// both parts the one that takes most is first, and what differs from clip to clip comes after the laws that all clips
+/// have in common, since it would take up what these explain. The gap is measured in the position noise alone,
+/// whichever remainder the causes were weighed with. Intervals are over clips (gap_sizes.h). A single clip is held out
+/// in quarters, and has no interval.
 #pragma once
 
 #include <cstddef>

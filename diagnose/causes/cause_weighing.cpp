@@ -15,6 +15,8 @@
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/causes/cause_sequence.h"
 #include "diagnose/causes/remainder.h"
+#include "diagnose/causes/scatter_beside.h"
+#include "diagnose/causes/spread_prior.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
@@ -30,25 +32,9 @@ constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their
 constexpr double kRemainderCost = 3.0;   // log evidence that a remainder has against it, its sizes being unknown
 constexpr double kNearlyAsLikely = 0.1;  // over the likeliest explanation's probability
 constexpr std::size_t kMostBeside = 8;   // explanations beside which a function without a name is weighed
+constexpr std::size_t kWithScatter = 3;  // laws that are weighed with clips that scatter beside them
+constexpr double kMuchLeft = 0.1;        // of the excess: a law that leaves less needs nothing beside it
 constexpr double kNotWeighed = 1e3;      // log evidence that what was not fitted is behind
-
-/// Sizes of one kind, drawn from one normal distribution whose width is uniform in its logarithm; -n log(width) and
-/// what their squares and the width itself cost. `sd`, how well the data tell each.
-struct Spread {
-  std::vector<double> sizes, sds;
-
-  double log_prior() const {
-    double square = 0.0, least = std::numeric_limits<double>::infinity();
-    for (const double size : sizes) square += size * size;
-    for (const double sd : sds) least = std::min(least, sd);
-    const auto n = static_cast<double>(sizes.size());
-    const double width = std::max(std::sqrt(square / n), least);
-    double log = 0.5 * std::log(std::numbers::pi / n) - std::log(kDecades) - 0.5 * square / (width * width);
-    // What the data do not tell has its prior's width, and costs nothing.
-    for (const double sd : sds) log -= std::log(std::max(width, sd));
-    return log;
-  }
-};
 
 constexpr EffectSlot kPush = slot_of(ids::late_release, 1);
 
@@ -103,7 +89,9 @@ struct Pushes {
 double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution) {
   double log = 0.0;
   const double root = 0.5 * std::log(2.0 * std::numbers::pi);
-  std::map<const EffectParameter*, Spread> spreads;
+  std::map<const EffectParameter*, std::size_t> kinds;
+  std::vector<Eigen::Index> spread;
+  std::vector<std::size_t> kind_of_spread;
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const auto& of = globals[g];
@@ -115,9 +103,9 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
     if (info.search == Search::spread) {
       // Bumps along the track are of one kind; so is what each clip or configuration has of one parameter.
       const bool of_all = of.parameter->each == Each::experiment;
-      Spread& spread = spreads[of_all ? &info.parameters.front() : of.parameter];
-      spread.sizes.push_back(fitted);
-      spread.sds.push_back(sd);
+      const EffectParameter* kind = of_all ? &info.parameters.front() : of.parameter;
+      spread.push_back(at);
+      kind_of_spread.push_back(kinds.try_emplace(kind, kinds.size()).first->second);
     } else if (of.parameter == &info.parameters.front()) {
       const double size = std::max(std::abs(fitted), kLeastSeen * sd);
       log += root - std::log(size * kDecades * (info.both_signs ? 2.0 : 1.0));
@@ -126,7 +114,10 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
       log += root - std::log(std::max(of.range.high - of.range.low, sd / std::exp(-root)));
     }
   }
-  for (const auto& [parameter, spread] : spreads) log += spread.log_prior();
+  if (!spread.empty()) {
+    const Eigen::VectorXd fitted = fit.at.global + solution.change;
+    log += log_spread_prior(fitted(spread), solution.covariance(spread, spread), kind_of_spread);
+  }
   const auto& own = fit.layout->own();
   Pushes pushes;
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
@@ -267,7 +258,8 @@ std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<d
   }
   Comparison so_far;
   so_far.all = comparison.all;
-  weigh_by_share_left(excess, unnamed_excess, so_far);
+  so_far.odds = comparison.odds;
+  weigh_beside_remainder(excess, unnamed_excess, so_far);
   double likeliest = 0.0;
   for (const Hypothesis& one : so_far.all) {  // by falling probability
     if (one.fit <= 0 || one.unnamed || std::any_of(one.effects.begin(), one.effects.end(), is_scatter)) continue;
@@ -279,6 +271,23 @@ std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<d
     if (pure != nullptr) result.push_back(*pure);
   }
   return result;
+}
+
+/// Laws that all clips have in common and that leave much, the likeliest by evidence and share first.
+std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const std::vector<double>& excess,
+                                             double unnamed_excess) {
+  Comparison so_far;
+  so_far.all = comparison.all;
+  so_far.odds = comparison.odds;
+  weigh_beside_remainder(excess, unnamed_excess, so_far);
+  std::vector<Hypothesis> laws;
+  for (const Hypothesis& one : so_far.all) {  // by falling probability
+    if (laws.size() == kWithScatter) break;
+    if (one.fit <= 0 || one.unnamed || one.effects.size() != 1 || one.left.value_or(0.0) < kMuchLeft) continue;
+    if (!shows_in_motion(effect_list()[one.effects.front()].search) || follows_each_clip(one.effects.front())) continue;
+    if (const Hypothesis* pure = pure_of(comparison, one.fit)) laws.push_back(*pure);
+  }
+  return laws;
 }
 
 /// What the likeliest function without a name leaves of the gap beside nothing; NaN: there is none.
@@ -377,6 +386,33 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   }
   std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed; });
   const double excess_beside_unnamed = unnamed_excess(set, first);
+  if (const std::size_t scatter = effect_index(ids::clip_scatter); searched && !without.contains(scatter)) {
+    const std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess, excess_beside_unnamed);
+    std::vector<std::optional<MotionFit>> found(laws.size());
+    base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
+      found[k] = with_clip_scatter(set, noise_alone[static_cast<std::size_t>(laws[k].fit)]);
+    });
+    for (std::size_t k = 0; k < laws.size(); ++k) {
+      if (!found[k]) continue;
+      const auto law = static_cast<std::size_t>(laws[k].fit), fit = comparison.fits.size();
+      excess.push_back(held_out_excess(set, *found[k]));
+      noise_alone.push_back(linearise_again(set, *found[k]));
+      profiles.push_back(profile_of(set, noise_alone.back(), &profiles[law].best.sizes));
+      comparison.fits.push_back(linearise_again(weighed.set, *found[k]));
+      worth.push_back(fit);
+      Hypothesis both = laws[k];
+      both.effects.push_back(scatter);
+      both.fit = static_cast<int>(fit);
+      both.converged = found[k]->converged;
+      both.gain += 0.5 * (noise_alone[law].cost - noise_alone[fit].cost);
+      both.log_evidence =
+          std::isfinite(profiles[fit].log_evidence) ? profiles[fit].log_evidence - nothing : -kNotWeighed;
+      std::erase_if(comparison.all, [&](const Hypothesis& one) {
+        return std::set(one.effects.begin(), one.effects.end()) == std::set(both.effects.begin(), both.effects.end());
+      });
+      comparison.all.push_back(std::move(both));
+    }
+  }
   const std::vector<Hypothesis> leaders = beside(comparison, excess, excess_beside_unnamed);
   std::vector<std::vector<UnnamedFamily>> found(leaders.size());
   std::vector<std::optional<double>> logs(leaders.size());
@@ -400,7 +436,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       comparison.unnamed_left = std::move(found[k]);
     }
   }
-  weigh_by_share_left(excess, excess_beside_unnamed, comparison);
+  weigh_beside_remainder(excess, excess_beside_unnamed, comparison);
   weighed.fits.resize(comparison.fits.size());
   for (const std::size_t f : worth) {
     if (std::isfinite(profiles[f].log_evidence)) {

@@ -273,6 +273,12 @@ struct Alike {
   bool filmed = false;       ///< nor can clips
 };
 
+/// What an effect's prior odds depend on.
+struct Circumstances {
+  std::size_t clips = 0;
+  bool only_falls = false;  ///< every inclination is 80 degrees or more
+};
+
 /// What the program knows about one effect: its names and words, its parameters and how large they may be, its law, its
 /// lines in a table, its twin in a scenario, and what to record next. No member has a default, so the compiler refuses
 /// an effect that leaves one out.
@@ -284,6 +290,8 @@ struct EffectInfo {
   std::string_view meaning;  ///< what the symbols of its sizes mean; empty where its size is a word
   Search search;
   bool both_signs;
+  /// Prior odds against another effect; 0 where such a recording cannot show this one, of whatever size. Null: 1.
+  double (*odds)(const Circumstances& of);
   std::vector<EffectParameter> parameters;  ///< the amplitude first, then the shape
   EffectLaw law;
   std::vector<double> (*shapes)(const ShapeReach& reach);  ///< of Search::shape: the second parameter's grid

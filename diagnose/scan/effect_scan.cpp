@@ -16,7 +16,6 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kFewestScattered = 3;  // clips that have a spread
-constexpr std::size_t kFewestInOrder = 3;    // clips that have a trend: two always differ in one way or the other
 constexpr double kDerivativeFloor = 1e-15;   // of the raw square: below, the derivatives' errors are all that is left
 
 EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
@@ -68,13 +67,6 @@ bool can_spread(const TrackSet& set, const EffectInfo& info) {
     default:
       return true;
   }
-}
-
-/// Whether these motions could show an effect at all, of any size: what falls has no track that is bowed, and of two
-/// clips one always has more friction than the other.
-bool can_act(const TrackSet& set, std::size_t effect) {
-  if (effect == effect_index(ids::friction_drift)) return set.clips.size() >= kFewestInOrder;
-  return effect != effect_index(ids::track_bow) || !only_falls(set);
 }
 
 EffectScan scan_spread(const ScoreSpace& space, std::size_t effect) {
@@ -130,7 +122,17 @@ double seen_square(const ScoreSpace& space, const ScoreColumn& column) {
   return derived ? std::max(0.0, square) : 0.0;
 }
 
+double prior_odds(const TrackSet& set, std::size_t effect) {
+  const auto odds = effect_list()[effect].odds;
+  return odds == nullptr ? 1.0 : odds({.clips = set.clips.size(), .only_falls = only_falls(set)});
+}
+
 EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
+  if (!(prior_odds(space.set(), effect) > 0.0)) {
+    EffectScan nothing;
+    nothing.effect = effect;
+    return nothing;
+  }
   switch (effect_list()[effect].search) {
     case Search::wave:
       return scan_waves(space, effect, find_wave(space));
@@ -141,8 +143,7 @@ EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
     case Search::amplitude:
     case Search::shape:
     case Search::rows:
-      if (can_act(space.set(), effect)) return scan_sizes(space, effect);
-      [[fallthrough]];
+      return scan_sizes(space, effect);
     default: {
       EffectScan nothing;
       nothing.effect = effect;

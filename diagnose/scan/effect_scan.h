@@ -15,6 +15,9 @@ std::vector<std::vector<double>> effect_shapes(const TrackSet& set, std::size_t 
 /// Square of what is left of a column, over the noise; 0 where that is no more than its own rounding.
 double seen_square(const ScoreSpace& space, const ScoreColumn& column);
 
+/// Of an effect against another, before the data (EffectInfo::odds); 0: this recording cannot show it.
+double prior_odds(const TrackSet& set, std::size_t effect);
+
 /// Of an effect that acts through the trajectory (not Search::frames, Search::noise).
 ///
 /// An amplitude is a score test. A second parameter is searched on a grid and its evidence averaged over it. A wave has

@@ -14,11 +14,6 @@ void sort_by_probability(Comparison& comparison) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
-bool has(const Hypothesis& explanation, std::size_t effect) {
-  const std::vector<std::size_t>& effects = explanation.effects;
-  return !explanation.unnamed && std::find(effects.begin(), effects.end(), effect) != effects.end();
-}
-
 /// Each effect's is the sum over the explanations that have it.
 void sum_of_effects(Comparison& comparison) {
   std::fill(comparison.effect_probability.begin(), comparison.effect_probability.end(), 0.0);
@@ -40,7 +35,7 @@ void trust(std::size_t main, const std::vector<std::size_t>& best, Comparison& c
     if (lost && !one.unnamed && one.effects == best) {
       one.probability = kByShare;
     } else {
-      one.probability *= has(one, main) && !lost ? kByShare / with_main : (1.0 - kByShare) / rest;
+      one.probability *= !one.unnamed && has(one, main) && !lost ? kByShare / with_main : (1.0 - kByShare) / rest;
     }
   }
   comparison.unknown *= (1.0 - kByShare) / rest;
@@ -53,6 +48,10 @@ void trust(std::size_t main, const std::vector<std::size_t>& best, Comparison& c
 bool shows_in_gap(const Hypothesis& explanation) {
   return std::any_of(explanation.effects.begin(), explanation.effects.end(),
                      [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
+}
+
+bool may_displace(const CauseSequence& likelier, const CauseSequence& named) {
+  return likelier.named_share >= kHalfOfGap || named.named_share < kHalfOfGap;
 }
 
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
@@ -84,7 +83,7 @@ void move_minorities_to_unknown(Comparison& comparison) {
   sort_by_probability(comparison);
 }
 
-void weigh_by_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, Comparison& comparison) {
+void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, Comparison& comparison) {
   comparison.unknown += std::exchange(comparison.none, 0.0);
   const Hypothesis of{best};
   if (sequence.named_share < kHalfOfGap && shows_in_gap(of)) {

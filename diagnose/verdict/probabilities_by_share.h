@@ -22,6 +22,10 @@ inline constexpr double kByShare = 0.8;     ///< the probability of such a name
 /// Whether some of an explanation's effects takes part of the gap.
 bool shows_in_gap(const Hypothesis& explanation);
 
+/// Whether a likelier cause alone may take the place of the named ones: it takes half of the gap itself, or they take
+/// less as well. A name that explains the gap does not go for one that would make the cause unknown.
+bool may_displace(const CauseSequence& likelier, const CauseSequence& named);
+
 /// What these explanations would explain needs no cause.
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison);
 
@@ -39,6 +43,6 @@ void move_minorities_to_unknown(Comparison& comparison);
 /// of certainty, and only the share counts: a law common to all clips that takes kMostOfGap has its name with kByShare,
 /// if the evidence has less for it. All explanations with this main cause share that as they did before, so that what
 /// stands beside it keeps its own, and everything else shares the rest.
-void weigh_by_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, Comparison& comparison);
+void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -31,7 +32,8 @@ constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
 constexpr double kLeastNamed = 0.1;       // of the excess: beside a remainder less is part of it
 constexpr double kClearlyLikelier = 0.1;  // of a probability: less is no reason to name another cause
 constexpr double kNotMeasured = 0.5;      // a gap below which the noise is not that of the positions
-constexpr double kSureScatter = 0.9;      // the probability of scatter without a gap from which on it is the verdict
+constexpr double kLikelierThanNot = 0.5;
+constexpr double kSureScatter = 0.9;  // the probability of scatter without a gap from which on it is the verdict
 
 double probability_of_scatter(const Comparison& comparison) {
   double sum = 0.0;
@@ -74,29 +76,31 @@ std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& 
   return rest.regions;
 }
 
-/// Effects that a verdict names as they stand in `explained`, then those that no motion shows.
+/// Effects that a verdict names by falling share, then those that no motion shows.
 void order_by_share(Diagnosis& diagnosis) {
-  const auto place = [&](const DiagnosedEffect& effect) {
-    return std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
-                        [&](const ExplainedCause& cause) { return cause.id == effect.id; });
+  const auto share = [&](const DiagnosedEffect& effect) {
+    const auto of = std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
+                                 [&](const ExplainedCause& cause) { return cause.id == effect.id; });
+    return of != diagnosis.explained.end() ? of->share : -std::numeric_limits<double>::infinity();
   };
   std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
-                   [&](const DiagnosedEffect& a, const DiagnosedEffect& b) { return place(a) < place(b); });
+                   [&](const DiagnosedEffect& a, const DiagnosedEffect& b) { return share(a) > share(b); });
   if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
-/// The probability of a cause or of what takes its place in the explanation as well.
+/// The probability of one of an explanation's effects or of what the data cannot tell from it.
 double probability_of(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
   std::vector<std::size_t> any = not_told_apart(comparison, best, effect, filmed);
   any.push_back(effect);
-  double sum = 0.0;
-  for (const Hypothesis& one : comparison.all) {
-    const bool has = std::any_of(any.begin(), any.end(), [&](std::size_t e) {
-      return std::find(one.effects.begin(), one.effects.end(), e) != one.effects.end();
-    });
-    if (!one.unnamed && has) sum += one.probability;
-  }
-  return sum;
+  return probability_of_any(comparison, any);
+}
+
+/// Whether the likeliest effect of an explanation is likelier than not, together with what the data cannot tell from
+/// it: a name that is less is no answer.
+bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+  return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
+    return probability_of(comparison, best, e, set.pictures) >= kLikelierThanNot;
+  });
 }
 
 /// Where not all of several causes take their part, the one that is clearly likelier is to keep its name, and not the
@@ -217,8 +221,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   CauseSequence sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
   if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.pictures, best, sequence) : nullptr) {
     CauseSequence likelier = sequence_of(set, nominal, with, fit_of(*alone), without, least_named);
-    // It takes its part of the gap in the other's place, or there is nothing to keep its name for.
-    if (likelier.named_share >= kHalfOfGap || sequence.named_share < kHalfOfGap) {
+    if (may_displace(likelier, sequence)) {
       best = *alone;
       sequence = std::move(likelier);
     }
@@ -232,7 +235,10 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   std::vector<std::string> traces;
   // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
   const bool settled = weighed && sequence.is_gap && names;
-  if (settled) weigh_by_share(sequence, best.effects, weighed->comparison);
+  if (settled) hold_to_share(sequence, best.effects, weighed->comparison);
+  if (settled && !is_likelier_than_not(with, by, best)) {
+    set_unknown(std::max(by.unknown, kJustUnknown), weighed->comparison);
+  }
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
@@ -248,6 +254,10 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     // A name that takes next to nothing of a gap explains something else.
     const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalfOfGap;
     if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
+    if (!weighed && sequence.is_gap && names && shows_in_gap(best) && !in_images &&
+        !is_likelier_than_not(set, first, best)) {
+      set_unknown(std::max(first.unknown, kJustUnknown), first);
+    }
     if (weighed && sequence.is_gap && !in_images) {
       // Nothing that moves the glider explains the gap.
       first.unknown += std::exchange(first.none, 0.0);

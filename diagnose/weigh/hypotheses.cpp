@@ -111,11 +111,7 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
                    : many == 1 ? one
                                : two + static_cast<double>(many - 2) * (two - one);
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
-    const std::size_t any_power = effect_index(ids::power_law_drag);
-    if (std::find(hypothesis.effects.begin(), hypothesis.effects.end(), any_power) != hypothesis.effects.end()) {
-      prior += std::log(kAnyPower);
-    }
-    logs.push_back(prior + hypothesis.log_evidence);
+    logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
   double sum = 0.0;
@@ -137,6 +133,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   work.look();
   comparison.scans = scan_effects(space, left_out, jobs);
   comparison.alike = alike_in(space, comparison.scans);
+  for (std::size_t e = 0; e < effect_list().size(); ++e) comparison.odds.push_back(prior_odds(set, e));
   work.at(0.1).look();
   comparison.unnamed = unnamed_families(space, jobs);
   Hypothesis unnamed;

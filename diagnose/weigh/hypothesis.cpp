@@ -125,6 +125,26 @@ std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<Eff
   return alike;
 }
 
+bool has(const Hypothesis& hypothesis, std::size_t effect) {
+  return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
+}
+
+double probability_of_any(const Comparison& comparison, const std::vector<std::size_t>& effects) {
+  double sum = 0.0;
+  for (const Hypothesis& one : comparison.all) {
+    const bool any = std::any_of(effects.begin(), effects.end(), [&](std::size_t e) { return has(one, e); });
+    if (any && !one.unnamed) sum += one.probability;
+  }
+  return sum;
+}
+
+double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis) {
+  if (comparison.odds.empty()) return 0.0;
+  double log = 0.0;
+  for (const std::size_t e : hypothesis.effects) log += std::log(comparison.odds[e]);
+  return log;
+}
+
 bool is_scatter(std::size_t effect) {
   return effect_list()[effect].search == Search::noise;
 }

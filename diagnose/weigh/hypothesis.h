@@ -42,6 +42,7 @@ struct Comparison {
   std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another
   /// Of each of effect_list(), the first one that these data cannot tell from it (alike_in()); empty: first_alike().
   std::vector<std::size_t> alike;
+  std::vector<double> odds;  ///< of each of effect_list(), before the data (prior_odds()); empty: 1
 };
 
 /// How many fits run at a time, and a callback for the progress of the comparison; an exception from it ends the
@@ -80,8 +81,15 @@ void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<cons
 /// probability.
 void set_probabilities(Comparison& comparison);
 
-/// Prior odds of a drag with an arbitrary power of the speed, against another effect.
-inline constexpr double kAnyPower = 0.4;
+/// Whether an effect is among a hypothesis' own.
+bool has(const Hypothesis& hypothesis, std::size_t effect);
+
+/// The probability that one of these effects acts: the sum over the explanations that have one of them and nothing
+/// without a name.
+double probability_of_any(const Comparison& comparison, const std::vector<std::size_t>& effects);
+
+/// Log of the prior odds of a hypothesis' effects, against as many others.
+double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis);
 
 /// One explanation among those fitted; null: none.
 const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects);

@@ -16,10 +16,6 @@ constexpr double kWorthJoining = -3.0;    // log evidence: what the images speak
 constexpr std::size_t kMostTogether = 4;  // effects in one explanation
 constexpr double kMostByScatter = 6.0;    // log evidence that a stated codec may take over from scattered frames
 
-bool holds(const Hypothesis& hypothesis, std::size_t effect) {
-  return std::find(hypothesis.effects.begin(), hypothesis.effects.end(), effect) != hypothesis.effects.end();
-}
-
 bool same_effects(const Hypothesis& a, const Hypothesis& b) {
   return a.unnamed == b.unnamed &&
          std::set(a.effects.begin(), a.effects.end()) == std::set(b.effects.begin(), b.effects.end());
@@ -135,7 +131,7 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
     const double of_pictures = finding->stated ? 0.0 : finding->log_evidence;
     const std::vector<Hypothesis> so_far = comparison.all;
     for (Hypothesis& hypothesis : comparison.all) {
-      if (!holds(hypothesis, effect)) continue;
+      if (!has(hypothesis, effect)) continue;
       double support = of_pictures;
       if (hypothesis.fit >= 0) {
         const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
@@ -145,14 +141,14 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
       hypothesis.log_evidence += support;
     }
     for (const Hypothesis& other : so_far) {
-      if (holds(other, effect) || other.effects.size() >= kMostTogether) continue;
+      if (has(other, effect) || other.effects.size() >= kMostTogether) continue;
       Hypothesis with = other;
       with.effects.push_back(effect);
       const bool known = std::any_of(comparison.all.begin(), comparison.all.end(),
                                      [&](const Hypothesis& h) { return same_effects(h, with); });
       if (known) continue;
       double of_tracks = 0.0, scatter = 0.0, outliers = 0.0;
-      if (!holds(other, jitter) && !holds(other, tails)) {
+      if (!has(other, jitter) && !has(other, tails)) {
         for (const FrameEffect& frame : comparison.frames) {
           scatter = std::max(scatter, frame.log_evidence);
           if (frame.effect == tails) outliers = std::max(outliers, frame.log_evidence);

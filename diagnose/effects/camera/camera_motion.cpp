@@ -45,6 +45,7 @@ EffectInfo camera_motion() {
       .meaning = "the fixed scene moves by this amplitude, with frequency f",
       .search = Search::wave,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {{.key = "amplitude_m", .absent = 0.0, .low = 0.0, .high = 0.05, .step = 1e-8},
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
                      {.key = {}, .absent = 0.0, .low = -2.0, .high = 2.0, .step = 1e-4, .only_filmed = true},

@@ -19,6 +19,7 @@ EffectInfo compression() {
       .meaning = {},
       .search = Search::pictures,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

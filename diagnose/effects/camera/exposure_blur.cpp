@@ -24,6 +24,7 @@ EffectInfo exposure_blur() {
       .meaning = "exposure: inferred from the smear of the marker",
       .search = Search::pictures,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

@@ -23,6 +23,7 @@ EffectInfo lens_distortion() {
       .meaning = "x becomes x (1 + k (x − x_c)²)",
       .search = Search::shape,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "k_1_m2", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-7},
                      {.key = "x_c_m", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .reach = Reach::places}},
       .law = {.seen_m = lens_seen, .seen_by = SeenBy::lens},

@@ -24,6 +24,7 @@ EffectInfo light_flicker() {
       .meaning = "brightness changes by this depth, with frequency f",
       .search = Search::pictures,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

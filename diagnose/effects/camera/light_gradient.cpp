@@ -29,6 +29,7 @@ EffectInfo light_gradient() {
       .meaning = "how much brighter it is on one side of the marker",
       .search = Search::pictures,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

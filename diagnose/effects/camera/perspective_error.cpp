@@ -44,6 +44,7 @@ EffectInfo perspective_error() {
       .meaning = "x becomes x / (1 + p x)",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "p_1_m", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-7}},
       .law = {.seen_m = perspective_seen, .seen_by = SeenBy::plane},
       .shapes = nullptr,

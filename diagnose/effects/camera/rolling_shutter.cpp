@@ -31,6 +31,7 @@ EffectInfo rolling_shutter() {
       .meaning = "line: the time from the exposure of one row to that of the next",
       .search = Search::rows,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "line_s", .absent = 0.0, .low = -3e-4, .high = 3e-4, .step = 1e-7}},
       .law = {.row_s = rows_late},
       .shapes = nullptr,

@@ -28,6 +28,7 @@ EffectInfo base_vibration() {
       .meaning = "an acceleration of amplitude a and frequency f",
       .search = Search::wave,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5},
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
                      {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .each = Each::motion}},

@@ -23,6 +23,7 @@ EffectInfo clip_scatter() {
       .meaning = "each clip has a µ and a K of its own; sd: how far they differ",
       .search = Search::spread,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "sd_mu",
                       .absent = 0.0,
                       .low = -0.5,

@@ -23,6 +23,7 @@ EffectInfo configuration_drag() {
       .meaning = "each mass on each set-up has a K of its own; sd: how far they differ",
       .search = Search::spread,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "sd_n_s_m",
                       .absent = 0.0,
                       .low = -2.0,

@@ -23,6 +23,7 @@ EffectInfo configuration_friction() {
       .meaning = "each mass on each set-up has a µ of its own; sd: how far they differ",
       .search = Search::spread,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "sd",
                       .absent = 0.0,
                       .low = -0.5,

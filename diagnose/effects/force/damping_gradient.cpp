@@ -26,6 +26,7 @@ EffectInfo damping_gradient() {
       .meaning = "K becomes K (1 + b (x − x_mid)), x_mid the middle of the data",
       .search = Search::shape,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "b_1_m", .absent = 0.0, .low = -3.0, .high = 3.0, .step = 1e-6},
                      {.key = {}, .absent = 0.0, .low = -5.0, .high = 5.0, .step = 1e-4}},
       .law = {.resistance = gradient_resistance},

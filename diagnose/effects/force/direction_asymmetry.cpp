@@ -23,6 +23,7 @@ EffectInfo direction_asymmetry() {
       .meaning = "µ becomes µ (1 + d sign(v))",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "d", .absent = 0.0, .low = -1.0, .high = 1.0, .step = 1e-5}},
       .law = {.resistance = asymmetry_resistance},
       .shapes = nullptr,

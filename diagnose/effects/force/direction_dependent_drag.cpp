@@ -24,6 +24,7 @@ EffectInfo direction_dependent_drag() {
       .meaning = "K becomes K (1 + d sign(v))",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "d", .absent = 0.0, .low = -0.99, .high = 0.99, .step = 1e-5}},
       .law = {.resistance = directed_resistance},
       .shapes = nullptr,

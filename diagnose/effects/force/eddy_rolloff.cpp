@@ -27,6 +27,7 @@ EffectInfo eddy_rolloff() {
       .meaning = "K v becomes K v / (1 + (v / v_c)²)",
       .search = Search::amplitude,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {{.key = "v_c_m_s",
                       .absent = 0.0,
                       .low = 0.0,

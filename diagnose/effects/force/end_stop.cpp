@@ -41,6 +41,7 @@ EffectInfo end_stop() {
       .meaning = "a force −k (x − x_b) beyond x_b",
       .search = Search::shape,
       .both_signs = false,
+      .odds = nullptr,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 2000.0, .step = 1e-5, .reach = Reach::with_mass},
            {.key = "x_b_m",

@@ -9,6 +9,11 @@ void drifting_friction(const double* p, const GliderConstants& glider, const Gli
   of.mu *= 1.0 + p[0] * glider.clip;
 }
 
+/// Of two clips one always has more friction than the other.
+double drifts(const Circumstances& of) {
+  return of.clips < 3 ? 0.0 : 1.0;
+}
+
 }  // namespace
 
 EffectInfo friction_drift() {
@@ -20,6 +25,7 @@ EffectInfo friction_drift() {
       .meaning = "µ becomes µ (1 + r n) in clip number n, counted from 0",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = drifts,
       .parameters = {{.key = "r_1_clip", .absent = 0.0, .low = -1.0, .high = 1.0, .step = 1e-6}},
       .law = {.friction = drifting_friction, .passing = true},
       .shapes = nullptr,

@@ -21,6 +21,11 @@ void fixed_friction_twin(const double* p, TwinForces& forces) {
   forces.others += scenario_force("coulomb", {{"mu", forces.part * p[0] / forces.normal_n}});
 }
 
+/// What falls touches nothing, unless something guides it.
+double without_a_track(const Circumstances& of) {
+  return of.only_falls ? 0.25 : 1.0;
+}
+
 }  // namespace
 
 EffectInfo load_independent_friction() {
@@ -32,6 +37,7 @@ EffectInfo load_independent_friction() {
       .meaning = "the same friction force at every mass",
       .search = Search::amplitude,
       .both_signs = false,
+      .odds = without_a_track,
       .parameters =
           {{.key = "force_n", .absent = 0.0, .low = 0.0, .high = 1.0, .step = 1e-7, .reach = Reach::with_mass}},
       .law = {.friction = fixed_friction},

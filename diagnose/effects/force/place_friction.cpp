@@ -67,6 +67,7 @@ EffectInfo place_friction() {
       .meaning = "µ becomes µ (1 + s(x)); sd: how far s is from 0",
       .search = Search::spread,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {bump("sd"), bump({}), bump({}), bump({}), bump({}), bump({})},
       .law = {.sizes = kBumps, .friction = friction_along, .passing = true},
       .shapes = nullptr,

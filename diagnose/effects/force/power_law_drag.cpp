@@ -15,6 +15,11 @@ void power_twin(const double* p, TwinForces& forces) {
                       scenario_force("power_law", {{"k_n_s_m", forces.k_n_s_m}, {"n", 1.0 + p[0]}}));
 }
 
+/// An arbitrary power of the speed is less likely than one that has a reason.
+double of_any_power(const Circumstances&) {
+  return 0.4;
+}
+
 }  // namespace
 
 EffectInfo power_law_drag() {
@@ -26,6 +31,7 @@ EffectInfo power_law_drag() {
       .meaning = "K v becomes K v |v|^(n − 1), v in m/s",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = of_any_power,
       .parameters =
           {{.key = "n", .absent = 0.0, .low = -0.9, .high = 2.0, .step = 1e-6, .shown_as = ShownAs::one_more}},
       .law = {.resistance = power_resistance},

@@ -14,6 +14,12 @@ void quadratic_twin(const double* p, TwinForces& forces) {
   forces.more_drag += scenario_force("quadratic", {{"c_kg_m", forces.part * p[0]}});
 }
 
+/// At 0.1 m/s the air about a cup of 0.1 m has a Reynolds number of 700: what falls freely, and slowly enough to be
+/// seen to be braked, has such a drag.
+double against_air(const Circumstances& of) {
+  return of.only_falls ? 4.0 : 1.0;
+}
+
 }  // namespace
 
 EffectInfo quadratic_drag() {
@@ -25,6 +31,7 @@ EffectInfo quadratic_drag() {
       .meaning = "a force −c v |v|",
       .search = Search::amplitude,
       .both_signs = false,
+      .odds = against_air,
       .parameters =
           {{.key = "c_kg_m", .absent = 0.0, .low = 0.0, .high = 1.0, .step = 1e-6, .reach = Reach::with_mass}},
       .law = {.resistance = quadratic_resistance},

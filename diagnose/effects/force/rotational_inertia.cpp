@@ -20,6 +20,11 @@ void wheels_twin(const double*, TwinForces& forces) {
   forces.others += scenario_force("constant", {{"force_n", -(1.0 - forces.part) * forces.along_n}});
 }
 
+/// What air brakes takes air along.
+double with_air(const Circumstances& of) {
+  return of.only_falls ? 2.0 : 1.0;
+}
+
 }  // namespace
 
 EffectInfo rotational_inertia() {
@@ -31,6 +36,7 @@ EffectInfo rotational_inertia() {
       .meaning = "m dv/dt becomes (m + mass) dv/dt",
       .search = Search::amplitude,
       .both_signs = false,
+      .odds = with_air,
       .parameters =
           {{.key = "mass_kg", .absent = 0.0, .low = 0.0, .high = 0.5, .step = 1e-7, .reach = Reach::with_mass}},
       .law = {.inertia_kg = wheels_kg},

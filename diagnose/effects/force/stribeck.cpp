@@ -32,6 +32,7 @@ EffectInfo stribeck() {
       .meaning = "µ becomes µ (1 + (s − 1) exp(−(v / v_s)²))",
       .search = Search::shape,
       .both_signs = false,
+      .odds = nullptr,
       .parameters =
           {{.key = "s", .absent = 0.0, .low = 0.0, .high = 50.0, .step = 1e-5, .shown_as = ShownAs::one_more},
            {.key = "v_s_m_s", .absent = 0.05, .low = 0.003, .high = 1.0, .step = 1e-5, .reach = Reach::held_speed}},

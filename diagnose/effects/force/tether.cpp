@@ -31,6 +31,7 @@ EffectInfo tether() {
       .meaning = "a force −k (x − x_t) beyond x_t",
       .search = Search::shape,
       .both_signs = false,
+      .odds = nullptr,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 200.0, .step = 1e-5, .reach = Reach::with_mass},
            {.key = "x_t_m",

@@ -8,6 +8,11 @@ void bow_resistance(const double* p, const GliderConstants& glider, const Glider
   of.slope += p[0] * (at.x - glider.x_mid_m);
 }
 
+/// What falls has no track.
+double bows(const Circumstances& of) {
+  return of.only_falls ? 0.0 : 1.0;
+}
+
 }  // namespace
 
 EffectInfo track_bow() {
@@ -19,6 +24,7 @@ EffectInfo track_bow() {
       .meaning = "sin α becomes sin α + slope (x − x_mid), x_mid the middle of the data",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = bows,
       .parameters = {{.key = "slope_1_m", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
       .law = {.resistance = bow_resistance},
       .shapes = nullptr,

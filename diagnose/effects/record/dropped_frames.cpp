@@ -26,6 +26,7 @@ EffectInfo dropped_frames() {
       .meaning = "this fraction of the frames is missing",
       .search = Search::frames,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

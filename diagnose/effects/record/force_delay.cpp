@@ -19,6 +19,7 @@ EffectInfo force_delay() {
       .meaning = "the force acts tau later than recorded",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "tau_s", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-5}},
       .law = {.known_late_s = delay_s},
       .shapes = nullptr,

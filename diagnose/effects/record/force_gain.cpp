@@ -19,6 +19,7 @@ EffectInfo force_gain() {
       .meaning = "the force is (1 + e) times the recorded one",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.9, .high = 5.0, .step = 1e-6}},
       .law = {.known_factor = gain_factor},
       .shapes = nullptr,

@@ -38,6 +38,7 @@ EffectInfo frame_rate_error() {
       .meaning = "the time from frame to frame is (1 + e) times the stated one",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
       .law = {.stretch = rate_stretch},
       .shapes = nullptr,

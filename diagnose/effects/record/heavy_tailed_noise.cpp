@@ -11,6 +11,7 @@ EffectInfo heavy_tailed_noise() {
       .meaning = "this fraction of the positions are outliers",
       .search = Search::noise,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

@@ -20,6 +20,7 @@ EffectInfo mass_error() {
       .meaning = "the inertia is (1 + e) times the stated mass",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.9, .high = 5.0, .step = 1e-6}},
       .law = {.inertia_kg = wrong_mass_kg},
       .shapes = nullptr,

@@ -11,6 +11,7 @@ EffectInfo position_rounding() {
       .meaning = "every position is a whole multiple of this step",
       .search = Search::noise,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

@@ -28,6 +28,7 @@ EffectInfo scale_error() {
       .meaning = "x becomes (1 + e) x",
       .search = Search::amplitude,
       .both_signs = true,
+      .odds = nullptr,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
       .law = {.seen_m = scale_seen, .seen_by = SeenBy::scale},
       .shapes = nullptr,

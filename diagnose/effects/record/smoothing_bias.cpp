@@ -20,6 +20,7 @@ EffectInfo smoothing_bias() {
       .meaning = "intercepts are off by this for each 1/s² of (K/m)²",
       .search = Search::lines,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

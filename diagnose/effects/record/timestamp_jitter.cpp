@@ -32,6 +32,7 @@ EffectInfo timestamp_jitter() {
       .meaning = "sd: standard deviation of a frame's time",
       .search = Search::noise,
       .both_signs = false,
+      .odds = nullptr,
       .parameters = {},
       .law = {},
       .shapes = nullptr,

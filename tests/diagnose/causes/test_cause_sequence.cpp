@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "diagnose/gap/gap_sizes.h"
+#include "diagnose/gap/held_out.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -38,4 +39,22 @@ TEST_CASE("the floor is 1 unless a gap lies clearly below it") {
   CHECK(diagnose::floor_of(0.96, 0.01) == 1.0);
   CHECK(diagnose::floor_of(1.2, 0.01) == 1.0);
   CHECK(diagnose::floor_of(0.95, 0.01) == 0.95);
+}
+
+TEST_CASE(
+    "what the bound of a clear gap buys: recordings that lack nothing have none, at two standard errors some do") {
+  const std::vector<tests::MadeLaunch> launches = {{0.4, 4.0, 0.3, -1.1}, {0.4, 4.0, -0.6, 1.2}, {0.5, 4.0, 0.3, -1.0}};
+  constexpr unsigned kRecordings = 60;
+  int clear = 0, beyond_two = 0;
+  for (unsigned seed = 1; seed <= kRecordings; ++seed) {
+    // Noise that neighbouring positions share a little, as those of any tracker do.
+    const auto made = tests::made_experiment(launches, {}, seed, 2e-4, 40, 50.0, 0.05, 0.15);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+    const diagnose::HeldOutGap gap = diagnose::held_out_gap(set, nominal);
+    clear += diagnose::has_gap(set, nominal) ? 1 : 0;
+    beyond_two += gap.value > 1.0 + 2.0 * gap.standard_error ? 1 : 0;
+  }
+  CHECK(clear == 0);
+  CHECK(beyond_two > 0);
 }

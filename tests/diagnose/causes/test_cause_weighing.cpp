@@ -109,9 +109,10 @@ TEST_CASE("imperfections by themselves seldom get a name, and none that is sure"
     }
     if (found.effects.front().id == "clip_scatter") continue;
     ++wrong;
-    CHECK(found.effects.front().probability < 0.9);
+    // A name is given from a probability of a half on: one that is hardly above is wrong now and then.
+    CHECK(found.effects.front().probability < 0.6);
   }
-  CHECK(wrong <= 1);
+  CHECK(wrong <= 2);
   // Against the noise alone the evidence of something without a name is that of certainty; beside a remainder it is
   // not.
   CHECK(least_unknown < 0.95);
@@ -214,4 +215,34 @@ TEST_CASE("of pairs that do as well none has a function without a name to itself
   const auto pairs = std::count_if(
       all.begin(), all.end(), [](const diagnose::Hypothesis& one) { return one.unnamed && one.effects.size() == 2; });
   CHECK(pairs > 1);
+}
+
+TEST_CASE("a law beside clips that scatter is weighed as one explanation of both") {
+  // A drag with the square of the speed, and a friction of each clip that is two thirds more or less.
+  const double part[] = {0.7, -0.6, 0.2, -0.7, 0.6, 0.5, -0.5, -0.3};
+  std::size_t clip = 0;
+  double before = 1.0;
+  tests::MadeEffect both;
+  both.force = [&](double m, double, double v, double t) {
+    if (t < before - 0.1) ++clip;
+    before = t;
+    const double friction = part[(clip - 1) % 8] * 0.006 * m * 9.80665;
+    return -0.25 * v * std::abs(v) - (v > 0.0 ? friction : v < 0.0 ? -friction : 0.0);
+  };
+  const auto made = tests::made_experiment(tests::made_launches(), both, 5, 1e-4, 100, 60.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::WeighedCauses weighed =
+      diagnose::weigh_causes(set, diagnose::compare_hypotheses(set), {}, 2, nullptr, [](double) {});
+  const std::size_t drag = diagnose::effect_index("quadratic_drag"), scatter = diagnose::effect_index("clip_scatter");
+  const diagnose::Hypothesis* pair = diagnose::find(weighed.comparison, {drag, scatter});
+  const diagnose::Hypothesis* alone = diagnose::find(weighed.comparison, {drag});
+  REQUIRE(pair != nullptr);
+  REQUIRE(alone != nullptr);
+  CHECK(*pair->left < 0.1);
+  CHECK(*alone->left > 0.2);
+  CHECK(pair->probability > alone->probability);
+  // Left out, it is no part of any explanation.
+  const diagnose::WeighedCauses without =
+      diagnose::weigh_causes(set, diagnose::compare_hypotheses(set, {scatter}), {scatter}, 2, nullptr, [](double) {});
+  for (const diagnose::Hypothesis& one : without.comparison.all) CHECK_FALSE(diagnose::has(one, scatter));
 }

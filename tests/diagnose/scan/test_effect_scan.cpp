@@ -67,3 +67,21 @@ TEST_CASE("what falls has no track that could be bowed") {
   CHECK(is_visible({fall, heavier, fall}, "quadratic_drag"));
   CHECK(is_visible({slope, slope, slope}, "track_bow"));
 }
+
+TEST_CASE("prior odds are those of the recording: what falls is braked by the square of the speed") {
+  const tests::MadeLaunch fall{0.4, 90.0, 0.0, 0.1}, slope{0.4, 60.0, 0.0, 0.1};
+  const auto odds = [](const std::vector<tests::MadeLaunch>& launches, std::string_view id) {
+    const auto made = tests::made_experiment(launches, {}, 3, 5e-5, 60);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    return diagnose::prior_odds(set, diagnose::effect_index(id));
+  };
+  // At a Reynolds number R a sphere has a drag of 24/R (1 + R/24 0.4) or so: where R is 1000, the part that goes with
+  // the square of the speed is seventeen times the other.
+  CHECK(odds({fall, fall, fall}, "quadratic_drag") > odds({fall, fall, fall}, "eddy_rolloff"));
+  CHECK(odds({fall, fall, fall}, "load_independent_friction") < 1.0);
+  CHECK(odds({fall, fall, fall}, "track_bow") == 0.0);
+  for (const std::string_view id : {"quadratic_drag", "rotational_inertia", "load_independent_friction", "track_bow"}) {
+    CHECK(odds({fall, slope, slope}, id) == 1.0);
+  }
+  CHECK(odds({slope, slope}, "friction_drift") == 0.0);
+}

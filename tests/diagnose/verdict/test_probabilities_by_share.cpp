@@ -82,7 +82,7 @@ void check_sums(const Comparison& comparison) {
 
 TEST_CASE("a law that takes most of a gap without noise has its name, and what stands beside it keeps its own part") {
   Comparison comparison = comparison_of({{{kDrag}, 0.06}, {{kDrag, kInertia}, 0.02}, {{kPlace}, 0.12}});
-  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag, kInertia}, comparison);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag, kInertia}, comparison);
   check_sums(comparison);
   CHECK(comparison.effect_probability[kDrag] == Approx(0.8));
   CHECK(comparison.effect_probability[kInertia] == Approx(0.8 * 0.02 / 0.08));  // as likely beside it as before
@@ -95,7 +95,7 @@ TEST_CASE("a law that takes most of a gap without noise has its name, and what s
 
 TEST_CASE("a law that lost its probability to the unknown has it back by its share") {
   Comparison comparison = comparison_of({{{kDrag}, 0.0}, {{kPlace}, 0.1}});
-  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag}, comparison);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag}, comparison);
   check_sums(comparison);
   CHECK(probability_of(comparison, {kDrag}) == Approx(0.8));
   CHECK(comparison.unknown == Approx(0.2 * 0.9));
@@ -105,7 +105,7 @@ TEST_CASE("a name by its share alone takes noise that is next to nothing, most o
   const auto after = [](std::string_view main, double share, double gap, double probability) {
     const std::size_t effect = effect_index(main);
     Comparison comparison = comparison_of({{{effect}, probability}});
-    diagnose::weigh_by_share(sequence_of(main, share, gap), {effect}, comparison);
+    diagnose::hold_to_share(sequence_of(main, share, gap), {effect}, comparison);
     check_sums(comparison);
     return comparison.effect_probability[effect];
   };
@@ -118,7 +118,7 @@ TEST_CASE("a name by its share alone takes noise that is next to nothing, most o
 
 TEST_CASE("causes that take less than half of a gap are unknown, and none is not said of a gap") {
   Comparison comparison = comparison_of({{{kDrag}, 0.7}, {{kPlace}, 0.1}}, 0.15);
-  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, comparison);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, comparison);
   check_sums(comparison);
   CHECK(comparison.none == 0.0);
   // 0.05 of the unknown, 0.15 of none, and the name's own 0.7.
@@ -126,7 +126,7 @@ TEST_CASE("causes that take less than half of a gap are unknown, and none is not
   CHECK(comparison.effect_probability[kDrag] == Approx(0.1 * 0.7 / 0.8));
 
   Comparison unlikely = comparison_of({{{kDrag}, 0.05}, {{kPlace}, 0.9}});
-  diagnose::weigh_by_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, unlikely);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, unlikely);
   check_sums(unlikely);
   CHECK(unlikely.unknown > 0.5);  // that is the verdict
 }
@@ -146,4 +146,19 @@ TEST_CASE("what needs no cause counts as none") {
   check_sums(comparison);
   CHECK(comparison.none == Approx(0.65));
   CHECK(comparison.effect_probability[kDrag] == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("a likelier cause takes the place of named ones only where it leaves a verdict that names something") {
+  const auto share = [](double of) { return sequence_of(ids::quadratic_drag, of, kPlain); };
+  CHECK(diagnose::may_displace(share(0.6), share(0.9)));        // it explains the gap as well
+  CHECK_FALSE(diagnose::may_displace(share(0.4), share(0.9)));  // the cause would be unknown where there is a name
+  CHECK(diagnose::may_displace(share(0.4), share(0.3)));        // it is unknown anyway
+}
+
+TEST_CASE("the probability that one of several acts counts each explanation once, and none with a rest") {
+  Comparison comparison = comparison_of({{{kDrag}, 0.3}, {{kDrag, kPlace}, 0.2}, {{kPlace}, 0.1}, {{kInertia}, 0.25}});
+  comparison.all.push_back({{kDrag}, true, 0.0, 0.0, 0.15});
+  CHECK(std::abs(diagnose::probability_of_any(comparison, {kDrag}) - 0.5) < 1e-12);
+  CHECK(std::abs(diagnose::probability_of_any(comparison, {kDrag, kPlace}) - 0.6) < 1e-12);
+  CHECK(diagnose::probability_of_any(comparison, {}) == 0.0);
 }

@@ -67,6 +67,9 @@ diagnose::Comparison weighed(const std::vector<std::size_t>& effects, const std:
       comparison.all.push_back(hypothesis);
     }
   }
+  for (const diagnose::EffectInfo& info : diagnose::effect_list()) {
+    comparison.odds.push_back(info.odds == nullptr ? 1.0 : info.odds({.clips = 8, .only_falls = false}));
+  }
   diagnose::weigh({}, all_but(effects), comparison);
   return comparison;
 }

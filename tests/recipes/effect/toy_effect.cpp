@@ -26,6 +26,7 @@ EffectInfo toy_effect() {
       .meaning = "a force −k x",
       .search = Search::amplitude,
       .both_signs = false,
+      .odds = nullptr,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5, .reach = Reach::with_mass}},
       .law = {.force_n = spring_force, .rate_1_s = spring_rate},

@@ -85,6 +85,23 @@ TEST_CASE("a blind motion on the level stops for good, at v0/(mu g) without drag
   CHECK(motion.back().v_m_s == 0.0);
 }
 
+TEST_CASE("a glider whose friction holds it in the direction in which it would leave stays, and costs nothing") {
+  // Up the slope the friction is a tenth, down it nearly twice as much and more than the slope pulls. That of neither
+  // direction would let it go: it would set off, stop at once, and so on.
+  validate::BlindLaw law{0.3, 0.0, 0.03, 0.05, 9.8, {}};
+  law.changes.push_back([](double, double v, double, validate::BlindTerms& f) {
+    f.friction_n *= v == 0.0 ? 1.0 : v > 0.0 ? 1.9 : 0.1;
+  });
+  std::size_t steps = 0;
+  const auto motion = validate::blind_motion(law, 0.0, -0.4, times(300, 0.01), &steps);
+  // It stops after v0²/(2 (g sin(alpha) + 0.1 mu g cos(alpha))), within 0.8 s.
+  const double brake = 9.8 * (std::sin(0.05) + 0.1 * 0.03 * std::cos(0.05));
+  CHECK(std::abs(motion.back().x_m + 0.4 * 0.4 / (2.0 * brake)) < 1e-9);
+  CHECK(motion.back().v_m_s == 0.0);
+  // 3 s: steps of 2 ms on the way and of 0.2 ms at rest, a new start at each frame, and one stop.
+  CHECK(steps < 20'000);
+}
+
 TEST_CASE("a blind motion that would take billions of steps ends, and says that it is lost") {
   // 1 N s/m on a microgram: a rate of 1e9 a second, of which an explicit step takes a few.
   const validate::BlindLaw law{1e-9, 1.0, 0.0, 0.3, 9.8, {}};

@@ -35,9 +35,11 @@ using State = std::array<double, 2>;  // x, v
 
 constexpr double kTolerance = 1e-11;                                        // m, m/s: a millionth of the smallest noise
 constexpr double kLongestStep = 2e-3, kFirstStep = 1e-4, kRestStep = 2e-4;  // s
-constexpr int kHalvings = 60;                                               // of 2 ms: to rounding
+constexpr std::size_t kHalvings = 60;                                       // of 2 ms: to rounding
 constexpr double kRunsAway = 1e3;                                           // m
-constexpr int kMostSteps = 1'000'000;  // of one motion: 200 s at rest; a vanishing mass under drag would take billions
+constexpr std::size_t kMostSteps =
+    200'000;                        // of one motion: 40 s at rest; a vanishing mass under drag would take billions
+constexpr double kSetsOff = 1e-12;  // m/s: a speed that has a direction and moves nothing
 
 BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
   const double weight = law.mass_kg * law.gravity_m_s2;
@@ -48,11 +50,13 @@ BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
   return terms;
 }
 
-/// The direction in which it leaves rest, 1 or -1; 0: it stays.
+/// The direction in which it leaves rest, 1 or -1; 0: it stays. The friction that holds it is that of the direction in
+/// which it would leave. If neither direction's friction held it, it would set off, stop at once, and so on.
 int way_from_rest(const BlindLaw& law, double x, double t) {
-  const BlindTerms terms = terms_of(law, x, 0.0, t);
-  const double net = terms.drive_n - terms.drag_n;
-  return std::abs(net) <= terms.friction_n ? 0 : net > 0.0 ? 1 : -1;
+  const BlindTerms at_rest = terms_of(law, x, 0.0, t);
+  const int way = at_rest.drive_n - at_rest.drag_n > 0.0 ? 1 : -1;
+  const BlindTerms terms = terms_of(law, x, way * kSetsOff, t);
+  return way * (terms.drive_n - terms.drag_n) > terms.friction_n ? way : 0;
 }
 
 class Glider {
@@ -60,6 +64,8 @@ class Glider {
   Glider(const BlindLaw& law, State start, double t) : law_(law), s_(start), t_(t) {
     way_ = s_[1] > 0.0 ? 1 : s_[1] < 0.0 ? -1 : 0;
   }
+
+  std::size_t steps() const { return steps_; }
 
   BlindSample at(double t) {
     while (t_ < t) {
@@ -110,7 +116,8 @@ class Glider {
   template <typename Stepper>
   void stop_within(Stepper& stepper, double from, double to) {
     State s;
-    for (int i = 0; i < kHalvings; ++i) {
+    steps_ += kHalvings;
+    for (std::size_t i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (from + to);
       stepper.calc_state(middle, s);
       (s[1] * way_ < 0.0 ? to : from) = middle;
@@ -125,18 +132,19 @@ class Glider {
   State s_;
   double t_ = 0.0;
   int way_ = 0;
-  int steps_ = 0;
+  std::size_t steps_ = 0;
 };
 
 }  // namespace
 
-std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v0_m_s,
-                                      std::span<const double> times_s) {
+std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v0_m_s, std::span<const double> times_s,
+                                      std::size_t* steps) {
   std::vector<BlindSample> samples;
   if (times_s.empty()) return samples;
   samples.reserve(times_s.size());
   Glider glider(law, {x0_m, v0_m_s}, times_s.front());
   for (const double t : times_s) samples.push_back(glider.at(t));
+  if (steps != nullptr) *steps += glider.steps();
   return samples;
 }
 
@@ -221,8 +229,8 @@ BlindFilm nominal_film(const BlindDesign& design, const BlindClip& clip) {
   return film;
 }
 
-std::vector<double> seen_positions(const BlindClip& clip, const BlindFilm& film) {
-  const std::vector<BlindSample> motion = blind_motion(film.law, clip.x0_m, clip.v0_m_s, film.true_t_s);
+std::vector<double> seen_positions(const BlindClip& clip, const BlindFilm& film, std::size_t* steps) {
+  const std::vector<BlindSample> motion = blind_motion(film.law, clip.x0_m, clip.v0_m_s, film.true_t_s, steps);
   std::vector<double> seen;
   for (std::size_t k = 0; k < motion.size(); ++k) {
     double x = motion[k].x_m;

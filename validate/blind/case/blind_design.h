@@ -70,10 +70,11 @@ struct BlindSample {
   double v_m_s = 0.0;
 };
 
-/// The motion from (x0, v0) at the first of the rising times. NaN once it runs away (1 km), or beyond a million steps.
-/// Boost.Odeint's Dormand-Prince pair with dense output (tolerance 1e-11 m, steps of at most 2 ms, so that no narrow
-/// force is stepped over). v = 0 is found by bisection in the dense output.
-std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v0_m_s, std::span<const double> times_s);
+/// The motion from (x0, v0) at the first of the rising times. NaN once it runs away (1 km), or beyond 200,000 steps,
+/// which are added to `steps`. Boost.Odeint's Dormand-Prince pair with dense output (tolerance 1e-11 m, steps of at
+/// most 2 ms, so that no narrow force is stepped over). v = 0 is found by bisection in the dense output.
+std::vector<BlindSample> blind_motion(const BlindLaw& law, double x0_m, double v0_m_s, std::span<const double> times_s,
+                                      std::size_t* steps = nullptr);
 
 struct BlindGroup {
   std::string name;
@@ -149,7 +150,7 @@ struct BlindFilm {
 BlindFilm nominal_film(const BlindDesign& design, const BlindClip& clip);
 
 /// Positions as the camera sees them, without noise; NaN once the glider has come to rest.
-std::vector<double> seen_positions(const BlindClip& clip, const BlindFilm& film);
+std::vector<double> seen_positions(const BlindClip& clip, const BlindFilm& film, std::size_t* steps = nullptr);
 
 /// One effect of a blind case: what it alters, by a size that can be changed with everything else fixed.
 ///

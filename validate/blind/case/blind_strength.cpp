@@ -18,15 +18,16 @@ constexpr int kBisections = 24;
 
 using Seen = std::vector<std::vector<double>>;
 
-std::vector<double> clip_with(const BlindDesign& design, std::size_t clip, const std::vector<BlindPut>& puts) {
+std::vector<double> clip_with(const BlindDesign& design, std::size_t clip, const std::vector<BlindPut>& puts,
+                              std::size_t* steps = nullptr) {
   BlindFilm film = nominal_film(design, design.clips[clip]);
   for (const BlindPut& put : puts) put.effect->put(put.size, clip, film);
-  return seen_positions(design.clips[clip], film);
+  return seen_positions(design.clips[clip], film, steps);
 }
 
-Seen seen_with(const BlindDesign& design, const std::vector<BlindPut>& puts) {
+Seen seen_with(const BlindDesign& design, const std::vector<BlindPut>& puts, std::size_t* steps = nullptr) {
   Seen seen;
-  for (std::size_t c = 0; c < design.clips.size(); ++c) seen.push_back(clip_with(design, c, puts));
+  for (std::size_t c = 0; c < design.clips.size(); ++c) seen.push_back(clip_with(design, c, puts, steps));
   return seen;
 }
 
@@ -119,7 +120,8 @@ class LawFit {
 
   /// Empty if the fit does not settle: the strength of the effect is then unknown, and another is drawn.
   std::optional<SettledFit> fit(const Seen& seen, const std::optional<Eigen::VectorXd>& more = {}) const {
-    constexpr int kMostFitSteps = 60;  // a glider that comes to rest elsewhere takes about ten
+    constexpr int kMostFitSteps = 60;              // a glider that comes to rest elsewhere takes about ten
+    constexpr std::size_t kMostWork = 20'000'000;  // steps of motions: a hundred times what a fit takes
     constexpr double kMostRelativeChange =
         0.01;  // of chi² when it has settled: far less than the width of the classes of strength
     constexpr double kMostChangeOfChi2 = 0.01;  // if the nominal law absorbs all of it
@@ -129,10 +131,12 @@ class LawFit {
     Eigen::VectorXd at = Eigen::VectorXd::Zero(many);
     double last = 0.0;
     bool whole = true;  // whether the last step was whole
+    std::size_t work = 0;
     for (int step = 0; step < kMostFitSteps; ++step) {
-      const Seen now = step == 0 ? without_ : seen_with(fitted.design, fitted.puts);
+      const Seen now = step == 0 ? without_ : seen_with(fitted.design, fitted.puts, &work);
       const Eigen::VectorXd d = difference(seen, now, design_.noise_sd_m);
-      Eigen::MatrixXd columns = derivatives(fitted, now, many);
+      Eigen::MatrixXd columns = derivatives(fitted, now, many, &work);
+      if (work > kMostWork) return std::nullopt;
       Eigen::VectorXd left = Eigen::VectorXd::Zero(columns.rows()), scale = Eigen::VectorXd::Ones(many);
       left.head(d.size()) = d;
       for (Eigen::Index n = 0; n < std::ssize(list_); ++n) {
@@ -177,7 +181,7 @@ class LawFit {
   SettledFit first_step(const Seen& seen, const std::vector<Eigen::VectorXd>& more) const {
     const Eigen::VectorXd d = difference(seen, without_, design_.noise_sd_m);
     const Eigen::Index own = std::ssize(list_), many = own + std::ssize(more);
-    if (at_start_.size() == 0) at_start_ = derivatives({design_, puts_}, without_, own);
+    if (at_start_.size() == 0) at_start_ = derivatives({design_, puts_}, without_, own, nullptr);
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(at_start_.rows(), many);
     columns.leftCols(own) = at_start_;
     for (std::size_t m = 0; m < more.size(); ++m) {
@@ -205,24 +209,24 @@ class LawFit {
   }
 
   /// Derivatives by each parameter of the list, with the stated values as rows below; `many` columns, the rest 0.
-  Eigen::MatrixXd derivatives(const FittedLaw& at, const Seen& now, Eigen::Index many) const {
+  Eigen::MatrixXd derivatives(const FittedLaw& at, const Seen& now, Eigen::Index many, std::size_t* work) const {
     Eigen::Index points = 0;
     for (const auto& clip : now) points += std::ssize(clip);
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(points + many, many);
     for (Eigen::Index n = 0; n < std::ssize(list_); ++n) {
       const Nuisance& one = list_[static_cast<std::size_t>(n)];
-      columns.col(n).head(points) = derivative(at, one, now);
+      columns.col(n).head(points) = derivative(at, one, now, work);
       if (std::isfinite(one.sd)) columns(points + n, n) = 1.0 / one.sd;
     }
     return columns;
   }
 
-  Eigen::VectorXd derivative(const FittedLaw& at, const Nuisance& one, const Seen& now) const {
+  Eigen::VectorXd derivative(const FittedLaw& at, const Nuisance& one, const Seen& now, std::size_t* work) const {
     FittedLaw changed = at;
     one.change(changed, one.step);
     Seen seen = now;
     for (std::size_t c = 0; c < at.design.clips.size(); ++c) {
-      if (!one.clip || *one.clip == c) seen[c] = clip_with(changed.design, c, changed.puts);
+      if (!one.clip || *one.clip == c) seen[c] = clip_with(changed.design, c, changed.puts, work);
     }
     return difference(seen, now, design_.noise_sd_m) / one.step;
   }
