@@ -1,4 +1,4 @@
-/// Which further recording or measurement would be most informative, whether what acts has a name or not.
+/// Which further recording or measurement would be most informative, whether the cause has a name or not.
 #pragma once
 
 #include "diagnose/fit/motion_fit.h"
