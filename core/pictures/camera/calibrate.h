@@ -15,7 +15,7 @@
 
 namespace glidelab::core {
 
-/// Of one view: its residuals and their derivatives by its pose, and those by the camera's free terms.
+/// One view: its residuals, and their derivatives with respect to its pose and to the camera's free terms.
 struct ViewDerivatives {
   ViewResiduals view;
   Eigen::MatrixXd by_terms;
