@@ -65,7 +65,8 @@ std::optional<double> typical_acceleration(std::span<const double> t_s, std::spa
   return typical > kOverNoise * sd_m_s2 ? std::optional(typical) : std::nullopt;
 }
 
-/// Whether one parabola goes through all points to within so much: neither a bounce nor a sensor's jump is among them.
+/// Whether one parabola passes through all points to within kOffWhole: they then include neither a bounce nor a
+/// sensor's jump.
 bool is_parabola(std::span<const double> t_s, std::span<const double> x_m, double off_m) {
   const Eigen::Vector3d fit = parabola(t_s, x_m);
   const double middle = 0.5 * (t_s.front() + t_s.back());
@@ -92,7 +93,7 @@ std::size_t turns_in(std::span<const double> x_m, double back_m) {
   return turns;
 }
 
-/// Part of the variance of a that a line falling with x explains; 0 where it rises.
+/// Part of the variance of a that a line decreasing with x explains; 0 if the line increases.
 double harmonic_part(const std::vector<double>& x, const std::vector<double>& a) {
   const auto n = static_cast<Eigen::Index>(x.size());
   Eigen::ArrayXd dx = Eigen::Map<const Eigen::ArrayXd>(x.data(), n), da = Eigen::Map<const Eigen::ArrayXd>(a.data(), n);

@@ -163,7 +163,7 @@ void judge_light(const ClipCheck& clip, FindingBook& book) {
   }
 }
 
-/// Light that changes from place to place, and what it does to the marker's apparent centre.
+/// Light that varies with position, and its effect on the marker's apparent centre.
 void judge_lighting(const ClipCheck& clip, FindingBook& book) {
   if (!clip.light) return;
   const double px_per_m = clip.top_speed_m_s > 0.0 ? clip.top_speed_px_s / clip.top_speed_m_s : 0.0;
