@@ -52,7 +52,7 @@ struct OpenCvCalibration {
   double rms_px = 0.0;
 };
 
-/// In single precision, as OpenCV takes them.
+/// In single precision, as OpenCV requires.
 std::vector<cv::Point3f> points_for_opencv(cv::Size grid, double square_m) {
   const std::vector<cv::Point3d> points = pattern_points(grid, square_m);
   return {points.begin(), points.end()};
@@ -258,7 +258,7 @@ struct Fit {
   double rms_px = 0.0;
 };
 
-/// Nothing where it finds no camera. `guess`: a camera to begin with; nothing: OpenCV's own guess.
+/// Empty if it finds no camera. `guess`: a camera to begin with; empty: OpenCV's own guess.
 std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Size size, double square_m,
                               int fixed_terms, const CameraModel* guess) {
   std::vector<std::vector<cv::Point3d>> objects;

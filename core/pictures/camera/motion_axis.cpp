@@ -37,7 +37,7 @@ std::vector<cv::Point2d> thinned(const std::vector<cv::Point2d>& points) {
   return kept;
 }
 
-/// The line through two of the points from which the median distance is least: half of the points may lie anywhere.
+/// The line through two of the points that minimises the median distance: half of the points may lie anywhere.
 std::optional<PlaneLine> least_median_line(const std::vector<cv::Point2d>& points) {
   const std::vector<cv::Point2d> few = thinned(points);
   std::optional<PlaneLine> best;

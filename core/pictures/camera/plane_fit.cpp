@@ -120,8 +120,8 @@ Eigen::MatrixXd jacobian_of(const CameraModel& camera, const std::vector<BoardCo
   return jacobian;
 }
 
-/// Gauss and Newton's steps from a start that is already good (solvePnP's), by QR: the damping is what a step is
-/// divided by, and doubles where the cost does not fall.
+/// Gauss-Newton steps from a start that is already good (solvePnP's), by QR. The damping divides the step, and doubles
+/// if the cost does not decrease.
 Eigen::VectorXd fit_poses(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
                           const Eigen::VectorXd& start) {
   struct Point {

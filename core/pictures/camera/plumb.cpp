@@ -116,7 +116,7 @@ class Search {
     return values;
   }
 
-  /// The places of a row that stand out most, of either sign.
+  /// The positions in a row that stand out most, of either sign.
   std::vector<Place> places_in(int row, int width) const {
     const std::vector<double> values = profile(row);
     std::vector<double> excess(values.size(), 0.0);
@@ -147,7 +147,7 @@ class Search {
     return places;
   }
 
-  /// The line on which most stands out, or `best` where none is better.
+  /// The line with the largest total contrast, or `best` if none is better.
   Thread stronger(Thread best, const std::vector<Place>& places, int width) const {
     const std::size_t stride = std::max<std::size_t>(1, places.size() / kPlacesPaired);
     for (std::size_t a = 0; a < places.size(); a += stride) {
