@@ -149,7 +149,7 @@ std::optional<bool> is_lossy(const std::string& letters) {
   return std::nullopt;
 }
 
-/// Whether a lossy codec makes images out of those before; the others code each by itself.
+/// Whether a lossy codec predicts images from earlier ones; the others code each image by itself.
 std::optional<bool> does_predict(const std::string& letters) {
   static const std::set<std::string> kEachByItself{"mjpg", "apcn", "apch", "apcs", "ap4h", "dvsd"};
   const std::optional<bool> lossy = is_lossy(letters);

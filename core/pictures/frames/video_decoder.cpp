@@ -71,7 +71,7 @@ std::int64_t seek_bytes(void* opaque, std::int64_t offset, int whence) {
   return ::ftello(file);
 }
 
-/// For what a format wants opened besides its own file.
+/// Called for any further file that a format wants opened.
 int refuse_to_open(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) {
   return AVERROR(EACCES);
 }
