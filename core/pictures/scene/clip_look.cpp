@@ -42,7 +42,7 @@ void add_differences(const cv::Mat& now, const cv::Mat& before, const MarkerSigh
   }
 }
 
-/// The frames of another source, each shown to a watch as it is asked for.
+/// The frames of another source, each shown to a watch as it is read.
 class WatchedFrames final : public FrameSource {
  public:
   WatchedFrames(std::unique_ptr<FrameSource> source, std::shared_ptr<ClipWatch> watch)
