@@ -147,7 +147,7 @@ class Search {
     return places;
   }
 
-  /// The line with the largest total contrast, or `best` if none is better.
+  /// The line along which most stands out, or `best` if none is better.
   Thread stronger(Thread best, const std::vector<Place>& places, int width) const {
     const std::size_t stride = std::max<std::size_t>(1, places.size() / kPlacesPaired);
     for (std::size_t a = 0; a < places.size(); a += stride) {
