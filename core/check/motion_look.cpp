@@ -65,8 +65,8 @@ std::optional<double> typical_acceleration(std::span<const double> t_s, std::spa
   return typical > kOverNoise * sd_m_s2 ? std::optional(typical) : std::nullopt;
 }
 
-/// Whether one parabola passes through all points to within kOffWhole: they then include neither a bounce nor a
-/// sensor's jump.
+/// Whether one parabola passes through all points to within `off_m`: they then include neither a bounce nor a sensor's
+/// jump.
 bool is_parabola(std::span<const double> t_s, std::span<const double> x_m, double off_m) {
   const Eigen::Vector3d fit = parabola(t_s, x_m);
   const double middle = 0.5 * (t_s.front() + t_s.back());
