@@ -25,8 +25,8 @@ namespace glidelab::diagnose {
 /// Points within two bandwidths of a motion's ends are left out. There are twelve bins over the range of all speeds,
 /// with one edge at v = 0. A bin of fewer than five points is left out.
 ///
-/// `before` and `after` are fits of the same set, of two clips or more. The result has all masses together and then,
-/// where there are several, each mass. It is empty where no clip has a bandwidth.
+/// `before` and `after` are fits of the same set, of two clips or more. The result has all masses together and then, if
+/// there are several, each mass. It is empty if no clip has a bandwidth.
 std::vector<PhaseGap> phase_gaps(const TrackSet& set, const MotionFit& before, const MotionFit& after);
 
 /// The gap in the parameters: K between masses, mu between masses and directions.
