@@ -47,7 +47,7 @@ struct TrackedMotion {
   double start_s = 0.0;     ///< from the clip's first frame to the motion's first point
   std::vector<double> t_s;  ///< from the clip's first frame
   std::vector<double> x_m;
-  std::vector<char> outlier;                  ///< 1: lies off the neighbours; not fitted
+  std::vector<char> outlier;                  ///< 1: lies far from the cubic through its neighbours; not fitted
   double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
   std::vector<double> wider;                  ///< noise of each position over sd_m; empty: 1
   std::vector<std::vector<double>> shared_m;  ///< as in FreeBlock, or empty
