@@ -25,7 +25,7 @@ struct FrameEffect {
   double value = 0.0;  ///< fraction of frames, or seconds
   double sd = 0.0;
   double in_runs = 0.0;              ///< log evidence that such frames come together, against chance
-  std::optional<ErrorRun> run = {};  ///< the largest, where in_runs is above 0
+  std::optional<ErrorRun> run = {};  ///< the largest, if in_runs is above 0
 };
 
 /// Scatter that grows with the speed: variance sd² + (v tau)².

@@ -55,7 +55,7 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
     const auto f = static_cast<std::size_t>(from);
     if (std::abs(v[f]) * step < (known ? 1.0 : 5.0) * data.sd_of(f)) continue;  // too slow to tell
     // The neighbours must show the jump themselves.
-    // Against the six steps around, or, where they differ much as near a reversal, the two beside it.
+    // Compared with the six steps around, or, if these differ much, as near a reversal, with the two beside it.
     const auto& late = space.fit().late[i];
     const double way = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // without the known losses
     const double after = f + 1 < data.x_m.size() ? data.x_m[f + 1] - data.x_m[f] : data.x_m[f - 1] - data.x_m[f - 2];
@@ -88,7 +88,7 @@ std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit
   std::vector<double> best(states, kNever);
   best[0] = 0.0;
   std::vector<std::vector<std::size_t>> came(n, std::vector<std::size_t>(states, 0));
-  std::vector<std::vector<double>> seen;  // where the model is, by lateness
+  std::vector<std::vector<double>> seen;  // modelled positions, by delay
   for (std::size_t k = 0; k < states; ++k) {
     const std::vector<double> late(n, static_cast<double>(k) * step_s);
     seen.push_back(move(model, data.t_s, late).x_m);
@@ -237,7 +237,7 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int
   found.fit.late.clear();
   const double points = points_of(set);
   for (const TrackedMotion& motion : set.motions) found.fit.late.emplace_back(motion.t_s.size(), 0.0);
-  // Each way of looking sees what another misses where losses are close together: the likeliest end counts.
+  // If losses are close together, each search finds some that another misses: the likeliest result counts.
   const LostBefore by_parabolas = plain_losses(set), by_analysis = analysed_losses(set);
   const MissingFrames nothing = found;
   MissingFrames all = nothing;
