@@ -40,7 +40,7 @@ std::vector<std::vector<FilmedClip>> by_camera(const std::vector<FilmedClip>& cl
   return cameras;
 }
 
-/// The evidence of one camera. Returns false if another camera has shown the effect more clearly.
+/// Adds the finding of one camera, unless another camera has shown the effect more clearly: then returns false.
 bool add_clearest(PictureFinding finding, PictureEvidence& evidence) {
   for (PictureFinding& known : evidence.findings) {
     if (known.id != finding.id) continue;

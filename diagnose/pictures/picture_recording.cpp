@@ -17,7 +17,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kMemory = 0.05;      // of a ratio of variances that should be 1: what it errs by,
-constexpr double kUsualMemory = 1.1;  // and what it is where nothing is wrong
+constexpr double kUsualMemory = 1.1;  // and its usual value for a fault-free clip
 
 }  // namespace
 

@@ -22,7 +22,7 @@ namespace {
 constexpr double kLeastFlicker = 0.002;      // of the light: below, nothing that a threshold would notice
 constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames brighten and darken by as much
 constexpr double kOfDrift = 0.01;            // of the light, for each pixel that the scene has moved
-constexpr double kUsualGradient_1_m = 0.1;   // of the light, in a room where nothing is wrong
+constexpr double kUsualGradient_1_m = 0.1;   // of the light, in an ordinary room
 constexpr double kFull = 0.96;               // of the largest code: a marker as bright may be cut off there
 
 /// The sinc factor by which an exposure averages a wave.

@@ -60,7 +60,7 @@ struct SeriesWave {
 /// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, with a and b free in
 /// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known.
 /// Its evidence is reduced by Schwarz's penalty for what is free, and by four times the median gain over all
-/// frequencies, which is the gain where noise is not white.
+/// frequencies, which is the gain if the noise is not white.
 SeriesWave strongest_wave(const std::vector<Series>& series);
 
 /// Amplitude at one frequency and its standard deviation (of a component), of one series.

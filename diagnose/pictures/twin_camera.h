@@ -2,9 +2,9 @@
 ///
 /// The calibration gives the camera and the pose of the plane's pattern in front of it (p_C = R p_P + s). The marker's
 /// pixels, restituted onto the plane Z = -height of the pattern's frame P, give the line of motion p_P = through + x
-/// along. With the fitted inclination that line is the track's direction in the world, and so the camera's place in it
-/// follows. By a scale alone the camera is taken to look straight at the line of motion from f / (px_per_m) away. SI
-/// units, radians, pixels.
+/// along. With the fitted inclination, that line is the track's direction in the world, which gives the camera's
+/// position. With a scale alone, the camera is taken to look straight at the line of motion from a distance of f /
+/// (px_per_m). SI units, radians, pixels.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -63,7 +63,8 @@ struct Filming {
 std::optional<Filming> filming_of(const core::AnalysisResults& results, const std::vector<core::Experiment>& folders,
                                   int jobs);
 
-/// Before the plane of motion; the world as a scenario has it, its origin where the marker is at x = reference.
+/// The camera in front of the plane of motion, in a scenario's world, whose origin is where the marker is at x =
+/// reference.
 struct TwinView {
   int downhill = 1;  ///< +1: x points to the right in the world
   Eigen::Vector3d position_m = {0.0, 0.1, 2.4};
