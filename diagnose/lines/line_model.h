@@ -13,7 +13,7 @@
 ///
 /// for each kind of data. Neither RSS is less than what rounding to the table's decimals leaves, since lines that were
 /// calculated and rounded carry no more information than their digits. (With g = n fixed it stays below (1 + n)^((n -
-/// p0 - p) / 2) however little is left. Two causes at once would never be found where one of them explains nearly all.)
+/// p0 - p) / 2) however little is left. Two causes at once would never be found if one of them explains nearly all.)
 #pragma once
 
 #include <Eigen/Core>
