@@ -20,7 +20,7 @@ constexpr double kPlumb_rad =
 constexpr double kRuler_m = 5e-4;      // half a division of a ruler in millimetres
 constexpr double kStopWatch_s = 10.0;  // for which a stopwatch is filmed: known to a frame
 constexpr double kLevel_rad = 0.5 * base::kRadPerDegree;  // a track that is less inclined counts as level
-constexpr double kTilt_rad = 4.0 * base::kRadPerDegree;   // that is suggested where there is a level track only
+constexpr double kTilt_rad = 4.0 * base::kRadPerDegree;   // that is suggested if there is only a level track
 constexpr double kSteeper = 1.5;                          // times the steepest inclination so far
 
 /// The experiment so far.
@@ -193,7 +193,7 @@ ChangesWeighed weighed(const std::vector<Change>& changes) {
 namespace {
 
 constexpr std::size_t kFewestPoints = 12;
-constexpr double kInside = 0.05;  // of the range of places: where a launch begins
+constexpr double kInside = 0.05;  // fraction of the range of positions at which a launch begins
 constexpr double kMostPoints = 2000.0;
 
 /// Noise of a position as a function of its speed: sd² (1 + c v²).
