@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 12;
 constexpr std::size_t kParts = 10;            // parabolas go through a tenth of the points,
-constexpr std::size_t kFewestOfParabola = 7;  // and so many at least
+constexpr std::size_t kFewestOfParabola = 7;  // but at least this many
 constexpr double kOffWhole = 0.05;            // of the range of x: one parabola through all points is off by less
-constexpr double kOverNoise = 5.0;            // standard deviations of a parabola's a that a typical one has
-constexpr double kTurnOverNoise = 20.0;       // a turn comes back by so many standard deviations of a position,
-constexpr double kTurnOverRange = 0.05;       // and by such a part of the range of x
+constexpr double kOverNoise = 5.0;            // a typical a must exceed this many standard deviations of a parabola's a
+constexpr double kTurnOverNoise = 20.0;       // a turn comes back by this many standard deviations of a position,
+constexpr double kTurnOverRange = 0.05;       // and by this part of the range of x
 constexpr std::size_t kManyTurns = 6;
 constexpr double kHarmonic = 0.8;                         // of the variance of a
 constexpr double kSmoothPart = 1e-7;                      // of the range of x
@@ -34,7 +34,7 @@ constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0;  // on an incline of le
 constexpr double kSlowFrames_s = 1.0;                     // from one to the next
 constexpr std::size_t kFewestLost = 4;                    // equal positions,
 constexpr double kLostOff = 0.2;                          // of the range of x, from the one before,
-constexpr double kLostOverStep = 10.0;  // and so many times as far as from any to the next, but a tenth
+constexpr double kLostOverStep = 10.0;  // and this many times as far as from any to the next, except for a tenth
 constexpr double kGapSteps = 3.0;       // median steps: a longer one is a gap
 constexpr double kMostUnseen = 0.2;     // of the time
 

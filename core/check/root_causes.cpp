@@ -69,7 +69,7 @@ std::optional<Root> heavy(const Experiment& experiment, double longest_m) {
     names.push_back(clip.name);
     mass_kg = std::max(mass_kg, clip.mass_kg);
   }
-  // Where others are in kilograms, mass_kg contradicts itself, which is a finding of its own.
+  // If others are in kilograms, mass_kg contradicts itself, which is a finding of its own.
   if (names.empty() || least_kg < kLargestMass_kg) return std::nullopt;
   return Root{{Severity::change, first_names(names),
                fmt::format("mass_kg = {:.6g} looks like grams ({:.6g} kg)", mass_kg, mass_kg / 1000.0),
