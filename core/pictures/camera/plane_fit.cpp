@@ -32,7 +32,7 @@ PlanePose pose_from(const Eigen::VectorXd& parameters) {
   return pose;
 }
 
-/// The place of a pattern's point in the first view's pattern: every other view lies in the same plane, turned and
+/// The position of a pattern's point in the first view's pattern: every other view lies in the same plane, rotated and
 /// shifted.
 cv::Vec3d turned(const Eigen::VectorXd& parameters, std::size_t view, cv::Point2d at) {
   if (view == 0) return {at.x, at.y, 0.0};
