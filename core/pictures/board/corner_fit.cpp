@@ -45,7 +45,7 @@ Window cut_window(const cv::Mat& grey, cv::Point2d centre, double radius) {
 
 /// Prior of the blur, because an edge along a pixel's border shows no width.
 constexpr double kUsualBlurPx = 0.4;
-constexpr double kBlurStrength = 0.05;  // worth so much of the contrast in one pixel, a unit of ln(blur)
+constexpr double kBlurStrength = 0.05;  // weight of a unit of ln(blur), as a fraction of the contrast in one pixel
 
 /// Pixels beyond the reach of both edges, of which half of a window may consist: there the model is
 /// (1 + h . d) (b ± a), so that their part of the normal equations follows from a few sums.
