@@ -9,7 +9,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kPixelStep = 4;              // rows, and columns, from one pixel that counts to the next
+constexpr int kPixelStep = 4;              // rows, and columns, from one counted pixel to the next
 constexpr std::size_t kExposureStep = 5;   // frames, from one whose exposure counts to the next
 constexpr double kBrightQuantile = 0.999;  // of the pixels, the level that is called bright
 constexpr std::size_t kMostPairs = 24;

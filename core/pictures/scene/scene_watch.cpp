@@ -35,14 +35,14 @@ struct Candidate {
 };
 
 constexpr double kMostRelativeResidual = 3.0;  // residuals over the usual ones
-constexpr double kMostShiftSd = 0.5;           // px; a shift known less well is no measurement
+constexpr double kMostShiftSd = 0.5;           // px; a shift with a larger uncertainty is not a measurement
 constexpr double kMostShiftSdToCompare =
     0.2;                                     // px; a patch that is to agree with the others must know its shift so well
 constexpr double kMostShiftOff = 5.0;        // of its standard deviations
 constexpr double kInterpolationError = 0.1;  // px: residual over gradient of structure near the pixels' own size
 constexpr double kLossyNoise = 1.0;          // codes, of a pixel
-constexpr double kPixelsPerBlock = 64.0;     // pixels that a codec errs in together
-constexpr double kLeastShiftSd = 0.01;       // px: of a patch against the others
+constexpr double kPixelsPerBlock = 64.0;     // pixels that share a codec's error
+constexpr double kLeastShiftSd = 0.01;       // px; of a patch relative to the others
 constexpr double kMedianOfSquare = 0.455;    // of a standard normal deviate
 constexpr int kFramesOfChange = 3;           // in a row that give changes over one frame and over two
 
