@@ -16,7 +16,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kMemory = 0.05;      // of a ratio of variances that should be 1: what it errs by,
+constexpr double kMemory = 0.05;      // uncertainty of a ratio of variances that should be 1,
 constexpr double kUsualMemory = 1.1;  // and its usual value for a fault-free clip
 
 }  // namespace
@@ -94,7 +94,7 @@ namespace {
 
 constexpr int kReach = 4;                         // frames to each side that give a frame's speed
 constexpr std::size_t kFewestFramesOfShape = 40;  // frames of all clips together
-constexpr int kPlace = 4;                         // terms of a cubic
+constexpr int kPlace = 4;                         // number of terms of a cubic
 constexpr double kShortest_s = 2e-5;
 constexpr double kFinest = 1.06;  // step of the exposures that are tried
 constexpr int kBins = 24;

@@ -19,11 +19,11 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastFlicker = 0.002;      // of the light: below, nothing that a threshold would notice
-constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames brighten and darken by as much
+constexpr double kLeastFlicker = 0.002;      // of the light: below this, no threshold would notice it
+constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames change the brightness by as much
 constexpr double kOfDrift = 0.01;            // of the light, for each pixel that the scene has moved
 constexpr double kUsualGradient_1_m = 0.1;   // of the light, in an ordinary room
-constexpr double kFull = 0.96;               // of the largest code: a marker as bright may be cut off there
+constexpr double kFull = 0.96;               // of the largest code: a marker this bright may be saturated
 
 /// The sinc factor by which an exposure averages a wave.
 double averaged(double f_hz, double exposure_s) {
@@ -174,7 +174,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
 
 namespace {
 
-constexpr double kLeastSway_px = 0.02;      // what a patch of scene can be trusted to
+constexpr double kLeastSway_px = 0.02;      // accuracy of the shift of a patch of the scene
 constexpr double kLeastSwayLossy_px = 0.3;  // of a codec, which keeps the scene where it was, or moves it, by blocks
 
 double least_sway_px(const std::vector<FilmedClip>& clips) {

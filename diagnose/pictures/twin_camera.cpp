@@ -41,12 +41,13 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kField = 1.6;            // m that a scenario's own camera sees from 2.4 m
-constexpr std::size_t kFewestPlaces = 8;  // that a line is laid through
+constexpr std::size_t kFewestPlaces = 8;  // from which a line is fitted
 /// Code of a scenario's wall, the largest part of the resting scene: from its albedo, white level and offset.
 constexpr double kLastCode = 255.0, kBlackCode = 2.0, kRange = kLastCode - kBlackCode;  // of a scenario's 8 bits
 constexpr double kWallCode = 0.38 * 0.75 * kRange;
 constexpr double kWellKnown = 5.0;                 // standard deviations
-constexpr double kFocalOfWidth = 1.5;              // of a usual lens, where nothing tells: as a scenario's own camera
+constexpr double kFocalOfWidth = 1.5;              // of a usual lens, if nothing is known: that of a scenario's default
+                                                   // camera
 constexpr double kMostRotation = 10.0 / kDegrees;  // that a scenario allows a pattern
 
 /// y = through + x along, by least squares.
