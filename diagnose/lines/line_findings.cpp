@@ -127,8 +127,9 @@ std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector
 
 namespace {
 
-constexpr double kReadAngle = 0.3;  // degrees: how well a person reads a plumb line, where a table says nothing
-constexpr double kOff = 3.0;        // standard deviations from which on a group of lines is off
+constexpr double kReadAngle = 0.3;  // degrees: accuracy with which a person reads a plumb line, if the table does not
+                                    // say
+constexpr double kOff = 3.0;        // standard deviations above which a group of lines is off
 constexpr int kPoints = 60;         // of a curve
 
 /// The projection onto what the columns do not explain.

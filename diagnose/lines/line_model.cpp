@@ -20,7 +20,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSmallest = 1e-6, kLargest = 1e6;  // kg, m/s², 1/s: beyond all tables, and squares stay numbers
+constexpr double kSmallest = 1e-6, kLargest = 1e6;  // kg, m/s², 1/s: beyond all tables, and their squares remain finite
 
 }  // namespace
 
@@ -227,9 +227,9 @@ namespace {
 
 constexpr double kLeastLeft = 1e-6;                     // of lines with very many digits: log of K/m, and m/s²
 constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
-constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
-constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
-constexpr int kMostTurns = 50;                          // of fitting sizes and scatters in turn
+constexpr double kSettled = 1e-9;                       // relative change of a scatter from one iteration to the next
+constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // start of the iteration: relative, and m/s²
+constexpr int kMostTurns = 50;                          // iterations that fit sizes and scatters in turn
 constexpr double kLeastUnseen =
     0.05;  // of a line that the others leave undetermined; its held-out residual is divided by no less
 
