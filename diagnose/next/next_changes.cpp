@@ -18,8 +18,8 @@ constexpr double kSlowest = 0.2;  // of the fastest launch so far: no slower one
 constexpr double kPlumb_rad =
     0.05 * base::kRadPerDegree;        // standard deviation of a thread in the image, or a digital level
 constexpr double kRuler_m = 5e-4;      // half a division of a ruler in millimetres
-constexpr double kStopWatch_s = 10.0;  // for which a stopwatch is filmed: known to a frame
-constexpr double kLevel_rad = 0.5 * base::kRadPerDegree;  // a track that is less inclined counts as level
+constexpr double kStopWatch_s = 10.0;  // duration for which a stopwatch is filmed: known to a frame
+constexpr double kLevel_rad = 0.5 * base::kRadPerDegree;  // a track with a smaller inclination counts as level
 constexpr double kTilt_rad = 4.0 * base::kRadPerDegree;   // that is suggested if there is only a level track
 constexpr double kSteeper = 1.5;                          // times the steepest inclination so far
 
@@ -171,7 +171,7 @@ void add_statements(const TrackSet& set, const SoFar& so, std::vector<Change>& c
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal) {
   const SoFar so = so_far(set, nominal);
   std::vector<Change> changes;
-  if (!is_driven(set)) {  // what a motor will do next nobody knows
+  if (!is_driven(set)) {  // nobody knows what a motor will do next
     if (only_falls(set)) {
       add_drops(set, so, changes);
     } else {

@@ -86,8 +86,8 @@ NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const D
 
 namespace {
 
-constexpr double kDecides = 5.0;       // expected log likelihood from which on a change is worth making
-constexpr double kStillLikely = 0.05;  // probability from which on an explanation is a rival
+constexpr double kDecides = 5.0;       // expected log likelihood above which a change is worth making
+constexpr double kStillLikely = 0.05;  // probability above which an explanation is a rival
 constexpr std::size_t kMostRivals = 3;
 constexpr double kSharpens = 0.95;  // of the standard deviation so far: a clip that leaves more is not worth it
 
