@@ -172,7 +172,6 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   const double first = clip.motion.front().t_s;
   // A border with something else is known to about a bandwidth.
   double from = clip.motion[run.from].t_s, to = clip.motion[run.to].t_s;
-  // where it is not stated.
   const auto before = run.from > 0 ? clip.motion[run.from - 1].left_out : core::LeftOut::before_start;
   const auto after = run.to + 1 < clip.motion.size() ? clip.motion[run.to + 1].left_out : core::LeftOut::after_end;
   if (before != core::LeftOut::before_start && !(all && before == core::LeftOut::no_marker)) from += clip.bandwidth_s;
