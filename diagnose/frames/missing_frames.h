@@ -7,7 +7,6 @@
 /// 12, one in each motion at a time or all together, with K, mu and the inclination free. Then all of them are placed
 /// anew along the fitted path (Viterbi). These count only if they leave chi² below 2 per point: many curves that the
 /// model lacks look like a series of losses.
-/// like a series of losses.
 #pragma once
 
 #include "diagnose/frames/frame_effects.h"
