@@ -8,7 +8,7 @@
 ///     x error = (a sin 2 pi s + b cos 2 pi s + c sin 4 pi s + d cos 4 pi s) / (pixels a metre),
 ///
 /// with s the centre's coordinate (column or row) along which it moves more. a to d are unknown. Each is N(0, (0.01
-/// px)²), the accuracy reported for good trackers, and ten times the error that this one showed on sharp images. Over
+/// px)²): the accuracy reported for good trackers, and ten times the error that this one showed on sharp images. Over
 /// many pixels this cannot imitate a force. Without it, such errors are taken for waves as soon as the noise is small.
 #pragma once
 
