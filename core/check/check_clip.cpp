@@ -143,7 +143,7 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
   clip.pixel_noise = look.pixel_noise;
 }
 
-/// Nothing for fewer than some twenty outlines (a centroid has none).
+/// Empty for fewer than some twenty outlines (a centroid has none).
 std::optional<MarkerLighting> lighting_of(const std::vector<MarkerFit>& fits) {
   constexpr std::size_t kFewest = 20;
   constexpr double kRare = 0.05;

@@ -99,8 +99,8 @@ std::optional<double> share_inside(const PatternCheck& pattern, const std::vecto
 
 namespace {
 
-// Times the stated diameter, for a marker that is not found: the tracker takes what is 0.75 to 1.33 times as large as
-// it looks for; the last two are a decimal point.
+// Times the stated diameter, for a marker that is not found: the tracker accepts 0.75 to 1.33 times the size that it
+// looks for; the last two stand for a wrong decimal point.
 constexpr std::array<double, 6> kOtherSizes = {1.6, 1.0 / 1.6, 2.5, 1.0 / 2.5, 10.0, 0.1};
 
 /// A folder with this clip alone, and no plumb line.
@@ -113,7 +113,7 @@ Experiment alone(Experiment experiment, std::size_t clip) {
   return experiment;
 }
 
-/// All tracks at once, as the analysis takes them; where that fails, one by one, to see which clip it is.
+/// All tracks at once, as in the analysis; if that fails, one by one, to see which clip is the cause.
 std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, const base::Progress& progress,
                                      ClipWatches& watches, const SeenPattern* seen_pattern, RecordingCheck& check) {
   std::vector<ClipAttempt> attempts(experiment.clips.size());
@@ -156,14 +156,15 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
       }
     });
     if (found == factors.end())
-      break;  // a marker found in no size in one clip is hardly found in the others, and each try takes time
+      break;  // a marker that is not found in any size in one clip will hardly be found in the others, and each attempt
+              // takes time
     attempts[i].track.notes.emplace_back(NotOfStatedSize{std::exchange(attempts[i].failure, {})});
     std::rotate(factors.begin(), found, found + 1);
   }
   return attempts;
 }
 
-/// Lines, and what they make of the inclination, of the clips that the analysis would take.
+/// The lines of the clips that the analysis would use, and the inclination that follows from them.
 void analyze_motions(const Experiment& experiment, const std::vector<ClipAttempt>& attempts, RecordingCheck& check) {
   std::vector<ClipSetup> setups;
   std::vector<ClipResult> results;

@@ -20,7 +20,7 @@ namespace glidelab::core {
 
 struct CheckedPattern {
   PatternCheck check;
-  std::optional<SeenPattern> seen;  ///< the corners and the camera, where there is one
+  std::optional<SeenPattern> seen;  ///< the corners and the camera, if there is one
 };
 
 /// The images of the pattern: in which of them it is found, how well one camera explains them, how much of the image
@@ -29,8 +29,8 @@ struct CheckedPattern {
 CheckedPattern check_pattern(const Experiment& experiment, int jobs,
                              const base::Progress& progress = base::no_progress);
 
-/// The share of a path that lies within the convex hull of all corners, where the lens is known; nothing for an empty
-/// path or fewer than three corners.
+/// The share of a path that lies within the convex hull of all corners, if the lens is known; empty for an empty path
+/// or fewer than three corners.
 std::optional<double> share_inside(const PatternCheck& pattern, const std::vector<PixelPlace>& path);
 
 /// `jobs` clips at a time. InputError only for an experiment without clips.

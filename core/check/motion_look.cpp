@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 12;
 constexpr std::size_t kParts = 10;            // parabolas go through a tenth of the points,
-constexpr std::size_t kFewestOfParabola = 7;  // and so many at least
+constexpr std::size_t kFewestOfParabola = 7;  // but at least this many
 constexpr double kOffWhole = 0.05;            // of the range of x: one parabola through all points is off by less
-constexpr double kOverNoise = 5.0;            // standard deviations of a parabola's a that a typical one has
-constexpr double kTurnOverNoise = 20.0;       // a turn comes back by so many standard deviations of a position,
-constexpr double kTurnOverRange = 0.05;       // and by such a part of the range of x
+constexpr double kOverNoise = 5.0;            // a typical a must exceed this many standard deviations of a parabola's a
+constexpr double kTurnOverNoise = 20.0;       // a turn comes back by this many standard deviations of a position,
+constexpr double kTurnOverRange = 0.05;       // and by this part of the range of x
 constexpr std::size_t kManyTurns = 6;
 constexpr double kHarmonic = 0.8;                         // of the variance of a
 constexpr double kSmoothPart = 1e-7;                      // of the range of x
@@ -34,7 +34,7 @@ constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0;  // on an incline of le
 constexpr double kSlowFrames_s = 1.0;                     // from one to the next
 constexpr std::size_t kFewestLost = 4;                    // equal positions,
 constexpr double kLostOff = 0.2;                          // of the range of x, from the one before,
-constexpr double kLostOverStep = 10.0;  // and so many times as far as from any to the next, but a tenth
+constexpr double kLostOverStep = 10.0;  // and this many times as far as from any to the next, except for a tenth
 constexpr double kGapSteps = 3.0;       // median steps: a longer one is a gap
 constexpr double kMostUnseen = 0.2;     // of the time
 
@@ -65,7 +65,8 @@ std::optional<double> typical_acceleration(std::span<const double> t_s, std::spa
   return typical > kOverNoise * sd_m_s2 ? std::optional(typical) : std::nullopt;
 }
 
-/// Whether one parabola goes through all points to within so much: neither a bounce nor a sensor's jump is among them.
+/// Whether one parabola passes through all points to within `off_m`: they then include neither a bounce nor a sensor's
+/// jump.
 bool is_parabola(std::span<const double> t_s, std::span<const double> x_m, double off_m) {
   const Eigen::Vector3d fit = parabola(t_s, x_m);
   const double middle = 0.5 * (t_s.front() + t_s.back());
@@ -92,7 +93,7 @@ std::size_t turns_in(std::span<const double> x_m, double back_m) {
   return turns;
 }
 
-/// Part of the variance of a that a line falling with x explains; 0 where it rises.
+/// Part of the variance of a that a line decreasing with x explains; 0 if the line increases.
 double harmonic_part(const std::vector<double>& x, const std::vector<double>& a) {
   const auto n = static_cast<Eigen::Index>(x.size());
   Eigen::ArrayXd dx = Eigen::Map<const Eigen::ArrayXd>(x.data(), n), da = Eigen::Map<const Eigen::ArrayXd>(a.data(), n);

@@ -21,7 +21,7 @@ namespace glidelab::core {
 MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
                           std::span<const MarkerSighting> sightings, bool forced);
 
-/// What is wrong with it; Severity::unusable is what no diagnosis can judge.
+/// The faults of the motion; Severity::unusable if no diagnosis can judge it.
 std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2);
 
 }  // namespace glidelab::core

@@ -39,10 +39,10 @@ enum class Topic {
 struct Finding {
   Severity severity = Severity::note;
   std::string about;   ///< "pattern", "masses", "plumb line", or clips' names
-  std::string found;   ///< "the marker is 4.1 px wide"; empty where a note says it
+  std::string found;   ///< "the marker is 4.1 px wide"; empty if a note says it
   std::string advice;  ///< "move closer or use a bigger one"; empty if nothing is to be done
   Topic topic = Topic::other;
-  std::optional<Note> note = {};     ///< what is found, where the analysis notes the same
+  std::optional<Note> note = {};     ///< the same finding as a note, if the analysis notes it too
   std::vector<Finding> follow = {};  ///< findings that follow from this one, which is their root cause
 };
 
@@ -76,11 +76,11 @@ struct LostPositions {
   std::size_t count = 0;
 };
 
-/// Of the positions alone (motion_look.h).
+/// From the positions alone (motion_look.h).
 struct MotionLook {
   double distance_m = 0.0;
   double frame_s = 0.0;                     ///< mean time from one position to the next
-  std::optional<double> acceleration_m_s2;  ///< typical size; none where noise hides it, or a force was recorded
+  std::optional<double> acceleration_m_s2;  ///< typical size; none if noise hides it, or a force was recorded
   std::size_t turns = 0;
   bool oscillates = false;
   double bend = 0.0;    ///< of the path in the image: sagitta over length

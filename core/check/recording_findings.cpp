@@ -81,7 +81,7 @@ constexpr std::size_t kMostUnseenAtEnd = 3;  // frames at a clip's start or end
 constexpr double kLeastPathInside = 0.95;    // of the marker's path
 constexpr double kSmallMarkerPx = 6.0, kUnusableMarkerPx = 3.0;
 constexpr double kLeastContrast = 0.15, kLeastSignalToNoise = 20.0, kUnusableSignalToNoise = 5.0;
-constexpr double kMostPullChange_px = 0.15;  // ten times what a centroid's noise makes of it
+constexpr double kMostPullChange_px = 0.15;  // ten times the part due to a centroid's noise
 constexpr double kLargePull = 0.05;          // of the marker's diameter
 constexpr double kLeastContrastAlong = 0.5;  // of the largest along the path
 constexpr double kSaturatedLevel = 0.985, kLeastBrightLevel = 0.25, kMostSaturatedShare = 0.05;
@@ -163,7 +163,7 @@ void judge_light(const ClipCheck& clip, FindingBook& book) {
   }
 }
 
-/// Light that changes from place to place, and what it does to the marker's apparent centre.
+/// Light that varies with position, and its effect on the marker's apparent centre.
 void judge_lighting(const ClipCheck& clip, FindingBook& book) {
   if (!clip.light) return;
   const double px_per_m = clip.top_speed_m_s > 0.0 ? clip.top_speed_px_s / clip.top_speed_m_s : 0.0;

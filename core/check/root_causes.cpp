@@ -29,7 +29,7 @@ struct Unit {
   double per_m;
 };
 
-/// Of centimetres and millimetres the one in which the value comes closest to the usual one.
+/// Whichever of centimetres and millimetres brings the value closest to the usual one.
 Unit likely_unit(double value, double usual_m) {
   const auto off = [&](const Unit& unit) { return std::abs(std::log(value / unit.per_m / usual_m)); };
   const Unit centimetres{"centimetres", "centimetre", 100.0}, millimetres{"millimetres", "millimetre", 1000.0};
@@ -69,7 +69,7 @@ std::optional<Root> heavy(const Experiment& experiment, double longest_m) {
     names.push_back(clip.name);
     mass_kg = std::max(mass_kg, clip.mass_kg);
   }
-  // Where others are in kilograms, mass_kg contradicts itself, which is a finding of its own.
+  // If others are in kilograms, mass_kg contradicts itself, which is a finding of its own.
   if (names.empty() || least_kg < kLargestMass_kg) return std::nullopt;
   return Root{{Severity::change, first_names(names),
                fmt::format("mass_kg = {:.6g} looks like grams ({:.6g} kg)", mass_kg, mass_kg / 1000.0),
@@ -108,7 +108,7 @@ std::vector<Root> stated_roots(const Experiment& experiment, double longest_m) {
   return roots;
 }
 
-/// Tracks whose accelerations no incline makes and whose distance no track has.
+/// Tracks with accelerations that no incline causes and distances that no track has.
 std::optional<Root> long_tracks(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<std::string> names;
   double distance_m = 0.0;

@@ -15,7 +15,7 @@
 namespace glidelab::core {
 
 /// "square_m = 40 looks like millimetres (0.04 m)", and the advice; from the statements alone. `longest_m`: the longest
-/// distance that a clip covers, 0 where it is not known; beyond 20 m, which no glider covers, any mass passes.
+/// distance that a clip covers, 0 if it is not known; beyond 20 m, which no glider covers, any mass is accepted.
 std::vector<Finding> unit_findings(const Experiment& experiment, double longest_m);
 
 /// The findings with each root cause in place of those that follow from it, which move into its `follow`.

@@ -12,12 +12,14 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kFewestTurns = 2.0;    // in the longest motion: slower is a drift, which other causes make as well
-constexpr double kFastest = 0.48;       // of the frame rate
-constexpr double kFastestLossy = 0.2;   // a codec takes frames by twos to fours, each with its own error
-constexpr double kLatestRelease = 0.4;  // of the longest motion: later it is no start
+constexpr double kFewestTurns = 2.0;    // periods in the longest motion: anything slower is a drift, which has other
+                                        // causes too
+constexpr double kFastest = 0.48;       // as a fraction of the frame rate
+constexpr double kFastestLossy = 0.2;   // the same after a codec, which takes two to four frames together, each group
+                                        // with its own error
+constexpr double kLatestRelease = 0.4;  // fraction of the longest motion: anything later is not at the start
 constexpr double kFewFrames = 3.0;
-constexpr double kShortestPush = 4.0;  // frames: one that ends before that is an error of single frames
+constexpr double kShortestPush = 4.0;  // frames: a push that ends earlier is an error of single frames
 
 ParameterRange range_of_waves(const TrackSet& set) {
   double longest = 0.0, rate = std::numeric_limits<double>::infinity();
@@ -223,7 +225,7 @@ namespace {
 
 using Global = ParameterLayout::Global;
 
-/// As the fit wants it: what each parameter is changed by for a derivative.
+/// The change of each parameter for a finite difference.
 double step_of(const Global& global, double at) {
   switch (global.kind) {
     case Global::Kind::k:

@@ -1,5 +1,5 @@
-/// The model that is fitted: the nominal model with any set of effects, its parameters and their ranges, the motion
-/// that they make, and that motion's derivatives.
+/// The model that is fitted: the nominal model with any set of effects, its parameters and their ranges, the resulting
+/// motion, and the derivatives of that motion.
 ///
 /// The constants are limits that several searches share and that must be the same in each.
 #pragma once
@@ -17,62 +17,63 @@
 
 namespace glidelab::diagnose {
 
-/// Standard deviations that the largest size of an effect must make to be visible at all.
+/// An effect is visible at all only if its largest size shows by this many standard deviations.
 inline constexpr double kVisible_sd = 4.0;
 
-/// Standard deviation of the prior of an inclination that is not stated: practically free.
+/// Standard deviation of the prior of an unstated inclination: practically free.
 inline constexpr double kOpenInclination_rad = 0.35;
 
-/// Near the vertical the inclination is taken as stated, to within a plumb line's error where none is stated. Where
-/// only falls were recorded, mu is held at 0 and not determined: almost no force presses on a track, and together with
-/// a free inclination mu would imitate any constant force.
+/// Near the vertical the inclination is taken as stated, or, if it is not stated, as known to within a plumb line's
+/// error. If only falls were recorded, mu is held at 0 and not determined: there is almost no normal force on the
+/// track, and together with a free inclination mu would imitate any constant force.
 inline constexpr double kFallInclination_rad = 0.0175, kFallFriction = 1e-4;
 
-/// Log evidence above which something is acted upon without being weighed against anything else.
+/// Log evidence above which a finding is acted upon without being weighed against anything else.
 inline constexpr double kBeyondDoubt = 5.0;
 
-/// The fewest points at which the shape of a scatter says anything.
+/// The fewest points at which the shape of a scatter is informative.
 inline constexpr std::size_t kFewestScatter = 50;
 
-/// Uneven times of filmed clips below this are none: a hundredth of a short exposure.
+/// Timing jitter of filmed clips below this is taken as zero: a hundredth of a short exposure.
 inline constexpr double kLeastFilmedJitter_s = 1e-5;
 
 struct ParameterRange {
   double low = 0.0, high = 0.0;
 };
 
-/// The range of an effect's parameter in given data: one range for the scan, which averages evidence over it, and for
-/// the fit. A fit that went further would gain from sizes that its evidence does not average over. A wave slower than
-/// the clips can imitate any drift; a cable that tightens before the first position, or a lens whose axis is outside
-/// the image, can imitate any bend.
+/// The range of an effect's parameter for the given data. It is the same for the scan, which averages the evidence over
+/// it, and for the fit: a fit that went further would gain from sizes that its evidence does not average over. Limits
+/// are needed, as a wave slower than the clips can imitate any drift, and a cable that tightens before the first
+/// position, or a lens whose axis is outside the image, can imitate any bend.
 ///
-/// Sizes are as the effects state them, those proportional to the mass for the heaviest glider. A place lies within the
-/// range of positions. A frequency makes at least two turns in the longest motion. A release comes after four frames,
-/// and within half a second and the first two fifths of the longest motion. A Stribeck speed lies above that at which a
-/// codec may hold the marker (TrackSet::held_m_s).
+/// Sizes are as the effects state them; those proportional to the mass are for the heaviest glider. A location lies
+/// within the range of positions. A frequency makes at least two periods in the longest motion. A release comes after
+/// four frames, and within half a second and the first two fifths of the longest motion. A Stribeck speed lies above
+/// the speed up to which a codec may hold the marker in place (TrackSet::held_m_s).
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
 
-/// From the least to the largest position.
+/// From the smallest to the largest position.
 ParameterRange range_of_places(const TrackSet& set);
 
-/// Whether a motion begins with its clip, so that a hand could be in it.
+/// Whether a motion begins with its clip, so that a hand could still be touching the glider.
 bool begins_with_its_clip(const TrackSet& set, const TrackedMotion& motion);
 
-/// A mass on a set-up.
+/// A mass on one set-up of the track.
 struct Configuration {
   std::size_t group = 0, mass = 0;
   auto operator<=>(const Configuration&) const = default;
 };
 
-/// Those of a set's motions, in order.
+/// The configurations of a set's motions, in order.
 std::vector<Configuration> configurations_of(const TrackSet& set);
 
-/// The parameters of the nominal model with any set of effects: which exist for a set of tracks, and their indices.
+/// The parameters of the nominal model with any set of effects: which of them exist for a set of tracks, and their
+/// indices.
 class ParameterLayout {
  public:
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects);
-  /// For motions that are not in `like`: an effect's parameters are those of the configurations and clips of `like`,
-  /// and the range of places is the same.
+  /// For motions that are not in `like`: an effect has the parameters of the configurations and clips of `like`, and
+  /// the range of locations is the same.
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like);
 
   struct Global {
@@ -81,23 +82,23 @@ class ParameterLayout {
     const EffectParameter* parameter = nullptr;
     std::size_t effect = 0;
     double step = 0.0;
-    ParameterRange range = {};         ///< of an effect: what it may be
-    Configuration configuration = {};  ///< of Each::configuration
+    ParameterRange range = {};         ///< allowed range of an effect's parameter
+    Configuration configuration = {};  ///< used if the parameter is one of Each::configuration
   };
-  /// Whether two layouts mean the same parameter by these, of the same group, mass, mode, configuration or clip.
+  /// Whether two layouts mean the same parameter by a and b: of the same group, mass, mode, configuration or clip.
   static bool same(const Global& a, const Global& b) {
     return a.kind == b.kind && a.index == b.index && a.parameter == b.parameter && a.configuration == b.configuration;
   }
   const std::vector<Global>& globals() const { return globals_; }
-  const std::vector<const EffectParameter*>& own() const { return own_; }  ///< after x0, v0
+  const std::vector<const EffectParameter*>& own() const { return own_; }  ///< they follow x0 and v0
   const std::vector<std::size_t>& effects() const { return effects_; }
-  const ParameterRange& places() const { return places_; }  ///< of all positions
-  /// Index among globals of an effect's first parameter that is not own.
+  const ParameterRange& places() const { return places_; }  ///< range of all positions
+  /// Index among globals of an effect's first parameter that is not a motion's own.
   std::size_t first_of(std::size_t effect) const;
-  /// The indices among globals of one parameter of an effect: more than one where each configuration or clip has its
-  /// own.
+  /// The indices among globals of one parameter of an effect: more than one if each configuration or clip has its own.
   std::vector<std::size_t> all_of(const EffectSlot& slot) const;
-  /// Ranges that include where a fit starts: what was found in whole clips may lie beyond what a part of them shows.
+  /// Widens the ranges to include the start of a fit: what was found in whole clips may lie beyond what a part of them
+  /// shows.
   void widen_to(const Eigen::VectorXd& start);
 
  private:
@@ -120,33 +121,34 @@ struct FitPoint {
 /// Whether a motion depends on a parameter.
 bool touches(const TrackSet& set, const ParameterLayout::Global& global, std::size_t motion);
 
-/// The motion of one track under the point's parameters; `unnamed` is an additional force.
+/// The model of one track's motion at these parameters; `unnamed` is an additional force.
 TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
                     const UnnamedForce* unnamed = nullptr);
 
-/// What the shared errors (of camera, plane, scale, pixels) at this point add to a motion's modelled positions `x_m`.
+/// What the shared errors (of camera, plane, scale, pixels) at these parameters add to a motion's modelled positions
+/// `x_m`.
 std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
                                   std::size_t motion, const std::vector<double>& x_m);
 
-/// How much later than stated each point of each motion is (dropped frames); empty: not at all.
+/// The delay of each point of each motion relative to its stated time (dropped frames); empty: none.
 using Lateness = std::vector<std::vector<double>>;
 
-/// One motion at a point of the parameters: what the model leaves of its positions, and the model's derivatives by the
-/// parameters, both over the noise.
+/// One motion at one point in parameter space: its residuals, and the model's derivatives with respect to the
+/// parameters, both divided by the noise.
 struct FitMotion {
-  Eigen::VectorXd residual;  ///< of unit white noise
-  Eigen::VectorXd plain;     ///< over each position's own noise, with what neighbours share of it
+  Eigen::VectorXd residual;  ///< with unit white noise
+  Eigen::VectorXd plain;     ///< divided by each position's own noise, still correlated between neighbours
   Eigen::MatrixXd global;
   Eigen::MatrixXd own;
   std::vector<double> v_m_s;
 };
 
-/// `forward` differences take half the time and are for the steps of a fit; `central` ones, with the square of their
-/// error, are for what rests on the result: the rest of an effect that the nuisance parameters nearly absorb must not
-/// be the error of the derivatives.
+/// `forward` differences take half the time and serve for the steps of a fit. `central` differences, whose error is of
+/// second order, serve for everything that rests on the result: if the nuisance parameters absorb nearly all of an
+/// effect, what is left must not be the error of the derivatives.
 enum class Derivatives { none, forward, central };
 
-/// Of the motion with this index, by finite differences.
+/// The linearised motion with this index, by finite differences.
 FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
                     const Lateness& late, Derivatives derivatives);
 

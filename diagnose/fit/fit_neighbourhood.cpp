@@ -70,9 +70,10 @@ Eigen::MatrixXd inverse_normal(const Eigen::MatrixXd& matrix) {
 namespace {
 
 constexpr double kUnseen = 1e-10;
-constexpr double kUndrawn = 1e-8;  // derivatives by finite differences err by so much: no size is read off below
+constexpr double kUndrawn = 1e-8;  // relative error of derivatives by finite differences: no size is resolved below
+                                   // this
 
-/// Orthonormal columns that span those of `a`; columns that depend on others fall away.
+/// Orthonormal columns with the span of those of `a`; linearly dependent columns are dropped.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
   Eigen::MatrixXd q(a.rows(), a.cols());
   Eigen::Index kept = 0;
@@ -123,7 +124,7 @@ ScoreSpace::ScoreSpace(const TrackSet& set, const MotionFit& fit) : set_(set), f
     normal(g, g) += 1.0 / (s.sd * s.sd);
     right[g] += (s.value - fit.at.global[g]) / (s.sd * s.sd);
   }
-  // W with W' normal W = 1, directions that the data do not know left out.
+  // W with W' normal W = 1, without the directions that the data do not determine.
   const Eigen::VectorXd scale = (normal.diagonal().array() + 1e-30).sqrt().inverse();
   const base::SymmetricEigen eigen =
       base::symmetric_eigen(Eigen::MatrixXd(scale.asDiagonal() * normal * scale.asDiagonal()));
@@ -248,7 +249,7 @@ double log_amplitude_evidence(double z_hat, double z_most, bool both_signs) {
   std::vector<double> logs;
   for (const int sign : {1, -1}) {
     if (sign < 0 && !both_signs) break;
-    // In log z; where the peak is narrow on that scale, it is integrated as the Gaussian that it is.
+    // On a grid in log z; if the peak is narrow on that scale, it is integrated as a Gaussian.
     const double z = sign * z_hat;
     if (z > 30.0) {
       if (z < most) logs.push_back(0.5 * z * z + 0.5 * std::log(2.0 * 3.14159265358979) - std::log(z * width));
@@ -271,7 +272,7 @@ SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen:
   const double largest = eigen.values[n - 1];
   if (!(largest > 0.0)) return result;
   const Eigen::VectorXd along = base::transposed_product(eigen.vectors, scores);
-  constexpr int kSizes = 14;  // tau sqrt(largest) from 2 to 2 10^(13/3): four decades and more
+  constexpr int kSizes = 14;  // tau sqrt(largest) from 2 to 2 10^(13/3): more than four decades
   std::vector<double> logs;
   double best = -std::numeric_limits<double>::infinity(), best_tau2 = 0.0;
   for (int k = 0; k < kSizes; ++k) {
@@ -279,7 +280,7 @@ SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen:
     double log_evidence = 0.0, gain = 0.0;
     for (Eigen::Index j = 0; j < n; ++j) {
       const double lambda = eigen.values[j];
-      if (lambda < kUnseen * largest) continue;  // taken up by what is fitted; rounding is left
+      if (lambda < kUnseen * largest) continue;  // absorbed by the fitted parameters; only rounding is left
       const double shrunk = tau2 / (1.0 + tau2 * lambda);
       gain += 0.5 * along[j] * along[j] * shrunk;
       log_evidence -= 0.5 * std::log1p(tau2 * lambda);

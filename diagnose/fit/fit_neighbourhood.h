@@ -1,15 +1,15 @@
-/// The linear neighbourhood of a fit: what is left of motions, and of additions to the model, once everything that was
-/// fitted has readjusted.
+/// The linear neighbourhood of a fit: what remains of the motions, and of additions to the model, once all fitted
+/// parameters have readjusted.
 ///
-/// Each motion's own parameters are projected out. What is left are the common parameters and their normal equations,
+/// Each motion's own parameters are projected out. What remains are the common parameters and their normal equations,
 ///
 ///     N = sum_i G_i' G_i + statements,    g = sum_i G_i' r_i + statements,    G_i, r_i = Q_i (derivatives, residuals),
 ///
 /// in units of the noise, with Q_i = 1 - A (A'A)^-1 A' of the motion's own derivatives A. A change of the common
 /// parameters by N^-1 g is the least-squares step.
 ///
-/// A small addition changes the model by c. With r the residuals, both over the noise, and J the derivatives by the
-/// fitted parameters,
+/// A small addition changes the model by c. With r the residuals, both divided by the noise, and J the derivatives with
+/// respect to the fitted parameters,
 ///
 ///     <a, b> = a'b - a'J (J'J + statements)^-1 J'b,
 ///     gain in log likelihood of c at its best size = <c, r>² / (2 <c, c>).
@@ -27,22 +27,22 @@
 
 namespace glidelab::diagnose {
 
-/// A motion's derivatives by its own parameters.
+/// A motion's derivatives with respect to its own parameters.
 struct OwnColumns {
   Eigen::VectorXd scale;
   Eigen::MatrixXd scaled;
-  Eigen::MatrixXd gain;  ///< sizes of the scaled columns from positions
+  Eigen::MatrixXd gain;  ///< maps positions to the sizes of the scaled columns
 };
 OwnColumns own_columns(const FitMotion& motion);
 
-/// Columns over a motion's points (of unit white noise) without what its own parameters can take up.
+/// Columns over a motion's points (of unit white noise) minus the part that its own parameters can absorb.
 Eigen::MatrixXd without_own(const FitMotion& motion, const base::MatrixView& columns);
 
 /// A motion's r_i and G_i.
 struct ProjectedMotion {
   Eigen::VectorXd residual;
   Eigen::MatrixXd common;
-  double freedom = 0.0;  ///< points less own parameters
+  double freedom = 0.0;  ///< number of points less number of own parameters
 };
 ProjectedMotion project(const FitMotion& motion);
 
@@ -53,56 +53,56 @@ struct CommonNormal {
 
   void add(const ProjectedMotion& motion, double sign = 1.0);
 };
-/// Without the motions of one clip.
+/// The normal equations without the motions of one clip.
 CommonNormal without_clip(const TrackSet& set, CommonNormal all, const std::vector<ProjectedMotion>& motions,
                           std::size_t clip);
 
-/// From the statements alone.
+/// The normal equations of the statements alone.
 CommonNormal statements_normal(const MotionFit& fit);
 
 /// Inverse of a scaled, slightly regularised matrix: directions that nothing determines become very uncertain.
 Eigen::MatrixXd inverse_normal(const Eigen::MatrixXd& matrix);
 
-/// A change of all positions over the noise, with each motion's own parameters projected out.
+/// A change of all positions divided by the noise, with each motion's own parameters projected out.
 struct ScoreColumn {
-  Eigen::VectorXd rest;    ///< all motions, one after the other
+  Eigen::VectorXd rest;    ///< all motions, concatenated
   Eigen::VectorXd common;  ///< its products with the whitened common parameters
 };
 
-/// Products of columns with each other and with what a fit leaves.
+/// Scalar products of columns with each other and with the residuals of a fit.
 struct SpreadSeen {
   Eigen::MatrixXd products;
   Eigen::VectorXd scores;
 };
 
-/// What a small addition to a fitted model would gain once everything that was fitted has readjusted.
+/// What a small addition to a fitted model would gain once all fitted parameters have readjusted.
 class ScoreSpace {
  public:
   ScoreSpace(const TrackSet& set, const MotionFit& fit);
 
-  /// One vector a motion: change of the modelled positions in metres.
+  /// `by_motion` has one vector for each motion: the change of its modelled positions in metres.
   ScoreColumn project(const std::vector<Eigen::VectorXd>& by_motion) const;
-  /// Change of the modelled positions of each motion in metres a newton, by an additional force, each motion its own
-  /// (empty functions: none), by its forward difference at `size_n` (N).
+  /// Change of the modelled positions of each motion, in metres per newton, due to an additional force, which each
+  /// motion has its own (empty functions: none); by a forward difference of `size_n` (N).
   std::vector<Eigen::VectorXd> changes_by(const std::vector<UnnamedForce>& forces, double size_n) const;
   ScoreColumn of_force(const std::vector<UnnamedForce>& forces, double size_n) const;
-  /// By the first parameter of an effect whose other ones have these values.
+  /// The change due to the first parameter of an effect whose other parameters have these values.
   ScoreColumn of_effect(std::size_t effect, const std::vector<double>& shape) const;
-  /// By one motion's own size of an effect, another parameter of which has this value.
+  /// The change due to one motion's own size of an effect, another parameter of which has this value.
   ScoreColumn of_own(std::size_t motion, EffectSlot size, double step, EffectSlot shape, double shape_value) const;
 
-  /// By one of the common parameters of an effect that the fit lacks, in a layout that has it.
+  /// The change due to one of the common parameters of an effect that the fit lacks, in a layout that has it.
   ScoreColumn of_parameter(const ParameterLayout::Global& global) const;
-  /// <c_i, c_j> of all, and <c_i, r>.
+  /// All <c_i, c_j>, and all <c_i, r>.
   SpreadSeen seen(const std::vector<ScoreColumn>& columns) const;
 
   double dot(const ScoreColumn& a, const ScoreColumn& b) const;
   const ScoreColumn& residual() const { return residual_; }
   const MotionFit& fit() const { return fit_; }
   const TrackSet& set() const { return set_; }
-  /// Positions of a motion according to the fit: without the noise that is in the residuals.
+  /// Positions of a motion according to the fit, and so without the noise that is in the residuals.
   const std::vector<double>& modelled(std::size_t motion) const { return base_[motion]; }
-  /// What a motion's own parameters leave of a change of it, over the noise.
+  /// The part of a change of a motion that its own parameters cannot absorb, divided by the noise.
   Eigen::VectorXd own_rest(std::size_t motion, const Eigen::VectorXd& change_m) const;
   Eigen::Index offset(std::size_t motion) const { return offset_[motion]; }
 
@@ -111,7 +111,7 @@ class ScoreSpace {
 
   const TrackSet& set_;
   const MotionFit& fit_;
-  std::vector<Eigen::MatrixXd> own_;       ///< orthonormal, of each motion
+  std::vector<Eigen::MatrixXd> own_;       ///< orthonormal columns, for each motion
   Eigen::MatrixXd common_;                 ///< all points x common, own parameters projected out, whitened
   std::vector<std::vector<double>> base_;  ///< modelled positions
   std::vector<Eigen::Index> offset_;
@@ -119,20 +119,20 @@ class ScoreSpace {
   ScoreColumn residual_;
 };
 
-/// log of the evidence for an amplitude against its absence. The likelihood is that of a measured size z_hat (in
-/// standard deviations); the prior spreads evenly over log z from 2 (less cannot be told from nothing) to z_most, over
-/// both signs or one.
+/// Log evidence for an amplitude against its absence. The likelihood is that of a measured size z_hat (in standard
+/// deviations). The prior is uniform in log z from 2 (anything less cannot be told from nothing) to z_most, over both
+/// signs or one.
 double log_amplitude_evidence(double z_hat, double z_most, bool both_signs);
 
-/// The same for many sizes at once, each N(0, tau²), tau spread evenly over its logarithm; `products` are <c_i, c_j>,
+/// The same for many sizes at once, each N(0, tau²), with a prior uniform in log tau; `products` are <c_i, c_j>,
 /// `scores` <c_i, r>.
 struct SpreadEvidence {
   double log_evidence = 0.0;
   double gain = 0.0;           ///< log likelihood gained at the best tau
-  double free_gain = 0.0;      ///< with sizes as the data have them, tau infinite
-  double tau = 0.0;            ///< the best
+  double free_gain = 0.0;      ///< with free sizes (tau infinite)
+  double tau = 0.0;            ///< best value
   Eigen::VectorXd mean;        ///< sizes at the best tau
-  Eigen::MatrixXd covariance;  ///< of them
+  Eigen::MatrixXd covariance;  ///< of these sizes
 };
 SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen::VectorXd& scores);
 

@@ -13,18 +13,18 @@
 namespace glidelab::diagnose {
 namespace {
 
-// Beside the positions these count as nothing: they keep apart what the positions do not.
+// Negligible beside the positions: these priors decide only what the positions leave undetermined.
 constexpr double kOpenRate = 30.0;     // 1/s, sd of K/m
 constexpr double kOpenFriction = 0.3;  // sd of mu
 
-/// Running integral by the trapezoidal rule, from 0.
+/// Running integral by the trapezoidal rule, starting at 0.
 std::vector<double> integral(const std::vector<double>& t_s, const std::vector<double>& y) {
   std::vector<double> sum(y.size(), 0.0);
   for (std::size_t p = 1; p < y.size(); ++p) sum[p] = sum[p - 1] + 0.5 * (y[p] + y[p - 1]) * (t_s[p] - t_s[p - 1]);
   return sum;
 }
 
-/// The direction of motion at each position; constant between turns.
+/// The direction of motion (the sign of v) at each position; constant between turns.
 std::vector<double> directions(const TrackedMotion& motion) {
   std::vector<std::size_t> ends = turns_of(motion);
   ends.push_back(motion.x_m.size() - 1);
@@ -55,10 +55,10 @@ std::vector<double> force_at(const TrackedMotion& motion) {
   return force;
 }
 
-/// A motion's positions and what the parameters do to them, over the noise.
+/// A motion's positions and their derivatives with respect to the parameters, divided by the noise.
 struct Integrated {
-  Eigen::MatrixXd common;  ///< by K, mu, sin(alpha) of its group
-  Eigen::MatrixXd own;     ///< by x0, v0
+  Eigen::MatrixXd common;  ///< with respect to K, mu, sin(alpha) of its group
+  Eigen::MatrixXd own;     ///< with respect to x0, v0
   Eigen::VectorXd x;
 };
 
@@ -87,8 +87,8 @@ Integrated integrated(const TrackSet& set, const TrackedMotion& motion) {
   return all;
 }
 
-/// The least of y'Ay/2 - b'y with the first two of y not below zero: of the four choices of what is held at zero, the
-/// best that keeps to it.
+/// The minimum of y'Ay/2 - b'y with the first two components of y not negative: of the four choices of which of them
+/// are held at zero, the best that satisfies this.
 Eigen::VectorXd resisting(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, bool frictionless) {
   Eigen::VectorXd best = Eigen::VectorXd::Zero(b.size());
   double least = 0.0;
@@ -140,7 +140,7 @@ FitPoint integrated_start(const TrackSet& set) {
   for (const TrackedMotion& motion : set.motions) {
     motions.push_back(integrated(set, motion));
     const Integrated& one = motions.back();
-    // Without what its own x0 and v0 can take up.
+    // Minus the part that its own x0 and v0 can absorb.
     const Eigen::MatrixXd own = base::orthonormal_columns(one.own, 1e-9);
     const Eigen::MatrixXd common = one.common - base::product(own, base::transposed_product(own, one.common));
     const Eigen::VectorXd x = one.x - base::product(own, base::transposed_product(own, one.x));

@@ -3,13 +3,14 @@
 ///
 ///     x(t) = x0 + v0 t + sin(alpha) g t²/2 - mu g cos(alpha) int int sign(v) - K/m int (x - x0) + int int F/m
 ///
-/// is linear in K, mu, sin(alpha), x0 and v0 once x under the integral is the measured one and sign(v) changes at the
-/// turns that the positions show. Nothing is differentiated, so noise hardly matters, and there is one minimum, however
-/// long the motion and however far the stated inclination is from the true one. Errors are of the order of the noise
-/// over the range of x; what the nominal model lacks enters as it does in any least squares.
+/// is linear in K, mu, sin(alpha), x0 and v0 once the x under the integral is the measured one and sign(v) changes at
+/// the turns that the positions show. Nothing is differentiated, so noise hardly matters. There is a single minimum,
+/// however long the motion and however far the stated inclination is from the true one. Errors are of the order of the
+/// noise over the range of x; whatever the nominal model lacks enters as in any least squares.
 ///
-/// Friction and drag are never below zero here: a glider that they drive is no place to start from. Where the positions
-/// leave a direction open (mu and the inclination of motions one way), the statements and wide priors decide.
+/// Friction and drag are never negative here: a fit should not start with a glider that they drive. If the positions
+/// leave a direction undetermined (mu and the inclination if motions go one way), the statements and wide priors
+/// decide.
 #pragma once
 
 #include "diagnose/fit/fit_model.h"
@@ -17,7 +18,7 @@
 
 namespace glidelab::diagnose {
 
-/// In the layout of no effects. SI units.
+/// The start in the layout without effects. SI units.
 FitPoint integrated_start(const TrackSet& set);
 
 }  // namespace glidelab::diagnose

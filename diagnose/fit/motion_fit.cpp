@@ -16,15 +16,17 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr int kMostIterations = 40;
-constexpr int kMoreRounds = 2;             // of as many iterations, for a nominal fit that has not come to its end
-constexpr double kConvergedChange = 1e-3;  // change of chi², small beside what evidence turns on
-// What the data hardly know (a frame rate beside K, mu and the inclination) lies along a bent valley whose walls are
-// steep: a step along it ends far up a wall, from where undamped steps lead back down; it has failed where so many do
-// not.
+constexpr int kMoreRounds = 2;             // further rounds of that many iterations, for a nominal fit that has not
+                                           // converged
+constexpr double kConvergedChange = 1e-3;  // change of chi², small compared with the changes that evidence rests on
+// A combination of parameters that the data hardly determine (a frame rate beside K, mu and the inclination) lies along
+// a curved valley with steep walls. A step along it ends far up a wall, from where undamped steps lead back down. The
+// step has failed if this many of them do not.
 constexpr int kMostStepsBack = 4;
-constexpr int kMostVainReturns = 2;                             // then there is no valley
-constexpr double kSteepest_rad = 1.5, kBeyondStated_rad = 0.2;  // of an inclination; and where a fall is stated
-constexpr double kSmallSteps = 1.0;  // damping at the start: half of Newton's step in directions that are known apart
+constexpr int kMostVainReturns = 2;                             // after that many failures there is no valley
+constexpr double kSteepest_rad = 1.5, kBeyondStated_rad = 0.2;  // steepest inclination; or this far beyond the stated
+                                                                // one
+constexpr double kSmallSteps = 1.0;  // initial damping: half the Newton step in directions that are well separated
 using Global = ParameterLayout::Global;
 
 bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at) {
@@ -89,7 +91,8 @@ void linearise_all(const TrackSet& set, MotionFit& fit, Derivatives derivatives)
   }
 }
 
-/// The fit at another point: residuals and cost, no derivatives; an infinite cost where a parameter may not be there.
+/// The fit at another point in parameter space: residuals and cost, no derivatives; the cost is infinite if a parameter
+/// is not allowed there.
 MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
   MotionFit next = fit;
   next.at = std::move(at);
@@ -100,7 +103,7 @@ MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
   return next;
 }
 
-/// Where a step has failed, the next few are held back as much as succeeded last, so that not every other step is lost.
+/// After a failed step, the next few are damped as much as the last success, so that not every other step is wasted.
 base::FitOptions descent_options() {
   base::FitOptions options;
   options.most_iterations = kMostIterations;
@@ -109,12 +112,13 @@ base::FitOptions descent_options() {
   options.floor_after_refusal = 3.0;
   options.floor_decay = 0.3;
   options.cost_absolute = kConvergedChange;
-  options.cost_relative = 1e-3 * kConvergedChange;  // of a misfit of the order of the number of points, as much again
+  options.cost_relative = 1e-3 * kConvergedChange;  // the same change again if the misfit is of the order of the number
+                                                    // of points
   options.damping_settled = 1e-2;
   return options;
 }
 
-/// x0 and v0 by a parabola through the first points, of those that were not set aside where there are enough.
+/// x0 and v0 by a parabola through the first points; points that were set aside are left out if enough others remain.
 Eigen::VectorXd start_of(const TrackedMotion& motion) {
   constexpr std::size_t kStartPoints = 25, kFewestStartPoints = 6;
   std::vector<std::size_t> points;
@@ -137,8 +141,8 @@ Eigen::VectorXd start_of(const TrackedMotion& motion) {
   return fit.head(2);
 }
 
-/// The least of y'Ay/2 - b'y, with the effects' parameters within their ranges: what would leave its range stops at the
-/// edge, and the others make the best of that. `scale` times y is the change of the parameters.
+/// The minimum of y'Ay/2 - b'y with the effects' parameters within their ranges: a parameter that would leave its range
+/// stops at the edge, and the others minimise what remains. `scale` times y is the change of the parameters.
 Eigen::VectorXd step_within(const MotionFit& fit, Eigen::MatrixXd a, Eigen::VectorXd b, const Eigen::VectorXd& scale) {
   const auto& globals = fit.layout->globals();
   std::vector<bool> held(globals.size(), false);
@@ -163,7 +167,7 @@ Eigen::VectorXd step_within(const MotionFit& fit, Eigen::MatrixXd a, Eigen::Vect
   return y;
 }
 
-/// What stopped at an edge lies there but for rounding.
+/// A parameter that stopped at an edge differs from it only by rounding; this sets it to the edge.
 void round_to_edges(const ParameterLayout& layout, Eigen::VectorXd& global) {
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& of = layout.globals()[g];
@@ -172,13 +176,14 @@ void round_to_edges(const ParameterLayout& layout, Eigen::VectorXd& global) {
   }
 }
 
-/// One step of Gauss and Newton, held back by Levenberg and Marquardt: the point that it leads to.
+/// The parameters after one Gauss-Newton step with Levenberg-Marquardt damping.
 ///
-/// With J and r a motion's derivatives and residuals over the noise, O its own part, G the common one, and damping l,
+/// With J and r a motion's derivatives and residuals divided by the noise, O the own part of J, G its common part, and
+/// damping l,
 ///
 ///     (N + l I) y = g,   N = sum of G'G - G'O (O'O (1 + l))^-1 O'G + statements,   g alike with r,
 ///
-/// scaled to a unit diagonal of G'G and the statements. `fit` has residuals and derivatives where it stands.
+/// scaled to a unit diagonal of G'G and the statements. `fit` must have residuals and derivatives at its parameters.
 FitPoint step_from(const MotionFit& fit, double damping) {
   const auto globals = fit.at.global.size();
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(globals, globals);
@@ -208,7 +213,7 @@ FitPoint step_from(const MotionFit& fit, double damping) {
     diagonal[g] += weight;
     right[g] += weight * (s.value - fit.at.global[g]);
   }
-  // Scaled, so that a parameter that the data hardly see does no harm to the others.
+  // Scaled, so that parameters that the data hardly determine do not harm the others.
   const Eigen::VectorXd scale = (diagonal.array() + 1e-30).sqrt().inverse();
   Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
   scaled.diagonal().array() += damping + 1e-13;
@@ -265,13 +270,14 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   const double start_cost = here.fit.cost;
   const base::FitSummary summary = base::levenberg_marquardt(here, start_cost, options, try_step);
   here.fit.iterations = summary.iterations;
-  // Where nothing descends, rounding is all that is left, or the fit stands at the edge of what is allowed.
+  // If no step descends, only rounding is left, or the fit is at the edge of what is allowed.
   here.fit.converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
   linearise_all(set, here.fit, Derivatives::central);
   return std::move(here.fit);
 }
 
-/// Where a fit stands, with one more effect that is absent; its other parameters as `like`, which has it, has them.
+/// The parameters of a fit, with one more effect that is absent; its other parameters are taken from `like`, which has
+/// the effect.
 FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t effect, const MotionFit& like) {
   FitPoint point = with_effect(set, base, effect, {}, {});
   std::vector<std::size_t> effects = base.effects;
@@ -280,7 +286,7 @@ FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t eff
   const EffectInfo& info = effect_list()[effect];
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
-    // Each parameter of an effect of many sizes is one of them.
+    // If an effect has many sizes, each of its parameters is one of them.
     const bool is_size = global.parameter == &info.parameters[info.law.size] || info.search == Search::spread;
     if (global.kind != Global::Kind::effect || global.effect != effect || is_size) continue;
     for (std::size_t k = 0; k < like.layout->globals().size(); ++k) {
@@ -313,7 +319,7 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
   std::vector<std::size_t> effects = base.effects;
   effects.push_back(effect);
   MotionFit best = fit_motions(set, effects, start, base.late);
-  // A size from a linear estimate far from the minimum may be off by decades.
+  // A size from a linear estimate far from the minimum may be wrong by decades.
   const auto size = base.at.global.size();
   const bool has_size = effect_list()[effect].law.size == 0 &&
                         effect_list()[effect].parameters[0].each == Each::experiment &&
@@ -397,7 +403,7 @@ FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effe
   const ParameterLayout layout(set, effects);
   FitPoint point;
   point.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
-  point.global.head(fit.at.global.size()) = fit.at.global;  // effects come last, the new one last of them
+  point.global.head(fit.at.global.size()) = fit.at.global;  // effects come last, and the new one is the last of them
   for (std::size_t v = 0; v < values.size(); ++v) {
     point.global[fit.at.global.size() + static_cast<Eigen::Index>(v)] = values[v];
   }

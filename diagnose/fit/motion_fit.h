@@ -1,11 +1,11 @@
-/// Least squares of the nominal model with any set of effects to all motions at once.
+/// Least-squares fit of the nominal model with any set of effects to all motions at once.
 ///
 ///     x_ij = x(t_ij; K, mu, alpha_group, masses, effects; x0_i, v0_i, own_i) + sum_k c_k shared_k(t_ij) + noise
 ///
-/// weighted with the noise of each motion; statements are further data: inclinations with their standard deviation,
-/// masses with theirs, the camera's and plane's errors c_k ~ N(0, 1). Gauss and Newton's steps damped by Levenberg and
-/// Marquardt, derivatives by finite differences, each motion's own parameters eliminated. An effect's common parameter
-/// stays within its range (fit_model.h): it stops at the edge, while the others go on.
+/// weighted with the noise of each motion. Statements are further data: inclinations and masses with their standard
+/// deviations, the errors of camera and plane with c_k ~ N(0, 1). The fit takes Gauss-Newton steps with
+/// Levenberg-Marquardt damping; derivatives are by finite differences, and each motion's own parameters are eliminated.
+/// An effect's common parameter stays within its range (fit_model.h): it stops at the edge, while the others go on.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,13 +19,13 @@
 
 namespace glidelab::diagnose {
 
-/// A statement as one more residual: (stated - parameter)/sd.
+/// A statement as an additional residual: (stated - parameter)/sd.
 struct FitStatement {
   std::size_t global = 0;
   double value = 0.0;
   double sd = 0.0;
   std::string against;
-  bool counts = true;  ///< false: a prior for what the data leave open, not evidence
+  bool counts = true;  ///< false: a prior for what the data leave undetermined, not evidence
 };
 
 struct MotionFit {
@@ -40,30 +40,30 @@ struct MotionFit {
   int iterations = 0;
 };
 
-/// From a point in the layout of these effects.
+/// Fits from a start in the layout of these effects.
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late = {});
 
-/// Residuals and derivatives at a point, nothing fitted.
+/// Residuals and derivatives at a point in parameter space, without a fit.
 MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at);
 
-/// A fit as it stands, with residuals and derivatives by the noise of another set of the same motions.
+/// An unchanged fit, with residuals and derivatives under the noise of another set of the same motions.
 MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
 
-/// The nominal model, from where the integrated positions put it (integrated_start.h); where that fits badly, also
-/// from the stated inclinations with three rates of drag. The best of them.
+/// The nominal model, from the start given by the integrated positions (integrated_start.h); if that fits badly, also
+/// from the stated inclinations with three rates of drag. Returns the best of these fits.
 MotionFit fit_nominal(const TrackSet& set, const Lateness& late = {});
 
-/// One more effect than `base` has, from where a search puts it. Where that leads to a worse fit than `base`, which is
-/// the same model with the effect absent, the fit starts again from there, by small steps; the better of the two. So
-/// its cost is never above that of `base`.
+/// Fits one more effect than `base` has, from the start that a search found. If the result is worse than `base`, which
+/// is the same model with the effect absent, the fit starts again from `base`, by small steps, and the better of the
+/// two is returned. So its cost is never above that of `base`.
 MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_t effect, const FitPoint& start);
 
-/// `fit`, or, where `base` fits better, one that starts there with the effect that `fit` has more, absent.
+/// `fit`; or, if `base` fits better, a fit that starts there, with the additional effect of `fit` absent.
 MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit);
 
-/// The point of a fit in the layout of more effects, which are absent but for `values` (in the order of the new
-/// effects' global parameters).
+/// The parameters of a fit in the layout with one more effect, which is absent except for `values` (in the order of its
+/// global parameters).
 FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effect, const std::vector<double>& values,
                      const std::vector<std::vector<double>>& own);
 

@@ -41,9 +41,9 @@ namespace {
 
 constexpr std::size_t kSpeedPoints = 61;  // that give the scatter at a speed: known to a seventh
 
-constexpr double kLeastScatter = 0.05;  // of the noise: positions may have been put where the curve is
+constexpr double kLeastScatter = 0.05;  // relative to the noise: positions may have been placed on the curve
 
-/// Standard deviation of values by the median of their sizes.
+/// Standard deviation of values, from the median of their magnitudes.
 double scatter_of(std::vector<double> sizes) {
   return std::max(core::kSdOverMedian * core::median_of(std::move(sizes)), kLeastScatter);
 }
@@ -69,13 +69,13 @@ struct TailResiduals {
   std::vector<double> scatter_m;
 };
 
-/// All points' residuals over their motion's own scatter, so that clips of different noise make no tails; filmed ones
-/// over that at their speed, as a marker that is smeared is found less well.
+/// All points' residuals over their motion's own scatter, so that clips of different noise make no tails. Those of
+/// filmed points are over the scatter at their speed, as a smeared marker is located less well.
 TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
   std::vector<double> over_sd, v, scatter;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     Leftover left = leftover_of(set, fit, i);
-    // What rounding makes of a single position is the same wherever it is; frames that err alike are `wider` together.
+    // Rounding affects a single position in the same way anywhere; frames with the same error are `wider` together.
     const TrackedMotion& motion = set.motions[i];
     for (std::size_t p = 0; motion.step_m > 0.0 && p < left.over_sd.size(); ++p) {
       left.over_sd[p] *= motion.sd_of(p) / motion.sd_m;
@@ -99,10 +99,10 @@ TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
 }
 
 constexpr double kLeastFilmedWide = 10.0;
-constexpr double kLeastLost_px = 0.05;     // a smaller error is no frame that is missing,
+constexpr double kLeastLost_px = 0.05;     // a smaller error is not due to a missing frame,
 constexpr double kMostOfSmallError = 3.0;  // and counts no more than this, in standard deviations
 constexpr double kFewestRuns = 4.0;        // a frame or two beside another error is no pattern yet
-constexpr double kFewestFirst = 2.0;       // two errors in all, and both in first frames: that is one
+constexpr double kFewestFirst = 2.0;       // two errors in all, both in first frames: these count as one
 constexpr double kPartInRuns = 0.25;
 constexpr double kFirstFrames = 3.0;  // of a clip
 
@@ -128,8 +128,8 @@ double uneven_log_likelihood(const std::vector<double>& e, double freedom) {
   return sum + n * (std::lgamma(0.5 * (freedom + 1.0)) - std::lgamma(0.5 * freedom) - 0.5 * std::log(0.5 * freedom));
 }
 
-/// In images a marker is found better at some places and in some frames (a codec's) than in others, by a factor of
-/// two or three: that is no tail. The usual scatter is therefore one of a size that varies, by how much is not known.
+/// A marker is located better at some places in the image and in some frames (of a codec) than in others, by a factor
+/// of two or three: that is not a tail. The usual scatter is therefore given a size that varies, by an unknown amount.
 Tails find_tails(const std::vector<double>& e, bool filmed) {
   Tails tails;
   const auto n = static_cast<double>(e.size());
@@ -167,13 +167,13 @@ Tails find_tails(const std::vector<double>& e, bool filmed) {
   return tails;
 }
 
-/// How much likelier this position is one of the many than one of the tails.
+/// Log odds that this position belongs to the majority rather than to the tails.
 double of_the_many(const Tails& tails, double e) {
   const double square = e * e / tails.variance, wide = tails.wide * tails.wide;
   return std::log((1.0 - tails.share) * tails.wide / tails.share) - 0.5 * square * (1.0 - 1.0 / wide);
 }
 
-/// Log evidence that `together` of `all`, `fewest` or more, is more than the chance makes.
+/// Log evidence that `together` of `all`, `fewest` or more, exceeds what chance gives.
 double more_than_chance(double together, double all, double chance, double fewest) {
   if (together < std::max(fewest, kPartInRuns * all)) return 0.0;
   return std::lgamma(together + 1.0) + std::lgamma(all - together + 1.0) - std::lgamma(all + 2.0) -
@@ -222,8 +222,8 @@ TailsTogether tails_together(const TrackSet& set, const TailResiduals& residuals
   return {std::max(in_row, in_first), in_first >= in_row ? at_first : one_by_one};
 }
 
-/// In images, what lies off by less than any lost marker does is as good as none: an edge that the marker passes does
-/// so much.
+/// In images, an error smaller than that of any lost marker counts as none: an edge that the marker passes can cause
+/// it.
 void spare_small(const TrackSet& set, std::vector<double>& e) {
   std::size_t at = 0;
   for (const TrackedMotion& motion : set.motions) {
@@ -272,7 +272,7 @@ std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit) {
       ++count;
       ++of_motion;
     }
-    // A scatter that would cost a motion a fifth of its points is no matter of single positions.
+    // A scatter that would cost a motion a fifth of its points is not a matter of single positions.
     if (static_cast<double>(of_motion) > kMostAside * static_cast<double>(motion.t_s.size())) return 0;
   }
   set = std::move(marked);

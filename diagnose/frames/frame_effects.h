@@ -1,4 +1,4 @@
-/// Effects that single frames show: uneven times, outliers among the positions (and missing_frames.h).
+/// Effects that single frames show: timing jitter, outliers among the positions (and missing_frames.h).
 ///
 /// They are judged by the residuals about a smooth curve through each motion's residuals, so that a force that the
 /// model lacks is not taken for them.
@@ -25,24 +25,24 @@ struct FrameEffect {
   double value = 0.0;  ///< fraction of frames, or seconds
   double sd = 0.0;
   double in_runs = 0.0;              ///< log evidence that such frames come together, against chance
-  std::optional<ErrorRun> run = {};  ///< the largest, where in_runs is above 0
+  std::optional<ErrorRun> run = {};  ///< the largest, if in_runs is above 0
 };
 
 /// Scatter that grows with the speed: variance sd² + (v tau)².
 FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit);
 
-/// A fraction of positions with a scatter many times the others'. Where they follow each other on one side, or come in
-/// the first three frames of the clips, it is not scatter but something that lasts, or a tracker that still has to find
-/// its marker: with k of m such frames and a chance p of that,
+/// A fraction of positions with a scatter many times that of the others. If these follow each other on one side, or
+/// come in the first three frames of the clips, this is not scatter but something that lasts, or a tracker that has yet
+/// to find its marker: with k of m such frames and a chance p of that,
 ///
 ///     in_runs = log B(k + 1, m - k + 1) - k log(p) - (m - k) log(1 - p),
 ///
-/// every other chance equally likely beforehand (the larger of the two); 0 where fewer than four, or a quarter of them,
-/// are such.
+/// all other chances being equally likely a priori (the larger of the two); 0 if fewer than four, or less than a
+/// quarter of them, are such.
 FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit);
 
-/// Where the scatter has such tails beyond doubt, the positions that more likely belong to them than not become
-/// outliers, so that no force is fitted to them. Returns how many.
+/// If the scatter has such tails beyond doubt, the positions that more likely belong to them than not become outliers,
+/// so that no force is fitted to them. Returns how many.
 std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose

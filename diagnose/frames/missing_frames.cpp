@@ -24,8 +24,8 @@ constexpr double kMostOff = 50.0;     // log likelihood that one position may co
 constexpr double kNothingLeft = 2.0;  // chi² a point
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Way from one point to the next around the step to point f: the median of three steps on each side, so that other
-/// jumps near by do not count.
+/// Distance from one point to the next around the step to point f: the median of three steps on each side, so that
+/// other nearby jumps do not count.
 double usual_step(const std::vector<double>& x_m, std::size_t f) {
   std::vector<double> steps;
   for (std::size_t to = f > 3 ? f - 3 : 1; to < std::min(x_m.size(), f + 4); ++to) {
@@ -34,8 +34,8 @@ double usual_step(const std::vector<double>& x_m, std::size_t f) {
   return core::median_of(steps);
 }
 
-/// Best place for one more missing frame in a motion: the gain (at the likeliest number of frames, where that need not
-/// be one), and the point from which on all are late.
+/// Best place for one more missing frame in a motion: the gain (for the likeliest number of frames, if that need not be
+/// one), and the point from which on all are late.
 struct Place {
   double gain = 0.0;
   std::size_t motion = 0, point = 0;
@@ -55,9 +55,9 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
     const auto f = static_cast<std::size_t>(from);
     if (std::abs(v[f]) * step < (known ? 1.0 : 5.0) * data.sd_of(f)) continue;  // too slow to tell
     // The neighbours must show the jump themselves.
-    // Against the six steps around, or, where they differ much as near a reversal, the two beside it.
+    // Compared with the six steps around, or, if these differ much, as near a reversal, with the two beside it.
     const auto& late = space.fit().late[i];
-    const double way = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // what is known taken out
+    const double way = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // without the known losses
     const double after = f + 1 < data.x_m.size() ? data.x_m[f + 1] - data.x_m[f] : data.x_m[f - 1] - data.x_m[f - 2];
     const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
     double jump = way - usual_step(data.x_m, f);
@@ -68,7 +68,7 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
     std::vector<Eigen::VectorXd> change(space.set().motions.size());
     change[i] = Eigen::VectorXd::Zero(n);
     for (Eigen::Index p = from; p < n; ++p) change[i][p] = v[static_cast<std::size_t>(p)] * step;
-    // What K, mu and the inclination take up of it is most of what a loss makes near a reversal.
+    // K, mu and the inclination absorb most of the effect of a loss near a reversal.
     ScoreColumn c = space.project(change);
     const double score = space.dot(c, space.residual()), square = space.dot(c, c);
     const double gain = one ? score - 0.5 * square : score > 0.0 && square > 0.0 ? 0.5 * score * score / square : 0.0;
@@ -77,8 +77,8 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
   return best;
 }
 
-/// How many frames are lost before each point of a motion, as the fit has its path: of all such sequences that never
-/// fall the likeliest (Viterbi), each loss paid for.
+/// How many frames are lost before each point of a motion, for the fit's path: the likeliest of all sequences that
+/// never decrease (Viterbi), with a penalty for each loss.
 std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit, std::size_t i, double loss) {
   const TrackedMotion& data = set.motions[i];
   const TrackModel model = model_of(set, *fit.layout, fit.at, i);
@@ -88,7 +88,7 @@ std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit
   std::vector<double> best(states, kNever);
   best[0] = 0.0;
   std::vector<std::vector<std::size_t>> came(n, std::vector<std::size_t>(states, 0));
-  std::vector<std::vector<double>> seen;  // where the model is, by lateness
+  std::vector<std::vector<double>> seen;  // modelled positions, by delay
   for (std::size_t k = 0; k < states; ++k) {
     const std::vector<double> late(n, static_cast<double>(k) * step_s);
     seen.push_back(move(model, data.t_s, late).x_m);
@@ -119,14 +119,14 @@ std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit
   return late;
 }
 
-/// Whether so many losses in all, each paid for, are likelier than those found.
+/// Whether this many losses in all, with their penalties, are likelier than those found.
 bool lowers(const MotionFit& next, std::size_t count, const MissingFrames& found) {
   const double more = static_cast<double>(count) - static_cast<double>(found.count);
   return next.cost + 2.0 * kClear * more < found.fit.cost;
 }
 
-/// How many frames are lost at each place, all fitted together: what two losses do to K, mu and the inclination may
-/// hide both.
+/// How many frames are lost at each place, all fitted together: the effects of two losses on K, mu and the inclination
+/// may hide both.
 Eigen::VectorXd sizes_together(const ScoreSpace& space, const std::vector<Place>& places) {
   const auto n = static_cast<Eigen::Index>(places.size());
   Eigen::MatrixXd products(n, n);
@@ -141,8 +141,8 @@ Eigen::VectorXd sizes_together(const ScoreSpace& space, const std::vector<Place>
   return base::solve_positive(products, scores);
 }
 
-/// One more loss in each motion where that raises the likelihood: each by itself, or all `together`. False where none
-/// does.
+/// Adds one more loss in each motion if that raises the likelihood: each by itself, or all `together`. Returns false if
+/// none does.
 bool add_hidden(const TrackSet& set, bool together, int jobs, MissingFrames& found) {
   const ScoreSpace space(set, found.fit);
   std::vector<Place> places(set.motions.size());
@@ -167,7 +167,7 @@ bool add_hidden(const TrackSet& set, bool together, int jobs, MissingFrames& fou
   return true;
 }
 
-/// All losses placed anew along the fitted path, as long as that raises the likelihood.
+/// Places all losses anew along the fitted path, as long as that raises the likelihood.
 void place_anew(const TrackSet& set, MissingFrames& found) {
   for (int round = 0; round < kRounds; ++round) {
     Lateness tried;
@@ -185,7 +185,7 @@ void place_anew(const TrackSet& set, MissingFrames& found) {
   }
 }
 
-/// With those that only the whole fit shows.
+/// The losses, with those that only the whole fit shows.
 MissingFrames with_hidden(const TrackSet& set, MissingFrames all, int jobs) {
   for (int round = 0; round < kRounds; ++round) {
     const std::size_t before = all.count;
@@ -237,7 +237,7 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int
   found.fit.late.clear();
   const double points = points_of(set);
   for (const TrackedMotion& motion : set.motions) found.fit.late.emplace_back(motion.t_s.size(), 0.0);
-  // Each way of looking sees what another misses where losses are close together: the likeliest end counts.
+  // If losses are close together, each search finds some that another misses: the likeliest result counts.
   const LostBefore by_parabolas = plain_losses(set), by_analysis = analysed_losses(set);
   const MissingFrames nothing = found;
   MissingFrames all = nothing;
@@ -254,7 +254,7 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int
   try_out(by_parabolas);
   if (by_analysis.late != by_parabolas.late) try_out(by_analysis);
   if (found.count == 0) all = with_hidden(set, nothing, jobs);
-  // What no single jump shows counts only where it leaves nothing: many a curve looks like a row of losses.
+  // Losses that no single jump shows count only if nothing remains: many curves look like a series of losses.
   if (all.fit.cost < kNothingLeft * points) found = std::move(all);
   if (found.count == 0) return found;
   describe(0.5 * (fit.cost - found.fit.cost), penalty_of(found.count, points), points, found);

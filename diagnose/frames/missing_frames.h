@@ -1,12 +1,12 @@
-/// Frames that are missing from a clip, later ones moved up: all later positions are ahead by the distance of one or
-/// more frames.
+/// Frames that are missing from a clip, with the later ones moved up: all later positions are ahead by the distance
+/// covered in one or more frames.
 ///
 /// First the obvious ones: around such a place the positions make a parabola only if all from there on are later by
-/// whole frames (a gain of 14 in log likelihood), the clearest first; or, where that ends better, those that the
-/// analysis finds (core/motion/free/lost_frames.h). Then those that raise the likelihood of the whole fit by 12, one in
-/// each motion at a time or all together, K, mu and the inclination free; then all of them placed anew along the fitted
-/// path (Viterbi). These count only where they leave chi² below 2 per point: many a curve that the model lacks looks
-/// like a series of losses.
+/// whole frames (a gain of 14 in log likelihood), the clearest first; or, if that gives a better fit in the end, those
+/// that the analysis finds (core/motion/free/lost_frames.h). Then those that raise the likelihood of the whole fit by
+/// 12, one in each motion at a time or all together, with K, mu and the inclination free. Then all of them are placed
+/// anew along the fitted path (Viterbi). These count only if they leave chi² below 2 per point: many curves that the
+/// model lacks look like a series of losses.
 #pragma once
 
 #include "diagnose/frames/frame_effects.h"
@@ -25,8 +25,8 @@ struct MissingFrames {
 /// Found by `jobs` threads: the same for any number.
 MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int jobs = 1);
 
-/// Losses that a fit with at least one loss in its times hides: its own and these. The effect's gain and evidence are
-/// what the further ones add.
+/// Further losses that a fit with at least one loss in its times hides. The result has the fit's own losses and these;
+/// the effect's gain and evidence are those of the further ones.
 MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& with_losses);
 
 }  // namespace glidelab::diagnose

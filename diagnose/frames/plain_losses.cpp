@@ -24,8 +24,8 @@ struct ParabolaRest {
   double points = 0.0;  // around the place, outliers not counted
 };
 
-/// What a parabola leaves of the positions around point f, all from f on later by `shift_s`; nothing where there are
-/// too few.
+/// The residuals of a parabola through the positions around point f, with all from f on later by `shift_s`; empty if
+/// there are too few.
 ParabolaRest parabola_rest(const TrackedMotion& data, const std::vector<double>& late_s, std::size_t f,
                            double shift_s) {
   const std::size_t from = f - std::min(f, kPointsOnEachSide), to = std::min(data.x_m.size(), f + kPointsOnEachSide);
@@ -60,7 +60,7 @@ LostBefore plain_losses(const TrackSet& set) {
       std::size_t place = 0;
       int lost = 0;
       for (std::size_t f = 2; f + 2 <= motion.x_m.size(); ++f) {
-        if (motion.t_s[f] - motion.t_s[f - 1] > 1.5 * step_s) continue;  // the stamps tell of it
+        if (motion.t_s[f] - motion.t_s[f - 1] > 1.5 * step_s) continue;  // the time stamps show this gap
         const double square = motion.sd_of(f) * motion.sd_of(f);
         const double without = parabola_rest(motion, late_s, f, 0.0).square_m2 / square;
         for (int k = 1; k <= kMostLostTogether; ++k) {
@@ -99,14 +99,14 @@ LostBefore analysed_losses(const TrackSet& set) {
 
 namespace {
 
-constexpr std::size_t kMostBeyondGap = 3;     // positions beyond a gap: of more, the gap shows by itself
+constexpr std::size_t kMostBeyondGap = 3;     // positions beyond a gap: with more of them, the gap shows by itself
 constexpr std::size_t kNodesOfPath = 5;       // of the path, which continue it
 constexpr double kFarthestFromShifted = 4.0;  // standard deviations: of the path a frame or more away,
 constexpr double kNearestToPath = 6.0;        // of the path at the stated time,
 constexpr double kLeastStep = 10.0;           // and from one frame to the next
 
-/// A motion's path as fitted, for its points from `from` on (`direction` +1) or back (-1), continued beyond the first
-/// of them.
+/// A motion's path as fitted, for its points from `from` on (`direction` +1) or back (-1), extrapolated beyond the
+/// first of them.
 class Continued {
  public:
   Continued(const TrackedMotion& data, const MotionFit& fit, const std::vector<double>& path_m, std::size_t i,

@@ -10,7 +10,7 @@
 
 namespace glidelab::diagnose {
 
-/// How late each point is for the frames that are lost before it, and how many these are in all.
+/// The delay of each point due to the frames lost before it, and the total number of these.
 struct LostBefore {
   Lateness late;
   std::size_t count = 0;
@@ -25,7 +25,7 @@ struct LostBefore {
 /// trusted.
 LostBefore plain_losses(const TrackSet& set);
 
-/// Those that the analysis finds (core/motion/free/lost_frames.h), clip by clip.
+/// The lost frames that the analysis finds (core/motion/free/lost_frames.h), clip by clip.
 LostBefore analysed_losses(const TrackSet& set);
 
 struct EdgePosition {
@@ -35,14 +35,13 @@ struct EdgePosition {
 /// Positions beyond a gap: frames are missing right after a clip's first frames or right before its last.
 ///
 /// The few positions on the far side of such a gap lie off the rest, and so the analysis takes them for outliers. They
-/// are not outliers where all of them lie on the path of the others, each the same whole number of frames earlier (the
+/// are not outliers if all of them lie on the path of the others, each the same whole number of frames earlier (the
 /// first ones) or later (the last ones).
 ///
-/// What is returned are the outliers among the first and last three positions of each motion of which a gap of one to
-/// five frames makes sense. They lie within four standard deviations of the path of `fit` that many frames away,
-/// continued by the polynomial of fourth order through its nearest five points, and more than six off it where they
-/// are. Nothing is returned where the glider hardly moves (less than ten standard deviations per frame). No
-/// NumericalError.
+/// Returned are the outliers among the first and last three positions of each motion that a gap of one to five frames
+/// explains. They lie within four standard deviations of the path of `fit` that many frames away, continued by the
+/// fourth-order polynomial through its nearest five points, and more than six off it at their own times. Nothing is
+/// returned if the glider hardly moves (less than ten standard deviations per frame). No NumericalError.
 std::vector<EdgePosition> positions_beyond_gaps(const TrackSet& set, const MotionFit& fit);
 
 }  // namespace glidelab::diagnose

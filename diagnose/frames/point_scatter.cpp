@@ -27,8 +27,8 @@ struct UnderCurve {
   Eigen::Index bumps = 0;
 };
 
-/// What a least-squares curve of bumps, one to so many points, leaves of `r`; outliers do not count. Bumps stand before
-/// the first point and behind the last as well: without them the curve would bend away there.
+/// What is left of `r` after a least-squares curve of bumps, with this many points to each; outliers do not count.
+/// There are bumps before the first point and behind the last as well: without them the curve would bend away there.
 UnderCurve left_by_curve(const TrackedMotion& data, const Eigen::VectorXd& r, double points_a_bump) {
   const Eigen::Index n = r.size();
   const auto parts = static_cast<Eigen::Index>(std::max(kFewestBumps, static_cast<double>(n) / points_a_bump)) - 1;
@@ -62,7 +62,8 @@ UnderCurve left_by_curve(const TrackedMotion& data, const Eigen::VectorXd& r, do
   return {std::move(rest), bumps};
 }
 
-/// Whether neighbours err alike by more than chance makes; a single one that is far off says nothing of that.
+/// Whether the errors of neighbours correlate more than by chance; a single point that is far off is not evidence of
+/// that.
 bool lasts(const TrackedMotion& data, const Eigen::VectorXd& rest) {
   double products = 0.0, squares = 0.0, pairs = 0.0;
   const auto clipped = [&](Eigen::Index p) {
@@ -135,14 +136,14 @@ double cost(const SpeedScatter& scatter, double sd_m, double at_rest_m, double j
   return sum;
 }
 
-/// Where a function of the logarithm is lowest.
+/// The minimum of a function of the logarithm.
 template <typename Function>
 double lowest(const Function& of_log, double from, double to) {
   constexpr int kBits = 20;
   return std::exp(boost::math::tools::brent_find_minima(of_log, std::log(from), std::log(to), kBits).first);
 }
 
-/// Each motion's noise at rest beside a jitter: its own as far as its slow positions tell, else that of all.
+/// Each motion's noise at rest besides a jitter: its own if its slow positions determine it, otherwise that of all.
 void set_noise_at_rest(std::vector<TrackedMotion>& motions, const std::vector<SpeedScatter>& scatters,
                        double jitter_s) {
   double most = 0.0;
@@ -204,8 +205,9 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
   };
   const double none = log_likelihood(0.0);
   std::vector<double> logs;
-  // From what begins to show among n points, in units of what one standard deviation of position makes at top speed; in
-  // images from what cannot be the marker's blur, which makes its noise grow with the speed as well.
+  // Starts at the size that begins to show among n points, in units of the jitter that makes one standard deviation of
+  // position at top speed. In images it starts above what the marker's blur can cause, whose noise grows with the speed
+  // as well.
   const double unit = sd / scatter.top_m_s;
   const double least = 2.0 * std::pow(2.0 / (independent * n), 0.25) * unit;
   const double least_s = set.pictures ? kLeastFilmedJitter_s : 0.0;
@@ -215,7 +217,7 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
     logs.push_back(gain);
     if (gain <= found.gain) continue;
     found.gain = logs.back();
-    found.jitter_s = tau * std::sqrt(mean_square);  // sd_m may hold the jitter of the mean speed already
+    found.jitter_s = tau * std::sqrt(mean_square);  // sd_m may already include the jitter at the mean speed
   }
   if (logs.empty()) return found;
   found.log_evidence = base::log_mean(logs);
@@ -230,7 +232,7 @@ bool give_fast_positions_their_noise(TrackSet& set, const Lateness& late) {
     for (std::size_t p = 0; p < times.back().size() && !late.empty(); ++p) times.back()[p] += late[i][p];
   }
   for (const TrackedMotion& motion : set.motions) {
-    if (core::rounding_step(motion.x_m) > motion.sd_m) return false;  // what rounding makes goes with the place
+    if (core::rounding_step(motion.x_m) > motion.sd_m) return false;  // the errors of rounding depend on the position
   }
   bool any = false;
   for (int round = 0; round < kJitterRounds; ++round) {

@@ -22,7 +22,7 @@ namespace {
 constexpr int kBins = 12;
 constexpr double kFewestInBin = 5.0;  // points
 constexpr std::size_t kFewestToSmooth = 8;
-constexpr double kEnds = 2.0;  // bandwidths from a motion's ends that are left out
+constexpr double kEnds = 2.0;  // bandwidths that are left out at a motion's ends
 
 /// A point of the phase plane: its speed, and d as weights of the motion's positions from `first` on.
 struct PhasePoint {
@@ -31,7 +31,7 @@ struct PhasePoint {
   std::vector<double> weights;
 };
 
-/// Of a motion's points that are not set aside; `used` are their indices among all.
+/// The points of a motion that are not set aside; `used` are their indices among all.
 struct SmoothedMotion {
   std::vector<std::size_t> used;
   std::vector<PhasePoint> points;
@@ -59,7 +59,7 @@ SmoothedMotion smoothed(const TrackedMotion& data, double bandwidth_s, double k_
   return motion;
 }
 
-/// Stretches of speed, an edge at 0.
+/// Bins of speed, with an edge at 0.
 struct SpeedBins {
   double width = 0.0;
   long first = 0;
@@ -84,7 +84,7 @@ struct SpeedBins {
   double edge(std::size_t i) const { return width * static_cast<double>(first + static_cast<long>(i)); }
 };
 
-/// Sums over each stretch of speeds: of points, of v, and of d as weights of unit white noise.
+/// Sums over each bin of speeds: of points, of v, and of d as weights of unit white noise.
 struct BinSums {
   Eigen::VectorXd points, speed;
   Eigen::MatrixXd weights;
@@ -110,8 +110,8 @@ BinSums sums_of(const TrackedMotion& data, const SmoothedMotion& motion, const S
 /// A fit whose clips are held out one at a time.
 struct HeldOutFit {
   std::vector<ProjectedMotion> motions;
-  std::vector<Eigen::MatrixXd> covariance;  ///< of the common parameters from all clips but this
-  std::vector<Eigen::VectorXd> shift;       ///< and what they come to, less the fit's
+  std::vector<Eigen::MatrixXd> covariance;  ///< of the common parameters, from all clips but this
+  std::vector<Eigen::VectorXd> shift;       ///< their values, less those of the fit to all clips
 };
 
 HeldOutFit held_out(const TrackSet& set, const MotionFit& fit) {
@@ -129,8 +129,8 @@ HeldOutFit held_out(const TrackSet& set, const MotionFit& fit) {
   return out;
 }
 
-/// d of each stretch of speeds, summed over the motions of a mass (or all), as held-out residuals and as their noise
-/// have it:
+/// d of each bin of speeds, summed over the motions of a mass (or all), from the held-out residuals, with its standard
+/// deviation from their noise:
 ///
 ///     residual of clip c = Q n_c - G_c C_c (sum_others G' n + sum_statements e/sd),    C_c from the others.
 std::vector<GapValue> summed(const TrackSet& set, const MotionFit& fit, const HeldOutFit& out,
@@ -209,21 +209,21 @@ std::vector<PhaseGap> phase_gaps(const TrackSet& set, const MotionFit& before, c
 
 namespace {
 
-constexpr std::size_t kFewestOneWay = 12;   // of a stretch that goes one way
-constexpr double kOpenMu = 0.1;             // sd of a friction that is not known
-constexpr double kOpenK = 10.0;             // likewise of a drag, over the drag of all
-constexpr double kSameData = 1e-6;          // of the variance: then the part is all there is
+constexpr std::size_t kFewestOneWay = 12;   // points of a stretch in one direction
+constexpr double kOpenMu = 0.1;             // sd of an undetermined friction
+constexpr double kOpenK = 10.0;             // the same for drag, relative to the drag of all
+constexpr double kSameData = 1e-6;          // relative to the variance: below this the part is all there is
 constexpr Eigen::Index kDrag = 0, kMu = 1;  // among common parameters
 using Kind = ParameterLayout::Global::Kind;
 
-/// Motions of one mass, whole or their stretches in one direction, with a fit's point on them.
+/// The motions of one mass, whole or only the stretches in one direction, with the parameters of a fit to them.
 struct Part {
   TrackSet set;
   FitPoint at;
   Lateness late;
 };
 
-/// direction 0: both ways.
+/// direction 0: both directions.
 Part part_of(const TrackSet& set, const MotionFit& fit, std::size_t mass, int direction) {
   Part part{set, {fit.at.global, {}}, {}};
   part.set.motions.clear();
@@ -262,7 +262,8 @@ Part part_of(const TrackSet& set, const MotionFit& fit, std::size_t mass, int di
   return part;
 }
 
-/// What the part alone gives more than all for a common parameter, by one step from the fit to all, and the variance.
+/// The value of a common parameter from the part alone, less that from all, by one step from the fit to all; and its
+/// variance.
 struct Step {
   double change = 0.0;
   double variance = 0.0;
@@ -284,10 +285,10 @@ class AloneStep {
     fitted_covariance_ = inverse_normal(normal_.matrix(fitted_, fitted_));
   }
 
-  /// Of the common parameter with this index, which effects are not.
+  /// For the common parameter with this index, which must not be that of an effect.
   Step of(Eigen::Index quantity) const {
     Eigen::VectorXd a = Eigen::VectorXd::Zero(covariance_.rows());
-    a(fitted_) = fitted_covariance_.col(quantity);  // what is no effect comes first
+    a(fitted_) = fitted_covariance_.col(quantity);  // parameters that belong to no effect come first
     const Eigen::VectorXd na = base::product(normal_.matrix, a);
     Eigen::VectorXd b = Eigen::VectorXd::Unit(covariance_.rows(), quantity);
     b(held_) += na(held_);
@@ -311,7 +312,7 @@ bool is_open(Eigen::Index quantity, double sd, double of_all) {
 std::vector<GapOfParameter> parameter_gaps(const TrackSet& set, const MotionFit& nominal, const MotionFit* after) {
   std::vector<GapOfParameter> of_drag, of_mu;
   const Eigen::MatrixXd of_all = common_covariance(nominal);
-  // Missing frames are no effect of a fit but in its times.
+  // Missing frames are not among a fit's effects, only in its times.
   const bool same = after != nullptr && after->effects.empty() && missing_in(set, *after) == 0;
   for (std::size_t mass = 0; mass < set.masses.size(); ++mass) {
     for (const int direction : {0, 1, -1}) {
@@ -326,7 +327,7 @@ std::vector<GapOfParameter> parameter_gaps(const TrackSet& set, const MotionFit&
         if (direction != 0 && quantity == kDrag) continue;
         const double together = nominal.at.global[quantity], var_together = of_all(quantity, quantity);
         const double var_alone = step.variance_alone(quantity);
-        if (var_alone - var_together < kSameData * var_together) continue;  // it is all there is
+        if (var_alone - var_together < kSameData * var_together) continue;  // the part is all there is
         GapOfParameter gap;
         gap.quantity = quantity == kDrag ? "k_n_s_m" : "mu";
         gap.against = "all clips";

@@ -25,8 +25,8 @@ namespace glidelab::diagnose {
 /// Points within two bandwidths of a motion's ends are left out. There are twelve bins over the range of all speeds,
 /// with one edge at v = 0. A bin of fewer than five points is left out.
 ///
-/// `before` and `after` are fits of the same set, of two clips or more. The result has all masses together and then,
-/// where there are several, each mass. It is empty where no clip has a bandwidth.
+/// `before` and `after` are fits of the same set, of two clips or more. The result has all masses together and then, if
+/// there are several, each mass. It is empty if no clip has a bandwidth.
 std::vector<PhaseGap> phase_gaps(const TrackSet& set, const MotionFit& before, const MotionFit& after);
 
 /// The gap in the parameters: K between masses, mu between masses and directions.
@@ -46,10 +46,9 @@ std::vector<PhaseGap> phase_gaps(const TrackSet& set, const MotionFit& before, c
 /// all.
 ///
 /// Quantities are `k_n_s_m` (N s/m) and `mu`, against "all clips", with the part ("0.335 kg", "0.335 kg, downhill") as
-/// group. `after` is the fit with the named effect, the nominal one where nothing is named, or null where what is
-/// missing has no name (then nothing is said of after). What it gives for a part is one least-squares step from the fit
-/// to all. A part that does not determine the quantity has no z. Motions with a recorded force are not cut into
-/// directions.
+/// group. `after` is the fit with the named effect, the nominal fit if no effect is named, or null if what is missing
+/// has no name (then there are no values after). The value of a part is one least-squares step from the fit to all. A
+/// part that does not determine the quantity has no z. Motions with a recorded force are not cut into directions.
 std::vector<GapOfParameter> parameter_gaps(const TrackSet& set, const MotionFit& nominal, const MotionFit* after);
 
 }  // namespace glidelab::diagnose

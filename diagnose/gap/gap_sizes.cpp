@@ -14,7 +14,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-/// With clip `left_out` left out; with all where it is no clip's index.
+/// Root mean square without clip `left_out`; of all clips if that is not the index of a clip.
 double rms(std::span<const ClipSquares> clips, std::size_t left_out) {
   double sum = 0.0, count = 0.0;
   for (std::size_t c = 0; c < clips.size(); ++c) {
@@ -25,7 +25,7 @@ double rms(std::span<const ClipSquares> clips, std::size_t left_out) {
   return std::sqrt(sum / count);
 }
 
-/// `of` the index of the clip that is left out, or n.
+/// `of`: the index of the clip that is left out, or n.
 template <class Pooled>
 std::optional<GapInterval> jackknife(std::size_t n, const Pooled& of) {
   std::vector<double> without;
@@ -86,7 +86,7 @@ namespace {
 
 constexpr std::size_t kPlotted = 250;  // residuals of a motion
 
-/// A single clip in quarters, and both fits to them: what the phase plane is compared by.
+/// A single clip in quarters, and both fits to them, for the comparison in the phase plane.
 struct SplitFits {
   TrackSet set;
   MotionFit nominal, best;
@@ -97,7 +97,7 @@ SplitFits split_fits(const TrackSet& set, const MotionFit& best) {
   split.nominal = fit_nominal(split.set);
   split.best = split.nominal;
   if (best.effects.empty() || !best.late.empty()) return split;
-  // From the fit to the whole clip: each stretch starts where that fit is at its beginning.
+  // Starting from the fit to the whole clip: each stretch starts at that fit's position and speed at its beginning.
   FitPoint start{best.at.global, {}};
   for (const TrackedMotion& part : split.set.motions) {
     std::size_t whole = 0;
@@ -138,7 +138,7 @@ GapIntervals intervals_of(const TrackSet& set, const HeldOutGap& before, const H
   return of;
 }
 
-/// Root mean square, or nothing of nothing.
+/// Root mean square; empty if there are no values.
 class RootMeanSquare {
  public:
   void add(double z) {
@@ -204,9 +204,9 @@ std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<Pictur
                                    const std::vector<DiagnosedEffect>& named) {
   std::vector<GapDomain> domains = {{"positions", gap.before, gap.after}};
   RootMeanSquare a_before, a_after, q_before, q_after;
-  bool all_after = true;  // of the parameters that have a before
+  bool all_after = true;  // whether every parameter with a value before has one after
   for (const PhaseGap& of : gap.phase_plane) {
-    if (gap.phase_plane.size() > 1 && !of.mass_kg) continue;  // the same points once more
+    if (gap.phase_plane.size() > 1 && !of.mass_kg) continue;  // these are the same points again
     for (const PhaseBin& bin : of.bins) {
       a_before.add(bin.before.value / bin.before.sd);
       a_after.add(bin.after.value / bin.after.sd);

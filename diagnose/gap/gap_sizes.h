@@ -26,51 +26,51 @@ namespace glidelab::diagnose {
 
 inline constexpr std::size_t kFewestClips = 3;
 
-/// The number of clips, where it is too small for an interval.
+/// The number of clips, if it is too small for an interval.
 std::optional<std::size_t> too_few_clips(std::size_t clips);
 
-/// What a clip adds to a mean square: a sum of squares, and their number.
+/// What a clip contributes to a mean square: a sum of squares, and their number.
 struct ClipSquares {
   double sum = 0.0;
   double count = 0.0;
 };
 
-/// Of sqrt(sum/count) over all clips. None for fewer than three clips that count, nor where a single one contributes
+/// The interval of sqrt(sum/count) over all clips. None if fewer than three clips count, or if a single one contributes
 /// everything.
 std::optional<GapInterval> rms_interval(std::span<const ClipSquares> clips);
 
-/// 1, or the gap that the best fit leaves where that is clearly below 1: noise is estimated from neighbouring
-/// positions, and a wave of a few frames looks like noise until a cause removes it. No residual is smaller than the
-/// noise.
+/// 1, or the gap that the best fit leaves if that is clearly below 1: noise is estimated from neighbouring positions,
+/// and a wave of a few frames looks like noise until a cause removes it. No residual is smaller than the noise.
 double floor_of(double gap_after, double standard_error);
 
-/// Of (before - after)/(before - floor), the clips being the same in both. None for fewer than three clips, nor where
-/// `before` without one of them is not above the floor.
+/// The interval of (before - after)/(before - floor), with the same clips in both. None for fewer than three clips, or
+/// if `before` without one of them is not above the floor.
 std::optional<GapInterval> shrink_interval(std::span<const ClipSquares> before, std::span<const ClipSquares> after,
                                            double floor = 1.0);
 
-/// Of (before - after)/(first - floor), in squares of the gaps, the clips being the same in all three. None for fewer
-/// than three clips, nor where `first` without one of them is not above the floor.
+/// The interval of (before - after)/(first - floor), in squares of the gaps, with the same clips in all three. None for
+/// fewer than three clips, or if `first` without one of them is not above the floor.
 std::optional<GapInterval> share_interval(std::span<const ClipSquares> first, std::span<const ClipSquares> before,
                                           std::span<const ClipSquares> after, double floor = 1.0);
 
-/// The gap of held-out clips, by the nominal fit and by the best one, with intervals over clips. `best` has a named
-/// effect, the likeliest function without a name (`unnamed`), or nothing more. Of a single clip stretches are held out,
-/// and a note says so. The domains are left empty.
+/// The gap of held-out clips, for the nominal fit and for the best one, with intervals over clips. `best` has a named
+/// effect, the likeliest function without a name (`unnamed`), or nothing more. For a single clip, stretches are held
+/// out, and a note says so. The domains are left empty.
 GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best, bool unnamed,
                 std::vector<Note>& notes);
 
 /// Each domain that the data have. Positions: the gap of held-out clips. Phase plane and parameters: the root mean
-/// square of the differences over their standard deviations. Images: sqrt(2 log evidence) of what shows most, 1 at
-/// least; after, of what is not named. What a file states of itself does not count.
+/// square of the differences over their standard deviations. Images: sqrt(2 log evidence) of the effect that shows
+/// most, and at least 1; after: of the most visible effect that is not named. What a file states about itself does not
+/// count.
 std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<PictureFinding>& pictures,
                                    const std::vector<DiagnosedEffect>& named);
 
-/// Some 250 residuals of every motion, of either fit to all clips, in metres.
+/// About 250 residuals of every motion, of both fits to all clips, in metres.
 std::vector<ResidualCurve> residuals_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& best);
 
-/// Whether the law holds within configurations and not across them: these leave less than 15 % of the excess, of the
-/// squared gap over its floor 1, that all together leave.
+/// Whether the law holds within configurations but not across them: the excess (the squared gap minus its floor, 1)
+/// within configurations is less than 15 % of that of all together.
 bool holds_within(double gap_within, double gap_of_all);
 
 }  // namespace glidelab::diagnose

@@ -14,11 +14,13 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kStretches = 4;      // of a single clip
-constexpr std::size_t kMotionsForAll = 3;  // of a single clip, that tell of each other: fewer may all go one way
+constexpr std::size_t kMotionsForAll = 3;  // motions of a single clip from which on each is held out: fewer may all go
+                                           // in one direction
 constexpr std::size_t kFewest = 8;         // points of a stretch, or to smooth
-constexpr double kLeastKnown = 1e-4;       // of a statement's variance: below, a pull is a difference of rounding
+constexpr double kLeastKnown = 1e-4;       // relative to a statement's variance: below this, a pull is a difference of
+                                           // rounding errors
 
-/// Adds the squares of the second derivative of residuals smoothed as the analysis smooths positions; those of a motion
+/// Adds the squares of the second derivative of the residuals, smoothed as the analysis smooths positions, of a motion
 /// from point `first` on.
 void add_accelerations(const TrackSet& set, std::size_t i, const Eigen::VectorXd& over_sd, std::size_t first,
                        ClipGap& clip) {
@@ -56,21 +58,22 @@ HeldOutGap gap_over(std::vector<ClipGap> clips) {
   gap.clips = std::move(clips);
   if (freedom <= 0.0) return gap;
   gap.value = std::sqrt(std::max(0.0, chi2) / freedom);
-  // Of n residuals' root mean square 0.5/n, and 1.32/n of the noise that it is held against. Both come from the same
-  // positions, and as the first is the least that there is, it is their covariance too: 0.5 + 1.32 - 2 * 0.5.
+  // Relative variances: 0.5/n for the root mean square of n residuals, and 1.32/n for the estimated noise that it is
+  // compared with. Both come from the same positions; as the first is the smallest variance possible, it is also their
+  // covariance: 0.5 + 1.32 - 2 * 0.5.
   gap.standard_error = std::sqrt(0.82 / freedom);
   if (a_count > 0.0) gap.acceleration_m_s2 = std::sqrt(a_sum / a_count);
   return gap;
 }
 
-/// How many stretches a motion of so many points is held out in.
+/// The number of stretches in which a motion of this many points is held out.
 std::size_t stretches_of(std::size_t points) {
   return std::clamp<std::size_t>(points / kFewest, 1, kStretches);
 }
 
 /// The stretches of a single clip's motions, each predicted from all the others, with the motion's own start and speed
-/// from the rest of the motion. With D a stretch's derivatives by the common and the motion's own parameters, N the
-/// normal matrix of both and r what the fit to everything leaves,
+/// from the rest of the motion. With D a stretch's derivatives with respect to the common and the motion's own
+/// parameters, N the normal matrix of both and r the residuals of the fit to everything,
 ///
 ///     u'(1 + D (N - D'D)^-1 D')^-1 u = r'r + (D'r)' (N - D'D)^-1 D'r,     u = r + D (N - D'D)^-1 D'r.
 HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
@@ -97,7 +100,7 @@ HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
       const std::size_t from = points * k / stretches, to = points * (k + 1) / stretches;
       ClipGap clip{fmt::format("{}, {:.2f} to {:.2f} s", set.clips[data.clip].name, data.t_s[from], data.t_s[to - 1])};
       for (std::size_t p = from; p < to; ++p) clip.freedom += data.outlier[p] ? 0.0 : 1.0;
-      if (stretches == 1) clip.freedom = projected[i].freedom;  // its start is fitted to itself
+      if (stretches == 1) clip.freedom = projected[i].freedom;  // its start is fitted to it
       if (clip.freedom <= 0.0) continue;
       const auto row = static_cast<Eigen::Index>(from), rows = static_cast<Eigen::Index>(to - from);
       const Eigen::MatrixXd d = columns.middleRows(row, rows);
@@ -113,7 +116,7 @@ HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
   return gap_over(std::move(clips));
 }
 
-/// Every motion of a single clip as a clip by itself.
+/// Every motion of a single clip as a separate clip.
 TrackSet motions_apart(const TrackSet& set) {
   TrackSet apart = set;
   apart.clips.clear();
@@ -143,7 +146,7 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (set.motions[i].clip == c) clip.freedom += motions[i].freedom;
     }
-    if (clip.freedom <= 0.0) continue;  // nothing of it moves
+    if (clip.freedom <= 0.0) continue;  // nothing in it moves
     const CommonNormal others = without_clip(set, all, motions, c);
     const Eigen::MatrixXd covariance = inverse_normal(others.matrix);
     const Eigen::VectorXd shift = base::product(covariance, others.right);
@@ -213,7 +216,7 @@ std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit&
   for (const FitStatement& s : fit.statements) {
     if (s.against.empty()) continue;
     const auto g = static_cast<Eigen::Index>(s.global);
-    // Residual of a datum that took part in the fit: its variance is sd² less what the fit knows.
+    // Residual of a datum that took part in the fit: its variance is sd² minus that of the fitted value.
     const double variance = s.sd * s.sd - covariance(g, g), off = s.value - fit.at.global[g];
     StatementPull pull{"alpha_deg", s.against, set.groups[fit.layout->globals()[s.global].index].name, {}};
     pull.stated_rad = s.value;

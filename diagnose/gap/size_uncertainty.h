@@ -1,7 +1,7 @@
 /// Standard deviations of the stated values of a fit's common parameters.
 ///
-/// That of the fit's own model, noise and remainder included, or that from the scatter of the clips' scores, whichever
-/// is larger:
+/// The larger of two: that of the fit's own model, noise and remainder included, and that from the scatter of the
+/// clips' scores:
 ///
 ///     C = N⁻¹,      C_clips = N⁻¹ (n/(n - 1) sum over n clips of s s' + statements) N⁻¹
 ///
@@ -21,9 +21,9 @@ class SizeUncertainty {
   /// `fit` is linearised with the noise of `set`.
   SizeUncertainty(const TrackSet& set, const MotionFit& fit);
 
-  /// Of a quantity with these derivatives with respect to the common parameters.
+  /// Standard deviation of a quantity with these derivatives with respect to the common parameters.
   double sd(const Eigen::VectorXd& by) const;
-  /// Of one of the common parameters.
+  /// Standard deviation of one of the common parameters.
   double sd(Eigen::Index global) const;
 
  private:

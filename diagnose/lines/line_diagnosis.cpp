@@ -34,14 +34,14 @@ Explanation explanation_of(const LineExplanation& lines, const std::vector<LineC
   return explanation;
 }
 
-/// The place of an explanation's cause's terms among all of them.
+/// The index of a cause's first term among all terms of an explanation.
 std::size_t first_term(const LineExplanation& explanation, const std::vector<LineCause>& causes, std::size_t cause) {
   std::size_t first = 0;
   for (std::size_t k = 0; k < cause; ++k) first += causes[explanation.causes[k]].terms.size();
   return first;
 }
 
-/// Of one size, or of the sizes of every cell and their spread.
+/// For one size, or for the sizes of every cell and their spread.
 std::vector<DiagnosedParameter> parameters_of(const LineExplanation& explanation, const LineData& data,
                                               const std::vector<LineCause>& causes, std::size_t k) {
   const LineCause& cause = causes[explanation.causes[k]];
@@ -85,7 +85,7 @@ LineCandidate candidate_of(const LineExplanation& explanation, const LineData& d
   return candidate;
 }
 
-/// Everything that was weighed, in the order of the explanations.
+/// All weighed explanations, in their order.
 LineComparison comparison_of(const std::vector<LineExplanation>& all, const LineData& data,
                              const std::vector<LineCause>& causes, const OwnScatter& scatter) {
   LineComparison lines;
@@ -98,15 +98,15 @@ LineComparison comparison_of(const std::vector<LineExplanation>& all, const Line
   return lines;
 }
 
-/// The part of the gap's excess that an explanation leaves; nothing where the lines' scatter is not known.
+/// The part of the gap's excess that an explanation leaves; empty if the lines' scatter is not known.
 std::optional<double> left_by(const LineExplanation& e, const LineSolution& nominal, const OwnScatter& scatter) {
   if (!scatter.known()) return {};
   const double gap = gap_of_lines(e.solution, scatter), before = gap_of_lines(nominal, scatter);
   return (gap * gap - 1.0) / (before * before - 1.0);
 }
 
-/// Causes, each alone, whose evidence is that of the best explanation and which leave as much, the best first; empty
-/// where the best is a pair. Of an effect with several forms the likeliest counts.
+/// Single causes whose evidence equals that of the best explanation and which leave as much, the best first; empty if
+/// the best is a pair. If an effect has several forms, the likeliest counts.
 std::vector<std::size_t> equals_of(const LineExplanation& best, const std::vector<LineExplanation>& all,
                                    const std::vector<LineCause>& causes, const OwnScatter& scatter) {
   if (best.causes.size() != 1) return {};
@@ -176,7 +176,7 @@ void join_sets(const std::vector<LineCause>& causes, const std::vector<LineExpla
   join_alike(sets_of(all, causes), words, diagnosis);
 }
 
-/// The term's size where nothing else is added, or its standard deviation where that is more: what may be there.
+/// The term's size if nothing else is added, or its standard deviation if that is larger: the size that may be there.
 double size_by_itself(const LineData& data, const std::vector<LineCause>& causes, const std::string& id) {
   for (const LineCause& cause : causes) {
     if (cause.id != id) continue;
@@ -186,7 +186,7 @@ double size_by_itself(const LineData& data, const std::vector<LineCause>& causes
   return 0.0;
 }
 
-/// The likeliest set of effects, in its likeliest forms; nothing where no effect was weighed.
+/// The likeliest set of effects, in its likeliest forms; empty if no effect was weighed.
 const LineExplanation* leader_of(const std::vector<LineExplanation>& all, const std::vector<LineCause>& causes) {
   const std::vector<NamedExplanation> sets = sets_of(all, causes);
   const auto probability_of = [&](const LineExplanation& e) {
@@ -203,7 +203,7 @@ const LineExplanation* leader_of(const std::vector<LineExplanation>& all, const 
   return leader;
 }
 
-/// The probability of nothing, the verdict that it gives, and the ranking of the rest, each set of effects once.
+/// The probability of nothing, the resulting verdict, and the ranking of the rest, each set of effects once.
 void weigh_up(const std::vector<LineExplanation>& all, LineComparison& table, Diagnosis& diagnosis) {
   const auto likelier = [](const auto& a, const auto& b) {
     return a.left_out.has_value() != b.left_out.has_value() ? !a.left_out : a.probability > b.probability;
@@ -225,7 +225,7 @@ void weigh_up(const std::vector<LineExplanation>& all, LineComparison& table, Di
   diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
 }
 
-/// Which effects a table does not tell apart, and the probability that it is one or several of them.
+/// The effects that a table cannot tell apart, and the probability that one or several of them act.
 void tell_either(const std::vector<LineExplanation>& all, const std::vector<LineCause>& causes,
                  const std::vector<std::size_t>& equals, LineComparison& table) {
   if (equals.size() < 2) return;
@@ -249,7 +249,7 @@ std::vector<LineCurve> curves_of(const std::vector<TableLine>& lines, const Line
   return curves;
 }
 
-/// What would decide between a friction force and a smoothing bias.
+/// The data that would decide between a friction force and a smoothing bias.
 NextStep next_of(const std::vector<TableLine>& lines, const LineData& data) {
   const std::vector<double> masses = different(lines, &TableLine::mass_kg);
   if (masses.size() < 2) return Routine::second_mass;

@@ -2,7 +2,7 @@
 ///
 ///     lines ─ line_model (terms, fit, evidence) ─ line_findings (probabilities, gap, regions) ─ Diagnosis
 ///
-/// Predictions of each line by the others are the held-out gap, over the lines' own scatter.
+/// The held-out gap is the prediction error of each line by the others, over the lines' own scatter.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@
 
 namespace glidelab::diagnose {
 
-/// `without`: effects that are not considered, of effect_list() or smoothing_bias; InputError for another word, and for
-/// fewer than kFewestLines.
+/// `without`: effects that are not considered, of effect_list() or smoothing_bias. InputError for any other word, and
+/// for fewer than kFewestLines.
 Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double gravity_m_s2,
                          const std::vector<std::string>& without = {});
 

@@ -25,7 +25,7 @@ Eigen::VectorXd column(const LineTerm& term, double sd_log_k, double sd_a0) {
   return both;
 }
 
-/// What the nominal model and the terms cannot take up of the column.
+/// The part of the column that the nominal model and the terms cannot absorb.
 Eigen::VectorXd beside(const LineData& data, const std::vector<LineTerm>& terms, const Eigen::VectorXd& of,
                        double sd_log_k, double sd_a0) {
   const auto n = data.a0.size();
@@ -76,7 +76,7 @@ std::vector<LineTerm> terms_of(const std::vector<LineCause>& causes, const std::
 
 namespace {
 
-/// Whether one of two causes says nothing beside the other.
+/// Whether one of two causes adds nothing to the other.
 bool one_takes_up(const LineData& data, const LineCause& a, const LineCause& b, const LineSolution& nominal) {
   const auto takes_up = [&](const LineCause& by, const LineCause& of) {
     return std::all_of(of.terms.begin(), of.terms.end(), [&](const LineTerm& term) {
@@ -107,7 +107,7 @@ std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector
   for (std::size_t c = 0; c < causes.size(); ++c) {
     for (std::size_t b = 0; b < c; ++b) {
       if (causes[b].id == causes[c].id) continue;
-      // Two effects of one size are weighed however alike they are: their evidence says so.
+      // Two effects of one size are weighed however alike they are: their evidence shows it.
       const bool forms = causes[b].over || causes[c].over;
       if (forms && one_takes_up(data, causes[b], causes[c], nominal)) continue;
       add({b, c}, kPriorTwo / (0.5 * many * (many - 1.0)) * causes[b].share * causes[c].share);
@@ -127,11 +127,12 @@ std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector
 
 namespace {
 
-constexpr double kReadAngle = 0.3;  // degrees: how well a person reads a plumb line, where a table says nothing
-constexpr double kOff = 3.0;        // standard deviations from which on a group of lines is off
+constexpr double kReadAngle = 0.3;  // degrees: accuracy with which a person reads a plumb line, if the table does not
+                                    // say
+constexpr double kOff = 3.0;        // standard deviations above which a group of lines is off
 constexpr int kPoints = 60;         // of a curve
 
-/// The projection that leaves what the columns do not explain.
+/// The projection onto what the columns do not explain.
 Eigen::MatrixXd leaves(const Eigen::MatrixXd& columns) {
   const auto n = columns.rows();
   const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(n, n);
@@ -154,7 +155,7 @@ double drag_of(const std::vector<TableLine>& lines) {
   return std::exp(sum / static_cast<double>(lines.size()));
 }
 
-/// Over lines, each of which is held out by itself.
+/// For lines, each of which is held out by itself.
 void add_intervals(GapSizes& gap) {
   std::vector<ClipSquares> before, after;
   for (const double one : gap.before_by_clip) before.push_back({one * one, 1.0});
@@ -213,7 +214,7 @@ LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSoluti
 
 namespace {
 
-/// What each line adds to the gap's mean square.
+/// The contribution of each line to the gap's mean square.
 std::vector<ClipSquares> squares_of(const LineSolution& solution, const OwnScatter& scatter) {
   std::vector<ClipSquares> squares;
   for (std::size_t i = 0; i < solution.held_out_a.size(); ++i) {
@@ -234,7 +235,7 @@ std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector
   std::iota(left.begin(), left.end(), std::size_t{0});
   LineSolution before = nominal;
   while (!left.empty()) {
-    // Of those that are left, the one that leaves least.
+    // Of the remaining causes, the one that leaves the smallest gap.
     std::optional<LineSolution> best;
     std::size_t which = 0;
     for (std::size_t t = 0; t < left.size(); ++t) {
@@ -270,7 +271,7 @@ GapLevels line_levels(const std::vector<TableLine>& lines, const LineData& data,
 
 namespace {
 
-/// A value and its derivatives by all that is fitted.
+/// A value and its derivatives with respect to all fitted parameters.
 struct Derived {
   double value = 0.0;
   Eigen::VectorXd by;
@@ -376,7 +377,8 @@ LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, 
   LineCurve curve{cause.id, {}, {}, {}};
   const bool force = cause.id == ids::load_independent_friction;
   if (!force && cause.id != ids::smoothing_bias) return curve;
-  // What the term takes from mu goes with it: the part of its column that the nominal model would have fitted.
+  // The part that the term takes from mu is removed with it: the part of its column that the nominal model would have
+  // fitted.
   const Eigen::VectorXd fitted = base::least_squares(data.base_a0, cause.terms.front().of_a0).col(0);
   const double taken = fitted[fitted.size() - 1] * -data.base_a0.col(data.base_a0.cols() - 1).cwiseAbs().mean();
   const std::vector<double> masses = different(lines, &TableLine::mass_kg);

@@ -14,13 +14,13 @@ struct LineExplanation {
   std::vector<std::size_t> causes;  ///< indices, of two effects at most
   LineSolution solution;
   double log_evidence = 0.0;
-  double probability = 0.0;  ///< 0 where a size is impossible
+  double probability = 0.0;  ///< 0 if a size is impossible
 };
 
 /// How probable each explanation of a table of lines is, the nominal model first.
 ///
-/// The odds are those of tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. A second cause of which the first takes
-/// up nearly all is not weighed beside it.
+/// The odds are those for tracks: nothing 0.3, one effect 0.4 (shared), two 0.1. A second cause of which the first
+/// absorbs nearly all is not weighed beside it.
 std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector<LineCause>& causes);
 
 /// The terms of these causes, one after another.
@@ -31,8 +31,8 @@ std::vector<LineTerm> terms_of(const std::vector<LineCause>& causes, const std::
 /// sizes do not enter. `least_seen` is the size that makes one standard deviation. The scatters are above 0.
 Isolability line_isolability(const LineData& data, const std::vector<LineCause>& causes, double sd_log_k, double sd_a0);
 
-/// Whether other terms take up nearly all (a cosine of kAlike) of what this one does: beside it they say nothing that
-/// they do not say alone.
+/// Whether other terms absorb nearly all (a cosine of kAlike) of this one: beside it they add nothing to what they say
+/// alone.
 bool taken_up(const LineData& data, const LineTerm& term, const std::vector<LineTerm>& by, double sd_log_k,
               double sd_a0);
 
@@ -47,22 +47,23 @@ struct LineGap {
 LineGap line_gap(const std::vector<TableLine>& lines, double g, const LineSolution& before, const LineSolution& after,
                  const OwnScatter& scatter);
 
-/// How much of the gap each of the causes takes, beside those before it: first the one that takes more by itself.
+/// The part of the gap due to each of the causes, beside those before it; the cause that takes more by itself comes
+/// first.
 ///
 ///     share_i = (g²_{i-1} - g²_i) / (g²_0 - 1),        g the gap of held-out lines, g_0 of the nominal model
 ///
-/// Intervals are over lines, each left out in turn (gap/gap_sizes.h). Empty where the gap before is not above its floor
-/// by three standard errors. The lines' own scatter is known.
+/// Intervals are over lines, each left out in turn (gap/gap_sizes.h). Empty if the gap before is not above its floor by
+/// three standard errors. The lines' own scatter must be known.
 std::vector<ExplainedCause> explained_by(const LineData& data, const std::vector<LineCause>& causes,
                                          const LineSolution& nominal, const OwnScatter& scatter, double standard_error);
 
-/// The gap of held-out lines with mu and K common to all, and with those of each mass on each set-up (none where there
-/// is one alone).
+/// The gap of held-out lines with mu and K common to all, and with mu and K of each mass on each set-up (none if there
+/// is only one of these).
 GapLevels line_levels(const std::vector<TableLine>& lines, const LineData& data, const LineSolution& nominal,
                       const OwnScatter& scatter, double standard_error);
 
-/// The mu or K of every cell of a cause with a form, and their spread (its sample standard deviation), to first order:
-/// `sd` and `mu.NAME`, or `sd_n_s_m` and `k_n_s_m.NAME`. `first` is the place of its terms among all of the
+/// The mu or K of every cell of a cause with a form, and their spread (the sample standard deviation), to first order:
+/// `sd` and `mu.NAME`, or `sd_n_s_m` and `k_n_s_m.NAME`. `first` is the index of its first term among all those of the
 /// explanation.
 std::vector<DiagnosedParameter> own_of_cells(const LineData& data, const LineCause& cause, const LineSolution& with,
                                              std::size_t first);
@@ -77,11 +78,11 @@ std::vector<DiagnosedParameter> own_of_cells(const LineData& data, const LineCau
 std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const LineData& data,
                                     const LineSolution& nominal, const OwnScatter& scatter);
 
-/// What the nominal model leaves, for the plots.
+/// The residuals of the nominal model, for the plots.
 std::vector<LineOff> lines_off(const std::vector<TableLine>& lines, const LineSolution& nominal);
 
-/// The friction that a single effect on intercepts (a friction force, a smoothing bias) adds to the nominal model's, as
-/// the lines were fitted with it. Nothing for another term.
+/// The friction that a single effect on intercepts (a friction force, a smoothing bias) adds to that of the nominal
+/// model, as fitted to the lines. Empty for any other term.
 LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineCause& cause,
                      const LineSolution& with);
 

@@ -20,7 +20,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSmallest = 1e-6, kLargest = 1e6;  // kg, m/s², 1/s: beyond all tables, and squares stay numbers
+constexpr double kSmallest = 1e-6, kLargest = 1e6;  // kg, m/s², 1/s: beyond all tables, and their squares remain finite
 
 }  // namespace
 
@@ -125,7 +125,7 @@ std::vector<LineCell> cells_of(const std::vector<TableLine>& lines, LinesOver ov
   return list;
 }
 
-/// A mu, or ln K, of each cell but the first, less the nominal one.
+/// A mu, or ln K, of each cell except the first, relative to the nominal one.
 std::vector<LineTerm> own_terms(const LineData& data, const std::vector<LineCell>& cells, bool drag) {
   std::vector<LineTerm> terms;
   for (std::size_t c = 1; c < cells.size(); ++c) {
@@ -140,7 +140,7 @@ std::vector<LineTerm> own_terms(const LineData& data, const std::vector<LineCell
   return terms;
 }
 
-/// Whether the nominal model makes all that the term does but for a trifle, as it does with a single mass.
+/// Whether the nominal model reproduces the term almost completely, as with a single mass.
 bool is_nominal(const LineData& data, const LineTerm& term) {
   const auto beside = [](const Eigen::MatrixXd& columns, const Eigen::VectorXd& of) {
     return (of - base::product(columns, base::least_squares(columns, of)).col(0)).squaredNorm();
@@ -163,7 +163,7 @@ LineCause cause_of_one_size(const std::vector<TableLine>& lines, const EffectInf
   return {std::string(effect.id), effect.stage, std::string(effect.words), {std::move(term)}};
 }
 
-/// In every form in which these lines differ, the finest last.
+/// All forms in which these lines differ, the finest last.
 std::vector<LineCause> causes_of_own_sizes(const std::vector<TableLine>& lines, const LineData& data,
                                            const EffectInfo& effect) {
   const bool drag = effect.lines.own == OwnOfLines::drag;
@@ -197,7 +197,7 @@ std::vector<LineCause> line_causes(const std::vector<TableLine>& lines, const Li
     if (effect.lines.own == OwnOfLines::nothing) continue;
     for (LineCause& cause : causes_of_own_sizes(lines, data, effect)) own.push_back(std::move(cause));
   }
-  // What moves intercepts alone comes first, and what each configuration has of its own last.
+  // Effects on intercepts alone come first, and the parameters of each configuration last.
   std::stable_partition(causes.begin(), causes.end(),
                         [](const LineCause& cause) { return cause.terms.front().of_log_k.isZero(0.0); });
   std::move(own.begin(), own.end(), std::back_inserter(causes));
@@ -227,9 +227,9 @@ namespace {
 
 constexpr double kLeastLeft = 1e-6;                     // of lines with very many digits: log of K/m, and m/s²
 constexpr double kRoundingVariance = 1.0 / 12.0;        // of one last digit's worth
-constexpr double kSettled = 1e-9;                       // relative change of a scatter from turn to turn
-constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // where the turns begin: relative, and m/s²
-constexpr int kMostTurns = 50;                          // of fitting sizes and scatters in turn
+constexpr double kSettled = 1e-9;                       // relative change of a scatter from one iteration to the next
+constexpr double kFirstSd_k = 0.02, kFirstSd_a = 0.01;  // start of the iteration: relative, and m/s²
+constexpr int kMostTurns = 50;                          // iterations that fit sizes and scatters in turn
 constexpr double kLeastUnseen =
     0.05;  // of a line that the others leave undetermined; its held-out residual is divided by no less
 
@@ -239,7 +239,7 @@ std::optional<ImpossibleSize> impossible(const LineTerm& term, double size) {
   return {};
 }
 
-/// Mean of intercepts of one mass and set-up over both directions; nothing where one is missing.
+/// Mean of the intercepts of one mass and set-up over both directions; empty if one is missing.
 std::vector<double> means_over_directions(const std::vector<TableLine>& lines, double incline) {
   std::vector<double> means;
   for (const double mass : different(lines, &TableLine::mass_kg)) {
@@ -261,7 +261,7 @@ double squares_about_mean(const std::vector<double>& values) {
   return sum;
 }
 
-/// How many terms each kind of data has; one that acts on both is half a one of each.
+/// The number of terms of each kind of data; a term that acts on both counts half in each.
 struct TermCounts {
   double log_k = 0.0, a0 = 0.0;
 };
@@ -347,7 +347,7 @@ LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& term
   s.off_a = off.tail(n);
   s.size = fit.tail(pt);
   s.all = fit;
-  // With the degrees of freedom that the fit takes of each kind.
+  // With the degrees of freedom that the fit uses in each kind.
   const auto of_kind = term_counts(terms);
   const auto widened = [&](double sd, double parameters) {
     const auto values = static_cast<double>(n);
@@ -394,7 +394,7 @@ double log_bayes_factor(double left, double nominal_left, double lines, double n
   const double freedom = lines - nominal_parameters;
   if (!(freedom > terms)) return 0.0;
   const double ratio = std::pow(left / nominal_left, 2);
-  // Over ln g; even steps are exact to rounding for what falls off smoothly at both ends.
+  // Integral over ln g; equal steps are exact to rounding for a function that decays smoothly at both ends.
   constexpr double kFrom = -8.0, kTo = 45.0, kStep = 0.05;
   std::vector<double> logs;
   for (double u = kFrom; u < kTo; u += kStep) {

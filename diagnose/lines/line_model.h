@@ -13,7 +13,7 @@
 ///
 /// for each kind of data. Neither RSS is less than what rounding to the table's decimals leaves, since lines that were
 /// calculated and rounded carry no more information than their digits. (With g = n fixed it stays below (1 + n)^((n -
-/// p0 - p) / 2) however little is left. Two causes at once would never be found where one of them explains nearly all.)
+/// p0 - p) / 2) however little is left. Two causes at once would never be found if one of them explains nearly all.)
 #pragma once
 
 #include <Eigen/Core>
@@ -43,7 +43,7 @@ struct TableLine {
 
 inline constexpr std::size_t kFewestLines = 6;
 
-/// Columns mass_kg,incline_deg,direction,a0_m_s2,k_over_m_1_s,r2; others are ignored. InputError for what is out of
+/// Columns mass_kg,incline_deg,direction,a0_m_s2,k_over_m_1_s,r2; others are ignored. InputError for values out of
 /// range and for fewer than kFewestLines.
 std::vector<TableLine> read_lines(const std::filesystem::path& file);
 
@@ -55,11 +55,11 @@ core::Experiment read_recording(const std::filesystem::path& path, const core::T
 /// The issue of a table with too few lines.
 base::Issue too_few_lines(const std::string& file, std::size_t lines);
 
-/// The values of a member among the lines, ascending, each once.
+/// The distinct values of a member among the lines, in ascending order.
 std::vector<double> different(const std::vector<TableLine>& lines, double TableLine::*member);
 
-/// One size that is fitted beside the nominal model: what one unit of it adds to ln(K/m) and to a0 (m/s²) of every
-/// line.
+/// One size that is fitted in addition to the nominal model: what one unit of it adds to ln(K/m) and to a0 (m/s²) of
+/// every line.
 struct LineTerm {
   std::string key;
   Eigen::VectorXd of_log_k, of_a0;
@@ -67,7 +67,7 @@ struct LineTerm {
   double largest = 0.0;  ///< in the unit of the key
 };
 
-/// Lines that have a mu or a K of their own together, and which: "335 g, 4°", "4°".
+/// Lines that share their own mu or K, and their name: "335 g, 4°", "4°".
 struct LineCell {
   std::string name;
   std::vector<Eigen::Index> lines;
@@ -78,71 +78,72 @@ struct LineCause {
   std::string id;
   Stage stage = Stage::dynamics;
   std::string words;
-  std::vector<LineTerm> terms;         ///< one; of a form with n cells n - 1, since the first has the nominal mu or K
-  double share = 1.0;                  ///< of the effect's odds
-  std::optional<LinesOver> over = {};  ///< the form; none where one size goes for all lines
+  std::vector<LineTerm> terms;         ///< one; n - 1 for a form with n cells, since the first has the nominal mu or K
+  double share = 1.0;                  ///< share of the effect's odds
+  std::optional<LinesOver> over = {};  ///< the form; none if one size applies to all lines
   std::vector<LineCell> cells = {};    ///< of the form
-  bool drag = false;                   ///< of a form: a K of each cell, not a mu
+  bool drag = false;                   ///< of a form: each cell has its own K, not mu
 };
 
 /// Both kinds of data, and the nominal model's columns.
 struct LineData {
   Eigen::VectorXd log_k, a0;
   Eigen::MatrixXd base_log_k, base_a0;
-  double rounding_log_k = 0.0, rounding_a0 = 0.0;  ///< standard deviations of the numbers' own rounding
+  double rounding_log_k = 0.0, rounding_a0 = 0.0;  ///< standard deviations due to the rounding of the numbers
 };
 
 LineData line_data(const std::vector<TableLine>& lines, double gravity_m_s2);
 
-/// The effects that these lines can show, less what is left `without`: those of one size (what each does to a line
-/// stands in its file, diagnose/effects/effect.h, OnLines), then a mu, and a K, of each mass, of each set-up, or of
-/// each mass on each set-up. Of an effect with several forms each is as likely as another. None of which the nominal
-/// model can make nearly all itself (a cosine of kAlike), as with a single mass.
+/// The effects that these lines can show, except those in `without`: effects of one size (what each does to a line is
+/// in its file, diagnose/effects/effect.h, OnLines), then a mu, and a K, of each mass, of each set-up, or of each mass
+/// on each set-up. If an effect has several forms, these are equally likely. Left out are effects that the nominal
+/// model can imitate nearly completely (a cosine of kAlike), as with a single mass.
 std::vector<LineCause> line_causes(const std::vector<TableLine>& lines, const LineData& data,
                                    const std::vector<std::string>& without);
 
-/// A mu, and a K, of each mass on each set-up, each a cause; empty where there is one of these alone.
+/// A mu, and a K, of each mass on each set-up, each a cause; empty if there is only one of these.
 std::vector<LineCause> own_of_each_configuration(const std::vector<TableLine>& lines, const LineData& data);
 
-/// Effects of the speed whose lines are those of load_independent_friction, less what is left `without`.
+/// Effects of the speed whose lines are those of load_independent_friction, except those in `without`.
 std::vector<std::string> alike_friction_force(const std::vector<std::string>& without);
 
-/// Lines fitted by the nominal model and terms beside it, and how well.
+/// A fit of lines by the nominal model and additional terms, and its quality.
 struct LineSolution {
-  Eigen::VectorXd size, sd;                    ///< of the terms; sd from what is left
+  Eigen::VectorXd size, sd;                    ///< of the terms; sd from the residuals
   Eigen::VectorXd all;                         ///< ln K, the intercept of each set-up, mu, and the terms' sizes
   Eigen::MatrixXd covariance;                  ///< of all
   Eigen::VectorXd off_k, off_a;                ///< measured less fitted
-  double sd_k = 0.0, sd_a = 0.0;               ///< root mean square of what is left
-  std::vector<double> held_out_k, held_out_a;  ///< off the prediction by the other lines
+  double sd_k = 0.0, sd_a = 0.0;               ///< root mean square of the residuals
+  std::vector<double> held_out_k, held_out_a;  ///< residuals of the prediction by the other lines
   std::optional<ImpossibleSize> left_out;      ///< the first size that is impossible, if any
 };
 
-/// Scatter that no model of friction goes into: of the mean intercept over both directions between masses of one set-up
-/// (as that of one line), and of K/m, relative, within each mass. 0 where nothing is repeated.
+/// Scatter without any model of friction: that of the mean intercept over both directions between masses of one set-up
+/// (as that of one line), and that of K/m, relative, within each mass. 0 if nothing is repeated.
 struct OwnScatter {
   double intercept_m_s2 = 0.0, slope = 0.0;
   std::size_t freedom = 0;  ///< degrees of freedom of both together
   bool known() const { return intercept_m_s2 > 0.0 && slope > 0.0; }
 };
 
-/// Weighted least squares of both kinds together; their errors from the residuals, in turn.
+/// Weighted least squares of both kinds together; the errors follow from the residuals, in alternation.
 LineSolution solve_lines(const LineData& data, const std::vector<LineTerm>& terms);
 
 OwnScatter own_scatter(const std::vector<TableLine>& lines);
 
-/// The logarithm of the Bayes factor that the head of this file states, for one kind of data. `left` and `nominal_left`
-/// are root mean squares. 0 where there are as many parameters as lines.
+/// The logarithm of the Bayes factor at the head of this file, for one kind of data. `left` and `nominal_left` are root
+/// mean squares of residuals. 0 if there are as many parameters as lines.
 double log_bayes_factor(double left, double nominal_left, double lines, double nominal_parameters, double terms);
 
-/// Of both kinds together, against the nominal model. A term that acts on both is half a one of each.
+/// The log evidence of both kinds together, relative to the nominal model. A term that acts on both counts half in
+/// each.
 double log_line_evidence(const LineData& data, const std::vector<LineTerm>& terms, const LineSolution& with,
                          const LineSolution& nominal);
 
-/// Of both kinds together, each with an unknown scatter: n ln(nominal rms / rms).
+/// The gain of both kinds together, each with an unknown scatter: n ln(nominal rms / rms).
 double log_likelihood_gain_of(const LineSolution& with, const LineSolution& nominal);
 
-/// Sum of squares of what is left over the lines' own scatter.
+/// Sum of squares of the residuals over the lines' own scatter.
 double chi_square_of(const LineSolution& solution, const OwnScatter& scatter);
 
 /// Root mean square of line i's two held-out residuals over the lines' own scatter.

@@ -14,18 +14,18 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLongestStep = 0.0126;  // s: 80 frames a second need one step a frame,
-constexpr double kStepsOfFrame = 8.0;    // and a frame never more than these, unless something is stiff
-constexpr double kLongestTurn = 0.3;     // of its inverse rate: of k h, and of what effects ask for
+constexpr double kLongestStep = 0.0126;  // s: at 80 frames a second, one step a frame is enough
+constexpr double kStepsOfFrame = 8.0;    // a frame needs no more steps than this, unless something is stiff
+constexpr double kLongestTurn = 0.3;     // largest step times rate: k h, and whatever rate an effect asks for
 constexpr int kMostTurns = 20;           // reversals within one step; more is chatter about rest
-constexpr double kNoSpeed_m_s = 1e-300;  // has a direction, and moves nothing
-constexpr int kMostLeaving = 40;         // steps to the instant at which friction gives way,
+constexpr double kNoSpeed_m_s = 1e-300;  // has a direction but causes no motion
+constexpr int kMostLeaving = 40;         // iterations to find the instant at which static friction gives way,
 constexpr double kSameTime_s = 1e-13;    // to within this
-constexpr double kMostSteps = 2500.0, kMostOfFrame = 24.0;  // steps of a motion: so many, and so many a frame
-constexpr std::size_t kMostWork = 2000;                     // steps for each position, with what turns cost;
-constexpr std::size_t kFewTimes = 100;                      // where fewer are asked for, as many as for these
+constexpr double kMostSteps = 2500.0, kMostOfFrame = 24.0;  // most steps of a motion: a constant plus so many a frame
+constexpr std::size_t kMostWork = 2000;                     // most steps a position, including those spent at turns;
+constexpr std::size_t kFewTimes = 100;                      // fewer positions than this count as this many
 
-// What the integrator itself has to know of effects of the time: where a wave stands, and where a hand lets go.
+// What the integrator itself must know of time-dependent effects: the phase of a vibration, and when a hand lets go.
 constexpr EffectSlot kShake = slot_of(ids::base_vibration, 0), kShakeHz = slot_of(ids::base_vibration, 1),
                      kShakePhase = slot_of(ids::base_vibration, 2);
 constexpr EffectSlot kRelease = slot_of(ids::late_release, 0), kPush = slot_of(ids::late_release, 1);
@@ -48,7 +48,7 @@ class ActingEffects {
   std::size_t count_ = 0;
 };
 
-/// The laws of the effects that act, each of whose functions is called where it changes something.
+/// The laws of the effects that act. Each of their functions is called only if it changes something.
 struct ActingLaws {
   ActingLaws(const EffectValues& values, const GliderConstants& glider) {
     const std::vector<EffectInfo>& list = effect_list();
@@ -76,7 +76,7 @@ struct ActingLaws {
   ActingEffects resistance, force, friction, seen, rates;
   double inertia_kg = 0.0;
   double known_factor = 1.0, known_late_s = 0.0;
-  double stretch = 1.0;  // true over stated time
+  double stretch = 1.0;  // ratio of true to stated time
   double row_s = 0.0;
 };
 
@@ -111,13 +111,13 @@ class Mover {
     if (rate > 0.0) step_ = std::min(step_, kLongestTurn / rate);
   }
 
-  /// What acts whichever way it moves.
+  /// The forces that do not depend on the direction of motion.
   double driving(double x, double v, double t) const {
     const EffectValues& e = m_.effects;
     return driving(x, v, t, shaken_ ? std::sin(2.0 * std::numbers::pi * e[kShakeHz] * t + e[kShakePhase]) : 0.0);
   }
 
-  /// `wave`: the shaking's sine at t.
+  /// `wave`: the sine of the vibration at t.
   double driving(double x, double v, double t, double wave) const {
     const GliderState at{x, v, t, wave, pushed_};
     double viscous = m_.k_n_s_m * v, slope = sin_, against = 0.0;
@@ -138,7 +138,7 @@ class Mover {
     return force;
   }
 
-  /// Against the motion.
+  /// The friction, which acts against the motion.
   double friction(double x, double v, double t) const {
     DryFriction of{.mu = m_.mu};
     const GliderState at{x, v, t, 0.0, pushed_};
@@ -150,7 +150,8 @@ class Mover {
     return (driving(x, v, t, wave) - direction_ * friction(x, v, t)) * by_inertia_;
   }
 
-  /// To t_end by one step, where that is short enough and nothing happens on the way: no turn, no hand that lets go.
+  /// Advances to t_end in one step, if that is short enough and nothing happens on the way (no turn, no release by a
+  /// hand).
   std::optional<Stride> stride(const PlaceAndSpeed& s, double t, double t_end) {
     const double release_s = m_.effects[kRelease];
     const bool pushed = m_.effects[kPush] != 0.0 && t < release_s;
@@ -162,10 +163,11 @@ class Mover {
   }
 
   double longest_step() const { return step_; }
-  /// Steps so far, those included that found a turn.
+  /// Number of steps so far, including those spent on finding a turn.
   std::size_t work() const { return work_; }
 
-  /// To t_end, by way of the known force's samples: it has corners there. `stretch`: true over stated time.
+  /// Advances to t_end, stopping at each sample of the known force, where it has corners. `stretch`: ratio of true to
+  /// stated time.
   PlaceAndSpeed advance(PlaceAndSpeed s, double t, double t_end, double stretch) {
     while (m_.known != nullptr && t < t_end) {
       const double until = std::min(t_end, hold_force_at(t, stretch));
@@ -178,7 +180,8 @@ class Mover {
   void start(double v) { direction_ = v > 0.0 ? 1 : v < 0.0 ? -1 : 0; }
 
  private:
-  /// The known force from t on; returns how far it goes on like this. Beyond its samples it stays as at the last one.
+  /// Sets the linear piece of the known force that holds from t on, and returns when that piece ends. Beyond its
+  /// samples the force keeps its last value.
   double hold_force_at(double t, double stretch) {
     const std::vector<double>& at = m_.known->t_s;
     const std::vector<double>& force = m_.known->force_n;
@@ -233,7 +236,7 @@ class Mover {
       if (direction_ == 0 && !leave(s, t, h)) return s;
       const PlaceAndSpeed next = rk4(s, t, h).end;
       if (next.v * direction_ >= 0.0 || !std::isfinite(next.v)) return next;
-      // v = 0 on the way: the time by regula falsi, then Newton's steps.
+      // v = 0 on the way: first estimate of its time by regula falsi, then Newton steps.
       double at = h * std::abs(s.v) / (std::abs(s.v) + std::abs(next.v));
       PlaceAndSpeed stop = s;
       for (int i = 0; i < 6; ++i) {
@@ -252,8 +255,9 @@ class Mover {
     return s;
   }
 
-  /// At rest friction takes up what acts, up to its limit either way. False: it holds for all of h. Else t and h go on
-  /// to where it gives way, and the direction is that in which the glider leaves.
+  /// At rest, static friction balances the driving force up to its limit in either direction. False: it holds for all
+  /// of h. Otherwise t and h are advanced to where it gives way, and the direction becomes that in which the glider
+  /// leaves.
   bool leave(const PlaceAndSpeed& s, double& t, double& h) {
     const auto up = [&](double at) { return driving(s.x, kNoSpeed_m_s, at) - friction(s.x, 0.0, at); };
     const auto down = [&](double at) { return -driving(s.x, -kNoSpeed_m_s, at) - friction(s.x, 0.0, at); };
@@ -262,7 +266,7 @@ class Mover {
     if (!(before > 0.0)) {
       double after = beyond(t + h);
       if (!(after > 0.0)) return false;
-      double low = 0.0, high = h;  // regula falsi, the end that stays halved
+      double low = 0.0, high = h;  // regula falsi (Illinois): the value at the end that stays is halved
       for (int i = 0; i < kMostLeaving && high - low > kSameTime_s; ++i) {
         const double middle = low + (high - low) * before / (before - after);
         const double there = beyond(t + middle);
@@ -295,7 +299,7 @@ class Mover {
   std::size_t work_ = 0;
   int direction_ = 0;
   bool pushed_ = false;
-  std::size_t sample_ = 0;  // of the known force: the first one later than now
+  std::size_t sample_ = 0;  // index of the known force's first sample later than now
   double known_t_ = 0.0, known_n_ = 0.0, known_n_s_ = 0.0;
 };
 
@@ -309,7 +313,7 @@ double seen(const ActingLaws& laws, const GliderConstants& glider, double x, dou
 
 namespace {
 
-/// A motion that is not followed: nothing that was filmed is as stiff, or turns as often.
+/// A motion that is not computed: nothing that can be filmed is so stiff or turns so often.
 Moved not_followed(std::size_t count) {
   const std::vector<double> nowhere(count, std::numeric_limits<double>::quiet_NaN());
   return {nowhere, nowhere};
@@ -331,7 +335,7 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   mover.start(s.v);
   const double stretch = laws.stretch;
   double t = stretch * times_s.front();
-  std::vector<double> at(times_s.size());  // true times, never before the one before
+  std::vector<double> at(times_s.size());  // true times, never decreasing
   for (std::size_t i = 0; i < at.size(); ++i) {
     const double rows = model.row_px.empty() ? 0.0 : model.row_px[i] - model.row_px.front();
     at[i] = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + laws.row_s * rows;
@@ -342,12 +346,12 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     moved.v_m_s.push_back(state.v);
   };
   const double most_steps = kMostSteps + kMostOfFrame * static_cast<double>(at.size());
-  // A fit that diverges asks for millions of steps; nothing that was filmed is as stiff as that.
+  // A diverging fit asks for millions of steps; nothing that can be filmed is so stiff.
   if (!(at.back() - t <= most_steps * mover.longest_step())) return not_followed(at.size());
   const std::size_t positions = std::max(at.size(), kFewTimes);
   for (std::size_t i = 0; i < at.size();) {
     if (mover.work() > kMostWork * positions) return not_followed(at.size());
-    // Several frames by one step where it reaches so far.
+    // One step over several frames, if it reaches that far.
     std::size_t last = i;
     while (last + 1 < at.size() && at[last + 1] - t <= mover.longest_step()) ++last;
     if (last > i && at[last] > t) {

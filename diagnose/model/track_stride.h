@@ -1,5 +1,6 @@
-/// Pieces of which the track model's integration is made: a step that several frames lie on, and a wave without a sine
-/// for each instant. In a header, as they are the innermost of all fits. SI units.
+/// Building blocks of the track model's integrator: one step that spans several frames, and a sine wave at equally
+/// spaced instants without a call of sin for each. They are in a header because they are the innermost loop of all
+/// fits. SI units.
 #pragma once
 
 #include <array>
@@ -9,12 +10,12 @@
 
 namespace glidelab::diagnose {
 
-/// Place in m and speed in m/s.
+/// Position in m and speed in m/s.
 struct PlaceAndSpeed {
   double x = 0.0, v = 0.0;
 };
 
-/// Between two instants that one step joins: the polynomial of fifth order through place, speed and acceleration.
+/// The quintic polynomial over one step, through position, speed and acceleration at both ends.
 class Stride {
  public:
   Stride(const PlaceAndSpeed& from, double a_from, const PlaceAndSpeed& to, double a_to, double length_s)
@@ -40,11 +41,11 @@ class Stride {
 
  private:
   PlaceAndSpeed from_, to_;
-  double v_, a_, by_length_;  // of the place's powers of the part that is gone
+  double v_, a_, by_length_;  // coefficients of the position's powers of the elapsed fraction
   double c3_ = 0.0, c4_ = 0.0, c5_ = 0.0;
 };
 
-/// sin(omega t + phase) at equally spaced instants, without a sine for each.
+/// sin(omega t + phase) at equally spaced instants, without a call of sin for each.
 class SineSteps {
  public:
   SineSteps(double hz, double phase) : omega_(2.0 * std::numbers::pi * hz), phase_(phase) {}
@@ -71,9 +72,9 @@ class SineSteps {
   }
 
  private:
-  static constexpr double kRounding_s = 1e-15;  // of times of some seconds
+  static constexpr double kRounding_s = 1e-15;  // rounding error of times of some seconds
   double omega_, phase_;
-  double t_ = std::numeric_limits<double>::infinity(), sin_ = 0.0, cos_ = 0.0;  // where the last step ended
+  double t_ = std::numeric_limits<double>::infinity(), sin_ = 0.0, cos_ = 0.0;  // at the end of the last step
   double h_ = std::numeric_limits<double>::infinity(), half_sin_ = 0.0, half_cos_ = 0.0;
 };
 

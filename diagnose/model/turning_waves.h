@@ -1,5 +1,6 @@
-/// sin(2 pi f z) and cos(2 pi f z) at many z for one f after the other, f, f + step, f + 2 step, …: the addition
-/// theorems turn each pair on, which costs a tenth of a new sine and cosine. Rounding grows by about 1e-16 a step.
+/// sin(2 pi f z) and cos(2 pi f z) at many z, for one f after another: f, f + step, f + 2 step, …. The addition
+/// theorems advance each pair, which costs a tenth of a new sine and cosine. Rounding errors grow by about 1e-16 a
+/// step.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,12 +11,12 @@ namespace glidelab::diagnose {
 
 class TurningWaves {
  public:
-  /// z, and 1/f and 1/step in the unit of z.
+  /// f and step are in the inverse unit of z.
   TurningWaves(std::span<const double> z, double f, double step);
 
   const Eigen::ArrayXd& sin() const { return sin_; }
   const Eigen::ArrayXd& cos() const { return cos_; }
-  /// Goes on to f + step.
+  /// Advances to f + step.
   void turn();
 
  private:

@@ -14,7 +14,8 @@ namespace {
 
 using Global = ParameterLayout::Global;
 
-/// New data of an explanation: residuals, and its derivatives by the common parameters (own ones projected out).
+/// New data of an explanation: residuals, and derivatives with respect to the common parameters (own ones projected
+/// out).
 struct Rows {
   Eigen::MatrixXd global;
   Eigen::VectorXd residual;
@@ -35,7 +36,7 @@ Rows clip_rows(const TrackSet& set, const MotionFit& a, const MotionFit& b, cons
           by.residual - base::product(own, base::product(gain, by.residual))};
 }
 
-/// The value of what is stated, by a fit's parameters.
+/// The value of a stated quantity, from a fit's parameters.
 double stated_by(const TrackSet& set, const MotionFit& fit, const FitPoint& at, const NextStatement& statement) {
   if (statement.of == NextStatement::Of::inclination) {
     return at.global[static_cast<Eigen::Index>(2 + statement.group)];
@@ -81,7 +82,7 @@ Rows statement_rows(const TrackSet& set, const MotionFit& a, const MotionFit& b,
   return rows;
 }
 
-/// The covariance with a new set-up's inclination in its place.
+/// The covariance with a new set-up's inclination inserted at its index.
 Eigen::MatrixXd with_set_up(const TrackSet& set, const Eigen::MatrixXd& covariance, const NextSetUp& set_up) {
   const Eigen::Index n = covariance.rows(), at = new_alpha(set);
   Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(n + 1, n + 1);
@@ -103,7 +104,7 @@ Outlook outlook(const TrackSet& set, const MotionFit& a, const MotionFit& b, con
                 const Change& change) {
   Outlook view;
   Rows rows = change.clip ? clip_rows(set, a, b, change) : statement_rows(set, a, b, change.statements);
-  // Scaled: places in metres stand beside drags in kg/m.
+  // Scaled, because positions in metres stand beside drags in kg/m.
   const Eigen::MatrixXd before = change.set_up ? with_set_up(set, covariance, *change.set_up) : covariance;
   const Eigen::VectorXd scale = (before.diagonal().array().max(0.0) + 1e-300).sqrt();
   const Eigen::VectorXd by = scale.cwiseInverse();

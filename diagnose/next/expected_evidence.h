@@ -1,6 +1,6 @@
-/// How informative a change to the experiment would be, before it is made: in the linear neighbourhood of a fit, the
-/// change's clip simulated by the track model, with noise as in the clips so far (white, or as position_noise.h has
-/// it).
+/// How informative a change to the experiment would be, before it is made. In the linear neighbourhood of a fit, the
+/// change's clip is simulated by the track model, with noise as in the clips so far (white, or according to
+/// position_noise.h).
 ///
 ///     split = 1/2 u' (1 + G C G')^-1 u,        C' = C - C G' (1 + G C G')^-1 G C
 ///
@@ -19,12 +19,12 @@
 
 namespace glidelab::diagnose {
 
-/// Expected log likelihood that the change would cost `b` where `a` is right; 0 for a clip that cannot be made (fewer
-/// than 12 positions, or a motion that runs away). `covariance_b` is common_covariance(b).
+/// Expected log likelihood that the change would cost `b` if `a` is right; 0 if the clip cannot be made (fewer than 12
+/// positions, or a motion that runs away). `covariance_b` is common_covariance(b).
 double expected_split(const TrackSet& set, const MotionFit& a, const MotionFit& b, const Eigen::MatrixXd& covariance_b,
                       const Change& change);
 
-/// Covariance of the common parameters of a fit after the change; `covariance` is that before.
+/// Covariance of a fit's common parameters after the change; `covariance` is that before it.
 Eigen::MatrixXd expected_covariance(const TrackSet& set, const MotionFit& fit, const Eigen::MatrixXd& covariance,
                                     const Change& change);
 

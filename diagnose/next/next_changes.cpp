@@ -18,12 +18,12 @@ constexpr double kSlowest = 0.2;  // of the fastest launch so far: no slower one
 constexpr double kPlumb_rad =
     0.05 * base::kRadPerDegree;        // standard deviation of a thread in the image, or a digital level
 constexpr double kRuler_m = 5e-4;      // half a division of a ruler in millimetres
-constexpr double kStopWatch_s = 10.0;  // for which a stopwatch is filmed: known to a frame
-constexpr double kLevel_rad = 0.5 * base::kRadPerDegree;  // a track that is less inclined counts as level
-constexpr double kTilt_rad = 4.0 * base::kRadPerDegree;   // that is suggested where there is a level track only
+constexpr double kStopWatch_s = 10.0;  // duration for which a stopwatch is filmed: known to a frame
+constexpr double kLevel_rad = 0.5 * base::kRadPerDegree;  // a track with a smaller inclination counts as level
+constexpr double kTilt_rad = 4.0 * base::kRadPerDegree;   // that is suggested if there is only a level track
 constexpr double kSteeper = 1.5;                          // times the steepest inclination so far
 
-/// What there is so far.
+/// The experiment so far.
 struct SoFar {
   double slow_m_s = 1e9, fast_m_s = 0.0, rate_hz = 0.0, light_kg = 1e9, heavy_kg = 0.0;
   std::vector<std::size_t> groups;  // the flattest and the steepest
@@ -50,7 +50,7 @@ SoFar so_far(const TrackSet& set, const MotionFit& fit) {
   return so;
 }
 
-/// The set-up's name, where there are several.
+/// The set-up's name, if there are several.
 std::string name_among(const TrackSet& set, std::size_t group) {
   return set.groups.size() > 1 ? set.groups[group].name : std::string();
 }
@@ -61,7 +61,7 @@ std::vector<double> distinct(std::vector<double> values) {
   return values;
 }
 
-/// Of a new set-up where the clip's group is beyond those that there are.
+/// For a new set-up if the clip's group is beyond the existing ones.
 Change clip_of(ChangeKind kind, const TrackSet& set, const SoFar& so, const NextClip& clip) {
   Change change;
   change.kind = kind;
@@ -72,12 +72,12 @@ Change clip_of(ChangeKind kind, const TrackSet& set, const SoFar& so, const Next
   return change;
 }
 
-/// Where a motion was released, half of the slowest launch is no launch.
+/// If a motion was released, half of the slowest launch is not a launch.
 double slowest_launch(const SoFar& so) {
   return std::max(0.5 * so.slow_m_s, kSlowest * so.fast_m_s);
 }
 
-/// What falls is dropped: other masses, from where the slowest of them began.
+/// Falling gliders are dropped: other masses, from where the slowest of them began.
 void add_drops(const TrackSet& set, const SoFar& so, std::vector<Change>& changes) {
   for (const std::size_t group : so.groups) {
     for (const double mass : distinct({so.light_kg, so.heavy_kg, 1.6 * so.heavy_kg, 0.6 * so.light_kg})) {
@@ -124,7 +124,7 @@ void add_inclinations(const TrackSet& set, const SoFar& so, std::vector<Change>&
   }
 }
 
-/// The launches there are with another frame rate, and with half the exposure.
+/// The launches so far with another frame rate, and with half the exposure.
 void add_settings(const TrackSet& set, const SoFar& so, std::vector<Change>& changes) {
   const bool scatters = set.position_noise
                             ? set.position_noise->shape.jitter_s > 0.0
@@ -171,7 +171,7 @@ void add_statements(const TrackSet& set, const SoFar& so, std::vector<Change>& c
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal) {
   const SoFar so = so_far(set, nominal);
   std::vector<Change> changes;
-  if (!is_driven(set)) {  // what a motor will do next nobody knows
+  if (!is_driven(set)) {  // nobody knows what a motor will do next
     if (only_falls(set)) {
       add_drops(set, so, changes);
     } else {
@@ -193,10 +193,10 @@ ChangesWeighed weighed(const std::vector<Change>& changes) {
 namespace {
 
 constexpr std::size_t kFewestPoints = 12;
-constexpr double kInside = 0.05;  // of the range of places: where a launch begins
+constexpr double kInside = 0.05;  // fraction of the range of positions at which a launch begins
 constexpr double kMostPoints = 2000.0;
 
-/// Noise of a position over its speed: sd² (1 + c v²).
+/// Noise of a position as a function of its speed: sd² (1 + c v²).
 struct NoiseSoFar {
   double sd_m = 0.0, by_speed_s2_m2 = 0.0;
 };
@@ -216,8 +216,8 @@ NoiseSoFar noise_so_far(const TrackSet& set, const MotionFit& fit) {
   return {std::sqrt(squares / count), fast > 0.0 ? std::max(0.0, excess / fast) : 0.0};
 }
 
-/// The motion over the widest range of places, of this set-up, or of all for a new one: a further clip is filmed as it
-/// was.
+/// The motion over the widest range of positions of this set-up, or of all set-ups for a new one: a further clip is
+/// filmed in the same way.
 const TrackedMotion& like(const TrackSet& set, const Change& change) {
   const TrackedMotion* widest = nullptr;
   double most = -1.0;
@@ -231,7 +231,7 @@ const TrackedMotion& like(const TrackSet& set, const Change& change) {
   return widest != nullptr ? *widest : set.motions.front();
 }
 
-/// Of a motion, what goes with the place, at other places: between the two positions on either side, and beyond them by
+/// Interpolates a position-dependent quantity of a motion: between the two positions on either side, and beyond them by
 /// the slope of all.
 std::vector<double> at_places(const TrackedMotion& motion, const std::vector<double>& of,
                               const std::vector<double>& x_m) {
@@ -286,8 +286,8 @@ TrackSet with_clip(const TrackSet& set, const Change& change) {
   return one;
 }
 
-/// As it was measured, uneven times and blur in proportion to the exposure; white noise as it grows with the speed so
-/// far.
+/// The noise as measured, with jitter and blur in proportion to the exposure; white noise grows with the speed as it
+/// has so far.
 void give_noise(const TrackSet& set, const MotionFit& fit, const Change& change, const Moved& moved,
                 TrackedMotion& motion) {
   const NoiseSoFar noise = noise_so_far(set, fit);
@@ -343,7 +343,7 @@ NextMotion next_motion(const TrackSet& set, const MotionFit& fit, const Change& 
   motion.t_s.resize(points);
   motion.x_m = moved.x_m;
   motion.outlier.assign(points, 0);
-  // The camera errs as it did, and sees a place where it saw it.
+  // The camera has the same errors, and sees a position at the same pixel.
   const TrackedMotion& so_far = like(set, change);
   motion.row_px = at_places(so_far, so_far.row_px, moved.x_m);
   if (!motion.row_px.empty()) motion.x_m = move(model_of(one, layout, at, 0), motion.t_s).x_m;

@@ -1,5 +1,5 @@
-/// What an experimenter could do next: one further clip that differs in one thing, as a fit expects it, or one further
-/// measurement of what is stated.
+/// What an experimenter could do next: one further clip that differs in one respect, as a fit expects it, or one
+/// further measurement of a stated quantity.
 ///
 /// A clip begins inside the range of positions so far, a twentieth of it from its upper or lower end. It lasts as long
 /// as the longest one so far (2000 frames at most), or until it leaves that range. Its noise is that of the positions
@@ -17,28 +17,28 @@
 
 namespace glidelab::diagnose {
 
-/// Launches each way at half, once and 1.8 times the speeds so far, with the masses so far and a heavier and a lighter
-/// one, on the flattest and the steepest set-up; a level track and a steeper one; twice and half the frame rate; half
-/// the exposure, where filmed markers scatter the more the faster they are; a plumb view (0.05 degrees) of each of
-/// these set-ups that has none; the pattern at both ends of the range of places (0.5 mm); a stopwatch (one frame in ten
-/// seconds). Where a recorded force moves the glider, no clips, because nobody knows their forces. `nominal` is the fit
-/// of the nominal model to `set`.
+/// Launches in each direction at half, once and 1.8 times the speeds so far, with the masses so far and a heavier and a
+/// lighter one, on the flattest and the steepest set-up; a level track and a steeper one; twice and half the frame
+/// rate; half the exposure, if the scatter of filmed markers grows with their speed; a plumb view (0.05 degrees) of
+/// each of these set-ups that has none; the pattern at both ends of the range of positions (0.5 mm); a stopwatch (one
+/// frame in ten seconds). If a recorded force moves the glider, no clips, because nobody knows their forces. `nominal`
+/// is the fit of the nominal model to `set`.
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal);
 
-/// How many, and of which kinds, in the order of ChangeKind.
+/// The number and kinds of changes, in the order of ChangeKind.
 ChangesWeighed weighed(const std::vector<Change>& changes);
 
 /// The index of a new set-up's inclination among the common parameters: after those of the others.
 Eigen::Index new_alpha(const TrackSet& set);
 
-/// A fit's parameters for the change's clip. What every clip has of its own is as in the clips so far, on average. The
-/// change must have a clip.
+/// A fit's parameters for the change's clip. Parameters that each clip has for itself take their average over the clips
+/// so far. The change must have a clip.
 FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& change);
 
 /// A further clip as a fit expects it.
 struct NextMotion {
   TrackSet set;  ///< the set-ups and masses so far and the change's, with its clip as the only one
-  Moved moved;   ///< empty where the clip is not feasible: fewer than 12 positions within the range so far
+  Moved moved;   ///< empty if the clip is not feasible: fewer than 12 positions within the range so far
 };
 
 /// The change's clip as the fit predicts it, without noise, cut where it leaves the range of positions so far.

@@ -15,8 +15,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-/// The launch, of those with the masses and set-ups so far, that has most positions of which `inside` is true; none
-/// where no launch has any.
+/// Of the launches with the masses and set-ups so far, the one with most positions for which `inside` is true; none if
+/// no launch has any.
 std::optional<CoverRegion> best_cover(const TrackSet& set, const MotionFit& nominal, CoverRegion::Over over,
                                       const GapRegion& region, const std::function<bool(double, double)>& inside) {
   CoverRegion best;
@@ -37,7 +37,7 @@ std::optional<CoverRegion> best_cover(const TrackSet& set, const MotionFit& nomi
   return best.inside > 0 ? std::optional(best) : std::nullopt;
 }
 
-/// In the middle of the widest gap between masses, or well above the heaviest.
+/// A mass in the middle of the widest gap between masses, or well above the heaviest.
 AddMass mass_between(const TrackSet& set) {
   std::vector<double> masses;
   for (const TrackedMass& mass : set.masses) masses.push_back(mass.mass_kg);
@@ -86,8 +86,8 @@ NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const D
 
 namespace {
 
-constexpr double kDecides = 5.0;       // expected log likelihood from which on a change is worth making
-constexpr double kStillLikely = 0.05;  // probability from which on an explanation is a rival
+constexpr double kDecides = 5.0;       // expected log likelihood above which a change is worth making
+constexpr double kStillLikely = 0.05;  // probability above which an explanation is a rival
 constexpr std::size_t kMostRivals = 3;
 constexpr double kSharpens = 0.95;  // of the standard deviation so far: a clip that leaves more is not worth it
 
@@ -122,7 +122,8 @@ const Hypothesis* leading(const TrackSet& set, const Comparison& comparison, con
   return nullptr;
 }
 
-/// Most likely first: those with a twentieth of the probability, and those that these data cannot tell from the first.
+/// Most likely first: those with at least a twentieth of the probability, and those that these data cannot tell from
+/// the first.
 std::vector<const Hypothesis*> rivals_of(const Comparison& comparison, const Diagnosis& diagnosis,
                                          const Hypothesis& first) {
   std::vector<const Hypothesis*> rivals;
@@ -139,8 +140,8 @@ const MotionFit* fit_of(const Comparison& comparison, const Hypothesis& of) {
   return of.fit < 0 ? nullptr : &comparison.fits[static_cast<std::size_t>(of.fit)];
 }
 
-/// Two explanations, of which one is taken for right: the one that has what the other lacks, because nothing shows of
-/// an effect that is not there.
+/// Two explanations, one of which is assumed to be right: the one with the effect that the other lacks, because an
+/// absent effect shows nothing.
 struct Contest {
   const Hypothesis *right, *other;
   double probability = 0.0;  // of the rival
@@ -151,7 +152,7 @@ struct Contest {
   }
 };
 
-/// Whether each rival is the leading explanation and something besides: nothing named is then in doubt.
+/// Whether each rival is the leading explanation plus something else: no named effect is then in doubt.
 bool only_add(const Hypothesis& first, const std::vector<Contest>& contests) {
   return std::all_of(contests.begin(), contests.end(), [&](const Contest& contest) { return contest.other == &first; });
 }
@@ -169,7 +170,7 @@ struct Choice {
   double gain = 0.0;
 };
 
-/// The change after which the odds of all rivals together fall most: by exp(gain).
+/// The change that reduces the odds of all rivals together most: by exp(gain).
 Choice choose(const TrackSet& set, const Comparison& comparison, const std::vector<Contest>& contests,
               const std::vector<Change>& changes) {
   std::vector<Eigen::MatrixXd> covariances;
@@ -195,7 +196,7 @@ Choice choose(const TrackSet& set, const Comparison& comparison, const std::vect
   return best;
 }
 
-/// What tells the leading explanation from its rivals, or else from the likeliest of them.
+/// The change that tells the leading explanation from its rivals, or otherwise from the likeliest of them.
 SettleDoubt settle(const TrackSet& set, const Comparison& comparison, std::vector<Contest> contests) {
   const std::vector<Change> changes = feasible_changes(set, comparison.fits.front());
   Choice best = choose(set, comparison, contests, changes);
@@ -215,7 +216,7 @@ struct Weak {
   double value = 0.0, by_member = 1.0;
 };
 
-/// Those that the explanation names; of the nominal model, K and mu.
+/// The parameters that the explanation names; for the nominal model, K and mu.
 std::vector<Weak> named_parameters(const MotionFit& fit) {
   std::vector<Weak> named;
   const auto& globals = fit.layout->globals();
@@ -232,7 +233,7 @@ std::vector<Weak> named_parameters(const MotionFit& fit) {
   return named;
 }
 
-/// What would be known better of an explanation that has no rival.
+/// The parameter of an explanation without a rival that could be known better.
 SharpenParameter sharpen(const TrackSet& set, const Comparison& comparison, const MotionFit& fit) {
   const Eigen::MatrixXd before = common_covariance(fit);
   const auto sd_of = [](const Weak& weak, const Eigen::MatrixXd& covariance) {
@@ -257,7 +258,7 @@ SharpenParameter sharpen(const TrackSet& set, const Comparison& comparison, cons
   return step;
 }
 
-/// The first of these effects that only images or single frames show: its sentence.
+/// The sentence of the first of these effects that only images or single frames show.
 std::string for_pictures(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
     const std::string_view words = effect_of(id).next;

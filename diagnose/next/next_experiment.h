@@ -1,4 +1,4 @@
-/// Which further recording or measurement would be most informative, whether what acts has a name or not.
+/// Which further recording or measurement would be most informative, whether the cause has a name or not.
 #pragma once
 
 #include "diagnose/fit/motion_fit.h"
@@ -12,13 +12,13 @@ namespace glidelab::diagnose {
 /// first region). `nominal` is the fit of the nominal model.
 NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const Diagnosis& diagnosis);
 
-/// Of the feasible changes (next_changes.h) the one that is expected to tell the leading explanation best from its
+/// Of the feasible changes (next_changes.h), the one that is expected to tell the leading explanation best from its
 /// rivals (expected_evidence.h). Up to three rivals count: those that are equivalent to it or have a twentieth of the
 /// probability or more. The best change is the one that lowers their joint odds most. Without a rival, it is the change
 /// after which the weakest parameter (largest standard deviation over its size; of the named effects, or else of K and
-/// mu) would be known best; the same holds where each rival only adds something that no change would decide. What only
-/// images or single frames show (their own step, effect.h) and what has no name (next_for_unnamed()) have steps of
-/// their own. `diagnosis` is complete except for its next step.
+/// mu) would be known best; the same holds if each rival only adds something that no change would decide. Effects that
+/// only images or single frames show (their own step, effect.h) and effects without a name (next_for_unnamed()) have
+/// their own steps. `diagnosis` is complete except for its next step.
 NextStep next_experiment(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

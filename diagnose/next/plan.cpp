@@ -16,7 +16,7 @@ struct Direction {
   double square = 0.0;
 };
 
-/// Of the shapes that an effect may have the one that these data would show best.
+/// Of the shapes that an effect may have, the one that these data would show best.
 Direction best_direction(const ScoreSpace& space, std::size_t effect) {
   Direction best;
   for (const std::vector<double>& shape : effect_shapes(space.set(), effect)) {

@@ -31,7 +31,7 @@ struct Plan {
   std::vector<Note> notes;
 };
 
-/// From motions that were analysed: planned ones (a simulation) or recorded ones. InputError where nothing moves
+/// The plan for motions that were analysed: planned ones (a simulation) or recorded ones. InputError if nothing moves
 /// freely.
 Plan plan_of(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups);
 

@@ -21,23 +21,24 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kMostPoints = 1920;  // of all motions: more add nothing to a handful of numbers
 constexpr std::size_t kFewestInChunk = 24;
-constexpr double kAlike = 1e-6;   // a slow wave is a sum of bumps but for less than this: it counts once
+constexpr double kAlike = 1e-6;   // a slow wave that is a sum of bumps to within this counts once
 constexpr double kMostOff = 8.0;  // standard deviations off the neighbours
 
-// Sine and cosine, with time and its square: a frequency between two that are tried is half a radian off at the ends of
-// such points at most, of which these leave half a percent; a size that grows across the image is in them.
+// Sine and cosine, each also times t and t². A frequency between two that are tried is off by at most half a radian at
+// the ends of such points, of which these columns leave half a percent; they also cover a size that grows across the
+// image.
 constexpr Eigen::Index kWaveColumns = 6;
 
-/// Points that are taken together, and frames from bump to bump of what is set aside as slow. A codec that predicts
-/// images from those before hands its errors on: what lasts for up to a dozen frames must be left to be seen.
+/// Number of points taken together, and frames between the bumps that are set aside as slow. A codec that predicts
+/// images from earlier ones passes its errors on: errors that last for up to a dozen frames must stay visible.
 struct Slow {
   std::size_t chunk = 80;
   double knot = 10.0;
 };
 constexpr Slow kNew, kHandedOn{160, 30.0};
 
-/// Frames of a motion that are no outliers, in stretches. Beside a wave, the fit's errors by the place between pixels
-/// have taken up some of it, and are set aside as well.
+/// The frames of a motion that are not outliers, in stretches. Beside a wave, the fit's errors by sub-pixel position
+/// have absorbed some of it, and are set aside as well.
 void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double wave_hz, const Slow& slow,
                 std::vector<NoiseChunk>& chunks) {
   const TrackedMotion& motion = set.motions[i];
@@ -107,11 +108,11 @@ namespace {
 
 constexpr double kSpreadOfLogS = 0.3;  // standard deviation of ln(s_i) about ln(s), s_i of one motion
 
-// Of such a codec, measured on clips with nothing wrong whose truth is known (H.264 of crf 14 to 18, seeds 3000 to
-// 8000, tracked positions less the true ones): neighbours correlate by 0.15 to 0.35, every other frame by 0.3 to 0.4,
-// the fourth by 0.1 to 0.3, the eighth by 0 to 0.15. That is a part that lasts, 0.8 of s, for some five frames; clips
-// differ by a factor of about 1.6. The positions themselves have the last word.
-constexpr double kLastingOverS = 0.8, kSpreadOfLogLasting = 0.5;  // what is expected, and how well
+// For such a codec, measured on fault-free clips whose truth is known (H.264 of crf 14 to 18, seeds 3000 to 8000,
+// tracked positions minus the true ones): the errors of neighbours correlate by 0.15 to 0.35, of every other frame by
+// 0.3 to 0.4, of the fourth by 0.1 to 0.3, of the eighth by 0 to 0.15. That is a lasting part, 0.8 of s, over some five
+// frames; clips differ by a factor of about 1.6. This is a prior: the positions themselves have the last word.
+constexpr double kLastingOverS = 0.8, kSpreadOfLogLasting = 0.5;  // expected value, and its spread
 
 }  // namespace
 
@@ -135,7 +136,7 @@ Likelihood NoiseLikelihood::of(const NoiseShape& shape) const {
     for (std::size_t i = 0; i < motions_; ++i) {
       own[i] = log_s;
       if (left[i].freedom <= 0.0) continue;
-      // Newton's steps for the largest of -freedom log s_i - square/(2 s_i²) - (log(s_i/s)/kSpreadOfLogS)²/2.
+      // Newton steps to the maximum of -freedom log s_i - square/(2 s_i²) - (log(s_i/s)/kSpreadOfLogS)²/2.
       for (int step = 0; step < 12; ++step) {
         const double over = left[i].square * std::exp(-2.0 * own[i]);
         const double slope = -left[i].freedom + over - (own[i] - log_s) / (kSpreadOfLogS * kSpreadOfLogS);
@@ -161,7 +162,7 @@ NoiseLikelihood::Left NoiseLikelihood::with(const NoiseChunk& chunk, const Noise
   const Eigen::MatrixXd lower = base::cholesky_lower(covariance_of(chunk.frames, shape, pilot_px_));
   const Eigen::MatrixXd slow = base::solve_lower(lower, chunk.slow), off = base::solve_lower(lower, chunk.off_px);
   const Eigen::MatrixXd normal = base::transposed_product(slow, slow);
-  // As the squares of what is left and not as a difference of squares: nearly all of a residual may be slow.
+  // As a sum of squared remainders and not as a difference of squares: nearly all of a residual may be slow.
   const Eigen::MatrixXd taken = base::solve_positive(normal, base::transposed_product(slow, off));
   left.square += (off - base::product(slow, taken)).squaredNorm();
   left.logs += 2.0 * lower.diagonal().array().log().sum();
@@ -177,10 +178,10 @@ constexpr std::size_t kFewestPoints = 80;   // of all motions
 constexpr double kWaveShownEvidence = 5.0;  // log evidence
 constexpr double kLeastNoiseGain = 1.0;     // log likelihood that one more part of the noise must gain
 
-// It also codes anew what moves and leaves what rests as it was: its errors grow with the speed as those of uneven
-// times do. Measured on clips with nothing wrong by two renderers (H.264 of crf 14 to 23, 60 to 240 frames a second, 25
-// experiments): at top speed 0.4 to 1.5 of s, and twice 2 and 5, where a marker moves by two pixels a frame at most.
-constexpr double kCodecMoves = 1.0, kCodecMovesFactor = 0.8;  // what is expected, and how well
+// It also recodes what moves and leaves what rests unchanged: its errors grow with the speed as those of timing jitter
+// do. Measured on fault-free clips by two renderers (H.264 of crf 14 to 23, 60 to 240 frames a second, 25 experiments):
+// at top speed 0.4 to 1.5 of s, and in two cases 2 and 5, where a marker moves by two pixels a frame at most.
+constexpr double kCodecMoves = 1.0, kCodecMovesFactor = 0.8;  // expected value, and its spread
 
 struct Dial {
   double NoiseShape::*member;
@@ -189,8 +190,8 @@ struct Dial {
   std::vector<double> lengths;
 };
 
-/// One after the other, each part of the noise gets what makes the positions most likely, until nothing changes. A part
-/// that gains less than kLeastNoiseGain is left out.
+/// Sets each part of the noise in turn to its most likely value, until nothing changes. A part that gains less than
+/// kLeastNoiseGain is left out.
 void climb(const NoiseLikelihood& likelihood, const std::vector<Dial>& dials, NoiseShape& shape, Likelihood& best) {
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
@@ -223,7 +224,7 @@ void climb(const NoiseLikelihood& likelihood, const std::vector<Dial>& dials, No
   }
 }
 
-/// What the likeliest noise gains by its part that lasts, and the evidence over all sizes and lengths.
+/// The gain of the lasting part of the likeliest noise, and its evidence over all sizes and lengths.
 void weigh_lasting(const NoiseLikelihood& likelihood, const Dial& lasting, PositionNoise& noise) {
   NoiseShape shape = noise.shape;
   shape.lasting = 0.0;
@@ -242,14 +243,14 @@ void weigh_lasting(const NoiseLikelihood& likelihood, const Dial& lasting, Posit
 
 /// Noise in proportion to the speed, of one size.
 struct OfSpeed {
-  double at_top = 0.0;  ///< what it makes at top speed, over the pilot's s
+  double at_top = 0.0;  ///< its noise at top speed, over the pilot's s
   double jitter_s = 0.0;
-  double gain = 0.0;  ///< log likelihood, against the likeliest noise without
+  double gain = 0.0;  ///< log likelihood, relative to the likeliest noise without it
   Likelihood likelihood;
 };
 
-/// Uneven times, of any size alike, against the likeliest noise without, to which a codec's own errors belong. Returns
-/// the size that the positions have beyond doubt, whatever makes it; nullptr: none.
+/// Weighs timing jitter, all sizes equally likely, against the likeliest noise without it, to which a codec's own
+/// errors belong. Returns the size that the positions show beyond doubt, whatever its cause; nullptr: none.
 const OfSpeed* weigh_speed(const std::vector<OfSpeed>& sizes, bool handed_on, PositionNoise& noise) {
   if (sizes.empty()) return nullptr;
   std::vector<double> uneven, of_codec;
@@ -268,7 +269,7 @@ const OfSpeed* weigh_speed(const std::vector<OfSpeed>& sizes, bool handed_on, Po
     }
   }
   const auto many = static_cast<double>(sizes.size());
-  // Sizes below the least that is tried are as good as none.
+  // Sizes below the smallest one tried count as none.
   const double codecs_evidence = handed_on ? std::max(0.0, base::log_mean(of_codec) + std::log(many / weights)) : 0.0;
   noise.jitter_log_evidence = base::log_mean(uneven) - codecs_evidence;
   if (likeliest != nullptr) {
@@ -319,13 +320,13 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
   Likelihood best = likelihood.of(noise.shape);
   climb(likelihood, dials, noise.shape, best);
   if (may_last) weigh_lasting(likelihood, dials.back(), noise);
-  // What lasts for the longest that is tried may as well be what the model lacks: that is no noise.
+  // A correlation over the longest time tried may as well be due to what the model lacks, and is then not noise.
   const auto short_lived = [&](const NoiseShape& shape) {
     return shape.lasting > 0.0 && shape.lasting_frames < lengths.back();
   };
   if (!set.pictures && (!short_lived(noise.shape) || noise.lasting_log_evidence < kBeyondDoubt)) return false;
 
-  // From what begins to show among so many points, in units of what s makes at top speed.
+  // Starts at the size that begins to show among this many points, in units of the jitter that makes s at top speed.
   const double unit = pilot_px / top_px_s;
   Dial times{&NoiseShape::jitter_s, {}, nullptr, {0.0}};
   for (double tau = 2.0 * std::pow(2.0 / static_cast<double>(points), 0.25) * unit; tau < 40.0 * unit; tau *= 1.3) {

@@ -40,7 +40,7 @@ std::vector<std::vector<FilmedClip>> by_camera(const std::vector<FilmedClip>& cl
   return cameras;
 }
 
-/// What one camera shows, unless another has shown it more clearly: false then.
+/// Adds the finding of one camera, unless another camera has shown the effect more clearly: then returns false.
 bool add_clearest(PictureFinding finding, PictureEvidence& evidence) {
   for (PictureFinding& known : evidence.findings) {
     if (known.id != finding.id) continue;

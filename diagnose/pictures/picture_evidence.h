@@ -15,7 +15,7 @@
 
 namespace glidelab::diagnose {
 
-/// Filmed clips of an analysis that kept its images; empty where there are none. `cameras`: of each clip.
+/// The filmed clips of an analysis that kept its images; empty if there are none. `cameras`: one for each clip.
 std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
                                      const std::vector<std::optional<core::CameraSettings>>& cameras);
 

@@ -16,8 +16,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kMemory = 0.05;      // of a ratio of variances that should be 1: what it errs by,
-constexpr double kUsualMemory = 1.1;  // and what it is where nothing is wrong
+constexpr double kMemory = 0.05;      // uncertainty of a ratio of variances that should be 1,
+constexpr double kUsualMemory = 1.1;  // and its usual value for a fault-free clip
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   PictureFinding finding = finding_of(ids::compression);
   const double blocks =
       log_deviation_evidence((excess - 3.0) / 2.0, 100.0);  // of columns that tell their scatter poorly
-  // A file that says that it is compressed with loss withholds nothing: it is named for what it does to the positions.
+  // A file that says that it is lossily compressed hides nothing: compression is named for its effect on the positions.
   finding.stated = lossy > 0;
   finding.log_evidence =
       std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks, changes ? blocks : memory_log_evidence(clips));
@@ -94,7 +94,7 @@ namespace {
 
 constexpr int kReach = 4;                         // frames to each side that give a frame's speed
 constexpr std::size_t kFewestFramesOfShape = 40;  // frames of all clips together
-constexpr int kPlace = 4;                         // terms of a cubic
+constexpr int kPlace = 4;                         // number of terms of a cubic
 constexpr double kShortest_s = 2e-5;
 constexpr double kFinest = 1.06;  // step of the exposures that are tried
 constexpr int kBins = 24;
@@ -132,7 +132,7 @@ std::vector<Sample> samples_of(const FilmedClip& clip) {
   return samples;
 }
 
-/// What a smear adds along it more than across it.
+/// The second moment that a smear adds along it, more than across it.
 double smear(double length_px) {
   return length_px * length_px / 12.0;
 }
@@ -143,7 +143,8 @@ struct Solved {
   Eigen::VectorXd rest;
 };
 
-/// Everything linear (the place's cubics, the line time) at a given exposure. Rows: stretch of all, then shear of all.
+/// Everything linear (the cubics of position, the line time) at a given exposure. Rows: stretch of all, then shear of
+/// all.
 class Linear {
  public:
   Linear(const std::vector<Sample>& samples, std::size_t views, double shear_weight)
@@ -200,7 +201,8 @@ class Linear {
   Eigen::VectorXd data_;
 };
 
-/// How many independent values a series of correlated ones has fewer: 1 + 2 sum of its correlations, while they last.
+/// The factor by which a correlated series has fewer independent values: 1 + 2 sum of its correlations, while they
+/// last.
 double memory_of(const Eigen::VectorXd& rest) {
   const double variance = rest.squaredNorm() / static_cast<double>(rest.size());
   double memory = 1.0;
@@ -246,7 +248,7 @@ PictureCurve lengthening(const std::vector<Sample>& samples, const Eigen::Vector
   return curve;
 }
 
-/// Every clip's samples; its view counted from 0 in the order of the clips.
+/// The samples of every clip; its view is counted from 0 in the order of the clips.
 std::vector<Sample> all_samples(const std::vector<FilmedClip>& clips, std::size_t& views) {
   std::map<std::size_t, std::size_t> numbers;
   std::vector<Sample> samples;
@@ -260,7 +262,7 @@ std::vector<Sample> all_samples(const std::vector<FilmedClip>& clips, std::size_
   return samples;
 }
 
-/// The fit at every exposure that may be, and the best of them.
+/// The fits at every possible exposure, and the best of them.
 struct Scan {
   std::vector<double> tried_s, chi2;
   double best_s = 0.0;
@@ -282,7 +284,7 @@ Scan scan_exposures(const Linear& linear, double longest_s, double longest_px, d
   return scan;
 }
 
-/// Leaves out what lies off the last fit, and weighs the shear anew by its scatter against the stretch's.
+/// Leaves out the outliers of the last fit, and reweights the shear by its scatter relative to that of the stretch.
 void leave_outliers(const Solved& last, std::vector<Sample>& samples, double& shear_weight) {
   const auto n = static_cast<Eigen::Index>(samples.size());
   std::vector<double> of_stretch, of_shear;
@@ -300,7 +302,7 @@ void leave_outliers(const Solved& last, std::vector<Sample>& samples, double& sh
   shear_weight = stretch / shear;
 }
 
-/// Mean and spread over the likelihood of the exposures tried, each with the step that it stands for.
+/// Mean and spread over the likelihood of the exposures tried, each weighted with its step.
 void tell_exposure(const Scan& scan, double variance, ShapeFit& result) {
   double sum = 0.0, mean = 0.0, square = 0.0;
   for (std::size_t i = 0; i < scan.tried_s.size(); ++i) {

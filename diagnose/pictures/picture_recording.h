@@ -7,17 +7,18 @@
 
 namespace glidelab::diagnose {
 
-/// Log evidence that static pixels keep their earlier values: those of a codec's predicted images do.
+/// Log evidence that static pixels keep their earlier values, as those of a codec's predicted images do.
 double memory_log_evidence(const std::vector<FilmedClip>& clips);
 
 /// Whether the clip was lossily compressed, and whether that is visible. To be called after add_flicker and add_sway,
 /// whose findings it reads.
 ///
-/// Blocks: steps between pixels at the edges of 8 x 8 blocks against those of the other seven columns. Memory: a
-/// resting pixel's change over two frames against that over one, 1 where noise is new in every frame. Light or a scene
-/// that changes makes it differ from 1 as well, so that it counts only where both rest. (A flicker of less than 1 %
-/// where pixels keep their values is not the light's: picture_scene.h.) A file that itself says that it is lossily
-/// compressed hides nothing: compression is named for what it does to the positions (joined_evidence.h).
+/// Blocks: steps between pixels at the edges of 8 x 8 blocks are compared with those of the other seven columns.
+/// Memory: the change of a resting pixel over two frames over that over one, which is 1 if the noise is new in every
+/// frame. A change of the light or the scene makes it differ from 1 as well, so it counts only if both are at rest. (A
+/// flicker of less than 1 % whose pixels keep their values is not that of the light: picture_scene.h.) If a file itself
+/// says that it is lossily compressed, nothing is hidden: compression is named for its effect on the positions
+/// (joined_evidence.h).
 void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
 /// Whether frames are missing or repeated.
 void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
@@ -25,10 +26,10 @@ void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
 struct ShapeFit {
   bool known = false;
   double exposure_s = 0.0, exposure_sd_s = 0.0;
-  double line_s = 0.0, line_sd_s = 0.0;  ///< top row first
+  double line_s = 0.0, line_sd_s = 0.0;  ///< positive if the top row is first
   double fastest_px_s = 0.0;
   double radius_px = 0.0;
-  std::vector<PictureCurve> curves;  ///< lengthening over speed
+  std::vector<PictureCurve> curves;  ///< lengthening as a function of speed
 };
 
 /// Exposure and line time from the shape of the marker's image.
@@ -40,9 +41,10 @@ struct ShapeFit {
 ///     m_uu - m_vv = p(u) + (w_u² - w_v²) T²/12 - 2 line w_v m_vv
 ///     m_uv        = q(u) + w_u w_v T²/12 + line w_u m_vv
 ///
-/// p and q are cubic in the place in the image, one pair for each view. They allow for perspective and lens, which do
-/// not depend on the speed. T is found by trying exposures, everything else by least squares. Outliers beyond seven
-/// median deviations are left out, and variances are multiplied by how long residuals last.
+/// p and q are cubic polynomials of the position in the image, one pair for each view. They allow for perspective and
+/// lens, which do not depend on the speed. T is found by trying exposures, everything else by least squares. Outliers
+/// beyond seven median deviations are left out, and variances are multiplied by the correlation length of the
+/// residuals.
 ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips);
 
 }  // namespace glidelab::diagnose

@@ -19,19 +19,19 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastFlicker = 0.002;      // of the light: below, nothing that a threshold would notice
-constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames brighten and darken by as much
+constexpr double kLeastFlicker = 0.002;      // of the light: below this, no threshold would notice it
+constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames change the brightness by as much
 constexpr double kOfDrift = 0.01;            // of the light, for each pixel that the scene has moved
-constexpr double kUsualGradient_1_m = 0.1;   // of the light, in a room where nothing is wrong
-constexpr double kFull = 0.96;               // of the largest code: a marker as bright may be cut off there
+constexpr double kUsualGradient_1_m = 0.1;   // of the light, in an ordinary room
+constexpr double kFull = 0.96;               // of the largest code: a marker this bright may be saturated
 
-/// sinc of an exposure's average over a wave.
+/// The sinc factor by which an exposure averages a wave.
 double averaged(double f_hz, double exposure_s) {
   const double x = std::numbers::pi * f_hz * exposure_s;
   return x < 1e-6 ? 1.0 : std::sin(x) / x;
 }
 
-/// Mains light flickers at 100 or 120 Hz, of which the frames see an alias; else what is seen.
+/// Mains light flickers at 100 or 120 Hz, of which the frames see an alias; otherwise the frequency is the one seen.
 double flicker_of_mains(double seen_hz, double sd_hz, double rate_hz) {
   for (const double mains : {100.0, 120.0}) {
     const double folded = std::abs(mains - rate_hz * std::round(mains / rate_hz));
@@ -82,7 +82,8 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   const double f_hz = flicker_of_mains(wave.f_hz, wave.sd_hz, camera.frame_rate_hz);
   const double passed = std::max(0.1, std::abs(averaged(f_hz, camera.exposure_s.value_or(0.0))));
   PictureFinding finding = finding_of(ids::light_flicker);
-  // Where the file does not tell, pixels that remember do: light that changes by less than 1 % cannot make them.
+  // If the file does not say so, pixels that keep their values show it: light that changes by less than 1 % cannot
+  // cause that.
   double least = memory_log_evidence(clips) > kSeenInPictures ? kLeastFlickerLossy : kLeastFlicker;
   for (const FilmedClip& clip : clips) {
     if (core::through_lossy_codec(*clip.record)) least = kLeastFlickerLossy;
@@ -104,7 +105,7 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
 
 namespace {
 
-/// What light from one side does to the centroid of the marker's light, where that is more than noise.
+/// The effect of light from one side on the centroid of the marker's light, if it exceeds the noise.
 std::string words_of_pull(const std::vector<FilmedClip>& clips) {
   constexpr double kLeastPull_px = 0.1, kRare = 0.05;
   std::vector<double> pulls, along;
@@ -125,7 +126,7 @@ std::string words_of_pull(const std::vector<FilmedClip>& clips) {
 
 }  // namespace
 
-/// Light along the path from how bright the marker is: ln(brightness) = a + g s + q s² about the image's middle.
+/// Light along the path from the marker's brightness: ln(brightness) = a + g s + q s² about the image's middle.
 void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   const auto columns = static_cast<Eigen::Index>(clips.size() + 2);
   std::vector<Eigen::VectorXd> rows;
@@ -158,7 +159,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   const Eigen::VectorXd found = base::product(inverse, base::transposed_product(design, data));
   const double variance = (data - base::product(design, found)).squaredNorm() / static_cast<double>(rows.size());
   const double gradient = found[columns - 2];
-  // Neighbouring frames share what the pixels' own response does; one in ten counts.
+  // Neighbouring frames share the pixels' own response; one in ten counts.
   const double sd = std::sqrt(10.0 * variance * inverse(columns - 2, columns - 2));
   PictureFinding finding = finding_of(ids::light_gradient);
   const double usual = std::hypot(sd, kUsualGradient_1_m);
@@ -173,7 +174,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
 
 namespace {
 
-constexpr double kLeastSway_px = 0.02;      // what a patch of scene can be trusted to
+constexpr double kLeastSway_px = 0.02;      // accuracy of the shift of a patch of the scene
 constexpr double kLeastSwayLossy_px = 0.3;  // of a codec, which keeps the scene where it was, or moves it, by blocks
 
 double least_sway_px(const std::vector<FilmedClip>& clips) {
@@ -197,7 +198,7 @@ std::vector<Series> drift_of(const FilmedClip& clip) {
   return {std::move(u), std::move(v)};
 }
 
-/// Range of the means of eight parts of a series beyond what its noise makes of it, with its standard error.
+/// Range of the means of eight parts of a series beyond that due to its noise, with its standard error.
 struct Drift {
   double size = 0.0, sd = 0.0;
 };

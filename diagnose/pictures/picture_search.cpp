@@ -39,7 +39,7 @@ constexpr double kFewestPeriods = 3.0;      // a series
 constexpr double kOverMedian = 4.0;
 constexpr std::size_t kMostFrequencies = 6000;  // frequencies
 
-/// A series with its mean, slope and curvature taken out, and the orthonormal terms that did it.
+/// A series minus its mean, slope and curvature, and the orthonormal terms that were removed.
 class Flat {
  public:
   explicit Flat(const Series& series)
@@ -154,7 +154,7 @@ SeriesWave strongest_wave(const std::vector<Series>& all) {
   wave.log_evidence = best - penalty - kOverMedian * core::median_of(gains);
   wave.amplitude = std::sqrt(squares);
   wave.sd = std::sqrt(variance);
-  // Of the frequency of a wave in white noise: sqrt(6) sd(component) / (pi span amplitude).
+  // Standard deviation of the frequency of a wave in white noise: sqrt(6) sd(component) / (pi span amplitude).
   wave.sd_hz = std::sqrt(6.0) * wave.sd / (std::numbers::pi * span * std::max(1e-300, wave.amplitude));
   return wave;
 }

@@ -17,11 +17,11 @@ namespace glidelab::diagnose {
 /// A clip's images, with what the folder states of the camera.
 struct FilmedClip {
   std::string name;
-  std::size_t view = 0;  ///< clips of one view (folder and set-up) see a place at the same pixel
+  std::size_t view = 0;  ///< in clips of one view (folder and set-up) a point is at the same pixel
   std::shared_ptr<const core::PictureRecord> record;
   core::CameraSettings camera;
-  double px_per_m = 0.0;  ///< along the motion; 0 where unknown
-  bool down = false;      ///< the marker moves down or up the image, more than to its sides
+  double px_per_m = 0.0;  ///< along the motion; 0 if unknown
+  bool down = false;      ///< whether the marker moves more vertically in the image than horizontally
 };
 
 struct PictureEvidence {
@@ -29,16 +29,16 @@ struct PictureEvidence {
   std::vector<PictureCurve> curves;
   std::vector<FilmedClip> clips;
   double fastest_px_s = 0.0;   ///< of the marker
-  double stated_line_s = 0.0;  ///< of the camera whose clips show the shutter best; of the first where none does
+  double stated_line_s = 0.0;  ///< of the camera whose clips show the shutter best; of the first if none does
   std::optional<Filming> filming;
 };
 
-inline constexpr double kSeenInPictures = 3.0;  ///< log evidence from which a finding counts as seen
+inline constexpr double kSeenInPictures = 3.0;  ///< log evidence above which a finding counts as seen
 
 /// An empty finding of an effect of the list.
 PictureFinding finding_of(std::string_view id);
 
-/// Time from one row to the next below, as stated: 0 for a global shutter, below 0 where the bottom row is first.
+/// Time from one row to the next below, as stated: 0 for a global shutter, negative if the bottom row is first.
 double stated_line_s(const core::CameraSettings& camera);
 
 /// Log evidence of a deviation of z standard deviations, equal odds for each factor of ten from 1 to `largest`.
@@ -60,7 +60,7 @@ struct SeriesWave {
 /// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, with a and b free in
 /// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known.
 /// Its evidence is reduced by Schwarz's penalty for what is free, and by four times the median gain over all
-/// frequencies, which is the gain where noise is not white.
+/// frequencies, which is the gain if the noise is not white.
 SeriesWave strongest_wave(const std::vector<Series>& series);
 
 /// Amplitude at one frequency and its standard deviation (of a component), of one series.

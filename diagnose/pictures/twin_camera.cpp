@@ -41,12 +41,13 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kField = 1.6;            // m that a scenario's own camera sees from 2.4 m
-constexpr std::size_t kFewestPlaces = 8;  // that a line is laid through
-/// Code of a scenario's wall, which most of what rests is: of its albedo, white level and offset.
+constexpr std::size_t kFewestPlaces = 8;  // from which a line is fitted
+/// Code of a scenario's wall, the largest part of the resting scene: from its albedo, white level and offset.
 constexpr double kLastCode = 255.0, kBlackCode = 2.0, kRange = kLastCode - kBlackCode;  // of a scenario's 8 bits
 constexpr double kWallCode = 0.38 * 0.75 * kRange;
 constexpr double kWellKnown = 5.0;                 // standard deviations
-constexpr double kFocalOfWidth = 1.5;              // of a usual lens, where nothing tells: as a scenario's own camera
+constexpr double kFocalOfWidth = 1.5;              // of a usual lens, if nothing is known: that of a scenario's default
+                                                   // camera
 constexpr double kMostRotation = 10.0 / kDegrees;  // that a scenario allows a pattern
 
 /// y = through + x along, by least squares.
@@ -80,7 +81,7 @@ core::CameraModel lens_of(const core::CalibrationResult& calibration, const cv::
   return camera;
 }
 
-/// Lens, plane and line of motion, of a clip's group; false where too little of the clip was seen.
+/// Lens, plane and line of motion of a clip's group; false if too little of the clip was seen.
 bool lay_plane(const core::CameraAndPlanes& setting, const std::string& group, const core::ClipResult& clip,
                Filming& filming) {
   const core::PlanePose& pose = setting.restitutions.at(group).plane()->pose;
@@ -117,7 +118,7 @@ Eigen::Isometry3d plane_in_world(const Filming& filming, int downhill, double re
   return X_WP;
 }
 
-/// Whether the pattern with a border of one square is in the picture.
+/// Whether the pattern with a border of one square is in the image.
 bool wholly_seen(const Filming& filming) {
   for (const double x : {-2.0, filming.inner_columns + 1.0}) {
     for (const double y : {-2.0, filming.inner_rows + 1.0}) {
@@ -146,7 +147,7 @@ void look_through_lens(const Filming& filming, double reference_m, double inclin
   for (const int downhill : {1, -1}) {
     const Eigen::Isometry3d X_WP = plane_in_world(filming, downhill, reference_m, incline_rad);
     const Eigen::Isometry3d X_WC = X_WP * filming.X_CP.inverse();
-    // Both are the same image, one upside down: a camera stands upright.
+    // Both are the same image, one of them upside down: a camera stands upright.
     if (downhill == 1 && X_WC.linear()(1, 1) > 0.0) continue;
     view.downhill = downhill;
     view.position_m = X_WC.translation();
@@ -179,8 +180,8 @@ void look_by_scale(const Filming& filming, double reference_m, double incline_ra
   view.assumed.emplace_back("the focal length, and with it the distance");
 }
 
-/// Light's noise and the sensor's own from the noise over the level; where that does not tell them apart, light's
-/// alone, of a wall as bright as a scenario has it. Rounding to whole codes makes 1/12 of the variance.
+/// Shot noise and the sensor's own noise from the noise as a function of level. If that cannot separate them, shot
+/// noise alone, for a wall as bright as a scenario's. Rounding to whole codes contributes 1/12 to the variance.
 std::string sensor_section(const Filming& filming) {
   if (filming.full_code != kLastCode || filming.lossy.value_or(false)) return "";
   const double variance = filming.noise_code * filming.noise_code - 1.0 / 12.0;

@@ -13,7 +13,7 @@ bool only_statements_fail(const Diagnosis& diagnosis) {
 
 namespace {
 
-/// That one of them acts; nothing where no explanation holds any.
+/// The probability that one of them acts; empty if no explanation contains any.
 std::optional<double> any_of(const std::vector<NamedExplanation>& explanations, const std::vector<std::string>& ids) {
   std::optional<double> sum;
   for (const NamedExplanation& explanation : explanations) {

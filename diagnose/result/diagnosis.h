@@ -27,7 +27,7 @@ struct DiagnosedParameter {
 /// One of several effects that would look the same.
 struct AlikeEffect {
   std::string id, words;
-  std::optional<double> probability;  ///< none where no weighed explanation holds it: it counts under another's
+  std::optional<double> probability;  ///< none if no weighed explanation contains it: it counts under another's
 };
 
 struct DiagnosedEffect {
@@ -38,19 +38,19 @@ struct DiagnosedEffect {
   std::vector<std::string> equivalent_to;  ///< effects that these data cannot tell from it
   std::vector<DiagnosedParameter> parameters;
   double joint_probability = 0.0;  ///< that it or one of `equivalent_to` acts
-  /// It and those, by falling probability; empty where it stands alone.
+  /// It and those, by decreasing probability; empty if it stands alone.
   std::vector<AlikeEffect> alike = {};
 };
 
 struct RankedExplanation {
   Explanation explanation;
   double probability = 0.0;
-  double log_evidence_gain = 0.0;  ///< against the nominal model
+  double log_evidence_gain = 0.0;  ///< relative to the nominal model
   double log_likelihood_gain = 0.0;
-  std::size_t parameters = 0;                   ///< more than the nominal model has
-  std::optional<double> gap_after;              ///< of held-out clips; where it was fitted in full
-  std::optional<ImpossibleSize> left_out = {};  ///< why it was not weighed, where it was not
-  bool converged = true;                        ///< false: its fit did not reach a minimum; it gains at least this much
+  std::size_t parameters = 0;                   ///< in addition to those of the nominal model
+  std::optional<double> gap_after;              ///< of held-out clips, if it was fitted in full
+  std::optional<ImpossibleSize> left_out = {};  ///< why it was not weighed, if it was not
+  bool converged = true;                        ///< false: its fit did not reach a minimum; the gain is a lower bound
 };
 
 struct GapRegion {
@@ -60,13 +60,13 @@ struct GapRegion {
   double size = 0.0;    ///< the largest
   std::string unit;     ///< of size: N, m/s², m, N s/m
   GapKind what = GapKind::force;
-  std::string clip;  ///< where it is one clip's
-  /// What the nominal model lacks at most, in the size's unit, where the size is far more than that: not to be
-  /// believed.
+  std::string clip;  ///< set if it belongs to one clip
+  /// The most that the nominal model can lack, in the size's unit, if the size is far more than that and therefore not
+  /// credible.
   std::optional<double> lacking = {};
-  std::optional<double> size_sd = {};  ///< of the size; none where it is not from a curve or from lines
-  int direction = 0;                   ///< sign of v of its lines; 0 for both directions, and where there are no lines
-  std::optional<double> at = {};       ///< the variable where a curve has that size
+  std::optional<double> size_sd = {};  ///< of the size; none if it is not from a curve or from lines
+  int direction = 0;                   ///< sign of v of its lines; 0 for both directions, and if there are no lines
+  std::optional<double> at = {};       ///< the value of the variable at which a curve has that size
 };
 
 /// A function of one variable that would explain the gap, for the plots.
@@ -80,19 +80,19 @@ struct GapCurve {
 
 struct GapOfParameter {
   std::string quantity, against, group;
-  std::optional<double> z_before = {}, z_after = {};  ///< none where it cannot be determined
-  /// Of a part of the data alone, against all: the nominal model's fits, in the quantity's unit.
+  std::optional<double> z_before = {}, z_after = {};  ///< none if undetermined
+  /// From a part of the data alone, and from all: fits of the nominal model, in the quantity's unit.
   std::optional<DiagnosedParameter> alone = {}, together = {};
 };
 
-/// 95 %, over clips (gap_sizes.h).
+/// 95 % interval, over clips (gap_sizes.h).
 struct GapInterval {
   double low = 0.0, high = 0.0;
 };
 
 struct GapIntervals {
   std::optional<GapInterval> before, after, shrink, acceleration_before, acceleration_after;
-  std::optional<std::size_t> too_few = {};  ///< number of clips, where it is the reason for the missing interval
+  std::optional<std::size_t> too_few = {};  ///< number of clips, if that is the reason for the missing interval
 };
 
 /// A difference with its standard deviation.
@@ -110,31 +110,31 @@ struct PhaseBin {
 
 struct PhaseGap {
   std::optional<double> mass_kg;  ///< none: all masses together
-  std::vector<PhaseBin> bins;     ///< by rising speed
+  std::vector<PhaseBin> bins;     ///< by increasing speed
 };
 
-/// How large the gap is in one domain, over what the noise alone would make (1).
+/// The size of the gap in one domain, relative to that due to noise alone (1).
 struct GapDomain {
   std::string domain;  ///< positions, phase_plane, parameters, picture
   double before = 0.0;
-  std::optional<double> after = {};  ///< none where it cannot be determined
+  std::optional<double> after = {};  ///< none if undetermined
 };
 
-/// There is a gap from this many standard errors above the floor. Three would do if the noise were exactly white and
-/// normal; half as many more leave room for noise that is not.
+/// A gap exists if it is this many standard errors above the floor. Three would do if the noise were exactly white and
+/// normal; half as many again leave room for noise that is not.
 inline constexpr double kClearGap = 4.5;
 
 struct GapSizes {
   double before = 0.0, after = 0.0;
   double standard_error = 0.0;  ///< of a gap at the floor
-  double floor = 1.0;           ///< below 1 where the best fit shows that the noise was taken as too large
+  double floor = 1.0;           ///< below 1 if the best fit shows that the noise was overestimated
   std::optional<double> shrink;
   std::vector<std::string> held_out;
   std::vector<double> before_by_clip, after_by_clip;
-  std::optional<double> acceleration_before, acceleration_after;  ///< m/s²; none of lines, which hold no motion
+  std::optional<double> acceleration_before, acceleration_after;  ///< m/s²; none for lines, which contain no motion
   GapIntervals interval95;
   std::vector<GapOfParameter> parameters;
-  std::vector<PhaseGap> phase_plane;  ///< all masses together, then each; empty of lines
+  std::vector<PhaseGap> phase_plane;  ///< all masses together, then each; empty for lines
   std::vector<GapDomain> domains;
 };
 
@@ -145,27 +145,29 @@ struct ResidualCurve {
   std::vector<double> noise_m = {};
 };
 
-/// Two effects are called alike from this cosine on: the second one then explains 90 % of what the first one gains.
+/// Two effects are called alike if their cosine is at least this: the second then explains 90 % of the gain of the
+/// first.
 inline constexpr double kAlike = 0.95;
 
-/// Parts of the gap's excess that two explanations leave are the same within this: by causes/cause_odds.h it makes odds
-/// of twenty.
+/// Parts of the gap's excess that two explanations leave count as equal within this: by causes/cause_odds.h it
+/// corresponds to odds of twenty.
 inline constexpr double kSameLeft = 0.24;
 
-/// How alike the changes by two effects are: the cosine of the angle between them, everything fitted projected out.
+/// How similar the changes due to two effects are: the cosine of the angle between them, all fitted parameters
+/// projected out.
 struct Isolability {
   std::vector<std::string> ids;
   std::vector<double> least_seen;           ///< size of each that makes one standard deviation
   std::vector<std::vector<double>> cosine;  ///< absolute
 };
 
-/// What the images of filmed clips say of one effect, whether or not it moves the positions.
+/// What the images of filmed clips say about one effect, whether or not it moves the positions.
 struct PictureFinding {
   std::string id;
   Stage stage = Stage::optics;
   bool seen = false;
-  double log_evidence = 0.0;  ///< of its presence against its absence, from the images alone
-  bool stated = false;        ///< the file itself says so: named only for what it does to the positions
+  double log_evidence = 0.0;  ///< for its presence against its absence, from the images alone
+  bool stated = false;        ///< the file itself says so: named only for its effect on the positions
   std::vector<DiagnosedParameter> parameters;
   std::string words;  ///< a sentence
 };
@@ -176,7 +178,7 @@ struct PictureFinding {
 struct PictureCurve {
   std::string what, clip;
   std::vector<double> at, value, sd;
-  std::vector<double> expected, fitted;  ///< as stated, and as found; empty where there is none
+  std::vector<double> expected, fitted;  ///< as stated, and as found; empty if there is none
 };
 
 /// The residuals of the pattern's corners about a camera's fit.
@@ -194,9 +196,9 @@ struct TwinLack {
 /// One explanation of the motions, as a scenario file: its forces and starts. The camera is that of Diagnosis::twin.
 struct LikelyTwin {
   std::string toml;
-  std::vector<std::string> ids;  ///< effects that it holds; none: the nominal model
-  double probability = 1.0;      ///< beside the others of the list
-  // What it leaves, as a random acceleration (causes/remainder.h).
+  std::vector<std::string> ids;  ///< effects in it; none: the nominal model
+  double probability = 1.0;      ///< relative to the others of the list
+  // What it leaves unexplained, as a random acceleration (causes/remainder.h).
   double q_m2_s3 = 0.0;     ///< spectral density of the white part
   double force_m_s2 = 0.0;  ///< sd from clip to clip of friction, and of inclination
   double drag = 0.0;        ///< relative sd from clip to clip of K
@@ -207,9 +209,9 @@ struct MeasuredMotion {
   std::string clip;
   double start_s = 0.0;      ///< of the twin's clip, after the data's first frame
   double noise_m = 0.0;      ///< of one position
-  double bandwidth_s = 0.0;  ///< of the analysis' smoothing
+  double bandwidth_s = 0.0;  ///< of the analysis's smoothing
   std::vector<double> t_s, x_m;
-  std::vector<double> v_m_s, a_m_s2;  ///< smoothed, of the points that the lines rest on
+  std::vector<double> v_m_s, a_m_s2;  ///< smoothed, at the points to which the lines are fitted
 };
 
 /// What a reader must know before the verdict (verdict_details.h); also in the notes.
@@ -227,11 +229,12 @@ struct ExplainedCause {
   double gap_after = 0.0;                            ///< g_i
 };
 
-/// What is left of the gap beside the named causes.
+/// What is left of the gap after the named causes.
 struct GapRemainder {
-  double share = 1.0;              ///< of the excess g²_0 - 1: what the causes' shares leave to 1
+  double share = 1.0;              ///< of the excess g²_0 - 1: 1 minus the causes' shares
   double gap = 1.0;                ///< of held-out clips, with all causes in the model
-  double acceleration_m_s2 = 0.0;  ///< rms of the random acceleration that would make it (remainder.h); 0: none is seen
+  double acceleration_m_s2 = 0.0;  ///< rms of the random acceleration that would cause it (remainder.h); 0: none is
+                                   ///< seen
   double clip_scatter_m_s2 = 0.0;  ///< sd, from clip to clip, of the acceleration by friction and inclination
   double drag_scatter = 0.0;       ///< relative sd, from clip to clip, of K
   std::vector<GapRegion> regions = {};
@@ -242,14 +245,14 @@ struct GapRemainder {
 /// fits take.
 struct GapLevels {
   double all = 1.0;
-  std::optional<double> configuration = {};  ///< none where there is only one configuration
-  std::optional<double> clip = {};           ///< none where there is only one clip
-  /// K/m and mu of each configuration by itself, for the table: where configuration_friction or configuration_drag is
-  /// named, or the law holds within configurations and not across them.
+  std::optional<double> configuration = {};  ///< none if there is only one configuration
+  std::optional<double> clip = {};           ///< none if there is only one clip
+  /// K/m and mu of each configuration by itself, for the table: if configuration_friction or configuration_drag is
+  /// named, or the law holds within configurations but not across them.
   bool holds_within = false;
 };
 
-/// K/m, mu, alpha, v_lim of one configuration with the named causes in the model; the intervals count the remainder.
+/// K/m, mu, alpha, v_lim of one configuration with the named causes in the model; the intervals include the remainder.
 struct RecoveredConfiguration {
   std::string group;
   double mass_kg = 0.0;
@@ -260,7 +263,7 @@ struct RecoveredConfiguration {
 
 struct Diagnosis {
   Verdict verdict = Verdict::none;
-  std::size_t points = 0;  ///< positions that took part
+  std::size_t points = 0;  ///< positions used
   std::vector<DiagnosedEffect> effects;
   double none = 0.0, unknown = 0.0;
   std::vector<RankedExplanation> ranking;
@@ -269,14 +272,14 @@ struct Diagnosis {
   std::vector<GapCurve> curves;
   std::optional<GapSizes> gap;
   std::vector<ExplainedCause> explained;  ///< in order
-  std::optional<GapRemainder> remainder;  ///< none where the gap before is not above its floor, or of lines
+  std::optional<GapRemainder> remainder;  ///< none if the gap before is not above its floor, and for lines
   std::vector<std::string> traces;        ///< ids: seen, but of no consequence to gap or parameters
-  std::optional<GapLevels> levels;        ///< none of lines
+  std::optional<GapLevels> levels;        ///< none for lines
   std::vector<RecoveredConfiguration> recovered;
   NextStep next;
   VerdictLimits limits;
   Isolability isolability;
-  std::optional<LineComparison> lines;  ///< where the data are a table of published lines
+  std::optional<LineComparison> lines;  ///< if the data are a table of published lines
   std::vector<ResidualCurve> residuals;
   std::vector<PictureFinding> pictures;  ///< empty for tracks
   std::vector<PictureCurve> picture_curves;
@@ -289,19 +292,19 @@ struct Diagnosis {
   std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
 };
 
-/// Whether the nominal model follows the positions to within their noise, and the verdict is unknown only because of
-/// what is stated: an inclination that the motion contradicts, a drag or friction below zero.
+/// Whether the nominal model follows the positions to within their noise, and the verdict is unknown only because of a
+/// statement: an inclination that the motion contradicts, or a drag or friction below zero.
 bool only_statements_fail(const Diagnosis& diagnosis);
 
-/// An explanation that names effects and nothing else.
+/// An explanation that consists only of named effects.
 struct NamedExplanation {
   std::vector<std::string> ids;
   double probability = 0.0;
 };
 
-/// Takes effects that these data cannot tell apart as one set: which effects are in it, and how likely it is that one
+/// Treats effects that these data cannot tell apart as one set: which effects are in it, and how likely it is that one
 /// of them acts. Fills `alike` and `joint_probability` of each effect of a diagnosis that has its `equivalent_to`: the
-/// sum over all explanations that hold it or one of those, each counted once. `words` says what an id is for a person.
+/// sum over all explanations that contain it or one of those, each counted once. `words` translates an id into words.
 void join_alike(const std::vector<NamedExplanation>& explanations,
                 const std::function<std::string(const std::string& id)>& words, Diagnosis& diagnosis);
 

@@ -18,8 +18,8 @@ struct Explanation {
   bool operator==(const Explanation&) const = default;
 };
 
-/// By the probabilities of nothing and of something without a name. Something is claimed only where it is three times
-/// as likely as nothing.
+/// The verdict from the probabilities of nothing and of something without a name. Something is claimed only if it is
+/// three times as likely as nothing.
 Verdict verdict_by(double none, double unknown);
 
 }  // namespace glidelab::diagnose

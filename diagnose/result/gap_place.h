@@ -9,10 +9,10 @@ namespace glidelab::diagnose {
 /// Where between the world and the result an effect acts.
 enum class Stage { dynamics, optics, timing, sensor, tracking, analysis };
 
-/// What a gap lies over.
+/// The variable over which a gap is seen.
 enum class GapVariable { acceleration, clip, direction, set_up, mass, time, column, speed, row, position };
 
-/// What differs there from the model.
+/// The quantity that differs there from the model.
 enum class GapKind {
   force,
   friction,
@@ -23,18 +23,18 @@ enum class GapKind {
   scale,
   intercept,     ///< of a published line
   drag,          ///< of a published line
-  marker_width,  ///< from here on in images
+  marker_width,  ///< from here on: quantities of images
   marker_shear,
   brightness,
   scene_place,
   block_steps
 };
 
-/// As files have it: "dynamics".
+/// The word used in files: "dynamics".
 std::string_view to_text(Stage stage);
-/// As diagnosis.json has it: "x_m", "group".
+/// The word used in diagnosis.json: "x_m", "group".
 std::string_view to_text(GapVariable variable);
-/// As files and pages have it: "viscous drag".
+/// The words used in files and pages: "viscous drag".
 std::string_view to_text(GapKind kind);
 
 }  // namespace glidelab::diagnose

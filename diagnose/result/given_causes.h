@@ -1,4 +1,4 @@
-/// What K/m, mu, alpha and the terminal velocity are with causes in the model that a person names, as plain data
+/// K/m, mu, alpha and the terminal velocity with causes in the model that a person names, as plain data
 /// (diagnose/verdict/fit_given_causes.h fits it).
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace glidelab::diagnose {
 
-/// One of them with the size that the fit gives it.
+/// One of these causes with its fitted size.
 struct GivenCause {
   std::string id;
   std::vector<DiagnosedParameter> parameters;

@@ -36,14 +36,14 @@ struct NextStatement {
 
 enum class ChangeKind { launch, mass, inclination, frame_rate, exposure, plumb, pattern, clock };
 
-/// One further clip that differs in one thing, or one further measurement of what is stated.
+/// One further clip that differs in one respect, or one further measurement of a stated quantity.
 struct Change {
   ChangeKind kind = ChangeKind::launch;
   std::optional<NextClip> clip = {};
   std::optional<NextSetUp> set_up = {};
   std::vector<NextStatement> statements = {};
   bool falls = false;           ///< its clip is one more fall: nothing is launched
-  std::string on = {};          ///< the set-up's name, where there are several
+  std::string on = {};          ///< the set-up's name, if there are several
   double rate_so_far_hz = 0.0;  ///< highest frame rate of the clips so far
 };
 
@@ -53,7 +53,8 @@ struct ChangesWeighed {
   std::vector<ChangeKind> kinds;  ///< each once
 };
 
-/// What each of two explanations has and the other lacks; with `other` empty the doubt is whether `one` acts at all.
+/// The effects that each of two explanations has and the other lacks; if `other` is empty, the question is whether
+/// `one` acts at all.
 struct Alternative {
   Explanation one, other;
 };
@@ -94,27 +95,28 @@ struct AddMass {
 /// What would show an effect that only images or single frames reveal.
 struct RecordForEffect {
   std::string words;                 ///< the effect's own
-  std::optional<Alternative> doubt;  ///< between two explanations; none where the effect is named
+  std::optional<Alternative> doubt;  ///< between two explanations; none if the effect is named
 };
 
-/// What would tell the leading explanation from its rivals; no change where none would.
+/// The change that would tell the leading explanation from its rivals; none if no change would.
 struct SettleDoubt {
   std::vector<Alternative> doubt;
   std::optional<Change> by;
   ChangesWeighed weighed;
-  double log_likelihood = 0.0;  ///< that the rivals are expected to lose; the most, where no change is enough
+  double log_likelihood = 0.0;  ///< that the rivals are expected to lose; the largest, if no change is enough
 };
 
-/// What would make the weakest parameter more certain, where nothing is in doubt, or only whether something else acts
-/// that no further clip would show; no change where none would.
+/// The change that would reduce the uncertainty of the weakest parameter, if nothing is in doubt, or only whether
+/// something else acts that no further clip would show; none if no change would.
 struct SharpenParameter {
-  std::string key, effect;  ///< of K and mu, key "K" or "mu" and no effect
+  std::string key, effect;  ///< for K and mu: key "K" or "mu" and no effect
   double value = 0.0, sd = 0.0;
   std::optional<Change> by;
   ChangesWeighed weighed;
   double sd_after = 0.0;
-  bool one_mass = false;                    ///< nothing is missing, of one mass: a friction force would count as mu
-  std::vector<Alternative> undecided = {};  ///< what may act besides, and none of the changes would decide
+  bool one_mass = false;                    ///< nothing is missing, but there is only one mass: a friction force would
+                                            ///< count as mu
+  std::vector<Alternative> undecided = {};  ///< what may act as well, which none of the changes would decide
 };
 
 /// What would tell a friction force from a smoothing bias in a table of lines: a glider of this mass, and by how much

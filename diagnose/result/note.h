@@ -13,7 +13,7 @@ namespace glidelab::diagnose {
 
 // Which part of the data was used.
 
-/// A clip holds no free motion of so many points.
+/// A clip has no free motion of this many points.
 struct NoFreeMotion {
   std::string clip;
   std::size_t fewest = 0;
@@ -30,7 +30,7 @@ struct CutAtTurns {
   std::size_t turns = 0, turns_of_piece = 0;
 };
 
-/// Of the pieces of driven motions only some are weighed.
+/// Only some of the pieces of driven motions are weighed.
 struct SomePieces {
   std::size_t pieces = 0, kept = 0;
 };
@@ -55,7 +55,7 @@ struct LastingErrors {
   double next = 0.0, fourth = 0.0;  ///< correlation from one frame to the next, and to the fourth
 };
 
-// What is stated.
+// Statements.
 
 /// Two statements of one set-up's inclination contradict each other.
 struct StatementsDisagree {
@@ -93,7 +93,7 @@ struct ContradictedIncline {
   std::string group, against;  ///< against: "plumb", "stated"
   double stated_rad = 0.0, stated_sd_rad = 0.0;
   double motion_rad = 0.0, motion_sd_rad = 0.0;
-  bool named = false;  ///< by the model with what is named, not by the nominal model
+  bool named = false;  ///< by the model with the named effects, not by the nominal model
   double z = 0.0;
 };
 
@@ -104,7 +104,7 @@ struct ContradictedReading {
   core::InclineContradiction contradiction;
 };
 
-// Of a table of lines.
+// Tables of lines.
 
 /// Lines whose mean intercept is larger than gravity.
 struct BeyondGravity {

@@ -9,19 +9,19 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestSamples = 64;  // fewer cost little
+constexpr std::size_t kFewestSamples = 64;  // fewer cost little time
 
-/// Every k-th sample, the last one too, as the mean about it.
+/// Every k-th sample, and the last one, as the weighted mean around it.
 KnownForce means_of(const KnownForce& force, std::size_t k) {
   const std::size_t n = force.t_s.size();
   KnownForce means;
   for (std::size_t at = 0; at < n; at += k) {
     const std::size_t centre = at + k < n ? at : n - 1;
-    if (centre != at) {  // the last stretch is as long as it is
+    if (centre != at) {  // the last interval keeps its length
       means.t_s.push_back(force.t_s[at]);
       means.force_n.push_back(force.force_n[at]);
     }
-    const std::size_t reach = std::min({k, centre + 1, n - centre});  // as far on one side as on the other
+    const std::size_t reach = std::min({k, centre + 1, n - centre});  // symmetric about the sample
     double sum = 0.0, weights = 0.0;
     for (std::size_t i = centre + 1 - reach; i < centre + reach; ++i) {
       const double off = static_cast<double>(i) - static_cast<double>(centre);

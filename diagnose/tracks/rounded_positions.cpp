@@ -12,8 +12,9 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kHalfWindow = 7;   // frames either side: a slope is then known to 0.02 steps a frame
-constexpr double kAlikeTooth = 0.2;      // of a step, within which errors correlate
-constexpr double kMostlyRounding = 0.5;  // of a step: a noise below that has less than three times rounding's variance
+constexpr double kAlikeTooth = 0.2;      // of a step: errors within this distance correlate
+constexpr double kMostlyRounding = 0.5;  // of a step: noise below that has less than three times the variance of
+                                         // rounding
 
 /// Steps a second at each time, by a parabola through the positions around it.
 std::vector<double> speeds_of(const std::vector<double>& t_s, const std::vector<double>& x_m, double step_m) {

@@ -28,7 +28,7 @@ void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t
   auto sighting = clip.sightings.begin();
   for (const std::size_t frame : frames) {
     while (sighting != clip.sightings.end() && sighting->frame < frame) ++sighting;
-    if (sighting == clip.sightings.end() || sighting->frame != frame) return;  // of a track
+    if (sighting == clip.sightings.end() || sighting->frame != frame) return;  // a clip from a track
     columns.push_back(sighting->u_px);
     rows.push_back(sighting->v_px);
   }
@@ -57,7 +57,7 @@ void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t
 std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedMotion>& motions) {
   constexpr double kOutlier = 5.0;  // standard deviations off the neighbours
   constexpr auto kMany = static_cast<Eigen::Index>(kPixelModes);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(kMany, kMany);  // each amplitude N(0, 1) beforehand
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(kMany, kMany);  // prior of each amplitude: N(0, 1)
   Eigen::VectorXd right = Eigen::VectorXd::Zero(kMany);
   const auto has = [](const TrackedMotion& motion) { return motion.shared_m.size() > motion.first_pixel_mode; };
   for (const TrackedMotion& motion : motions) {
@@ -90,10 +90,10 @@ std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedM
 
 namespace {
 
-// Of a motion: its start takes two, and the noise shows in five. A short piece of a clip that holds a longer one is
-// what a bump or a hand has left, and tells less than it may mislead.
+// Of a motion: its start takes two, and the noise shows in five. A short piece of a clip that has a longer one is a
+// remnant of a collision or a hand, and would mislead more than inform.
 constexpr std::size_t kFewestPoints = 6, kFewestOfPiece = 12;
-constexpr std::size_t kFewestForNoise = 8;  // residuals off the neighbours
+constexpr std::size_t kFewestForNoise = 8;  // residuals from the neighbours
 constexpr double kOutlier = 5.0;            // standard deviations off the neighbours
 constexpr double kLongestBridge = 0.08;     // s of disputed frames within a motion that are bridged
 constexpr double kLeastNoise = 1e-7;        // of the longest distance covered: no camera or sensor measures better
@@ -155,8 +155,8 @@ std::vector<Run> runs_of(const core::ClipResult& clip, bool all) {
   return runs;
 }
 
-/// How many times as large the errors of camera and plane are as the calibration's own noise explains: where the
-/// pattern fits its plane view less well than that, corners err in a way that the modes do not hold. Never below 1.
+/// Ratio of the errors of camera and plane to those that the calibration's own noise explains: if the pattern fits its
+/// plane view less well, the corners have errors that the modes do not include. Never below 1.
 double calibration_excess(const core::AnalysisResults& results, const std::string& experiment) {
   for (const core::CalibrationResult& calibration : results.calibrations) {
     if (calibration.experiment != experiment || !(calibration.plane_expected_px > 0.0)) continue;
@@ -170,9 +170,8 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   TrackedMotion motion;
   std::vector<std::size_t> frames;
   const double first = clip.motion.front().t_s;
-  // Where it borders on something else, the border is known to about a bandwidth.
+  // A border with something else is known to about a bandwidth.
   double from = clip.motion[run.from].t_s, to = clip.motion[run.to].t_s;
-  // where it is not stated.
   const auto before = run.from > 0 ? clip.motion[run.from - 1].left_out : core::LeftOut::before_start;
   const auto after = run.to + 1 < clip.motion.size() ? clip.motion[run.to + 1].left_out : core::LeftOut::after_end;
   if (before != core::LeftOut::before_start && !(all && before == core::LeftOut::no_marker)) from += clip.bandwidth_s;
@@ -205,7 +204,7 @@ TrackedMotion motion_of(const core::ClipResult& clip, const Run& run, bool all, 
   return motion;
 }
 
-/// What the positions of a clip are rounded to; 0 where they are not.
+/// The step to which the positions of a clip are rounded; 0 if they are not.
 double step_of(const core::ClipResult& clip) {
   std::vector<double> x_m;
   for (const core::MotionPoint& point : clip.motion) {
@@ -214,7 +213,7 @@ double step_of(const core::ClipResult& clip) {
   return core::rounding_step(x_m);
 }
 
-/// The plumb lines and readings of a set-up: every one once, however many clips have it.
+/// The plumb lines and readings of a set-up, each of them once, however many clips have it.
 void add_statements(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   const auto add = [&set](std::size_t group, const InclineStatement& statement) {
     std::vector<InclineStatement>& known = set.groups[group].statements;
@@ -240,8 +239,8 @@ void add_statements(const core::AnalysisResults& results, const std::vector<core
   }
 }
 
-/// The set-up of a clip. Clips of one group that state different inclinations share it where their uncertainties let
-/// them and one folder says so; else they are set-ups of their own.
+/// The set-up of a clip. Clips of one group that state different inclinations share a set-up if their uncertainties
+/// allow it and one folder says so; otherwise each has its own.
 std::size_t group_of(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, std::size_t clip,
                      TrackSet& set) {
   const core::ClipSetup& setup = setups[clip];
@@ -264,7 +263,7 @@ std::size_t mass_of(const core::ClipSetup& setup, TrackSet& set) {
   return set.masses.size() - 1;
 }
 
-/// One level for all clips where theirs differ by no more than their own errors; else half way between.
+/// One level for all clips if theirs differ by no more than their own errors; otherwise half way between.
 void share_noise(std::vector<TrackedMotion>& motions) {
   double sum = 0.0, weights = 0.0, chi2 = 0.0;
   for (const TrackedMotion& motion : motions) {
@@ -278,7 +277,7 @@ void share_noise(std::vector<TrackedMotion>& motions) {
     chi2 += std::pow(std::log(motion.sd_m) - mean, 2) * static_cast<double>(motion.t_s.size()) / 1.32;
   }
   const double freedom = static_cast<double>(motions.size()) - 1.0;
-  const double own = std::clamp(1.0 - freedom / std::max(chi2, 1e-9), 0.0, 1.0);  // James and Stein's share
+  const double own = std::clamp(1.0 - freedom / std::max(chi2, 1e-9), 0.0, 1.0);  // James-Stein shrinkage
   for (TrackedMotion& motion : motions) motion.sd_m = std::exp(mean + own * (std::log(motion.sd_m) - mean));
 }
 
@@ -299,7 +298,7 @@ double neighbour_residual(const std::vector<double>& t, const std::vector<double
 
 namespace {
 
-/// Off the neighbours, of points that are no outliers and have none beside them.
+/// Residuals from the neighbours, at points that are not outliers and have none beside them.
 std::vector<double> neighbour_residuals(const std::vector<double>& t_s, const std::vector<double>& x_m,
                                         const std::vector<char>& outlier) {
   std::vector<double> residuals;
@@ -333,13 +332,13 @@ void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::v
       of_short.push_back(i);
       for (const double off : own) together.push_back(std::abs(off));
     }
-    // Of short motions all together tell it.
+    // Short motions show it only all together.
     if (together.size() < kFewestForNoise) return;
     const double sd_m = std::max(core::kSdOverMedian * core::median_of(std::move(together)), least_m);
     for (const std::size_t i : of_short) motions[i].sd_m = sd_m;
   };
   measure({});
-  constexpr int kRounds = 3;  // the weights are the noise without the errors between pixels
+  constexpr int kRounds = 3;  // the weights are the noise without the sub-pixel errors
   const bool filmed = std::any_of(motions.begin(), motions.end(), [](const TrackedMotion& motion) {
     return motion.shared_m.size() > motion.first_pixel_mode;
   });
@@ -357,7 +356,7 @@ double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>
     sum += off * off;
     count += 1.0;
   }
-  // The pilot's figure holds what rounding makes; it stands where hardly a point is left.
+  // The pilot's value includes rounding; it is kept if hardly any points are left.
   return count < static_cast<double>(kFewestForNoise) ? pilot : std::max(std::sqrt(sum / count), 0.7 * pilot);
 }
 

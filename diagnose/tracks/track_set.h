@@ -8,7 +8,7 @@
 ///     x error = (a sin 2 pi s + b cos 2 pi s + c sin 4 pi s + d cos 4 pi s) / (pixels a metre),
 ///
 /// with s the centre's coordinate (column or row) along which it moves more. a to d are unknown. Each is N(0, (0.01
-/// px)²), the accuracy reported for good trackers, and ten times the error that this one showed on sharp images. Over
+/// px)²): the accuracy reported for good trackers, and ten times the error that this one showed on sharp images. Over
 /// many pixels this cannot imitate a force. Without it, such errors are taken for waves as soon as the noise is small.
 #pragma once
 
@@ -22,34 +22,34 @@ namespace glidelab::diagnose {
 
 inline constexpr std::size_t kPixelModes = 4;
 
-/// Rows of the marker and errors by the place between pixels, for the filmed motion of a clip;
-/// `frames` are those of its points. Shared errors begin at `first_mode` of the motion's. A tracked clip is left as it
-/// is, and so is one in which the marker does not move over a pixel.
+/// Adds the marker's rows and the errors by sub-pixel position to the filmed motion of a clip; `frames` are those of
+/// its points. These shared errors begin at `first_mode` of the motion's. A tracked clip is left unchanged, and so is
+/// one in which the marker moves by less than a pixel.
 void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t>& frames, std::size_t first_mode,
                      TrackedMotion& motion);
 
-/// Positions without such errors, as far as neighbouring positions show them, from which the noise is measured. They
-/// differ between neighbours as noise does: most where the marker moves by half a pixel a frame, not at all by a whole
-/// one. Least squares over those differences, sd_m being the weights, with what is known of the amplitudes beforehand.
+/// Positions without such errors, as far as neighbouring positions show them; the noise is measured from these. The
+/// errors differ between neighbours as noise does: most if the marker moves by half a pixel a frame, not at all if it
+/// moves by a whole one. Least squares over these differences, weighted by sd_m, with the prior of the amplitudes.
 std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedMotion>& motions);
 
-/// `setups` are the clips of all folders, in the results' order. With `all`, what the analysis took for a hand at the
-/// start or for a stop stays in the motion; otherwise it is left out. Motions with fewer than 6 points are left out,
-/// and so are pieces with fewer than 12 of a clip that holds a longer one. Of more than 30,000 positions in all every
-/// second, third, ... is taken (thin_out()).
+/// `setups` are the clips of all folders, in the results' order. With `all`, the parts that the analysis took for a
+/// hand at the start or for a stop stay in the motion; otherwise they are left out. Motions with fewer than 6 points
+/// are left out, and so are pieces with fewer than 12 of a clip that has a longer one. If there are more than 30,000
+/// positions in all, every second, third, ... is taken (thin_out()).
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
 
-/// Point i off the cubic through its four nearest neighbours, over the standard deviation that unit noise gives it: its
-/// own noise, independent of the motion. 2 <= i < n - 2.
+/// Distance of point i from the cubic through its four nearest neighbours, over the standard deviation that unit noise
+/// gives it: its own noise, independent of the motion. 2 <= i < n - 2.
 double neighbour_residual(const std::vector<double>& t_s, const std::vector<double>& x_m, std::size_t i);
 
-/// The noise of each motion from its neighbouring positions (`late_s`, where not empty, is what each is later than its
-/// time says), and one level for all where theirs differ by no more than their own errors; else half way between.
-/// At least 1e-7 of the longest distance covered, which no camera or sensor undercuts.
+/// The noise of each motion from its neighbouring positions (`late_s`, unless empty, is the delay of each relative to
+/// its time), and one level for all if the motions' levels differ by no more than their own errors; otherwise half way
+/// between. At least 1e-7 of the longest distance covered, which no camera or sensor undercuts.
 void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::vector<double>>& late_s = {});
 
-/// Noise of one position, from how far each lies off the cubic through its four nearest neighbours, outliers spared;
-/// never below what rounding to a step makes.
+/// Noise of one position, from the distance of each from the cubic through its four nearest neighbours, without
+/// outliers; never below the noise that rounding to a step causes.
 double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>& x_m,
                        const std::vector<char>& outlier);
 

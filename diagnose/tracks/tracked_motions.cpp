@@ -62,7 +62,7 @@ void thin_out(TrackSet& set, std::size_t fewest) {
 namespace {
 
 constexpr double kWayBack = 20.0;      // standard deviations of the noise,
-constexpr double kPartOfRange = 0.02;  // or of the way in all, that a motion comes back at a turn
+constexpr double kPartOfRange = 0.02;  // or fraction of the whole distance, by which a motion comes back at a turn
 constexpr std::size_t kMostTurns = 4;  // of a motion that is not cut
 constexpr std::size_t kTurns = 2;      // of a piece
 constexpr std::size_t kMostPieces = 40;
@@ -109,7 +109,7 @@ std::vector<TrackedMotion> pieces_of(const TrackedMotion& motion, std::size_t fe
   return pieces;
 }
 
-/// Every motion a clip of its own.
+/// Makes every motion a clip of its own.
 void name_pieces(TrackSet& set) {
   const TrackedClip whole = set.clips.front();
   set.pieces = true;

@@ -1,5 +1,5 @@
-/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and what is stated, whole,
-/// thinned, or cut where a force drives them to and fro.
+/// The measured motions of an experiment as a diagnosis takes them: positions, their noise, and the statements; whole,
+/// thinned, or cut if a force drives them to and fro.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@
 
 namespace glidelab::diagnose {
 
-/// What neighbouring frames of a filmed clip share of their noise (whitening.h); amplitudes over the white noise.
+/// The noise that neighbouring frames of a filmed clip share (whitening.h); amplitudes are relative to the white noise.
 struct NoiseShape {
   double pixels = 0.0, pixels_px = 0.4;
   double phase = 0.0, phase_px = 10.0;
@@ -23,45 +23,46 @@ struct NoiseShape {
   double jitter_s = 0.0;
 };
 
-/// As positions show it by themselves (position_noise.h).
+/// The noise as the positions alone show it (position_noise.h).
 struct PositionNoise {
   NoiseShape shape;
-  double jitter_gain = 0.0, jitter_log_evidence = 0.0;  ///< of uneven times, against the likeliest noise without
+  double jitter_gain = 0.0, jitter_log_evidence = 0.0;  ///< of timing jitter, relative to the likeliest noise without
+                                                        ///< it
   double jitter_s = 0.0, jitter_sd_s = 0.0;
-  double lasting_gain = 0.0, lasting_log_evidence = 0.0;  ///< of what a codec hands on from frame to frame
+  double lasting_gain = 0.0, lasting_log_evidence = 0.0;  ///< of errors that a codec passes on from frame to frame
 };
 
-/// An unmodelled remainder as a covariance beside the noise (causes/remainder.h): over the noise, 1 + U L U' with U'U
-/// = 1.
+/// An unmodelled remainder as a covariance in addition to the noise (causes/remainder.h): in units of the noise, 1 + U
+/// L U' with U'U = 1.
 struct Remainder {
-  Eigen::MatrixXd span;    ///< U, a row a point
-  Eigen::VectorXd shrink;  ///< 1 - 1/sqrt(1 + L): what whitening takes off along each column of U
+  Eigen::MatrixXd span;    ///< U, one row a point
+  Eigen::VectorXd shrink;  ///< 1 - 1/sqrt(1 + L): the reduction by whitening along each column of U
 };
 
-/// One stretch of motion without a bump or a rest in it; it may turn.
+/// One stretch of motion without a collision or a rest in it; it may turn.
 struct TrackedMotion {
   std::size_t clip = 0;     ///< index in TrackSet::clips
   std::size_t group = 0;    ///< index in TrackSet::groups
   std::size_t mass = 0;     ///< index in TrackSet::masses
-  double start_s = 0.0;     ///< clip's first frame to the motion's first point
+  double start_s = 0.0;     ///< from the clip's first frame to the motion's first point
   std::vector<double> t_s;  ///< from the clip's first frame
   std::vector<double> x_m;
-  std::vector<char> outlier;                  ///< 1: lies off the neighbours; not fitted
+  std::vector<char> outlier;                  ///< 1: lies far from the cubic through its neighbours; not fitted
   double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
-  std::vector<double> wider;                  ///< of each position, its noise over sd_m; empty: 1
-  std::vector<std::vector<double>> shared_m;  ///< as FreeBlock's, or empty
-  /// Where among them errors by the place between pixels begin (track_set.h).
+  std::vector<double> wider;                  ///< noise of each position over sd_m; empty: 1
+  std::vector<std::vector<double>> shared_m;  ///< as in FreeBlock, or empty
+  /// Index among them at which the errors by sub-pixel position begin (track_set.h).
   std::size_t first_pixel_mode = std::numeric_limits<std::size_t>::max();
-  double step_m = 0.0;           ///< all positions of its clip are whole multiples of it (rounded); 0: of none
+  double step_m = 0.0;           ///< all positions of its clip are rounded to whole multiples of it; 0: not rounded
   double scale_sd = 0.0;         ///< relative
   double m_per_px = 0.0;         ///< along the motion; 0: not filmed
-  std::vector<double> row_px;    ///< of the image, where the marker is; empty: not filmed
-  std::vector<double> along_px;  ///< of the image, along the motion; empty: not filmed, or hardly moving
-  /// For consecutive points, which together hold all: turns their noise over sd_of() into white noise (whitening.h).
-  /// Empty: it is white.
+  std::vector<double> row_px;    ///< image row of the marker; empty: not filmed
+  std::vector<double> along_px;  ///< image coordinate along the motion; empty: not filmed, or hardly moving
+  /// For consecutive blocks of points, which together contain all: turns their noise over sd_of() into white noise
+  /// (whitening.h). Empty: it is white.
   std::vector<Eigen::MatrixXd> whitening;
   Remainder remainder;  ///< none: its span has no columns
-  KnownForce known;     ///< where one was recorded
+  KnownForce known;     ///< if one was recorded
 
   double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
 };
@@ -84,7 +85,7 @@ struct TrackGroup {
   double x_mid_m = 0.0;                      ///< middle of the range of x
 };
 
-/// From this stated inclination upwards a motion is a fall: sin(alpha) is known to 0.3 % where alpha is to a degree,
+/// From this stated inclination upwards a motion is a fall: sin(alpha) is known to 0.3 % if alpha is known to a degree,
 /// and the normal force is less than a sixth of the weight.
 inline constexpr double kFall_rad = 80.0 * 3.14159265358979 / 180.0;
 bool is_fall(const TrackGroup& group);
@@ -94,9 +95,8 @@ struct TrackedClip {
   double frame_rate_hz = 0.0;
   double duration_s = 0.0;
   std::size_t frames = 0;
-  double bandwidth_s = 0.0;  ///< of the analysis' smoothing
-  /// As the analysis finds them (core/motion/free/lost_frames.h), in the file's times, counted from the clip's first
-  /// frame.
+  double bandwidth_s = 0.0;  ///< of the analysis's smoothing
+  /// As the analysis finds them (core/motion/free/lost_frames.h), in the file's times, from the clip's first frame.
   std::vector<core::LostFrames> lost = {};
 };
 
@@ -110,29 +110,29 @@ struct TrackSet {
   std::size_t modes = 0;   ///< shared errors of camera and plane
   bool pieces = false;     ///< clips are pieces of a single one (cut_driven_motions())
   bool pictures = false;   ///< at least one clip was filmed
-  bool lossy = false;      ///< at least one has been through a codec with loss,
-  bool handed_on = false;  ///< and one that predicts images from those before:
-  double held_m_s = 0.0;   ///< slower than this the marker may be held where it was (0: by none)
+  bool lossy = false;      ///< at least one clip has been through a lossy codec,
+  bool handed_on = false;  ///< and one through a codec that predicts images from earlier ones:
+  double held_m_s = 0.0;   ///< below this speed such a codec may hold the marker in place (0: none does)
   std::optional<PositionNoise> position_noise;
   std::vector<Note> notes;
-  /// Frames that the analysis took for hand or stop and that a motion could hold.
+  /// Frames that the analysis took for a hand or a stop and that could belong to a motion.
   std::size_t disputed = 0;
   std::size_t left_out = 0;  ///< of these, all or none
-  std::size_t moving = 0;    ///< frames of free motion and disputed ones
+  std::size_t moving = 0;    ///< frames of free motion, and disputed ones
 };
 
-/// Whether nothing but falls was recorded.
+/// Whether only falls were recorded.
 bool only_falls(const TrackSet& set);
 
-/// Whether a recorded force moves some of it: its next clip is then not a launch.
+/// Whether a recorded force drives any of the motions: the next clip is then not a launch.
 bool is_driven(const TrackSet& set);
 
 /// Points from, from + every, ... before `to` of a motion; without its whitening.
 TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::size_t to, std::size_t every = 1);
 
-/// Of more than 30,000 positions in all (but for motions with a recorded force: cut_driven_motions()) every second,
-/// third, ... is kept, with a note: enough for any law. What single frames show needs neighbours, and is weaker then.
-/// Motions with fewer than `fewest` points left are dropped.
+/// Keeps every second, third, ... of more than 30,000 positions in all (except for motions with a recorded force:
+/// cut_driven_motions()), with a note: enough for any law. Effects of single frames need neighbours, and show less
+/// then. Motions with fewer than `fewest` points left are dropped.
 void thin_out(TrackSet& set, std::size_t fewest);
 
 /// Cuts motions that a recorded force drives to and fro into pieces.
@@ -148,7 +148,7 @@ void thin_out(TrackSet& set, std::size_t fewest);
 /// The pieces of a single clip become clips of their own, so that each can be held out.
 void cut_driven_motions(TrackSet& set, std::size_t fewest);
 
-/// The points at which a motion turns: it has come back from there by more than its noise or a jitter explains.
+/// The points at which a motion turns: it comes back from them by more than its noise or a jitter explains.
 std::vector<std::size_t> turns_of(const TrackedMotion& motion);
 
 }  // namespace glidelab::diagnose

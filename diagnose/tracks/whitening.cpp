@@ -94,7 +94,7 @@ Eigen::MatrixXd whitened(const TrackedMotion& motion, Eigen::MatrixXd over_sd) {
 
 namespace {
 
-/// The inverse of what whitening does with the remainder, a symmetric matrix.
+/// The inverse of the remainder's part of whitening, a symmetric matrix.
 Eigen::MatrixXd with_remainder(const Remainder& remainder, Eigen::MatrixXd white) {
   if (remainder.shrink.size() == 0) return white;
   const Eigen::VectorXd grow = remainder.shrink.array() / (1.0 - remainder.shrink.array());
@@ -122,7 +122,7 @@ Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white) {
 Eigen::MatrixXd weights_of_white(const TrackedMotion& motion, Eigen::MatrixXd weights) {
   Eigen::Index from = 0;
   for (const Eigen::MatrixXd& by : motion.whitening) {
-    // (by^-1)' w: an upper triangle, which in reverse order is a lower one.
+    // (by^-1)' w: an upper triangle, which is a lower one in reverse order.
     const Eigen::MatrixXd turned = by.transpose().reverse();
     const Eigen::MatrixXd reversed = weights.middleRows(from, by.rows()).colwise().reverse();
     weights.middleRows(from, by.rows()) = base::solve_lower(turned, reversed).colwise().reverse();

@@ -29,10 +29,10 @@ struct SeenFrames {
 /// Covariance over s² of all these frames; `white_px` is s, for the jitter.
 Eigen::MatrixXd covariance_of(const SeenFrames& frames, const NoiseShape& shape, double white_px);
 
-/// What "px" is of this motion, in metres: a pixel, or, where it was not filmed, the metre itself.
+/// The length that "px" means for this motion, in metres: a pixel, or, if it was not filmed, the metre itself.
 double unit_m(const TrackedMotion& motion);
 
-/// Of a motion; `rate_hz` its clip's. Empty where a filmed marker hardly moves.
+/// The frames of a motion; `rate_hz` is that of its clip. Empty if a filmed marker hardly moves.
 SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz);
 
 /// Sets `wider` and `whitening` for a motion whose sd_m (now s), outliers and along_px are set.
@@ -46,7 +46,7 @@ Eigen::VectorXd coloured(const TrackedMotion& motion, Eigen::VectorXd white);
 /// Columns whitened by the noise alone, without the remainder.
 Eigen::MatrixXd without_remainder(const TrackedMotion& motion, Eigen::MatrixXd white);
 
-/// Weights w' of sums over coloured noise as weights of the same sums over the white noise that it is made of.
+/// Converts weights w' of sums over coloured noise to weights of the same sums over the underlying white noise.
 Eigen::MatrixXd weights_of_white(const TrackedMotion& motion, Eigen::MatrixXd weights);
 
 }  // namespace glidelab::diagnose

@@ -152,7 +152,7 @@ std::string sections_of(const TwinForces& forces) {
   return text + forces.others;
 }
 
-/// What one configuration needs besides its motions.
+/// The parts that one configuration needs besides its motions.
 struct Place {
   std::size_t group = 0, mass = 0;
   bool operator<(const Place& other) const { return std::pair(group, mass) < std::pair(other.group, other.mass); }
@@ -223,8 +223,8 @@ std::vector<std::string> clip_names_of(const TrackSet& set) {
   return twin_clip_names(names);
 }
 
-/// What of the data the twin's file has otherwise, besides its camera: a scenario has one frame rate, and a clip one
-/// motion.
+/// The differences between the data and the twin's file, apart from the camera: a scenario has one frame rate, and a
+/// clip one motion.
 std::vector<std::string> assumed_of_clips(const TrackSet& set, const Twin& twin, double rate_hz) {
   std::vector<std::string> assumed;
   const bool rates = std::any_of(set.motions.begin(), set.motions.end(), [&](const TrackedMotion& motion) {

@@ -52,7 +52,7 @@ struct Twin {
 Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<DiagnosedEffect>& effects, bool nameless,
              const std::optional<Filming>& filming);
 
-/// The name of a clip or a group in the twin's file: what is not a letter, digit, "-" or "_" becomes "-".
+/// The name of a clip or a group in the twin's file: characters other than letters, digits, "-" or "_" become "-".
 std::string twin_name(const std::string& name);
 
 /// For all clips, in order: a name that comes out like an earlier one gets a number, "---" and "----2".

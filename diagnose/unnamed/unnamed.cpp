@@ -18,8 +18,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-/// Any smooth displacement of each clip by itself. The motions share no bump, so that the evidence adds up but for the
-/// common size tau; what the common parameters take up is left aside.
+/// Any smooth displacement of each clip by itself. The motions share no bump, so their evidence adds up except for the
+/// common size tau; what the common parameters absorb is neglected.
 UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, int most) {
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of(GapVariable::clip, GapKind::displacement, "m");
@@ -43,7 +43,8 @@ UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, in
   }
   SpreadEvidence evidence;
   family = solve(space, columns, family, evidence);
-  // Of each clip the curve that its bumps make together, where it is largest, as sure as where it is surest.
+  // For each clip: the largest value of the curve that its bumps make together, and the significance where that is
+  // highest.
   family.size.assign(set.clips.size(), 0.0);
   family.sd.assign(set.clips.size(), 0.0);
   std::vector<double> surest(set.clips.size(), 0.0);
@@ -70,7 +71,7 @@ UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, in
   return family;
 }
 
-/// Sizes less their mean: what all members have in common is taken up by what is fitted, and no data tell it.
+/// Sizes minus their mean: the fitted parameters absorb what all members have in common, and no data determine it.
 void relative_to_mean(SpreadEvidence& evidence) {
   const Eigen::Index n = evidence.mean.size();
   const Eigen::MatrixXd less =
@@ -79,12 +80,13 @@ void relative_to_mean(SpreadEvidence& evidence) {
   evidence.covariance = base::product(base::product(less, evidence.covariance), less);
 }
 
-/// How far something has settled at t: 1 at the start, a half or so at `time_s`, slowly (as creep does) or quickly.
+/// The part of a settling displacement that is left at t: 1 at the start, about a half at `time_s`; slowly (like creep)
+/// or quickly.
 double unsettled(double t_s, double time_s, bool quickly) {
   return quickly ? std::pow(1.0 + t_s / (3.0 * time_s), -3.0) : 1.0 / (1.0 + t_s / time_s);
 }
 
-/// The members' sizes, each at its number.
+/// The members' sizes, each at its index.
 void draw_members(const SpreadEvidence& evidence, UnnamedFamily& family) {
   family.at.clear();
   family.size.clear();
@@ -96,7 +98,7 @@ void draw_members(const SpreadEvidence& evidence, UnnamedFamily& family) {
   }
 }
 
-/// One size times what is left of it over the time, until a tenth is.
+/// One size times the part of it that is left over time, until that falls to a tenth.
 void draw_settling(double size, double sd, double longest_s, const std::function<double(double)>& left,
                    UnnamedFamily& family) {
   constexpr int kDrawn = 72;
@@ -113,8 +115,8 @@ void draw_settling(double size, double sd, double longest_s, const std::function
   }
 }
 
-/// What settles from the start of each clip on, at one pace in all: a displacement, each clip its own size, or a
-/// lateness common to all.
+/// Whatever decays from the start of each clip, at one rate in all: a displacement, with a size for each clip, or a
+/// delay common to all.
 UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
   const TrackSet& set = space.set();
   UnnamedFamily family = late ? family_of(GapVariable::time, GapKind::lateness, "s")
@@ -160,7 +162,7 @@ UnnamedFamily settling_family(const ScoreSpace& space, bool late) {
   return family;
 }
 
-/// Each clip at a scale of its own, as when the camera is moved between them.
+/// A scale for each clip, as if the camera was moved between clips.
 UnnamedFamily scale_family(const ScoreSpace& space) {
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of(GapVariable::clip, GapKind::scale, "m/m");
@@ -211,7 +213,7 @@ UnnamedFamily member_family(const ScoreSpace& space, GapVariable variable, GapKi
   return family;
 }
 
-/// Families that differ between members: clips, masses or set-ups. `space` outlives the searches.
+/// Families that differ between members: clips, masses or set-ups. `space` must outlive the searches.
 void add_member_families(const ScoreSpace& space, std::vector<FamilySearch>& searches) {
   const TrackSet& set = space.set();
   const auto add = [&](auto find) {
@@ -250,7 +252,7 @@ std::vector<UnnamedFamily> unnamed_families(const ScoreSpace& space, int jobs) {
   base::for_each_parallel(searches.size(), jobs, [&](std::size_t s) { searches[s](found[s]); });
   std::vector<UnnamedFamily> families;
   for (auto& of_one : found) std::move(of_one.begin(), of_one.end(), std::back_inserter(families));
-  // One size for each clip; curves of each clip by itself have many.
+  // One size for each clip; curves of each clip by itself have many sizes.
   for (UnnamedFamily& family : families) {
     if (family.variable == GapVariable::clip && family.columns.cols() > std::ssize(space.set().clips))
       family.columns.resize(0, 0);

@@ -8,11 +8,12 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSure = 2.0;      // standard deviations at which a place is named
-constexpr double kUnseen = 1e-10;  // of the largest square: what is less is taken up by what is fitted
-constexpr double kMostSeen = 2e4;  // standard deviations of one bump: four decades from what begins to show
+constexpr double kSure = 2.0;      // standard deviations from which on a place is named
+constexpr double kUnseen = 1e-10;  // relative to the largest square: anything smaller is absorbed by the fitted
+                                   // parameters
+constexpr double kMostSeen = 2e4;  // standard deviations of one bump: four decades from where it begins to show
 
-/// Products of columns with each other and with the residual.
+/// Scalar products of columns with each other and with the residual.
 struct Normal {
   Eigen::MatrixXd products;
   Eigen::VectorXd scores;
@@ -37,15 +38,16 @@ Normal normal_of(const ScoreSpace& space, const std::vector<ScoreColumn>& column
   return normal;
 }
 
-/// Variance of what such a gain leaves of the residuals, over the noise's: sizes are no surer than that. Never below 1.
+/// Variance of the residuals that are left after such a gain, over that of the noise: sizes cannot be known better than
+/// that. Never below 1.
 double left_of(const ScoreSpace& space, double gain) {
   const ScoreColumn& residual = space.residual();
   const auto points = static_cast<double>(residual.rest.size());
   return std::max(1.0, (space.dot(residual, residual) - 2.0 * gain) / points);
 }
 
-/// One bump alone, or one step (all bumps from some place on), wherever it explains most: the evidence is averaged over
-/// the places. What acts at one place only is paid for once, and not for all the places where nothing is.
+/// One bump alone, or one step (all bumps from some place on), wherever it explains most. The evidence is averaged over
+/// the places, so that an effect at one place only is penalised once, and not for all the places where there is none.
 UnnamedFamily one_place(const ScoreSpace& space, const Normal& normal, const std::vector<ScoreColumn>& columns,
                         const Grid& grid, bool step, UnnamedFamily family) {
   const Eigen::Index n = normal.scores.size();
@@ -60,7 +62,7 @@ UnnamedFamily one_place(const ScoreSpace& space, const Normal& normal, const std
     const double square = normal.products.block(from, from, many, many).sum();
     const double score = normal.scores.segment(from, many).sum();
     if (!(square > kUnseen * largest)) {
-      logs.push_back(0.0);  // says nothing
+      logs.push_back(0.0);  // not informative
       continue;
     }
     const double z = score / std::sqrt(square);

@@ -1,5 +1,4 @@
-/// A family of explanations without a name, and its parts: bumps over a range, and the evidence of their
-/// sizes.
+/// A family of explanations without a name, and its parts: bumps over a range, and the evidence for their sizes.
 #pragma once
 
 #include <functional>
@@ -29,8 +28,8 @@ struct UnnamedFamily {
   std::vector<double> at, size, sd;  ///< the unnamed function over its variable
   std::vector<std::string> names;    ///< of members (clips, groups); empty for a variable
   std::vector<UnnamedRegion> regions;
-  /// Of the likeliest family that clips share, and of the likeliest one with a size for each clip, only: its bumps over
-  /// the noise, own parameters projected out.
+  /// Only set for the likeliest family that clips share and for the likeliest one with a size for each clip: its bumps
+  /// divided by the noise, own parameters projected out.
   Eigen::MatrixXd columns;
   double tau = 0.0;  ///< standard deviation of their sizes
 };
@@ -44,22 +43,22 @@ struct Grid {
   double at(int i) const { return low + width() * i; }
 };
 
-/// A Gaussian bump of unit height, as wide as the distance between bumps.
+/// A Gaussian bump of unit height, as wide as the spacing of the bumps.
 double bump(double x, double middle, double width);
 
 UnnamedFamily family_of(GapVariable variable, GapKind what, std::string unit);
 
-/// The family with the evidence of the columns' sizes, each N(0, tau²). Where the family leaves more than the noise,
-/// the sizes, their tau and their uncertainties are those under noise raised to what is left.
+/// The family with the evidence for the columns' sizes, each N(0, tau²). If the family leaves residuals above the
+/// noise, its sizes, their tau and their uncertainties are those under noise raised to that level.
 UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
                     SpreadEvidence& evidence);
 
-/// The function that bumps of these sizes make together, and its standard deviation, at 73 places of the grid.
+/// The sum of bumps of these sizes and its standard deviation, at 73 points of the grid.
 void draw_curve(const Grid& grid, const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
                 UnnamedFamily& family);
 
-/// Tries one of many shapes that a family may have: where it gains more than those before, the family takes over its
-/// gain, columns and tau.
+/// Tries one of many shapes that a family may have. If it gains more than all before, the family takes over its gain,
+/// columns and tau.
 struct Tried {
   double log_evidence = 0.0;
   bool better = false;
@@ -67,11 +66,11 @@ struct Tried {
 Tried try_one(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily& family,
               SpreadEvidence& evidence);
 
-/// The stretches of `at` in which the size is significant, each with the largest of the sizes that are at least half as
-/// significant as its most significant one; members with names each by themselves.
+/// The intervals of `at` in which the size is significant, each with the largest of the sizes that are at least half as
+/// significant as its most significant one. Members with names are treated one by one.
 void name_regions(UnnamedFamily& family);
 
-/// Finds families, one or more, and adds them.
+/// Finds one or more families and adds them.
 using FamilySearch = std::function<void(std::vector<UnnamedFamily>&)>;
 
 /// The three shapes that a function over a grid may have: smooth anywhere, one bump, one step.

@@ -15,12 +15,13 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;  // bumps over the range
-constexpr double kFewestSwings = 2.0;                 // periods over the whole range: fewer are any smooth shape
-constexpr double kMostPulls = 25.0;                   // periods of a force, which moves the less the finer it is
+constexpr int kSmooth = 5, kCoarse = 12, kFine = 36;  // number of bumps over the range
+constexpr double kFewestSwings = 2.0;                 // periods over the whole range: fewer could be any smooth shape
+constexpr double kMostPulls = 25.0;                   // periods of a force, which moves the glider less the shorter
+                                                      // they are
 constexpr double kMostSwings = 600;                   // periods that are tried in full
 constexpr double kFinestSwings = 2000;                // periods over the whole range: the pixels of a wide image
-constexpr double kShowsALittle = 3.0, kShows = 8.0;   // log likelihood from which on a wave is tried more finely
+constexpr double kShowsALittle = 3.0, kShows = 8.0;   // log likelihood above which a wave is tried on a finer grid
 
 struct Ranges {
   Grid x, v, t, speed;
@@ -43,9 +44,9 @@ enum class Place { x, v, t };
 enum class Force { drive, friction, drag };
 enum class Load { none, mass, either };
 
-/// A force f(place) of any smooth shape; a friction, which turns with the motion; or a drag, which goes with the speed.
-/// The place among speeds is |v| but for what drives. In N, or in proportion to the mass; where there is more than one
-/// mass it may be either.
+/// A force f(x, v or t) of any smooth shape; a friction, which reverses with the motion; or a drag, which is
+/// proportional to the speed. As a function of speed it depends on |v|, unless it is a driving force. In N, or in
+/// proportion to the mass; with more than one mass it may be either.
 void add_force(const ScoreSpace& space, const Grid& grid, Place over, GapVariable variable, Force kind, Load load,
                std::vector<UnnamedFamily>& families) {
   const TrackSet& set = space.set();
@@ -76,7 +77,7 @@ void add_force(const ScoreSpace& space, const Grid& grid, Place over, GapVariabl
 
 enum class Seen { over_x, over_t, late };
 
-/// A displacement d(place) of any smooth shape, what a camera does; or a lateness d(t), what its clock does.
+/// A displacement d(x or t) of any smooth shape, due to the camera; or a delay d(t), due to its clock.
 void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std::vector<UnnamedFamily>& families) {
   const TrackSet& set = space.set();
   std::vector<ScoreColumn> columns;
@@ -100,7 +101,7 @@ void add_displacement(const ScoreSpace& space, const Grid& grid, Seen seen, std:
              families);
 }
 
-/// Waves over the places of each motion.
+/// Waves over the positions of each motion.
 std::vector<TurningWaves> swings_of(const ScoreSpace& space, double f_1_m, double step_1_m) {
   std::vector<TurningWaves> waves;
   for (std::size_t i = 0; i < space.set().motions.size(); ++i) {
@@ -119,7 +120,7 @@ std::vector<ScoreColumn> swing_columns(const ScoreSpace& space, const std::vecto
   return {space.project(sines), space.project(cosines)};
 }
 
-/// Of many periods those in the middle: all of them would be drawn with too few points to be what they are.
+/// Of many periods, only those in the middle are drawn: all of them would get too few points to show their shape.
 void draw_swing(const Grid& x, double f_1_m, const SpreadEvidence& evidence, UnnamedFamily& family) {
   family.at.clear();
   family.size.clear();
@@ -137,7 +138,7 @@ void draw_swing(const Grid& x, double f_1_m, const SpreadEvidence& evidence, Unn
   }
 }
 
-/// What swings acts everywhere, and not only where it is drawn.
+/// A wave acts everywhere, and not only where it is drawn.
 void name_everywhere(const Grid& x, UnnamedFamily& family) {
   name_regions(family);
   if (family.regions.empty()) return;
@@ -148,8 +149,8 @@ void name_everywhere(const Grid& x, UnnamedFamily& family) {
   family.regions = {largest};
 }
 
-/// What swings of many periods gain, by the sums of r sin and r cos alone: what is fitted takes up nothing of them.
-/// Of f, then of f + step, and so on, by turning each point's sine and cosine on.
+/// The gain of waves of many periods from the sums of r sin and r cos alone: the fitted parameters absorb nothing of
+/// them. It is computed at f, f + step, and so on, by rotating each point's sine and cosine.
 class FineSwings {
  public:
   FineSwings(const ScoreSpace& space, double f_1_m, double step_1_m) {
@@ -167,7 +168,7 @@ class FineSwings {
     nothing_ = log_spread_evidence(squares_ * Eigen::Matrix2d::Identity(), Eigen::Vector2d::Zero()).log_evidence;
   }
 
-  /// Of the present f; then goes on to the next.
+  /// At the present f; then advances to the next.
   SpreadEvidence next() {
     Eigen::Vector2d sums = Eigen::Vector2d::Zero();
     for (Wave& w : waves_) {
@@ -191,9 +192,9 @@ class FineSwings {
   double squares_ = 0.0, nothing_ = 0.0;
 };
 
-/// Whether rounding makes such a swing: its error has the period of the step, and parts of it. It is in the noise.
+/// Whether rounding causes such a wave: its error has the period of the step and fractions of it. It is in the noise.
 bool swings_by_rounding(const TrackSet& set, double f_1_m, double range_m) {
-  constexpr double kResolution = 2.0;  // of one over the range: two frequencies closer than that look alike
+  constexpr double kResolution = 2.0;  // in units of 1/range: two frequencies closer than that cannot be told apart
   return std::any_of(set.motions.begin(), set.motions.end(), [&](const TrackedMotion& motion) {
     if (!(motion.step_m > 0.0)) return false;
     const double order = std::max(1.0, std::round(f_1_m * motion.step_m));
@@ -201,7 +202,7 @@ bool swings_by_rounding(const TrackSet& set, double f_1_m, double range_m) {
   });
 }
 
-/// A displacement that swings with the place: sin and cos of 2 pi f x, one f for all motions, averaged over.
+/// A displacement that is periodic in position: sin and cos of 2 pi f x, with one f for all motions, averaged over.
 UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of(GapVariable::position, GapKind::displacement, "m");
@@ -212,7 +213,8 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   }
   const double range = x.high - x.low;
   if (ways.empty() || !(range > 0.0)) return family;
-  // Half of all frames lie closer than this: two of them a turn at least; and no more looks than kMostSwings.
+  // Half of all frames lie closer together than this: at least two of them to a period. No more trials than
+  // kMostSwings.
   const double step = 0.3 / range;
   const double highest = std::min(0.5 / std::max(core::median_of(std::move(ways)), 1e-9), kMostSwings * step);
   std::vector<double> logs;
@@ -227,8 +229,9 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
     if (!swings_by_rounding(set, f, range)) logs.push_back(try_swing(f, waves));
     for (TurningWaves& of_motion : waves) of_motion.turn();
   }
-  // Finer ones pass from frame to frame by more than a turn, each motion in steps of its own, and show by the place all
-  // the same: the pixels, when a marker crosses some of them from frame to frame. Of films these are in the fit.
+  // Finer waves pass by more than one period from frame to frame, each motion in steps of its own. They still show as a
+  // function of position: an example is the pixels, if a marker crosses several of them from frame to frame. For films
+  // the pixels' errors are in the fit.
   if (!set.pictures) {
     FineSwings fine(space, f, step);
     double most = kShows, best_f = 0.0;
@@ -249,7 +252,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   return family;
 }
 
-/// An acceleration that swings with the place, as magnets in a row or the teeth of a rack make it.
+/// An acceleration that is periodic in position, as a row of magnets or the teeth of a rack cause it.
 UnnamedFamily pull_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of(GapVariable::position, GapKind::acceleration, "m/s²");

@@ -1,4 +1,4 @@
-/// Families of unnamed.h over position, speed and time.
+/// The families of unnamed.h over position, speed and time.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace glidelab::diagnose {
 
-/// `space` outlives the searches.
+/// `space` must outlive the searches.
 void add_place_families(const ScoreSpace& space, std::vector<FamilySearch>& searches);
 
 }  // namespace glidelab::diagnose

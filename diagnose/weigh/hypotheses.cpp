@@ -17,10 +17,11 @@ namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
 constexpr std::size_t kFitted = 9;     // effects of the short list that are fitted in full
-constexpr double kLeads = 3.0;         // log evidence from which on something else is weighed beside an effect
-constexpr double kNoLossSeen = -3.0;   // log evidence of lost frames where none is found
-constexpr double kWeakEvidence = 6.0;  // log evidence below which something unnamed shows weakly
-constexpr double kWeakShare = 0.01;    // of that of the effects, below which it leaves them their name
+constexpr double kLeads = 3.0;         // log evidence above which something else is weighed beside an effect
+constexpr double kNoLossSeen = -3.0;   // log evidence of lost frames if none is found
+constexpr double kWeakEvidence = 6.0;  // log evidence below which something unnamed shows only weakly
+constexpr double kWeakShare = 0.01;    // of the effects' log evidence: below this, something unnamed leaves the effects
+                                       // their name
 
 void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) {
   std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
@@ -50,7 +51,7 @@ void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) 
   }
 }
 
-/// Single-frame effects join the hypotheses: alone, and with the best others.
+/// Single-frame effects join the hypotheses, alone and with the best of the others.
 void add_frame_effects(Comparison& comparison) {
   const std::vector<Hypothesis> so_far = comparison.all;
   for (const FrameEffect& frame : comparison.frames) {
@@ -63,7 +64,7 @@ void add_frame_effects(Comparison& comparison) {
       with.log_evidence += frame.log_evidence;
       comparison.all.push_back(with);
       if (with.unnamed || frame.in_runs <= 0.0) continue;
-      // Errors that last over frames, or come with a clip's start, are in no list.
+      // Errors that last over several frames, or come at a clip's start, are in no list.
       with.effects = other.effects;
       with.unnamed = true;
       with.unnamed_log_evidence = frame.log_evidence + frame.in_runs;
@@ -74,9 +75,9 @@ void add_frame_effects(Comparison& comparison) {
 }
 
 /// In filmed experiments, effects keep their name beside something unnamed that shows weakly, with a hundredth of their
-/// log evidence: a lens, a sensor and a tracker leave some micrometres that no list holds, and the better an effect
-/// shows, the better they show beside it. Its probability then goes to the effects. (A rest that shows well is another
-/// matter: an effect takes up most of many a thing that is not in the list.)
+/// log evidence: a lens, a sensor and a tracker leave some micrometres that no list contains, and these show the
+/// better, the better an effect shows. The probability then goes to the effects. (A remainder that shows clearly is
+/// another matter: an effect absorbs most of many a thing that is not in the list.)
 void give_trifles_to_their_effects(Comparison& comparison) {
   for (Hypothesis& with : comparison.all) {
     if (!with.unnamed || with.effects.empty()) continue;

@@ -10,8 +10,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWorthFitting = 1.0;    // log likelihood that a scan must gain to be fitted in full
-constexpr double kSameDirection = 1e-3;  // of sin²: more is another law, however small the effect
+constexpr double kWorthFitting = 1.0;    // log likelihood that a scan must gain to be worth a full fit
+constexpr double kSameDirection = 1e-3;  // of sin²: above this it is another law, however small the effect
 constexpr double kSameGain = 0.5;        // log likelihood
 
 std::size_t alike_of(const Comparison& comparison, std::size_t effect, bool filmed) {
@@ -107,7 +107,7 @@ std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<Eff
   const auto has_direction = [](const EffectScan& scan) { return scan.visible && scan.direction.rest.size() > 0; };
   std::vector<std::size_t> alike(effect_list().size());
   for (std::size_t e = 0; e < alike.size(); ++e) {
-    const std::size_t first = first_alike(e, space.set().pictures);  // it comes before
+    const std::size_t first = first_alike(e, space.set().pictures);  // it comes earlier in the list
     alike[e] = first != e ? alike[first] : e;
     if (first != e || !has_direction(scans[e])) continue;
     const EffectScan& scan = scans[e];
@@ -176,7 +176,8 @@ const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) 
   const std::size_t leading = std::max_element(of_cause.begin(), of_cause.end(), [](const auto& a, const auto& b) {
                                 return a.second < b.second;
                               })->first;
-  const Hypothesis* best = nullptr;  // of the likeliest causes the likeliest name: they come by falling probability
+  const Hypothesis* best = nullptr;  // the likeliest name of the likeliest causes: they are sorted by decreasing
+                                     // probability
   double most = -1.0;
   for (const Hypothesis& hypothesis : comparison.all) {
     if (!names(hypothesis)) continue;

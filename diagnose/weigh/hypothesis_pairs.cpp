@@ -13,10 +13,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kLeaders = 3;   // that are tried with a second one
+constexpr std::size_t kLeaders = 3;   // effects that are tried with a second one
 constexpr std::size_t kSeconds = 4;   // effects tried beside a leader
-constexpr std::size_t kTogether = 4;  // pairs that show together and that no leader found
-constexpr int kExchanges = 3;         // rounds in which the best pair's two lead in turn
+constexpr std::size_t kTogether = 4;  // pairs that show only together and that no leader found
+constexpr int kExchanges = 3;         // rounds in which each of the best pair's two effects leads in turn
 
 /// A leader with each of the effects that show best beside it.
 void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, const Work& work,
@@ -32,7 +32,7 @@ void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<s
   fit_best(set, base, best, leader, work, comparison);
 }
 
-/// One effect's own full fit, made where there was none.
+/// One effect's own full fit, made if there is none yet.
 Found alone(const TrackSet& set, std::size_t effect, Comparison& comparison) {
   if (const Hypothesis* known = find(comparison, {effect}); known != nullptr) {
     return {*known, comparison.fits[static_cast<std::size_t>(known->fit)]};
@@ -42,8 +42,8 @@ Found alone(const TrackSet& set, std::size_t effect, Comparison& comparison) {
   return found;
 }
 
-/// The full fit of a second effect that was scanned around some point of the first one's, and its evidence beside that
-/// one's own fit.
+/// The full fit of a second effect that was scanned around some point of the first effect's fit, and its evidence
+/// beside that first fit.
 Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan& scan, const Found& leader) {
   const FitPoint start = with_effect(set, around, scan.effect, scan.values, scan.own);
   Found found;
@@ -57,7 +57,7 @@ Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan&
   return found;
 }
 
-/// Two effects fitted at once, from where they are in the neighbourhood of the nominal fit.
+/// Two effects fitted at once, starting from their sizes in the neighbourhood of the nominal fit.
 void add_together(const TrackSet& set, const PairScan& pair, Comparison& comparison) {
   const auto shows = [&](std::size_t effect) { return comparison.scans[effect].log_evidence; };
   const bool in_order = shows(pair.first) >= shows(pair.second);
@@ -72,8 +72,8 @@ void add_together(const TrackSet& set, const PairScan& pair, Comparison& compari
   add(comparison, fit_beside(set, first, beside, leader));
 }
 
-/// Where one of two is left as the two were fitted and the other is taken out: what is then missing shows as it is, and
-/// not as the first one's own fit has made up for it.
+/// The joint fit of two effects, with one of them removed. What is missing then shows as it is, and not as the other
+/// effect's own fit has compensated for it.
 MotionFit without_one(const TrackSet& set, const MotionFit& both, std::size_t kept) {
   const ParameterLayout layout(set, {kept});
   FitPoint at{Eigen::VectorXd(static_cast<Eigen::Index>(layout.globals().size())), {}};
@@ -93,8 +93,8 @@ MotionFit without_one(const TrackSet& set, const MotionFit& both, std::size_t ke
   return linearise_at(set, {kept}, at);
 }
 
-/// The same pair, its evidence that of its first one beside its second. What an effect costs by itself, where it has to
-/// make up for the other, is not what it costs beside it.
+/// The same pair with the evidence of its first effect beside its second. The prior penalty of an effect by itself,
+/// where it has to compensate for the other, is not its penalty beside the other.
 Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison) {
   const Found leader = alone(set, both.effects.back(), comparison);
   const MotionFit around = without_one(set, both, both.effects.back());
@@ -108,7 +108,8 @@ Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison)
   return found;
 }
 
-/// In place of one of the best pair's two, whatever shows best beside the other; the same with what is best then.
+/// Replaces one effect of the best pair by whatever shows best beside the other; then repeats this with the new best
+/// pair.
 void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>& without, const Work& work,
               Comparison& comparison) {
   for (int round = 0; round < kExchanges; ++round) {
@@ -143,7 +144,8 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
 
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
                Comparison& comparison) {
-  // What differs between clips takes up whatever a first effect leaves: it is one explanation or none, not half of two.
+  // Effects that differ between clips absorb whatever a first effect leaves: they are the whole explanation or none,
+  // not half of a pair.
   std::set<std::size_t> left_out = without;
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
     if (differs_between_clips(e)) left_out.insert(e);
@@ -170,15 +172,15 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
 
 namespace {
 
-constexpr std::size_t kLikeliest = 4;  // effects, of those alone and of those beside known losses
+constexpr std::size_t kLikeliest = 4;  // number of effects, of those alone and of those beside known losses
 
-/// An explanation, and where frames are missing beside it.
+/// An explanation, and the places where frames are missing beside it.
 struct Beside {
   Hypothesis of;
   MissingFrames missing;
 };
 
-/// The likeliest explanations of losses and one effect that were fitted.
+/// The likeliest fitted explanations by losses and one effect.
 std::vector<Hypothesis> pairs_with(std::size_t dropped, const Comparison& comparison) {
   std::vector<Hypothesis> pairs = leaders_of(comparison, 2, comparison.all.size());
   std::erase_if(pairs, [&](const Hypothesis& pair) {
@@ -203,7 +205,7 @@ std::vector<std::size_t> likeliest_beside(std::size_t dropped, const std::vector
   return effects;
 }
 
-/// Along the fit of an effect without any losses.
+/// Missing frames along the fit of an effect without any losses.
 Beside beside_effect(const TrackSet& set, const MotionFit& nominal, std::size_t effect, const Comparison& comparison) {
   if (const Hypothesis* fitted = find(comparison, {effect})) {
     return {*fitted, find_missing_frames(set, comparison.fits[static_cast<std::size_t>(fitted->fit)])};
@@ -231,7 +233,8 @@ void add_losses_beside(const TrackSet& set, const MotionFit& nominal, const std:
       beside[i] = beside_effect(set, nominal, effects[i - pairs.size()], comparison);
       return;
     }
-    // A wave's phase jumps with each loss: it is found where these are known, and others along it.
+    // A wave's phase jumps with each loss. A wave is found if these losses are known, and further losses are found
+    // along it.
     beside[i] = {pairs[i], find_more_missing_frames(set, comparison.fits[static_cast<std::size_t>(pairs[i].fit)])};
   });
   for (const Beside& one : beside) {

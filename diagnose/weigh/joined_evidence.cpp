@@ -12,7 +12,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWorthJoining = -3.0;    // log evidence: what the images speak against more is not weighed with others
+constexpr double kWorthJoining = -3.0;    // log evidence: an effect that the images contradict by more is not weighed
+                                          // with others
 constexpr std::size_t kMostTogether = 4;  // effects in one explanation
 constexpr double kMostByScatter = 6.0;    // log evidence that a stated codec may take over from scattered frames
 
@@ -21,7 +22,7 @@ bool same_effects(const Hypothesis& a, const Hypothesis& b) {
          std::set(a.effects.begin(), a.effects.end()) == std::set(b.effects.begin(), b.effects.end());
 }
 
-/// What the images say of a camera that sways as this fit has it.
+/// What the images say about a camera that sways as this fit has it.
 double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::size_t effect, double otherwise) {
   double amplitude_m = 0.0, f_hz = 0.0;
   const auto& globals = fit.layout->globals();
@@ -34,7 +35,7 @@ double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::
   return f_hz > 0.0 ? camera_sway_support(pictures.clips, amplitude_m, f_hz) : otherwise;
 }
 
-/// What the marker's shear says of the line time that this fit has.
+/// What the marker's shear says about the line time of this fit.
 double line_support(const PictureEvidence& pictures, const PictureFinding& finding, const MotionFit& fit,
                     std::size_t effect) {
   const std::size_t g = fit.layout->first_of(effect);
@@ -44,7 +45,7 @@ double line_support(const PictureEvidence& pictures, const PictureFinding& findi
   return agreement({sheared.value - pictures.stated_line_s, sheared.sd}, {fit.at.global[at], sd});
 }
 
-/// Log likelihood of one motion's residuals: variance s²((1 - share) white + share exp(-lag/frames)).
+/// Log likelihood of one motion's residuals, of variance s²((1 - share) white + share exp(-lag/frames)).
 double correlated_likelihood(const Eigen::VectorXd& r, const std::vector<char>& outlier, double s2, double share,
                              double frames) {
   const double keep = std::exp(-1.0 / frames), driven = s2 * share * (1.0 - keep * keep), white = s2 * (1.0 - share);
@@ -86,7 +87,7 @@ CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
       for (const double frames : {1.0, 2.0, 4.0, 8.0}) {
         logs.push_back(of_all(s * s, share, frames) - white);
         if (logs.back() <= found.gain) continue;
-        // 1 + 2 sum of exp(-lag/frames) of the part that lasts.
+        // 1 + 2 sum of exp(-lag/frames) for the correlated part.
         const double keep = std::exp(-1.0 / frames);
         found = {logs.back(), 0.0, share, frames, s * s * (1.0 - share + share * (1.0 + keep) / (1.0 - keep))};
       }
@@ -98,9 +99,9 @@ CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
 
 namespace {
 
-/// In a file with loss, noise that lasts over frames imitates whatever is slow: the log evidence of every explanation
-/// by a motion counts as much less as that noise has more variance where it is slow, beyond the best explanation of
-/// all.
+/// In a file with lossy compression, noise that lasts over several frames imitates anything slow. The log evidence of
+/// every explanation by a motion is therefore divided by the ratio of this noise's variance in slow quantities to that
+/// under white noise, as the residuals of the best explanation of all show it.
 void temper(const TrackSet& set, Comparison& comparison) {
   const CorrelatedNoise left = scan_correlation(set, comparison.fits[static_cast<std::size_t>(comparison.left_fit)]);
   if (left.log_evidence < kSeenInPictures) return;
@@ -155,7 +156,8 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
         }
       }
       if (effect == codec && finding->stated && !other.unnamed && other.fit >= 0 && other.effects.size() < 2) {
-        // Of filmed noise that was measured by itself, no model goes in: what a fit leaves of a motion is no codec's.
+        // If the noise of filmed positions was measured by itself, no model enters it: what a fit leaves of a motion is
+        // not the codec's.
         if (set.position_noise) {
           of_tracks = std::max(0.0, set.position_noise->lasting_log_evidence);
           with.gain += set.position_noise->lasting_gain;
@@ -164,12 +166,13 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
           of_tracks = std::max(0.0, noise.log_evidence);
           with.gain += noise.gain;
         }
-        // Its errors grow with what changes in the image, and single ones are large where its blocks are seen.
+        // The codec's errors grow with the changes in the image, and single ones are large where its blocks are
+        // visible.
         if (of_tracks > kSeenInPictures) {
           of_tracks += std::max(std::min(kMostByScatter, scatter), finding->seen ? outliers : 0.0);
         }
       }
-      // A smeared marker is found less well the faster it moves: what the scatter shows of that is its own.
+      // A smeared marker is located less well the faster it moves: the part shown by the scatter is the blur's own.
       if (finding->id == ids::exposure_blur && finding->seen) of_tracks = scatter;
       if (of_pictures + of_tracks < kWorthJoining) continue;
       with.log_evidence += of_pictures + of_tracks;

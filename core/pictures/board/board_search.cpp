@@ -15,7 +15,7 @@ namespace {
 constexpr int kLargestCoarse = 512;    // px; in the first look, which finds a board of large squares
 constexpr int kMostCoarse = 4;         // times coarser than the image, so that a corner is found to about a pixel
 constexpr int kLargestAtFirst = 1600;  // px; larger images are shrunk for the search
-constexpr int kLargestAgain = 4096;    // px; where nothing was found, for small squares may have got lost
+constexpr int kLargestAgain = 4096;    // px; if nothing was found, because small squares may have been lost
 constexpr double kLargeSquare = 12.0;  // px of the first look: what it finds of smaller ones is looked for again
 constexpr int kSmallestSide = 20;      // px; OpenCV's detectors refuse windows of a tenth of the side where that is 1
 constexpr double kLeastNoiseToBlur = 8.0;  // codes
@@ -44,8 +44,8 @@ cv::Mat to_8_bits(const cv::Mat& grey) {
   return eight;
 }
 
-/// Noise makes many outlines. Blurred until it is below kLeastNoiseToBlur; the corners' places are refined in the image
-/// itself.
+/// Noise makes many outlines. The image is blurred until its noise is below kLeastNoiseToBlur; the corners are refined
+/// in the original image.
 cv::Mat without_specks(const cv::Mat& eight) {
   cv::Mat seen = eight, values;
   for (int pass = 0; pass < kMostBlurs; ++pass) {
@@ -58,7 +58,7 @@ cv::Mat without_specks(const cv::Mat& eight) {
   return seen;
 }
 
-/// In the image and with its white grown step by step, as the detector grows it.
+/// In the image itself, and with its white areas dilated step by step, as in the detector.
 std::size_t most_quads(const cv::Mat& white, int dilations) {
   cv::Mat grown = white.clone();
   std::size_t most = 0;
@@ -113,7 +113,7 @@ class Search {
     step();
   }
 
-  /// The quicker detector alone, where the image is not crowded.
+  /// The quicker detector alone, if the image is not crowded.
   std::vector<cv::Point2f> run_quickly() {
     if (eight_.empty() || crowded_ || detector_ == BoardDetector::sector_based) return {};
     const bool found = classic(eight_, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);

@@ -18,8 +18,8 @@ namespace glidelab::core {
 
 enum class BoardDetector { any, classic, sector_based };  ///< findChessboardCorners, findChessboardCornersSB
 
-/// To about a pixel, row by row as OpenCV gives them, in pixels of `grey` (8 or 16 bits); empty where no whole board is
-/// found. `between`, where given, is called between the steps and may throw to end the search.
+/// Corners to about a pixel, row by row in OpenCV's order, in pixels of `grey` (8 or 16 bits); empty if no whole board
+/// is found. `between`, if given, is called between the steps and may throw to end the search.
 std::vector<cv::Point2f> search_board(const cv::Mat& grey, cv::Size inner_corners, BoardDetector detector,
                                       const std::function<void()>& between = {});
 

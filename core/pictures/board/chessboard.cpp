@@ -141,8 +141,8 @@ BoardCorners orient_board(const cv::Mat& grey, cv::Size inner_corners, const std
 
 namespace {
 
-constexpr std::size_t kFewestResponseCorners = 9;  // that say how the pixels answer,
-constexpr double kResponsePixels = 5000.0;         // and about so many pixels
+constexpr std::size_t kFewestResponseCorners = 9;  // from which the pixels' response is found,
+constexpr double kResponsePixels = 5000.0;         // with about this many pixels
 
 /// A corner of an image, to be fitted.
 struct CornerAt {

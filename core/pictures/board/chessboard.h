@@ -48,9 +48,9 @@ struct BoardImage {
 
 BoardImage cut_board(const cv::Mat& grey, BoardCorners board);
 
-/// How the pixels of the camera that took these images answer to an edge, from corners of all of them. A board that
-/// lies along the rows shows each edge at few places between the pixels, where an answer of its own and a displacement
-/// of its corners look alike; tilted boards show all.
+/// The response to an edge of the pixels of the camera that took these images, from corners of all of them. If a board
+/// lies along the rows, it shows each edge at few sub-pixel positions, where a response and a displacement of the
+/// corners look alike; tilted boards show all.
 std::optional<EdgeResponse> board_response(const std::vector<BoardImage>& images);
 
 /// Refines each corner with fit_corner(); in the whole image. If the fit fails, the corner stays and is counted in

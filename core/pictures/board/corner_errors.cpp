@@ -51,7 +51,7 @@ Eigen::MatrixXd times_w(cv::Size grid, const Eigen::MatrixXd& columns) {
   return product;
 }
 
-/// Moments of the residuals, and what white noise and K of variance 1 would make of them.
+/// Moments of the residuals, and their expectations for white noise and for K of variance 1.
 struct Moments {
   double squares = 0.0, products = 0.0;
   double white_squares = 0.0, white_products = 0.0;

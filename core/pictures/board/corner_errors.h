@@ -36,8 +36,8 @@ struct ViewResiduals {
 
 /// White and correlated size follow from two moments of the residuals r = M e left by fitting the views' poses (M
 /// removes what a pose can absorb): the sum of squares, and the sum of products of neighbours along rows and columns.
-/// The correlated part counts where the products exceed those of white noise by two standard deviations, and never
-/// below kLeastCorrelatedPx.
+/// The correlated part counts if the products exceed those of white noise by two standard deviations, and never below
+/// kLeastCorrelatedPx.
 ///
 /// `fitted`: how many parameters all views had in common. At least one view.
 CornerNoise estimate_corner_noise(const std::vector<ViewResiduals>& views, std::size_t fitted);

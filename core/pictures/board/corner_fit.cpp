@@ -43,9 +43,9 @@ Window cut_window(const cv::Mat& grey, cv::Point2d centre, double radius) {
   return window;
 }
 
-/// What is known of the blur beforehand, for an edge that runs along a pixel's border has no width to be seen.
+/// Prior of the blur, because an edge along a pixel's border shows no width.
 constexpr double kUsualBlurPx = 0.4;
-constexpr double kBlurStrength = 0.05;  // worth so much of the contrast in one pixel, a unit of ln(blur)
+constexpr double kBlurStrength = 0.05;  // weight of a unit of ln(blur), as a fraction of the contrast in one pixel
 
 /// Pixels beyond the reach of both edges, of which half of a window may consist: there the model is
 /// (1 + h . d) (b ± a), so that their part of the normal equations follows from a few sums.
@@ -324,7 +324,7 @@ class CornerFit {
   CornerFit(const cv::Mat& image, cv::Point2d start, const CornerSurroundings& around)
       : image_(image), start_(start), around_(around) {}
 
-  /// Whether it settles, on what is a corner; `response` null: as the image is.
+  /// Whether it converges on something that is a corner; `response` null: the image as it is.
   bool settles(const EdgeResponse* response) {
     response_ = response;
     if (around_.window_px < kSmallestWindowPx) return false;

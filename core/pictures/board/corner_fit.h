@@ -10,7 +10,7 @@
 
 namespace glidelab::core {
 
-/// What is known of a corner before the fit.
+/// What is known about a corner before the fit.
 struct CornerSurroundings {
   double window_px = 0.0;  ///< radius of the pixels used, short of the nearest edge of another corner
   double angle_x = 0.0;    ///< directions of its two edges, radians from u towards v
@@ -32,8 +32,8 @@ struct FittedCorner {
 /// the corner towards certain phases of the pixels; where both edges cross one pixel it is exact to second order for
 /// right angles. A blur of another shape keeps the image point-symmetric about c and so does not move it.
 ///
-/// With a `response` (edge_response.h) the pixels are fitted by what it makes of I and of the pixels around; `image` is
-/// then the light by its tone (light_of()).
+/// With a `response` (edge_response.h) the fit's model is the response to I and the surrounding pixels; `image` is then
+/// the light by its tone (light_of()).
 ///
 /// `image` has 8 or 16 bits. Nothing if the window is smaller than 2.5 px, or the fit does not converge, moves by half
 /// the window or 3 px, or leaves residuals of a quarter of the contrast.

@@ -52,7 +52,7 @@ struct OpenCvCalibration {
   double rms_px = 0.0;
 };
 
-/// In single precision, as OpenCV takes them.
+/// In single precision, as OpenCV requires.
 std::vector<cv::Point3f> points_for_opencv(cv::Size grid, double square_m) {
   const std::vector<cv::Point3d> points = pattern_points(grid, square_m);
   return {points.begin(), points.end()};
@@ -124,7 +124,8 @@ struct Term {
   std::vector<Eigen::Index> places;  // of fx fy cx cy k1 k2 p1 p2 k3
   int fixing;                        // OpenCV's flag
   int power;                         // of r², of a radial term
-  double usual;                      // by which part lenses move an image's corner with it: a standard deviation
+  double usual;                      // standard deviation of the relative displacement of an image's corner by this
+                                     // term, over all lenses
 };
 
 /// The part of a radial term's size that is left where lenses' sizes are N(0, usual²) at the corner: usual² /
@@ -139,7 +140,7 @@ double believed(const Term& term, double variance, const OpenCvCalibration& foun
 
 struct SupportedFit {
   OpenCvCalibration found;
-  Uncertainty uncertainty;  // with what terms that were left out may still do
+  Uncertainty uncertainty;  // includes the possible effect of terms that were left out
   LensTerms lens;
 };
 
@@ -258,7 +259,7 @@ struct Fit {
   double rms_px = 0.0;
 };
 
-/// Nothing where it finds no camera. `guess`: a camera to begin with; nothing: OpenCV's own guess.
+/// Empty if it finds no camera. `guess`: a camera to begin with; empty: OpenCV's own guess.
 std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Size size, double square_m,
                               int fixed_terms, const CameraModel* guess) {
   std::vector<std::vector<cv::Point3d>> objects;
@@ -282,7 +283,7 @@ std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Si
   try {
     fit.rms_px = cv::fisheye::calibrate(objects, images, size, matrix, distortion, fit.turns, fit.shifts, flags,
                                         cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12));
-  } catch (const cv::Exception&) {  // how OpenCV says that it found none
+  } catch (const cv::Exception&) {  // OpenCV's sign that it found none
     return std::nullopt;
   }
   fit.camera.lens = LensKind::fisheye;
@@ -370,8 +371,8 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
   const auto fit_of = [&](const std::vector<const BoardView*>& some, const CameraModel* guess) {
     return run_opencv(some, boards.image_size, square_m, 0, guess);
   };
-  // From OpenCV's own guess a tilted board near the image's edge may end in a false pose; the camera of the others
-  // puts it right.
+  // From OpenCV's own guess, a tilted board near the image's edge may end in a false pose; the camera fitted to the
+  // others corrects it.
   const std::optional<Fit> first = fit_of(views, nullptr);
   if (!first) return std::nullopt;
   const std::optional<Fit> most =

@@ -15,7 +15,7 @@
 
 namespace glidelab::core {
 
-/// Of one view: its residuals and their derivatives by its pose, and those by the camera's free terms.
+/// One view: its residuals, and their derivatives with respect to its pose and to the camera's free terms.
 struct ViewDerivatives {
   ViewResiduals view;
   Eigen::MatrixXd by_terms;
@@ -90,10 +90,10 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
 /// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.
 inline constexpr double kDecisive = 100.0;
 
-/// Brown-Conrady, or a fisheye where that explains the corners decisively better: n log(rms² / rms²) > kDecisive over n
+/// Brown-Conrady, or a fisheye if that explains the corners decisively better: n log(rms² / rms²) > kDecisive over n
 /// coordinates (twice the logarithm of the likelihood ratio; both models have as many terms, and some ten neighbouring
-/// corners share their errors). A fisheye is tried where the image's corner is more than 0.8 focal lengths off the
-/// axis, or neighbouring corners show that Brown-Conrady does not describe the lens.
+/// corners share their errors). A fisheye is tried if the image's corner is more than 0.8 focal lengths off the axis,
+/// or if neighbouring corners show that Brown-Conrady does not describe the lens.
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m);
 
 }  // namespace glidelab::core

@@ -54,7 +54,7 @@ Distorted distort(const CameraModel& camera, cv::Point2d n) {
   return camera.lens == LensKind::fisheye ? fisheye(camera.distortion, n) : brown_conrady(camera.distortion, n);
 }
 
-/// Where to begin: a fisheye's undistorted radius grows as a tangent.
+/// The start: a fisheye's undistorted radius grows as a tangent.
 cv::Point2d start_from(LensKind lens, cv::Point2d distorted) {
   const double angle = std::hypot(distorted.x, distorted.y);
   if (lens != LensKind::fisheye || angle < 1e-8) return distorted;
@@ -90,7 +90,7 @@ std::optional<cv::Point2d> CameraModel::to_normalised(cv::Point2d pixel) const {
     const Distorted distorted = distort(*this, here);
     const cv::Point2d off = distorted.at - wanted;
     error = std::sqrt(off.dot(off));
-    // The branch that holds the axis: there the distortion keeps its orientation.
+    // The branch that contains the axis: there the distortion keeps its orientation.
     const double determinant = cv::determinant(distorted.jacobian);
     if (!(determinant > 0.0) || !std::isfinite(error)) return std::nullopt;
     if (error < tolerance) return here;

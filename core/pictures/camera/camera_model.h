@@ -42,8 +42,8 @@ struct CameraModel {
   /// From normalised coordinates to pixels.
   cv::Point2d to_pixel(cv::Point2d normalised) const;
 
-  /// From a pixel to normalised coordinates, by Newton's method to 1e-10 px; nothing where the distortion folds over
-  /// and no ray belongs to the pixel.
+  /// From a pixel to normalised coordinates, by Newton's method to 1e-10 px; empty where the distortion folds over and
+  /// no ray belongs to the pixel.
   std::optional<cv::Point2d> to_normalised(cv::Point2d pixel) const;
 };
 

@@ -37,7 +37,7 @@ std::vector<cv::Point2d> thinned(const std::vector<cv::Point2d>& points) {
   return kept;
 }
 
-/// The line through two of the points from which the median distance is least: half of the points may lie anywhere.
+/// The line through two of the points that minimises the median distance: half of the points may lie anywhere.
 std::optional<PlaneLine> least_median_line(const std::vector<cv::Point2d>& points) {
   const std::vector<cv::Point2d> few = thinned(points);
   std::optional<PlaneLine> best;
@@ -80,7 +80,7 @@ double excess_of_blocks(const PlaneLine& line, const std::vector<cv::Point2d>& p
   return independent > 0.0 ? excess_over_independent(scatter, independent) : 1.0;
 }
 
-/// Through the points that lie near the start; through all where there is none.
+/// Fits the points that lie near the start; all points if there is no start.
 PlaneLine fit_from(const std::optional<PlaneLine>& start, const std::vector<cv::Point2d>& points, double least_scale) {
   if (points.empty()) throw base::NumericalError("no points to fit a line to");
   std::vector<double> weights(points.size(), 1.0);

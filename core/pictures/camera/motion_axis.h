@@ -1,5 +1,5 @@
-/// The line of a motion (or of a thread) by total least squares, x as the distance along it, and what an error of the
-/// camera or the plane does to both.
+/// The line of a motion (or of a thread) by total least squares, x as the distance along it, and the effect of an error
+/// of the camera or the plane on both.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,8 +15,9 @@ namespace glidelab::core {
 struct PlaneLine {
   cv::Point2d through;  ///< the points' mean
   cv::Point2d direction;
-  double rms_across = 0.0;    ///< distance of the points from the line, those left out not counted
-  double sd_angle_rad = 0.0;  ///< of the direction, from that; wider where neighbouring points are off together
+  double rms_across = 0.0;    ///< distance of the points from the line, without those left out
+  double sd_angle_rad = 0.0;  ///< of the direction, from rms_across; larger if the errors of neighbouring points
+                              ///< correlate
   std::size_t used = 0;       ///< points with a weight above one half
   double along(cv::Point2d point) const { return (point - through).dot(direction); }
   double across(cv::Point2d point) const { return direction.cross(point - through); }
@@ -31,14 +32,15 @@ PlaneLine fit_plane_line(const std::vector<cv::Point2d>& points, double least_sc
 /// The line in which a marker moves, directed downhill.
 class MotionAxis {
  public:
-  /// `downhill`: which way along X or Y is down. NumericalError where the marker does not move.
+  /// `downhill`: the direction along X or Y that is downhill. NumericalError if the marker does not move.
   static MotionAxis through(const std::vector<cv::Point2d>& points, Downhill downhill);
-  /// The same through points that have moved a little, all alike: this axis is the start, which need not be searched.
+  /// The same through points that have all moved a little in the same way: this axis is the start, so no search is
+  /// needed.
   MotionAxis moved_through(const std::vector<cv::Point2d>& points, Downhill downhill) const;
   /// Along X or Y itself, for a marker that does not move.
   static MotionAxis along(Downhill downhill);
 
-  /// This axis turned by as much as leads from one direction to the other.
+  /// This axis, rotated by the angle between two directions.
   MotionAxis turned(const MotionAxis& to, const MotionAxis& from) const;
 
   /// Distance along the line from the projection of the plane's origin, positive downhill.
@@ -59,13 +61,13 @@ struct ModeAxis {
   RestitutionMode mode;
   MotionAxis axis;
 
-  /// Change of x of these places by one standard deviation; 0 where the mode has no ray for a place.
+  /// Change of x of these positions for one standard deviation; 0 where the mode has no ray for a position.
   std::vector<double> displacement(const Restitution& restitution, const MotionAxis& without,
                                    const std::vector<cv::Point2d>& places) const;
 };
 
-/// One for each of the restitution's modes, in its order; `places` are those of all clips of the group. If there are
-/// many, an even selection of them determines how a mode turns the line.
+/// One for each of the restitution's modes, in its order; `places` are the positions of all clips of the group. If
+/// there are many, an even selection of them determines how a mode turns the line.
 std::vector<ModeAxis> mode_axes(const Restitution& restitution, const MotionAxis& without,
                                 const std::vector<cv::Point2d>& places, Downhill downhill);
 

@@ -32,7 +32,7 @@ PlanePose pose_from(const Eigen::VectorXd& parameters) {
   return pose;
 }
 
-/// The place of a pattern's point in the first view's pattern: every other view lies in the same plane, turned and
+/// The position of a pattern's point in the first view's pattern: every other view lies in the same plane, rotated and
 /// shifted.
 cv::Vec3d turned(const Eigen::VectorXd& parameters, std::size_t view, cv::Point2d at) {
   if (view == 0) return {at.x, at.y, 0.0};
@@ -120,8 +120,8 @@ Eigen::MatrixXd jacobian_of(const CameraModel& camera, const std::vector<BoardCo
   return jacobian;
 }
 
-/// Gauss and Newton's steps from a start that is already good (solvePnP's), by QR: the damping is what a step is
-/// divided by, and doubles where the cost does not fall.
+/// Gauss-Newton steps from a start that is already good (solvePnP's), by QR. The damping divides the step, and doubles
+/// if the cost does not decrease.
 Eigen::VectorXd fit_poses(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
                           const Eigen::VectorXd& start) {
   struct Point {

@@ -3,8 +3,8 @@
 ///
 /// The views share one plane: the first one's pattern has a pose X_CP of six parameters, every further one lies in the
 /// same plane, turned and shifted (three more). Start: solvePnP of each view, its corners' distortion undone; then
-/// Gauss and Newton's method with central differences. Covariance of the pose: (J'J)^-1 J'V J (J'J)^-1, V that of
-/// corner_errors.h with the white part as the residuals have it.
+/// Gauss-Newton with central differences. Covariance of the pose: (J'J)^-1 J'V J (J'J)^-1, V that of corner_errors.h
+/// with the white part taken from the residuals.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,8 +35,8 @@ struct PlaneFit {
   double rms_px = 0.0;                     ///< the same in the image
 };
 
-/// Pose of the pattern in one or more plane views, with the camera held. `correlated_px`: of the corners' errors, what
-/// neighbours have in common (CornerNoise); the independent part is taken from the residuals.
+/// Pose of the pattern in one or more plane views, with the camera held. `correlated_px`: the part of the corners'
+/// errors that neighbours share (CornerNoise); the independent part is taken from the residuals.
 PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& views, double square_m,
                    double correlated_px = 0.0);
 
@@ -53,8 +53,8 @@ PlanePose refit_pose(const CameraModel& camera, const std::vector<BoardCorners>&
 /// The pose with this change of (turn vector, shift), of which PlaneFit::covariance is the covariance.
 PlanePose moved(const PlanePose& pose, const Eigen::Matrix<double, 6, 1>& change);
 
-/// Where the ray of a pixel meets the plane Z = z of the pattern's frame P, metres; nothing where no ray belongs to the
-/// pixel or it does not meet the plane before the camera.
+/// Where the ray of a pixel meets the plane Z = z of the pattern's frame P, metres; empty if no ray belongs to the
+/// pixel or it does not meet the plane in front of the camera.
 std::optional<cv::Point2d> meet_plane(const CameraModel& camera, const PlanePose& pose, cv::Point2d pixel, double z_m);
 
 }  // namespace glidelab::core

@@ -15,12 +15,13 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kMostOffLine = 1.5;         // pixels from a straight line, for a row's place to lie on it
+constexpr double kMostOffLine = 1.5;         // pixels from a straight line within which a row's position lies on it
 constexpr double kLeastShareOfRows = 0.3;    // in which a thread must be seen
-constexpr double kFewestRowsSeen = 6.0;      // the same
-constexpr std::size_t kPlacesARow = 4;       // that stand out most
-constexpr std::size_t kPlacesPaired = 160;   // of all, evenly: every pair of them proposes a line
-constexpr double kLeastPairDistance = 0.25;  // of the rows, that the two of a pair are at least
+constexpr double kFewestRowsSeen = 6.0;      // the same, as a number of rows
+constexpr std::size_t kPlacesARow = 4;       // number of positions in a row that stand out most
+constexpr std::size_t kPlacesPaired = 160;   // number of all positions, chosen evenly, of which every pair proposes a
+                                             // line
+constexpr double kLeastPairDistance = 0.25;  // fraction of the rows by which the two of a pair are apart at least
 constexpr double kLeastGain = 1.05;          // times, that a line must be to stand before one found earlier
 constexpr int kCourseRounds = 5;             // of Newton's method
 
@@ -33,7 +34,7 @@ struct Place {
   cv::Point2d straight;
 };
 
-/// The rows' places that lie on one straight line.
+/// The rows' positions that lie on one straight line.
 struct Thread {
   std::vector<Place> places;
   double strength = 0.0;
@@ -59,7 +60,7 @@ double excess_at(const std::vector<double>& values, int i, int width) {
   return 0.0;
 }
 
-/// A line through two places, on which places of the same sign may lie, one a row.
+/// A line through two positions, on which positions of the same sign may lie, one a row.
 class Proposal {
  public:
   Proposal(const Place& a, const Place& b)
@@ -116,7 +117,7 @@ class Search {
     return values;
   }
 
-  /// The places of a row that stand out most, of either sign.
+  /// The positions in a row that stand out most, of either sign.
   std::vector<Place> places_in(int row, int width) const {
     const std::vector<double> values = profile(row);
     std::vector<double> excess(values.size(), 0.0);
@@ -133,7 +134,7 @@ class Search {
     return found;
   }
 
-  /// Of all rows, where the lens can be undone.
+  /// For all rows in which the lens's distortion can be undone.
   std::vector<Place> places_of(int width) const {
     std::vector<Place> places;
     for (int row = 0; row < rows(); ++row) {
@@ -147,7 +148,7 @@ class Search {
     return places;
   }
 
-  /// The line on which most stands out, or `best` where none is better.
+  /// The line along which most stands out, or `best` if none is better.
   Thread stronger(Thread best, const std::vector<Place>& places, int width) const {
     const std::size_t stride = std::max<std::size_t>(1, places.size() / kPlacesPaired);
     for (std::size_t a = 0; a < places.size(); a += stride) {

@@ -50,17 +50,17 @@ class Restitution {
   /// to the pixel or it does not meet the plane in front of the camera.
   std::optional<cv::Point2d> to_plane(cv::Point2d pixel) const;
 
-  /// The pixel on which a marker at this place is seen centred; the inverse of to_plane.
+  /// The pixel on which a marker at this position is seen centred; the inverse of to_plane.
   cv::Point2d to_pixel(cv::Point2d plane) const;
 
   /// The pixel with the lens's distortion undone (as a camera without it would show it); the pixel itself with a scale.
   std::optional<cv::Point2d> undistorted(cv::Point2d pixel) const;
 
-  /// Radius of the marker's image there, in pixels; nothing where to_plane gives nothing.
+  /// Radius of the marker's image there, in pixels; empty where to_plane is.
   std::optional<double> marker_radius_px(cv::Point2d pixel) const;
 
   /// The outline of the marker, a sphere, that is seen centred on this pixel: |M d| = 1 about it, as the elements uu,
-  /// uv, vv of M (1/px); nothing where to_plane gives nothing.
+  /// uv, vv of M (1/px); empty where to_plane is.
   std::optional<cv::Vec3d> marker_shape(cv::Point2d pixel) const;
 
   /// The same of a disc of the marker's diameter that lies in the plane in which its centre moves.
@@ -76,7 +76,7 @@ class Restitution {
   /// scale.
   std::vector<RestitutionMode> modes() const;
 
-  /// What the plane views gave; nothing for a scale.
+  /// The fit of the plane views; empty for a scale.
   const std::optional<PlaneFit>& plane() const { return plane_; }
 
  private:
@@ -95,7 +95,7 @@ class Restitution {
   double radius_m_ = 0.0;
 };
 
-/// The pattern's corners, as found in pattern_files(), and the camera that they make.
+/// The pattern's corners, as found in pattern_files(), and the camera calibrated from them.
 struct SeenPattern {
   BoardViews boards;
   Calibration calibration;

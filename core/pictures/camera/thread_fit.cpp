@@ -96,14 +96,14 @@ LeastSquaresFit<kParameters> fit_from(const std::vector<ThreadRow>& rows, const 
                                         kMostIterations);
 }
 
-/// The best of several starts: width and blur make two valleys where the thread is sharp.
+/// The best of several starts: width and blur make two valleys if the thread is sharp.
 std::optional<LeastSquaresFit<kParameters>> fit_best(const std::vector<ThreadRow>& rows, const Setting& setting) {
   std::optional<LeastSquaresFit<kParameters>> best;
   for (const double blur : {0.12, 0.4, 1.0}) {
     Vector start;
     start << 0.0, 0.0, std::log(setting.width_px), std::log(blur);
     const auto found = fit_from(rows, setting, start);
-    // A valley along width or blur may be walked for long; the shift and the turn stand before.
+    // The iteration may follow a valley along width or blur for long; the shift and the turn converge earlier.
     if (found.stop == base::FitStop::singular || found.stop == base::FitStop::out_of_range) continue;
     if (!(found.rms > 0.0) || (best && best->rms <= found.rms)) continue;
     best = found;

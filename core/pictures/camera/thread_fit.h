@@ -28,7 +28,7 @@ struct ThreadFit {
   double shift = 0.0;     ///< p, pixels
   double turn = 0.0;      ///< q, pixels a row
   double mean_row = 0.0;  ///< r
-  double sd_turn = 0.0;   ///< by the scatter of blocks of rows, where that is larger than independent pixels give
+  double sd_turn = 0.0;   ///< from the scatter of blocks of rows, if that is larger than for independent pixels
   double width_px = 0.0;
   double blur_px = 0.0;
   std::size_t rows = 0;  ///< used; those with a residual of four times the median's are left out

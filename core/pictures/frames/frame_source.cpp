@@ -136,7 +136,7 @@ namespace {
 // Matroska rounds stamps to 1 ms, so that a regular clip's steps differ by up to that.
 constexpr double kStampRounding_s = 1.05e-3;
 
-/// By the four letters of the container; nothing for others.
+/// From the four letters of the container; empty for others.
 std::optional<bool> is_lossy(const std::string& letters) {
   const std::string codec = lower(letters);
   static const std::set<std::string> kLossy{"mjpg", "h264", "avc1", "x264", "hevc", "hvc1", "hev1", "vp80",
@@ -149,7 +149,7 @@ std::optional<bool> is_lossy(const std::string& letters) {
   return std::nullopt;
 }
 
-/// Whether a lossy codec makes images out of those before; the others code each by itself.
+/// Whether a lossy codec predicts images from earlier ones; the others code each image by itself.
 std::optional<bool> does_predict(const std::string& letters) {
   static const std::set<std::string> kEachByItself{"mjpg", "apcn", "apch", "apcs", "ap4h", "dvsd"};
   const std::optional<bool> lossy = is_lossy(letters);
@@ -289,7 +289,7 @@ class VideoFrames final : public FrameSource {
     find_drift();
   }
 
-  /// The stamps against a straight line through them; a rate that merely plays slowly leaves none.
+  /// The residuals of the stamps about a straight line; a rate that is merely played slowly leaves none.
   void find_drift() {
     const double n = static_cast<double>(stamps_s_.size());
     double sum = 0.0, moment = 0.0;

@@ -1,7 +1,7 @@
 /// The frames of a clip, one after the other: from a video file or from a folder of images.
 ///
 /// A frame's time is the middle of its exposure, counted from the first frame's: k / frame_rate_hz, or the container's
-/// time stamps where the experiment says so.
+/// time stamps if the experiment says so.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -19,16 +19,16 @@
 
 namespace glidelab::core {
 
-/// Makes the pixels of a rectangle within the image, if they are not there yet: of an image whose pixels are made as
+/// Draws the pixels of a rectangle within the image, if they are not there yet: for an image whose pixels are made as
 /// they are looked at (a renderer's, of which a tracker looks at a hundredth).
 using DrawPixels = std::function<void(const cv::Rect&)>;
 
 struct Frame {
-  cv::Mat grey;   ///< one channel, 8 or 16 bits; a grey clip comes out bit by bit as it is stored
-  cv::Mat color;  ///< BGR, 8 bits, where it was asked for; else empty
+  cv::Mat grey;   ///< one channel, 8 or 16 bits; a grey clip is preserved bit by bit
+  cv::Mat color;  ///< BGR, 8 bits, if requested; otherwise empty
   std::size_t index = 0;
   double t_s = 0.0;
-  DrawPixels draw = {};  ///< of next_in_parts(): grey holds nothing but what was drawn with it; else empty
+  DrawPixels draw = {};  ///< of next_in_parts(): grey contains only what was drawn with it; otherwise empty
 };
 
 /// People round rates by up to 0.1 % (239.76 as 240); a relative difference above this is another rate.
@@ -39,7 +39,7 @@ inline constexpr double kRateRounding = 1.5e-3;
 struct FileFacts {
   std::string codec;                        ///< four letters; empty for a folder of frames
   std::optional<bool> lossy;                ///< nothing for an unknown codec
-  std::optional<bool> predicts;             ///< lossy, and images are made out of those before; likewise
+  std::optional<bool> predicts;             ///< lossy, and images are predicted from earlier ones; likewise
   std::optional<double> container_rate_hz;  ///< frames a second, as the container says
   std::size_t stamps_missing = 0;           ///< frames for which the time stamps leave a gap
   std::size_t irregular_steps = 0;          ///< between time stamps, that differ from the median step
@@ -51,16 +51,16 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// The next frame, or nothing at the end. InputError (file and frame) for a frame that cannot be decoded or is of
-  /// another size, for stamps that do not rise where they count, and at the end of a clip that is shorter than its
-  /// container says by more than max(2, 1 %), or empty.
+  /// The next frame, or nothing at the end. InputError (file and frame) for a frame that cannot be decoded or has
+  /// another size, for time stamps that are used but do not increase, and at the end of a clip that is empty or shorter
+  /// than its container says by more than max(2, 1 %).
   virtual std::optional<Frame> next() = 0;
 
   /// The next frame for a reader that looks at parts of it: a source that makes its pixels may leave that to
   /// Frame::draw, which gives the same pixels as next() and outlives the following frames but not the source.
   virtual std::optional<Frame> next_in_parts() { return next(); }
 
-  /// How many frames the container says there are; 0 where it does not.
+  /// The number of frames that the container states; 0 if it states none.
   virtual std::size_t stated_frames() const = 0;
 
   /// What a reader should know, once the end is reached: a container with another rate, irregular stamps,
@@ -75,7 +75,7 @@ class FrameSource {
 [[noreturn]] void fail_frames(const std::filesystem::path& file, std::string key, std::string found,
                               std::string expected);
 
-/// All frames measure the same, and what was asked for; InputError where one does not.
+/// Checks that all frames have the same size, and the requested one; InputError if one does not.
 class SizeCheck {
  public:
   explicit SizeCheck(std::optional<cv::Size> size) : size_(size), given_(size) {}
@@ -101,26 +101,26 @@ class RepeatCounter {
   std::size_t count_ = 0;
 };
 
-/// A decoded image, grey as stored, and its colours where they are asked for.
+/// A decoded image, grey as stored, and its colours if requested.
 Frame make_frame(const cv::Mat& image, bool with_color, std::size_t index);
 
-/// Frames that are images in a folder, in the order of their numbers ("2.png" before "10.png"). `size`, where given, is
-/// what every frame must measure. InputError for a folder without images, and where time stamps are asked for, which a
+/// Frames that are images in a folder, in the order of their numbers ("2.png" before "10.png"). `size`, if given, is
+/// the required size of every frame. InputError for a folder without images, and if time stamps are requested, which a
 /// folder does not have.
 std::unique_ptr<FrameSource> open_frame_folder(const std::filesystem::path& folder, const CameraSettings& camera,
                                                bool with_color, std::optional<cv::Size> size);
 
-/// Frames of a video file, with what its container says about their times. `size`, where given, is what every frame
-/// must measure. InputError for a file that is no video.
+/// Frames of a video file, with its container's information about their times. `size`, if given, is the required size
+/// of every frame. InputError for a file that is not a video.
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& file, const CameraSettings& camera,
                                         bool with_color, std::optional<cv::Size> size);
 
-/// Opens a video or a folder of frames. `size`, where given, is what the frames must measure (the calibration's
-/// images). InputError where it is neither a video nor a folder with images.
+/// Opens a video or a folder of frames. `size`, if given, is the required size of the frames (that of the calibration's
+/// images). InputError if it is neither a video nor a folder with images.
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& file, const CameraSettings& camera,
                                          bool with_color, std::optional<cv::Size> size);
 
-/// How an analysis comes by a clip's frames: open_frames, or what gives the same from elsewhere.
+/// How an analysis obtains a clip's frames: open_frames, or another source of the same frames.
 using FrameOpener = std::function<std::unique_ptr<FrameSource>(
     const std::filesystem::path& file, const CameraSettings& camera, bool with_color, std::optional<cv::Size> size)>;
 

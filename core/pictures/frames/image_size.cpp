@@ -20,7 +20,7 @@ using std::uint64_t;
 
 enum class ByteOrder { little, big };
 
-/// The bytes of a file, by their places; what lies behind its end is nothing.
+/// The bytes of a file, by their offsets; reads beyond its end give nothing.
 class Bytes {
  public:
   explicit Bytes(const fs::path& file) : in_(file, std::ios::binary) {}
@@ -123,7 +123,7 @@ std::optional<ImageSize> tiff_size(Bytes& bytes) {
     if (length == 0 || bytes.number(at + 4, wide, order) != 1) return std::nullopt;
     const auto value = bytes.number(at + (large ? 12 : 8), length, order);
     if (!value) return std::nullopt;
-    *wanted = std::max(*wanted, *value);  // where a tag comes twice, readers differ in which they take
+    *wanted = std::max(*wanted, *value);  // if a tag occurs twice, readers differ in which one they use
   }
   if (width == 0 || height == 0) return std::nullopt;
   return ImageSize{width, height, tile_width, tile_height};

@@ -1,5 +1,5 @@
-/// How large an image is by what its file states, before any of it is decoded: a small file can state an image that
-/// takes gigabytes.
+/// The size of an image as its file states it, before any of it is decoded: a small file can state an image that takes
+/// gigabytes.
 ///
 /// PNG (ISO/IEC 15948, IHDR), JPEG (ITU-T T.81, the frame header SOF), TIFF 6.0 and BigTIFF (the tags of the first
 /// directory), BMP, and PBM, PGM and PPM. What is none of these is not an image here, whatever OpenCV would make of it.

@@ -18,7 +18,7 @@ void silence_opencv();
 /// image (PNG, JPEG, TIFF, BMP, PBM, PGM, PPM), and before it is decoded if it states more than `most_pixels`.
 cv::Mat read_image(const std::filesystem::path& path, std::size_t most_pixels = kMostPixels);
 
-/// The same as grey, 8 or 16 bits; a grey image comes out bit by bit as it is stored.
+/// The same as grey, 8 or 16 bits; a grey image is preserved bit by bit.
 cv::Mat read_grey_image(const std::filesystem::path& path, std::size_t most_pixels = kMostPixels);
 
 /// Grey of an image with 1 or 3 channels; three equal channels give exactly their value.

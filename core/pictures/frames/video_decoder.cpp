@@ -46,9 +46,9 @@ const std::set<std::string_view> kPlaylists{"hls", "dash", "concat", "imf", "sdp
 const std::set<std::string_view> kTexts{"tty", "bin", "xbin", "adf", "idf"};
 
 constexpr int kReadBuffer = 1 << 16;  // bytes
-constexpr int kMostRetries = 4096;    // of a format that has nothing to give yet
+constexpr int kMostRetries = 4096;    // for a format that has no data yet
 
-/// Our own errors say it better; where a user sets OpenCV's level of FFmpeg's log, that counts.
+/// Our own errors are clearer; if a user sets OpenCV's level of FFmpeg's log, that setting counts.
 void silence_libav() {
   const char* const level = std::getenv("OPENCV_FFMPEG_LOGLEVEL");
   av_log_set_level(level != nullptr ? std::atoi(level) : AV_LOG_QUIET);
@@ -71,7 +71,7 @@ std::int64_t seek_bytes(void* opaque, std::int64_t offset, int whence) {
   return ::ftello(file);
 }
 
-/// For what a format wants opened besides its own file.
+/// Called for any further file that a format wants opened.
 int refuse_to_open(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) {
   return AVERROR(EACCES);
 }
@@ -154,7 +154,7 @@ class VideoDecoder::Libav {
     io_ = avio_alloc_context(buffer, kReadBuffer, 0, bytes_, read_bytes, nullptr, seek_bytes);
     container_ = avformat_alloc_context();
     if (buffer == nullptr || io_ == nullptr || container_ == nullptr) throw std::bad_alloc();
-    // Of the name libav sees the last part alone, whose ending helps to tell the format.
+    // libav sees only the last part of the name, whose ending helps to identify the format.
     const std::string name = file_.filename().string();
     const AVInputFormat* format = nullptr;
     if (av_probe_input_buffer2(io_, &format, name.c_str(), nullptr, 0, 0) < 0) {
@@ -239,7 +239,7 @@ class VideoDecoder::Libav {
       if (got == AVERROR_EOF || at_end_) return false;
       if (!read_packet()) {
         at_end_ = true;
-        if (avcodec_send_packet(codec_, nullptr) < 0) return false;  // gives out what the decoder holds back
+        if (avcodec_send_packet(codec_, nullptr) < 0) return false;  // returns the frames that the decoder holds back
         continue;
       }
       const int sent = avcodec_send_packet(codec_, packet_);

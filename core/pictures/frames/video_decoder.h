@@ -1,9 +1,9 @@
 /// A video file, decoded frame by frame: the one place of core/ that calls libav.
 ///
-/// A file from a stranger is read as nothing but that file. libav gets its bytes through a reader that knows no other
-/// file and no network; formats and codecs are those that cameras and converters write (a playlist, which names other
-/// files, and a text that draws characters are not among them), and whatever a format asks to be opened besides is
-/// refused. A frame of more pixels than permitted is refused before memory for it is asked for.
+/// A file from a stranger must not make the program read anything else. libav gets the bytes through a reader that
+/// knows no other file and no network; formats and codecs are those that cameras and converters write (a playlist,
+/// which names other files, and a text that draws characters are not among them), and any further file that a format
+/// asks for is refused. A frame of more pixels than permitted is refused before memory for it is allocated.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -29,13 +29,13 @@ class VideoDecoder {
   VideoDecoder(const VideoDecoder&) = delete;
   VideoDecoder& operator=(const VideoDecoder&) = delete;
 
-  /// The next frame; nothing at the end and where the rest cannot be decoded. InputError for a frame above the limit.
-  /// With `grey_will_do`, a frame that is stored without colours comes with one channel: the grey that its three equal
-  /// channels would be.
+  /// The next frame; nothing at the end or if the rest cannot be decoded. InputError for a frame above the limit. With
+  /// `grey_will_do`, a frame that is stored without colours has one channel: the common value of its three equal
+  /// channels.
   std::optional<DecodedFrame> next(bool grey_will_do = false);
 
   std::size_t stated_frames() const;  ///< as the container counts them, or its length times its rate; 0: not stated
-  double rate_hz() const;             ///< as the container states it; 0 where it does not
+  double rate_hz() const;             ///< as the container states it; 0 if it does not
   std::string codec() const;          ///< four letters, as the container calls it
 
  private:

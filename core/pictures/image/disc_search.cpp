@@ -225,7 +225,8 @@ cv::Mat square_means(const cv::Mat& sums, int half, int beyond) {
 
 using Steps = std::array<std::ptrdiff_t, 8>;  // from a place to the squares around it
 
-/// Of the means at eight places around each of a row the one at a rank, in falling order, against the mean inside.
+/// For each position in a row: the mean inside minus the mean of a given rank, in decreasing order, of the eight around
+/// it.
 template <int kRank>
 [[gnu::always_inline]] inline void row_response(const float* __restrict inside, const float* __restrict beside,
                                                 const Steps& steps, int count, float* __restrict result) {

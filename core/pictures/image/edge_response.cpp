@@ -21,7 +21,7 @@ constexpr double kCurved = 0.2;          // t of codes that follow a curve: 0.3 
 constexpr double kStraight = 0.5;        // of that, left by the curve's light
 constexpr double kHeld = 1e-3;           // of the best seen term: what the windows hardly show stays out
 
-/// What a window's light is compared with.
+/// The terms with which a window's light is compared.
 struct Columns {
   Eigen::VectorXd sharp;                                              // I
   Eigen::Matrix<double, Eigen::Dynamic, EdgeResponse::kTerms> terms;  // by which each term is multiplied
@@ -65,7 +65,7 @@ Columns columns_of(const FittedWindow& window, double narrower_px2) {
   return columns;
 }
 
-/// Sums over windows from which the terms follow: each window's own parameters are fitted with them.
+/// Sums over windows from which the terms follow; each window's own parameters are fitted with them.
 class Sums {
  public:
   void add(const FittedWindow& window, const Columns& columns) {
@@ -76,13 +76,13 @@ class Sums {
     weight_ += window.weight.sum() - static_cast<double>(own);
     const Eigen::VectorXd size = all.leftCols(own).colwise().norm().transpose().cwiseMax(1e-300);
     all.leftCols(own) *= size.cwiseInverse().asDiagonal();
-    // What the window's own parameters do not take up: Schur's complement.
+    // The part that the window's own parameters do not absorb: the Schur complement.
     const Eigen::MatrixXd products = base::transposed_product(all, all);
     const Eigen::MatrixXd across = products.topRightCorner(own, kAll);
     products_ += products.bottomRightCorner(kAll, kAll) -
                  base::transposed_product(across, base::solve_positive(products.topLeftCorner(own, own), across));
   }
-  /// Held at those of the round before: what is well seen gets there, what hardly is stays.
+  /// Held at the terms of the round before: well determined terms converge, poorly determined ones stay.
   EdgeResponse::Terms terms(const EdgeResponse::Terms& before) const {
     Eigen::MatrixXd held = products_.topLeftCorner(kTerms, kTerms);
     const double weight = kHeld * held.diagonal().maxCoeff();
@@ -105,8 +105,8 @@ class Sums {
 
 struct Learnt {
   EdgeResponse response;
-  double left = 0.0;   // of the residuals' squares, over the contrast's
-  double plain = 0.0;  // the same of the fits as they are
+  double left = 0.0;   // sum of the residuals' squares, over the contrast's
+  double plain = 0.0;  // the same for the fits without a response
 };
 
 std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeResponse* known, const FitWindow& fit) {
@@ -134,7 +134,7 @@ std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeRespo
   return learnt;
 }
 
-/// Whether a curve's light is the better description.
+/// Whether the light by a curve is the better description.
 bool is_straighter(const Learnt& light, const Learnt& codes) {
   const double curved = std::abs(codes.response.curvature());
   return light.left < kFarLess * codes.left ||

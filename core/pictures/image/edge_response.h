@@ -1,4 +1,4 @@
-/// How an image's pixels answer to an edge beyond what a fit's model says: as a colour mosaic, and by a curved tone.
+/// How an image's pixels respond to an edge beyond the model of a fit: as a colour mosaic, and by a curved tone.
 ///
 /// A colour camera interpolates the colours that a pixel lacks from its neighbours, so that each of the four places of
 /// the 2 x 2 mosaic blurs the image in its own way; a tone curve makes a pixel on an edge brighter or darker than the
@@ -38,8 +38,8 @@ struct EdgeResponse {
   using Terms = Eigen::Matrix<double, kTerms, 1>;
 
   Terms terms = Terms::Zero();
-  double narrower_px2 = 0.0;           ///< by how much the square of the edges' blur is smaller in I than in the model
-  ToneCurve tone = ToneCurve::linear;  ///< the fits are those of the light by it
+  double narrower_px2 = 0.0;           ///< reduction of the squared blur of the edges, in I relative to the model
+  ToneCurve tone = ToneCurve::linear;  ///< the fits are to the light by this tone
 
   double curvature() const { return terms[kCurvature]; }  ///< t
   double twist() const { return terms[kTwist]; }          ///< w
@@ -55,26 +55,26 @@ struct ModelPixel {
 struct FittedWindow {
   std::vector<cv::Point> pixels;  ///< in the image
   Eigen::VectorXd weight;
-  Eigen::VectorXd light;     ///< as it is seen
-  Eigen::VectorXd model;     ///< as the fit has it
-  Eigen::MatrixXd jacobian;  ///< of the model by the fit's own parameters; a row for each pixel. Empty where not needed
+  Eigen::VectorXd light;     ///< as observed
+  Eigen::VectorXd model;     ///< as fitted
+  Eigen::MatrixXd jacobian;  ///< of the model by the fit's own parameters, one row a pixel; empty if not needed
   double contrast = 0.0;     ///< C
-  /// E as the mosaic leaves it, where the model has the known response in it (and its blur is that of I); else empty.
+  /// E after the mosaic, if the model includes the known response (and its blur is that of I); otherwise empty.
   std::vector<double> bright;
-  /// The model at a pixel of the image, the square of its edges' blur being smaller by this (px²).
+  /// The model at a pixel of the image, with the squared blur of its edges reduced by this (px²).
   std::function<ModelPixel(cv::Point pixel, double narrower_px2)> at;
 };
 
-/// What the response adds to the fit's model, pixel by pixel: to be taken off the light before the next fit.
+/// What the response adds to the fit's model, pixel by pixel: to be subtracted from the light before the next fit.
 Eigen::VectorXd added_by(const EdgeResponse& response, const FittedWindow& window);
 
-/// Fits a window, of those numbered from 0 on, to the light by a tone: as it is (null), or without what a known
-/// response adds. Nothing where it cannot be fitted.
+/// Fits a window (numbered from 0) to the light by a tone: as it is (null), or minus what a known response adds. Empty
+/// if it cannot be fitted.
 using FitWindow = std::function<std::optional<FittedWindow>(std::size_t window, ToneCurve tone, const EdgeResponse*)>;
 
-/// The response that the windows show, in three rounds, each with the windows fitted without what the last one adds.
-/// The light by the sRGB curve counts where it leaves far less, or far less curvature, than the codes do. Nothing where
-/// too few pixels are fitted, or the response explains less than 7 % of the residuals' squares.
+/// The response that the windows show, in three rounds, each with the windows fitted without what the last response
+/// adds. The light by the sRGB curve is used if it leaves far smaller residuals, or far less curvature, than the codes
+/// do. Empty if too few pixels are fitted, or the response explains less than 7 % of the residuals' squares.
 std::optional<EdgeResponse> edge_response_of(std::size_t windows, bool may_be_curved, const FitWindow& fit);
 
 /// The light of a part of an image's codes (8 or 16 bits), as 16 bits; linear: the codes themselves.

@@ -38,7 +38,7 @@ void add_differences(const float* row, int count, std::vector<float>& difference
   for (int u = 1; u + 1 < count; ++u) differences.push_back(std::abs(row[u - 1] - 2.0F * row[u] + row[u + 1]));
 }
 
-/// Standard deviation of the noise; the median is not moved by edges.
+/// Standard deviation of the noise; edges do not affect the median.
 double noise_by(std::vector<float>& differences) {
   if (differences.empty()) return 0.0;
   const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);

@@ -50,8 +50,8 @@ struct EdgePrimitive {
   double second;  // H
 };
 
-/// phi(z) = phi(z0) e^q with q = -z0 d - d^2/2, and Phi(z) by Taylor's series, from the nearest node z0 = z - d: |d| is
-/// at most 1/128 and |q| 0.047, so that what is left out is below 2e-11 of phi, and 1e-15 of 1 in Phi.
+/// phi(z) = phi(z0) e^q with q = -z0 d - d^2/2, and Phi(z) by its Taylor series, from the nearest node z0 = z - d: |d|
+/// is at most 1/128 and |q| 0.047, so that the truncation error is below 2e-11 of phi, and 1e-15 of 1 in Phi.
 [[gnu::always_inline]] inline EdgePrimitive edge_primitive(const NormalNodes& nodes, double t, double blur,
                                                            double per_blur) {
   const double at = t * per_blur, not_below = at > -kFarFromEdge ? at : -kFarFromEdge;  // nor a NaN

@@ -10,11 +10,11 @@
 
 namespace glidelab::core {
 
-/// Of one pixel.
+/// The changes of one pixel.
 struct PixelChange {
   double level_code = 0.0;
   double squares = 0.0;  ///< sum of its changes' squares
-  double changes = 0.0;  ///< how many
+  double changes = 0.0;  ///< their number
 };
 using PixelChanges = std::vector<PixelChange>;
 

@@ -9,7 +9,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kPixelStep = 4;              // rows, and columns, from one pixel that counts to the next
+constexpr int kPixelStep = 4;              // rows, and columns, from one counted pixel to the next
 constexpr std::size_t kExposureStep = 5;   // frames, from one whose exposure counts to the next
 constexpr double kBrightQuantile = 0.999;  // of the pixels, the level that is called bright
 constexpr std::size_t kMostPairs = 24;
@@ -42,7 +42,7 @@ void add_differences(const cv::Mat& now, const cv::Mat& before, const MarkerSigh
   }
 }
 
-/// The frames of another source, each shown to a watch as it is asked for.
+/// The frames of another source, each shown to a watch as it is read.
 class WatchedFrames final : public FrameSource {
  public:
   WatchedFrames(std::unique_ptr<FrameSource> source, std::shared_ptr<ClipWatch> watch)

@@ -47,7 +47,7 @@ struct ClipLook {
   /// known by its hue, and a level for a bright one only.
   std::optional<double> contrast;
   std::optional<double> marker_level;
-  double pixel_noise = 0.0;  ///< of pixels away from the marker, from one frame to the next; 0 where none is seen
+  double pixel_noise = 0.0;  ///< of pixels away from the marker, from one frame to the next; 0 if none is seen
 };
 
 /// Takes the frames of one clip and then reports. It keeps every fourth pixel, either way, of at most 24 pairs of
@@ -73,7 +73,7 @@ class ClipWatch {
   FileFacts facts_;
   cv::Size size_;
   std::size_t every_ = 1;  ///< frames from one pair to the next
-  cv::Mat before_;         ///< of the last frame, where it is the first of a pair
+  cv::Mat before_;         ///< the last frame, if it is the first of a pair
   std::vector<Pair> pairs_;
 };
 
@@ -83,7 +83,7 @@ class ClipWatches {
   explicit ClipWatches(FrameOpener open) : open_(std::move(open)) {}
   /// Opens clips for the reader; valid as long as this is.
   FrameOpener opener();
-  /// What was seen of a clip that was opened and read to its end; the last time where that was done more than once.
+  /// What was seen of a clip that was opened and read to its end; the last time, if that was done more than once.
   const ClipWatch& of(const std::filesystem::path& file) const { return *watches_.at(file); }
 
  private:

@@ -20,7 +20,7 @@ cv::Rect margined(const cv::Rect& place) {
   return {place.x - kMargin, place.y - kMargin, place.width + 2 * kMargin, place.height + 2 * kMargin};
 }
 
-/// Blurred by a normal distribution of 1 px, so that a derivative means something.
+/// Blurred by a Gaussian of 1 px, so that derivatives are meaningful.
 std::vector<float> soft_pixels_of(const cv::Mat& grey, const cv::Rect& place) {
   cv::Mat_<float> part, soft;
   grey({place.x - 2, place.y - 2, kPatchSide + 4, kPatchSide + 4}).convertTo(part, CV_32F);
@@ -35,14 +35,14 @@ struct Candidate {
 };
 
 constexpr double kMostRelativeResidual = 3.0;  // residuals over the usual ones
-constexpr double kMostShiftSd = 0.5;           // px; a shift known less well is no measurement
+constexpr double kMostShiftSd = 0.5;           // px; a shift with a larger uncertainty is not a measurement
 constexpr double kMostShiftSdToCompare =
     0.2;                                     // px; a patch that is to agree with the others must know its shift so well
 constexpr double kMostShiftOff = 5.0;        // of its standard deviations
 constexpr double kInterpolationError = 0.1;  // px: residual over gradient of structure near the pixels' own size
 constexpr double kLossyNoise = 1.0;          // codes, of a pixel
-constexpr double kPixelsPerBlock = 64.0;     // pixels that a codec errs in together
-constexpr double kLeastShiftSd = 0.01;       // px: of a patch against the others
+constexpr double kPixelsPerBlock = 64.0;     // pixels that share a codec's error
+constexpr double kLeastShiftSd = 0.01;       // px; of a patch relative to the others
 constexpr double kMedianOfSquare = 0.455;    // of a standard normal deviate
 constexpr int kFramesOfChange = 3;           // in a row that give changes over one frame and over two
 
@@ -102,7 +102,7 @@ SceneWatch::Pixels SceneWatch::cut(const cv::Mat& grey) const {
   return pixels;
 }
 
-/// Puts a patch's reference where the scene now stands in the image.
+/// Moves a patch's reference to the present position of the scene in the image.
 void SceneWatch::shift_reference(Patch& patch, cv::Point2d shift) {
   cv::Mat_<float> whole = patch.around.clone();
   if (cv::norm(shift) > 0.0) {
@@ -174,7 +174,7 @@ void SceneWatch::look(const cv::Mat& grey, double t_s) {
   look.t_s = t_s;
   looks_.push_back(look);
   const cv::Point2d now(look.u_px, look.v_px);
-  // References are put where the scene stands once it has moved so far that a step to first order is not enough.
+  // References are moved to the scene's position once it has shifted so far that a first-order step is not enough.
   if (cv::norm(now - shift_) < kLeastRestep || cv::norm(now) > kMargin - 2) return;
   shift_ = now;
   for (Patch& patch : patches_) shift_reference(patch, shift_);
@@ -220,7 +220,7 @@ void SceneWatch::finish(PictureRecord& record) {
 }
 
 // What follows compares a frame with the references.
-/// Gain and shift of a patch that nothing passes through; what is left over stays in the patch.
+/// Gain and shift of a patch that nothing passes through; the residuals stay in the patch.
 std::optional<SceneWatch::Moved> SceneWatch::fit_patch(Patch& patch, const std::vector<float>& pixels) const {
   const std::size_t n = patch.reference.size();
   std::swap(patch.before_that, patch.before);
@@ -239,7 +239,7 @@ std::optional<SceneWatch::Moved> SceneWatch::fit_patch(Patch& patch, const std::
     patch.residual[i] = static_cast<float>(pixels[i] - patch.reference[i] - model);
     rest += patch.residual[i] * patch.residual[i];
   }
-  // Fine structure that has moved by part of a pixel is never quite what interpolation makes of it.
+  // Interpolation never quite reproduces fine structure that has moved by part of a pixel.
   const double moved = std::min(1.0, std::hypot(shift_.x + by[1], shift_.y + by[2]));
   const double steep = std::sqrt((patch.structure(0, 0) + patch.structure(1, 1)) / static_cast<double>(n));
   const double usual = std::hypot(std::max(patch.usual_rms, kPatchNoise), kInterpolationError * steep * moved);
@@ -248,7 +248,7 @@ std::optional<SceneWatch::Moved> SceneWatch::fit_patch(Patch& patch, const std::
   return Moved{&patch, by, mean};
 }
 
-/// What moves otherwise than half of the patches that can tell is not the scene.
+/// A patch that moves differently from half of the informative patches does not belong to the scene.
 void SceneWatch::drop_odd(std::vector<Moved>& found, double variance) {
   for (const int axis : {1, 2}) {
     std::vector<double> shifts;
@@ -268,7 +268,7 @@ void SceneWatch::drop_odd(std::vector<Moved>& found, double variance) {
   }
 }
 
-/// Of the bands of rows that have a patch.
+/// For the bands of rows that have a patch.
 void SceneWatch::tell_gains(const std::vector<Moved>& found, double variance, SceneLook& look) const {
   std::array<double, kRowBands> gain{}, weight{};
   for (const Moved& one : found) {
@@ -295,7 +295,8 @@ void SceneWatch::tell_shift(const std::vector<Moved>& found, double variance, Sc
   }
   const cv::Matx22d inverse = information.inv();
   const cv::Vec2d shift = inverse * sum;
-  // What patches differ by beyond their pixels' noise errs in all pixels of a patch together, as a codec's blocks do.
+  // Differences between patches beyond their pixels' noise are errors common to all pixels of a patch, as in a codec's
+  // blocks.
   const auto variance_with_excess = [&](int axis) {
     std::vector<double> squares;
     for (const Moved& one : found) {
@@ -351,7 +352,8 @@ SceneLook SceneWatch::compare(const Pixels& pixels) {
   return look;
 }
 
-/// Errors as of a file that says that it is compressed with loss; what is known too little then is no measurement.
+/// Errors as for a file that says that it is lossily compressed; a shift that is then too uncertain is not a
+/// measurement.
 void SceneWatch::allow_for_codec(std::vector<SceneLook>& looks) const {
   for (std::size_t k = 0; k < looks.size(); ++k) {
     SceneLook& look = looks[k];

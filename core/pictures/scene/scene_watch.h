@@ -6,11 +6,11 @@
 ///
 ///     I = (1 + a) R - d . grad R,
 ///
-/// by least squares, R being shifted (cubic interpolation) by what the last frame's shift was. Patches through which
-/// something passes (residuals three times the usual ones, or a shift that differs from the others') are not counted in
-/// that frame. The shift is that of all patches together, weighted by their gradients; gains are told apart by bands of
-/// rows, which a rolling shutter exposes at different times. Images of the first six frames are held until then, and
-/// of later ones only their patches.
+/// by least squares, with R shifted (cubic interpolation) by the last frame's shift. Patches through which something
+/// passes (residuals three times the usual ones, or a shift that differs from the others') are not counted in that
+/// frame. The shift is that of all patches together, weighted by their gradients. Gains are determined separately for
+/// bands of rows, which a rolling shutter exposes at different times. Images of the first six frames are held until
+/// then, and of later ones only their patches.
 #pragma once
 
 #include <opencv2/core.hpp>
