@@ -24,6 +24,8 @@ constexpr double kHeld_px = 0.05;                        // per frame; a slower 
 constexpr std::array<double, 3> kHandedOn{0.3, 0.5, 0.7};
 constexpr std::size_t kLeastHanded = 0, kUsualHanded = 1, kMostHanded = 2;
 constexpr double kLeastWay_px = 2.0;  // least distance of a marker that moves
+constexpr double kPeriod_px =
+    2.0;  // per frame, of h: below it nothing of h recurs, and it looks like any law of motion
 constexpr double kFewestPoints = 60.0;
 constexpr std::size_t kNeighbours = 3;  // frames to each side that determine a displacement
 constexpr int kPasses = 200;            // of expectation maximisation
@@ -267,9 +269,13 @@ std::optional<CodecDrag> find_codec_drag(const std::vector<DragTrack>& tracks, b
   EachHanded<std::vector<TrackSums>> sums;
   double points = 0.0, square = 0.0, count = 0.0;
   std::vector<double> px_per_m(tracks.size(), 0.0);
+  double fastest_px = 0.0;  // per frame
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const std::optional<ImagePath> path = path_of(*tracks[i].track);
     if (!path) continue;
+    for (std::size_t k = 0; k < path->along_px.size(); ++k) {
+      fastest_px = std::max(fastest_px, std::abs(displacement(*tracks[i].track, *path, k)));
+    }
     px_per_m[i] = 1.0 / path->m_per_px[path->m_per_px.size() / 2];
     for (std::size_t r = 0; r < kHandedOn.size(); ++r) terms[i][r] = terms_of(*tracks[i].track, *path, kHandedOn[r]);
     EachHanded<TrackSums> of_track = sums_of(*tracks[i].setup, *tracks[i].track, terms[i]);
@@ -277,7 +283,7 @@ std::optional<CodecDrag> find_codec_drag(const std::vector<DragTrack>& tracks, b
     points += of_track[0].freedom;
     for (std::size_t r = 0; r < kHandedOn.size(); ++r) sums[r].push_back(std::move(of_track[r]));
   }
-  if (points < kFewestPoints) return {};
+  if (points < kFewestPoints || (!predicts && fastest_px < kPeriod_px)) return {};
   EachHanded<Sizes> found;
   for (std::size_t r = 0; r < kHandedOn.size(); ++r) found[r] = likeliest(std::move(sums[r]), predicts);
   const Sizes& usual = found[kUsualHanded];

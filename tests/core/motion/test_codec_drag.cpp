@@ -27,11 +27,12 @@ struct Made {
 
 /// A marker that moves along (cosine, sine) in the image. The codec's place is that of the frame before moved by
 /// quarters of a pixel along the path, and off by `dead_px` at most; noise of 0.01 px.
-Made made(double dead_px, double cosine = 1.0, double sine = 0.0) {
+Made made(double dead_px, double cosine = 1.0, double sine = 0.0,
+          const std::vector<double>& speeds = {6.0, 3.7, 2.2, 0.2}) {
   Made all;
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0.0, 0.01);
-  for (const double v : {6.0, 3.7, 2.2, 0.2}) {
+  for (const double v : speeds) {
     core::ClipSetup setup;
     setup.mass_kg = 0.3;
     core::TrackData track;
@@ -100,6 +101,15 @@ TEST_CASE("positions without a codec's error give no evidence of one, and as goo
   REQUIRE(drag);
   CHECK(drag->log_evidence < 3.0);
   CHECK(drag->rms_px < 0.002);  // a fifth of the noise
+}
+
+TEST_CASE("a drag that never recurs is taken off only behind a codec that is known to make one") {
+  const Made slow = made(0.025, 1.0, 0.0, {1.8, 1.5, 0.5, 0.2});
+  const auto known = drag_of(slow, true);
+  REQUIRE(known);
+  CHECK(known->log_evidence > 10.0);
+  CHECK(!drag_of(slow, false));
+  CHECK(drag_of(made(0.025), false));  // up to six pixels per frame
 }
 
 TEST_CASE("a codec's drag is not looked for in a marker that rests or in too few positions") {
