@@ -110,6 +110,23 @@ double MarkerTemplate::weight_at(double x, double y) const {
                             static_cast<int>(std::lround(x * nodes_per_radius_ + middle)));
 }
 
+double MarkerTemplate::share_at_outline() const {
+  constexpr double kInner = 0.8, kOuter = 1.2;
+  const int steps = static_cast<int>(std::floor(kReach * nodes_per_radius_)) - 1;
+  double all = 0.0, at_outline = 0.0;
+  for (int j = -steps; j <= steps; ++j) {
+    for (int i = -steps; i <= steps; ++i) {
+      const double x = i * step(), y = j * step(), r = std::hypot(x, y);
+      if (r > kReach - 2.0 * step()) continue;
+      const Value look = at(x, y);
+      const double square = weight_at(x, y) * (look.x * look.x + look.y * look.y);
+      all += square;
+      if (r > kInner && r < kOuter) at_outline += square;
+    }
+  }
+  return all > 0.0 ? at_outline / all : 0.0;
+}
+
 std::optional<MarkerTemplate> MarkerTemplate::of(const std::vector<TemplateWindow>& windows,
                                                  const std::vector<std::optional<TemplateFit>>& fits) {
   std::vector<double> radii;

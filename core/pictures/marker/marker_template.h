@@ -52,6 +52,10 @@ class MarkerTemplate {
   /// Root mean square of the look about its mean, in codes.
   double contrast() const { return contrast_; }
 
+  /// Of what changes over the look (the square of its gradient), how much lies between 0.8 and 1.2 radii: a marker of
+  /// the stated size has an edge there, whatever is within.
+  double share_at_outline() const;
+
  private:
   struct Value {
     double value, x, y;  ///< T and its derivatives by q

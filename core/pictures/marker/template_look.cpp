@@ -19,6 +19,7 @@ constexpr double kLeastOff_px = 0.3;      // off the neighbours' course, and
 constexpr double kTimesOff = 8.0;         // times the usual distance: something else
 constexpr double kRoughestPath_px = 0.3;  // from frame to frame
 constexpr double kMostResidual = 0.35;    // of the look's contrast
+constexpr double kLeastAtOutline = 0.2;   // of the look's edges: less is something of another size
 constexpr double kSlackRadii = 1.0, kLostSlackRadii = 3.0;  // that a window is larger, where it was seen and where not
 constexpr double kSlack_px = 6.0;
 
@@ -166,6 +167,7 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
   const auto roughness = roughness_of(by_frame);
   if (!roughness || *roughness > kRoughestPath_px || usual_rms_ > kMostResidual * look_->contrast())
     return std::nullopt;
+  if (look_->share_at_outline() < kLeastAtOutline) return std::nullopt;
   TrackedMarker tracked;
   tracked.method = MarkerMethod::centroid;
   for (std::size_t k = 0; k < fits_.size(); ++k) {

@@ -12,7 +12,7 @@ using namespace glidelab;
 
 namespace {
 
-const cv::Size kSize(220, 90);
+const cv::Size kSize(220, 72);
 constexpr std::size_t kFrames = 40;
 constexpr double kRadius = 7.3;
 constexpr double kNoise = 1.5;  // codes
@@ -147,6 +147,11 @@ TEST_CASE("A post before the marker moves its place by the look little, or hides
 TEST_CASE("No look is found where nothing moves along the path") {
   const auto nothing = [](double, double) { return -1.0; };
   CHECK_FALSE(by_template(film_look(nothing, false), rough_path(0.5)));
+}
+
+TEST_CASE("A disc of half the stated size is not followed by its own look") {
+  const auto small = [](double x, double y) { return std::hypot(x, y) < 0.5 ? 0.8 : on_plate(x, y) ? 0.05 : -1.0; };
+  CHECK_FALSE(by_template(film_look(small, false), rough_path(0.5)));
 }
 
 TEST_CASE("Sightings that jump about are no path, those of a glider that slows down are one") {
