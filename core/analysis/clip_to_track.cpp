@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "base/errors.h"
@@ -17,6 +18,7 @@
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/second_look.h"
 #include "core/pictures/marker/still_background.h"
+#include "core/pictures/marker/template_look.h"
 #include "core/pictures/scene/scene_watch.h"
 #include "core/track/even_times.h"
 #include "core/track/read_track.h"
@@ -27,6 +29,7 @@ namespace {
 // For a marker of unstated brightness: the fraction of frames, from its first to its last, in which a good marker is
 // seen; and the factor by which a dark one must be seen more often than a bright one.
 constexpr double kWellSeen = 0.9, kFarBetter = 1.2;
+constexpr double kBlurRadii = 0.5;     // standard deviation of a blur that fills the hole of a ring
 constexpr double kLeastTravel = 1.5;   // radii from its first position
 constexpr double kSomeRadiusPx = 5.0;  // if the camera has no ray for any requested pixel: small, but visible
 
@@ -84,8 +87,9 @@ void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
 
 /// What to look for if a disc is not found well: any object of the marker's size, whatever the shape of its lit part.
 struct AnyShape {
-  cv::Mat still;      ///< in the difference from this background, if it is not empty; otherwise in the grey value,
-  bool dark = false;  ///< or in its inverse
+  cv::Mat still;         ///< in the difference from this background, if it is not empty; otherwise in the grey value,
+  bool dark = false;     ///< or in its inverse
+  double blur_px = 0.0;  ///< standard deviation of a blur that makes one spot of a ring, or of quadrants
 
   Frame seen_in(const Frame& frame) const {
     Frame changed;
@@ -98,6 +102,7 @@ struct AnyShape {
     } else {
       changed.grey = frame.grey;
     }
+    if (blur_px > 0.0) cv::GaussianBlur(changed.grey, changed.grey, {}, blur_px);
     return changed;
   }
 };
@@ -185,6 +190,10 @@ SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const Cam
   return *std::move(bright);
 }
 
+double usual_radius_px(const Restitution& restitution, cv::Size image) {
+  return restitution.marker_radius_px({0.5 * image.width, 0.5 * image.height}).value_or(kSomeRadiusPx);
+}
+
 /// Empty if no such object is found either.
 std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSetup& clip,
                                       const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene,
@@ -230,16 +239,39 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   };
   if (seen && better(*seen)) return *std::move(seen);
   if (seen && well_seen(seen->marker)) return *std::move(seen);
+  const double seen_before = seen ? static_cast<double>(seen->marker.sightings.size()) : 0.0;
+  const auto in_more_frames = [&](const SeenClip& found) {
+    return static_cast<double>(found.marker.sightings.size()) > kFarBetter * seen_before;
+  };
   const std::array<AnyShape, 3> shapes{AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}};
+  std::vector<SeenClip> rough;
   for (const AnyShape& any : shapes) {
     auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, any);
-    if (!found || !better(*found)) continue;
-    if (!seen || static_cast<double>(found->marker.sightings.size()) >
-                     kFarBetter * static_cast<double>(seen->marker.sightings.size())) {
-      return *std::move(found);
-    }
+    if (!found) continue;
+    rough.push_back(*found);
+    if (better(*found) && in_more_frames(*found)) return *std::move(found);
+  }
+  // Neither a disc nor a sphere: by its own look.
+  const double blur_px = kBlurRadii * usual_radius_px(restitution, background.median().size());
+  for (const bool dark : {false, true}) {
+    auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, {{}, dark, blur_px});
+    if (found) rough.push_back(*std::move(found));
+  }
+  for (SeenClip& found : rough) {
+    auto marker = look_by_template(found.marker, again, shape_at);
+    if (!marker || !well_seen(*marker)) continue;
+    found.marker = *std::move(marker);
+    if (found.pictures) found.pictures->marker = looks_of(found.marker, found.frame_t_s);
+    if (in_more_frames(found)) return std::move(found);
   }
   if (none) throw NoMarker(*none);
+  if (!is_steady(seen->marker)) {
+    throw NoMarker(
+        base::Issue{clip.file.string(), 0, "marker",
+                    fmt::format("no marker that can be followed: what is found in {} of {} frames jumps about",
+                                seen->marker.sightings.size(), again.frames),
+                    "one thing of the stated diameter that stands out from its surroundings in every frame"});
+  }
   return *std::move(seen);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "base/math/dense.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
@@ -96,6 +98,45 @@ std::vector<MarkerPath> joined_pieces(std::vector<MarkerPath> paths) {
     for (const MarkerSeen& sighting : paths[best_late].seen) paths[best_early].push(sighting);
     paths.erase(paths.begin() + static_cast<std::ptrdiff_t>(best_late));
   }
+}
+
+std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& places, std::size_t frame,
+                                               bool without_itself) {
+  constexpr std::size_t kNeighbours = 5;   // on either side
+  constexpr double kFarthestAhead = 30.0;  // frames
+  const auto after =
+      std::lower_bound(places.begin(), places.end(), frame,
+                       [](const PlaceInFrame& place, std::size_t wanted) { return place.frame < wanted; });
+  std::vector<PlaceInFrame> near;
+  const auto before_count = static_cast<std::size_t>(after - places.begin());
+  auto next = after;
+  if (next != places.end() && next->frame == frame) {
+    if (!without_itself) return next->at;
+    ++next;
+  }
+  const auto after_count = static_cast<std::size_t>(places.end() - next);
+  const std::size_t want = 2 * kNeighbours;
+  std::size_t take_before = std::min(before_count, kNeighbours), take_after = std::min(after_count, kNeighbours);
+  take_before = std::min(before_count, want - take_after);
+  take_after = std::min(after_count, want - take_before);
+  near.insert(near.end(), after - static_cast<std::ptrdiff_t>(take_before), after);
+  near.insert(near.end(), next, next + static_cast<std::ptrdiff_t>(take_after));
+  if (near.size() < 3) return std::nullopt;
+  const double first_off = frames_between(frame, near.front().frame),
+               last_off = frames_between(frame, near.back().frame);
+  if (first_off > kFarthestAhead || -last_off > kFarthestAhead) return std::nullopt;
+  const double scale = std::max({1.0, std::abs(first_off), std::abs(last_off)});
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, 2> b = Eigen::Matrix<double, 3, 2>::Zero();
+  for (const PlaceInFrame& place : near) {
+    const double t = frames_between(frame, place.frame) / scale;
+    const Eigen::Vector3d powers(1.0, t, t * t);
+    a += powers * powers.transpose();
+    b += powers * Eigen::RowVector2d(place.at.x, place.at.y);
+  }
+  const Eigen::Matrix<double, 3, 2> found = base::solve_positive(a, b);
+  if (!found.allFinite()) return std::nullopt;
+  return cv::Point2d(found(0, 0), found(0, 1));
 }
 
 namespace {

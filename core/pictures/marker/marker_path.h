@@ -75,6 +75,17 @@ std::vector<MarkerPath> joined_pieces(std::vector<MarkerPath> paths);
 /// Positions of an object, by frame.
 using Places = std::map<std::size_t, cv::Point2d>;
 
+struct PlaceInFrame {
+  std::size_t frame = 0;
+  cv::Point2d at;
+};
+
+/// Where an object is in a frame by the frames next to it: on a quadratic through up to ten of its places there, five
+/// on either side. The frames rise. Where it has a place in that frame, this one, unless it is to be `without_itself`.
+/// Nothing more than thirty frames beyond the first or the last, and by fewer than three.
+std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& places, std::size_t frame,
+                                               bool without_itself);
+
 /// Standard deviation of a coordinate of the second differences of consecutive frames' places, in pixels; nothing with
 /// fewer than four of them.
 std::optional<double> jitter_of(const Places& places);

@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "core/pictures/marker/lit_sphere.h"
 #include "core/pictures/marker/sphere_window.h"
@@ -19,8 +17,6 @@ namespace {
 
 constexpr double kDiscResidual = 0.04;           // of the amplitude: above what noise leaves of a disc in usual light
 constexpr std::size_t kFewLost = 3;              // frames at either end, or in all between
-constexpr std::size_t kNeighbours = 5;           // on either side, which say where the marker should be
-constexpr double kFarthestAhead = 30.0;          // frames beyond the first and the last sighting
 constexpr std::size_t kSampled = 24;             // frames that say what all share
 constexpr double kFewestDirections = 1.0 / 3.0;  // that look as they should
 constexpr double kFarOff = 3.0;                  // times the usual residuals: no sphere
@@ -35,47 +31,6 @@ constexpr double kExplained = 1.5;                            // times the noise
 constexpr double kOddStray_px = 0.05, kOddStrays = 4.0;       // off the neighbours' course, times the usual distance
 constexpr double kStray_px = 0.3, kStrays = 8.0;
 constexpr double kLeastGain = 0.8;  // of the residuals
-
-struct Place {
-  std::size_t frame = 0;
-  cv::Point2d at;
-};
-
-/// Where a quadratic through the sightings next to a frame is in it; nothing far from all.
-std::optional<cv::Point2d> course(const std::vector<Place>& places, std::size_t frame, bool without_itself) {
-  const auto after = std::lower_bound(places.begin(), places.end(), frame,
-                                      [](const Place& place, std::size_t wanted) { return place.frame < wanted; });
-  std::vector<Place> near;
-  const auto before_count = static_cast<std::size_t>(after - places.begin());
-  auto next = after;
-  if (next != places.end() && next->frame == frame) {
-    if (!without_itself) return next->at;
-    ++next;
-  }
-  const std::size_t after_count = static_cast<std::size_t>(places.end() - next);
-  const std::size_t want = 2 * kNeighbours;
-  std::size_t take_before = std::min(before_count, kNeighbours), take_after = std::min(after_count, kNeighbours);
-  take_before = std::min(before_count, want - take_after);
-  take_after = std::min(after_count, want - take_before);
-  near.insert(near.end(), after - static_cast<std::ptrdiff_t>(take_before), after);
-  near.insert(near.end(), next, next + static_cast<std::ptrdiff_t>(take_after));
-  if (near.size() < 3) return std::nullopt;
-  const double first_off = frames_between(frame, near.front().frame),
-               last_off = frames_between(frame, near.back().frame);
-  if (first_off > kFarthestAhead || -last_off > kFarthestAhead) return std::nullopt;
-  const double scale = std::max({1.0, std::abs(first_off), std::abs(last_off)});
-  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 2> b = Eigen::Matrix<double, 3, 2>::Zero();
-  for (const Place& place : near) {
-    const double t = frames_between(frame, place.frame) / scale;
-    const Eigen::Vector3d powers(1.0, t, t * t);
-    a += powers * powers.transpose();
-    b += powers * Eigen::RowVector2d(place.at.x, place.at.y);
-  }
-  const Eigen::Matrix<double, 3, 2> found = base::solve_positive(a, b);
-  if (!found.allFinite()) return std::nullopt;
-  return cv::Point2d(found(0, 0), found(0, 1));
-}
 
 /// A frame's window, and what came out of it.
 struct Look {
@@ -118,8 +73,8 @@ class SecondLook {
  private:
   /// In the first look.
   bool seen_first(std::size_t frame) const {
-    return std::binary_search(places_.begin(), places_.end(), Place{frame, {}},
-                              [](const Place& a, const Place& b) { return a.frame < b.frame; });
+    return std::binary_search(places_.begin(), places_.end(), PlaceInFrame{frame, {}},
+                              [](const PlaceInFrame& a, const PlaceInFrame& b) { return a.frame < b.frame; });
   }
   void read_windows();
   std::optional<SphereFit> fit(const Look& look, cv::Point2d start, const Shared& shared,
@@ -129,7 +84,7 @@ class SecondLook {
   bool is_good(const SphereFit& fit) const { return fit.rms < kFarOff * shared_.usual_rms; }
   void fit_lost();
   void drop_strays(double least_px, double times);
-  std::vector<Place> fitted_places() const;
+  std::vector<PlaceInFrame> fitted_places() const;
   bool is_better() const;
   bool is_distinct() const;
   cv::Point2d light_of(const Look& look) const;
@@ -139,8 +94,8 @@ class SecondLook {
   const ClipAgain& clip_;
   const StillBackground& still_;
   const ShapeAt& shape_at_;
-  std::vector<Place> places_;  ///< of the first look
-  std::vector<Look> looks_;    ///< frames rise
+  std::vector<PlaceInFrame> places_;  ///< of the first look
+  std::vector<Look> looks_;           ///< frames rise
   KnownBackground background_;
   Shared shared_;
 };
@@ -148,7 +103,7 @@ class SecondLook {
 void SecondLook::read_windows() {
   const auto source = clip_.open();
   while (const auto frame = source->next()) {
-    const auto expected = course(places_, frame->index, false);
+    const auto expected = place_by_neighbours(places_, frame->index, false);
     if (!expected) continue;
     const auto shape = shape_at_(*expected, MarkerBody::sphere);
     if (!shape) continue;
@@ -267,8 +222,8 @@ bool SecondLook::find_shared() {
   return true;
 }
 
-std::vector<Place> SecondLook::fitted_places() const {
-  std::vector<Place> places;
+std::vector<PlaceInFrame> SecondLook::fitted_places() const {
+  std::vector<PlaceInFrame> places;
   for (const Look& look : looks_) {
     if (look.fit) places.push_back({look.frame, look.fit->centre});
   }
@@ -289,7 +244,7 @@ void SecondLook::fit_all() {
 void SecondLook::fit_lost() {
   for (bool any = true; any;) {
     any = false;
-    std::vector<Place> places = fitted_places();
+    std::vector<PlaceInFrame> places = fitted_places();
     if (places.size() < kFewestFits) return;
     for (int direction = 0; direction < 2; ++direction) {
       for (std::size_t k = 0; k < looks_.size(); ++k) {
@@ -298,15 +253,16 @@ void SecondLook::fit_lost() {
         if (look.fit) continue;
         const bool before = i > 0 && looks_[i - 1].fit, after = i + 1 < looks_.size() && looks_[i + 1].fit;
         if (!before && !after) continue;
-        const auto expected = course(places, look.frame, true);
+        const auto expected = place_by_neighbours(places, look.frame, true);
         if (!expected) continue;
         const SphereLight light = before ? looks_[i - 1].fit->light : looks_[i + 1].fit->light;
         const auto found = fit(look, *expected, shared_, light);
         if (!found || !is_good(*found)) continue;
         look.fit = found;
-        places.insert(std::lower_bound(places.begin(), places.end(), look.frame,
-                                       [](const Place& place, std::size_t frame) { return place.frame < frame; }),
-                      {look.frame, found->centre});
+        places.insert(
+            std::lower_bound(places.begin(), places.end(), look.frame,
+                             [](const PlaceInFrame& place, std::size_t frame) { return place.frame < frame; }),
+            {look.frame, found->centre});
         any = true;
       }
     }
@@ -315,12 +271,12 @@ void SecondLook::fit_lost() {
 
 /// Without fits that lie far off the course of their neighbours.
 void SecondLook::drop_strays(double least_px, double times) {
-  const std::vector<Place> places = fitted_places();
+  const std::vector<PlaceInFrame> places = fitted_places();
   std::vector<std::pair<Look*, double>> off;
   std::vector<double> distances;
   for (Look& look : looks_) {
     if (!look.fit) continue;
-    const auto expected = course(places, look.frame, true);
+    const auto expected = place_by_neighbours(places, look.frame, true);
     if (!expected) continue;
     off.emplace_back(&look, cv::norm(*expected - look.fit->centre));
     distances.push_back(off.back().second);
@@ -440,6 +396,20 @@ bool is_worth_a_second_look(const TrackedMarker& first, std::size_t frames) {
   std::vector<double> residuals;
   for (const MarkerFit& fit : first.fits) residuals.push_back(fit.rms / fit.amplitude);
   return median_of(residuals) > kDiscResidual;
+}
+
+bool is_steady(const TrackedMarker& marker) {
+  constexpr double kRadii = 0.5;
+  std::vector<PlaceInFrame> places;
+  for (const MarkerSighting& sighting : marker.sightings)
+    places.push_back({sighting.frame, {sighting.u_px, sighting.v_px}});
+  if (places.size() < kFewestFits) return true;
+  std::vector<double> off;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto expected = place_by_neighbours(places, places[i].frame, true);
+    if (expected) off.push_back(cv::norm(*expected - places[i].at) / std::max(marker.sightings[i].radius_px, 1.0));
+  }
+  return off.empty() || median_of(std::move(off)) < kRadii;
 }
 
 StillBackground background_of(const ClipAgain& clip) {

@@ -37,6 +37,10 @@ struct ClipAgain {
 /// at the clip's ends, or residuals far above what a disc leaves.
 bool is_worth_a_second_look(const TrackedMarker& first, std::size_t frames);
 
+/// Whether the sightings are those of one thing that moves: in at least half of the frames a place lies within half a
+/// radius of what the frames around it say. Fewer than eight sightings say nothing against it.
+bool is_steady(const TrackedMarker& marker);
+
 /// The background of the clip.
 StillBackground background_of(const ClipAgain& clip);
 

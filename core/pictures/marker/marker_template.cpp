@@ -1,0 +1,237 @@
+#include "core/pictures/marker/marker_template.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "base/math/dense.h"
+#include "core/math/quantile.h"
+#include "core/pictures/marker/sphere_window.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kFewestWindows = 8;
+constexpr int kSharpenings = 4;           // what is left after them is a hundredth of the look
+constexpr int kFewestNodesPerRadius = 3;  // of the grid
+constexpr int kMostNodesPerRadius = 24;   // a larger image is shown in steps of a few pixels
+constexpr int kNodesBeyond = 3;           // that the interpolation needs around
+constexpr double kLeastOfNode = 0.5;      // pixels that a node is the mean of
+constexpr double kRobustTimes = 2.5;      // the usual residual, beyond which a pixel counts less (Huber)
+constexpr double kLeastResidual = 0.29;   // codes, 1 / sqrt(12)
+constexpr double kSettled_px = 2e-4;
+constexpr int kMostSteps = 25;
+constexpr double kLeastLightGain = 0.3, kMostLightGain = 3.0;
+constexpr double kLeastPixels = 0.6;  // of those that a whole window would have
+
+/// The cubic through four values at -1, 0, 1, 2 with Catmull and Rom's slopes, and its derivative.
+struct Cubic {
+  std::array<double, 4> weight, slope;
+};
+
+Cubic cubic_at(double t) {
+  const double t2 = t * t, t3 = t2 * t;
+  return {{-0.5 * t3 + t2 - 0.5 * t, 1.5 * t3 - 2.5 * t2 + 1.0, -1.5 * t3 + 2.0 * t2 + 0.5 * t, 0.5 * t3 - 0.5 * t2},
+          {-1.5 * t2 + 2.0 * t - 0.5, 4.5 * t2 - 5.0 * t, -4.5 * t2 + 4.0 * t + 0.5, 1.5 * t2 - t}};
+}
+
+/// The pixels of a window whose q lies within the reach, with it.
+template <class Each>
+void for_pixels(const TemplateWindow& window, cv::Point2d centre, const Each& each) {
+  for (int v = 0; v < window.codes.rows; ++v) {
+    const auto* const row = window.codes.ptr<float>(v);
+    for (int u = 0; u < window.codes.cols; ++u) {
+      const double du = u + window.corner.x - centre.x, dv = v + window.corner.y - centre.y;
+      const double x = window.shape[0] * du + window.shape[1] * dv, y = window.shape[1] * du + window.shape[2] * dv;
+      if (x * x + y * y < MarkerTemplate::kReach * MarkerTemplate::kReach) each(x, y, static_cast<double>(row[u]));
+    }
+  }
+}
+
+/// Values put on the four nodes around them.
+class Splat {
+ public:
+  Splat(int side, double per_node, double origin)
+      : sums_(cv::Mat::zeros(side, side, CV_64F)),
+        weights_(cv::Mat::zeros(side, side, CV_64F)),
+        per_node_(per_node),
+        origin_(origin) {}
+  void add(double x, double y, double value, double weight) {
+    const double gx = x * per_node_ + origin_, gy = y * per_node_ + origin_;
+    const int i = static_cast<int>(std::floor(gx)), j = static_cast<int>(std::floor(gy));
+    const double fx = gx - i, fy = gy - j;
+    for (int dj = 0; dj < 2; ++dj) {
+      for (int di = 0; di < 2; ++di) {
+        const double share = weight * (di == 0 ? 1.0 - fx : fx) * (dj == 0 ? 1.0 - fy : fy);
+        sums_.at<double>(j + dj, i + di) += share * value;
+        weights_.at<double>(j + dj, i + di) += share;
+      }
+    }
+  }
+  const cv::Mat& weights() const { return weights_; }
+  /// 0 where there are none.
+  double mean(int j, int i) const {
+    const double weight = weights_.at<double>(j, i);
+    return weight > kLeastOfNode ? sums_.at<double>(j, i) / weight : 0.0;
+  }
+
+ private:
+  cv::Mat sums_, weights_;
+  double per_node_, origin_;
+};
+
+}  // namespace
+
+MarkerTemplate::Value MarkerTemplate::at(double x, double y) const {
+  const double middle = 0.5 * (look_.cols - 1);
+  const double gx = x * nodes_per_radius_ + middle, gy = y * nodes_per_radius_ + middle;
+  const int i = static_cast<int>(std::floor(gx)), j = static_cast<int>(std::floor(gy));
+  const Cubic along = cubic_at(gx - i), down = cubic_at(gy - j);
+  Value sum{0.0, 0.0, 0.0};
+  for (int dj = 0; dj < 4; ++dj) {
+    const auto* const row = look_.ptr<double>(j - 1 + dj) + (i - 1);
+    double value = 0.0, slope = 0.0;
+    for (std::size_t di = 0; di < 4; ++di) {
+      value += along.weight[di] * row[di];
+      slope += along.slope[di] * row[di];
+    }
+    const auto k = static_cast<std::size_t>(dj);
+    sum.value += down.weight[k] * value;
+    sum.x += down.weight[k] * slope * nodes_per_radius_;
+    sum.y += down.slope[k] * value * nodes_per_radius_;
+  }
+  return sum;
+}
+
+double MarkerTemplate::weight_at(double x, double y) const {
+  const double middle = 0.5 * (look_.cols - 1);
+  return weight_.at<double>(static_cast<int>(std::lround(y * nodes_per_radius_ + middle)),
+                            static_cast<int>(std::lround(x * nodes_per_radius_ + middle)));
+}
+
+double MarkerTemplate::share_at_outline() const {
+  constexpr double kInner = 0.8, kOuter = 1.2;
+  const int steps = static_cast<int>(std::floor(kReach * nodes_per_radius_)) - 1;
+  double all = 0.0, at_outline = 0.0;
+  for (int j = -steps; j <= steps; ++j) {
+    for (int i = -steps; i <= steps; ++i) {
+      const double x = i * step(), y = j * step(), r = std::hypot(x, y);
+      if (r > kReach - 2.0 * step()) continue;
+      const Value look = at(x, y);
+      const double square = weight_at(x, y) * (look.x * look.x + look.y * look.y);
+      all += square;
+      if (r > kInner && r < kOuter) at_outline += square;
+    }
+  }
+  return all > 0.0 ? at_outline / all : 0.0;
+}
+
+std::optional<MarkerTemplate> MarkerTemplate::of(const std::vector<TemplateWindow>& windows,
+                                                 const std::vector<std::optional<TemplateFit>>& fits) {
+  std::vector<double> radii;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    if (fits[k]) radii.push_back(radius_of(windows[k].shape));
+  }
+  if (radii.size() < kFewestWindows) return std::nullopt;
+  MarkerTemplate made;
+  made.nodes_per_radius_ =
+      std::clamp(static_cast<int>(std::lround(median_of(radii))), kFewestNodesPerRadius, kMostNodesPerRadius);
+  const int half = static_cast<int>(std::ceil(kReach * made.nodes_per_radius_)) + kNodesBeyond, side = 2 * half + 1;
+  made.look_ = cv::Mat::zeros(side, side, CV_64F);
+  made.weight_ = cv::Mat::zeros(side, side, CV_64F);
+  const auto of_all = [&](const auto& value) {
+    Splat splat(side, made.nodes_per_radius_, half);
+    for (std::size_t k = 0; k < windows.size(); ++k) {
+      if (!fits[k]) continue;
+      for_pixels(windows[k], fits[k]->centre, [&](double x, double y, double code) {
+        splat.add(x, y, value(x, y, (code - fits[k]->level) / fits[k]->gain), 1.0);
+      });
+    }
+    return splat;
+  };
+  for (int round = 0; round <= kSharpenings; ++round) {
+    const Splat left = of_all([&](double x, double y, double code) { return code - made.at(x, y).value; });
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) made.look_.at<double>(j, i) += left.mean(j, i);
+    }
+  }
+  const Splat squares = of_all([&](double x, double y, double code) {
+    const double off = code - made.at(x, y).value;
+    return off * off;
+  });
+  std::vector<double> variances, values;
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      if (squares.weights().at<double>(j, i) <= kLeastOfNode) continue;
+      variances.push_back(squares.mean(j, i));
+      values.push_back(made.look_.at<double>(j, i));
+    }
+  }
+  if (variances.empty()) return std::nullopt;
+  const double usual = std::max(quantile(variances, 0.25), kLeastResidual * kLeastResidual);
+  double mean = 0.0, square = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (const double value : values) square += (value - mean) * (value - mean) / static_cast<double>(values.size());
+  made.contrast_ = std::sqrt(square);
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      if (squares.weights().at<double>(j, i) <= kLeastOfNode) continue;
+      made.weight_.at<double>(j, i) = usual / std::max(squares.mean(j, i), usual);
+    }
+  }
+  return made;
+}
+
+std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) const {
+  TemplateFit fit;
+  fit.centre = window.start;
+  const double radius = radius_of(window.shape);
+  const cv::Vec3d& m = window.shape;
+  double usual = 0.0;  // residual; 0: not known yet
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  const double whole = 3.14159 * kReach * kReach * radius * radius;
+  for (int step = 0; step < kMostSteps; ++step) {
+    information.setZero();
+    Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+    std::vector<double> residuals;
+    double pixels = 0.0, cost = 0.0, weights = 0.0;
+    for_pixels(window, fit.centre, [&](double x, double y, double code) {
+      pixels += 1.0;
+      double weight = weight_at(x, y);
+      if (weight <= 0.0) return;
+      const Value look = at(x, y);
+      const double off = code - fit.level - fit.gain * look.value;
+      const double scaled = std::abs(off) * std::sqrt(weight);
+      residuals.push_back(scaled);
+      if (usual > 0.0 && scaled > kRobustTimes * usual) weight *= kRobustTimes * usual / scaled;
+      // q = M (p - c): moving the centre moves the look the other way.
+      const Eigen::Vector4d slope(-fit.gain * (look.x * m[0] + look.y * m[1]),
+                                  -fit.gain * (look.x * m[1] + look.y * m[2]), 1.0, look.value);
+      information += weight * slope * slope.transpose();
+      gradient += weight * off * slope;
+      cost += weight * off * off;
+      weights += weight;
+    });
+    if (pixels < kLeastPixels * whole || residuals.size() < 12) return std::nullopt;
+    const Eigen::Vector4d change = base::solve_positive(information, gradient);
+    if (!change.allFinite()) return std::nullopt;
+    const double moved = std::hypot(change[0], change[1]), allowed = 0.3 * radius;
+    const double share = moved > allowed ? allowed / moved : 1.0;
+    fit.centre += share * cv::Point2d(change[0], change[1]);
+    fit.level += change[2];
+    fit.gain += change[3];
+    usual = std::max(1.4826 * median_of(residuals), kLeastResidual);
+    fit.rms = std::sqrt(cost / std::max(weights, 1.0));
+    if (fit.gain < kLeastLightGain || fit.gain > kMostLightGain) return std::nullopt;
+    if (cv::norm(fit.centre - window.start) > radius) return std::nullopt;
+    if (moved > kSettled_px || step < 2) continue;
+    const Eigen::Matrix4d covariance = information.inverse() * (fit.rms * fit.rms);
+    fit.sd_px = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
+    return fit;
+  }
+  return std::nullopt;
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,194 @@
+#include "core/pictures/marker/template_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "core/math/quantile.h"
+#include "core/pictures/marker/marker_template.h"
+#include "core/pictures/marker/sphere_window.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr int kTurns = 8;                 // of look and places: an error of the guesses shrinks by half in each
+constexpr std::size_t kFewestSeen = 8;    // frames
+constexpr double kWorse = 3.0;            // times the usual residuals: something else
+constexpr double kLeastOff_px = 0.3;      // off the neighbours' course, and
+constexpr double kTimesOff = 8.0;         // times the usual distance: something else
+constexpr double kRoughestPath_px = 0.3;  // from frame to frame
+constexpr double kMostResidual = 0.35;    // of the look's contrast
+constexpr double kLeastAtOutline = 0.2;   // of the look's edges: less is something of another size
+constexpr double kSlackRadii = 1.0, kLostSlackRadii = 3.0;  // that a window is larger, where it was seen and where not
+constexpr double kSlack_px = 6.0;
+
+class TemplateLook {
+ public:
+  TemplateLook(const TrackedMarker& rough, const ClipAgain& clip, const ShapeAt& shape_at)
+      : rough_(rough), clip_(clip), shape_at_(shape_at) {}
+
+  std::optional<TrackedMarker> marker() {
+    if (rough_.sightings.size() < kFewestSeen) return std::nullopt;
+    read_windows();
+    for (int turn = 0; turn < kTurns; ++turn) {
+      if (!take_turn()) return std::nullopt;
+    }
+    fit_lost();
+    drop_strays();
+    if (seen() < std::max(kFewestSeen, rough_.sightings.size())) return std::nullopt;
+    return tracked();
+  }
+
+ private:
+  void read_windows();
+  bool take_turn();
+  void fit_lost();
+  void drop_strays();
+  std::vector<PlaceInFrame> places() const;
+  std::optional<TrackedMarker> tracked() const;
+  std::size_t seen() const {
+    return static_cast<std::size_t>(
+        std::count_if(fits_.begin(), fits_.end(), [](const auto& fit) { return fit.has_value(); }));
+  }
+  bool is_good(const TemplateFit& fit) const { return fit.rms < kWorse * usual_rms_; }
+  std::optional<TemplateFit> fit_from(std::size_t k, cv::Point2d start) const {
+    TemplateWindow window = windows_[k];
+    window.start = start;
+    return look_->fit(window);
+  }
+
+  const TrackedMarker& rough_;
+  const ClipAgain& clip_;
+  const ShapeAt& shape_at_;
+  std::vector<std::size_t> frames_;  ///< of the windows; rise
+  std::vector<TemplateWindow> windows_;
+  std::vector<std::optional<TemplateFit>> fits_;
+  std::optional<MarkerTemplate> look_;
+  double usual_rms_ = 0.0;
+};
+
+void TemplateLook::read_windows() {
+  std::vector<PlaceInFrame> rough;
+  for (const MarkerSighting& sighting : rough_.sightings)
+    rough.push_back({sighting.frame, {sighting.u_px, sighting.v_px}});
+  const auto source = clip_.open();
+  while (const auto frame = source->next()) {
+    const auto expected = place_by_neighbours(rough, frame->index, false);
+    if (!expected) continue;
+    const auto shape = shape_at_(*expected, MarkerBody::disc);
+    if (!shape) continue;
+    const bool was_seen =
+        std::any_of(rough.begin(), rough.end(), [&](const PlaceInFrame& place) { return place.frame == frame->index; });
+    const double slack = (was_seen ? kSlackRadii : kLostSlackRadii) * radius_of(*shape) + kSlack_px;
+    const int half = static_cast<int>(std::ceil(MarkerTemplate::kReach * radius_of(*shape) + slack));
+    const cv::Rect part = cv::Rect(static_cast<int>(std::lround(expected->x)) - half,
+                                   static_cast<int>(std::lround(expected->y)) - half, 2 * half + 1, 2 * half + 1) &
+                          cv::Rect({}, frame->grey.size());
+    if (part.empty()) continue;
+    TemplateWindow window;
+    frame->grey(part).convertTo(window.codes, CV_32F);
+    window.corner = part.tl();
+    window.shape = *shape;
+    window.start = *expected;
+    frames_.push_back(frame->index);
+    windows_.push_back(std::move(window));
+    fits_.emplace_back();
+    if (was_seen) fits_.back() = TemplateFit{*expected};
+  }
+}
+
+/// The look from the places, then the places from the look.
+bool TemplateLook::take_turn() {
+  look_ = MarkerTemplate::of(windows_, fits_);
+  if (!look_) return false;
+  std::vector<double> residuals;
+  for (std::size_t k = 0; k < windows_.size(); ++k) {
+    if (!fits_[k]) continue;
+    fits_[k] = fit_from(k, fits_[k]->centre);
+    if (fits_[k]) residuals.push_back(fits_[k]->rms);
+  }
+  if (residuals.size() < kFewestSeen) return false;
+  usual_rms_ = median_of(std::move(residuals));
+  for (std::optional<TemplateFit>& fit : fits_) {
+    if (fit && !is_good(*fit)) fit.reset();
+  }
+  fit_lost();
+  drop_strays();
+  return seen() >= kFewestSeen;
+}
+
+std::vector<PlaceInFrame> TemplateLook::places() const {
+  std::vector<PlaceInFrame> places;
+  for (std::size_t k = 0; k < fits_.size(); ++k) {
+    if (fits_[k]) places.push_back({frames_[k], fits_[k]->centre});
+  }
+  return places;
+}
+
+/// From the neighbours of those that were found, outwards.
+void TemplateLook::fit_lost() {
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t k = 0; k < fits_.size(); ++k) {
+      const bool beside = (k > 0 && fits_[k - 1]) || (k + 1 < fits_.size() && fits_[k + 1]);
+      if (fits_[k] || !beside) continue;
+      const auto expected = place_by_neighbours(places(), frames_[k], true);
+      if (!expected) continue;
+      const auto found = fit_from(k, *expected);
+      if (!found || !is_good(*found)) continue;
+      fits_[k] = found;
+      any = true;
+    }
+  }
+}
+
+void TemplateLook::drop_strays() {
+  const std::vector<PlaceInFrame> all = places();
+  std::vector<std::pair<std::size_t, double>> off;
+  std::vector<double> distances;
+  for (std::size_t k = 0; k < fits_.size(); ++k) {
+    if (!fits_[k]) continue;
+    const auto expected = place_by_neighbours(all, frames_[k], true);
+    if (!expected) continue;
+    off.emplace_back(k, cv::norm(*expected - fits_[k]->centre));
+    distances.push_back(off.back().second);
+  }
+  if (distances.empty()) return;
+  const double limit = kLeastOff_px + kTimesOff * median_of(distances);
+  for (const auto& [k, distance] : off) {
+    if (distance > limit) fits_[k].reset();
+  }
+}
+
+std::optional<TrackedMarker> TemplateLook::tracked() const {
+  Places by_frame;
+  for (const PlaceInFrame& place : places()) by_frame[place.frame] = place.at;
+  const auto roughness = roughness_of(by_frame);
+  if (!roughness || *roughness > kRoughestPath_px || usual_rms_ > kMostResidual * look_->contrast())
+    return std::nullopt;
+  if (look_->share_at_outline() < kLeastAtOutline) return std::nullopt;
+  TrackedMarker tracked;
+  tracked.method = MarkerMethod::centroid;
+  for (std::size_t k = 0; k < fits_.size(); ++k) {
+    if (!fits_[k]) continue;
+    MarkerFit marker;  // without an outline
+    marker.centre = fits_[k]->centre;
+    marker.sd_px = std::max(fits_[k]->sd_px, *roughness);
+    marker.radius_px = radius_of(windows_[k].shape);
+    marker.amplitude = fits_[k]->gain * look_->contrast();
+    tracked.sightings.push_back({frames_[k], marker.centre.x, marker.centre.y, marker.sd_px, marker.radius_px});
+    tracked.fits.push_back(marker);
+  }
+  tracked.notes.emplace_back(MarkerMeasuredBy{MarkerMeasuredBy::What::centroid});
+  return tracked;
+}
+
+}  // namespace
+
+std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const ClipAgain& clip,
+                                              const ShapeAt& shape_at) {
+  return TemplateLook(rough, clip, shape_at).marker();
+}
+
+}  // namespace glidelab::core

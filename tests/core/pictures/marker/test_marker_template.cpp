@@ -1,0 +1,167 @@
+#include "core/pictures/marker/marker_template.h"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/pictures/marker/template_look.h"
+#include "tests/catch.h"
+#include "tests/core/lit_scene.h"
+
+using namespace glidelab;
+
+namespace {
+
+const cv::Size kSize(220, 72);
+constexpr std::size_t kFrames = 40;
+constexpr double kRadius = 7.3;
+constexpr double kNoise = 1.5;  // codes
+
+/// Slows down, and goes down a little.
+cv::Point2d place(std::size_t k) {
+  const double t = static_cast<double>(k);
+  return {24.3 + 5.6 * t - 0.031 * t * t, 41.2 + 0.173 * t};
+}
+
+/// Light at an offset from the centre, in radii; below 0 where there is nothing of the marker.
+using Look = double (*)(double, double);
+
+bool on_plate(double x, double y) {
+  return std::abs(x) < 1.9 && std::abs(y) < 1.9;
+}
+
+double ring(double x, double y) {
+  const double r = std::hypot(x, y);
+  return r < 1.0 && r > 0.5 ? 0.8 : on_plate(x, y) ? 0.05 : -1.0;
+}
+
+double bulls_eye(double x, double y) {
+  const double r = std::hypot(x, y);
+  return r < 0.33 || (r < 1.0 && r > 0.66) ? 0.8 : on_plate(x, y) ? 0.05 : -1.0;
+}
+
+double quadrants(double x, double y) {
+  return std::hypot(x, y) < 1.0 && x * y < 0.0 ? 0.8 : on_plate(x, y) ? 0.05 : -1.0;
+}
+
+class LookClip : public core::FrameSource {
+ public:
+  explicit LookClip(const std::vector<cv::Mat>& frames) : frames_(frames) {}
+  std::optional<core::Frame> next() override {
+    if (next_ == frames_.size()) return std::nullopt;
+    core::Frame frame;
+    frame.grey = frames_[next_];
+    frame.index = next_++;
+    return frame;
+  }
+  std::size_t stated_frames() const override { return frames_.size(); }
+  std::vector<core::Note> notes() const override { return {}; }
+
+ private:
+  const std::vector<cv::Mat>& frames_;
+  std::size_t next_ = 0;
+};
+
+/// Before a wall with stripes; a post hides a part of it in some frames.
+std::vector<cv::Mat> film_look(Look look, bool post) {
+  std::vector<cv::Mat> frames;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    const cv::Point2d c = place(k);
+    const auto light = [&](double u, double v) {
+      if (post && std::abs(u - 120.0) < 2.5) return 0.3;
+      const double own = look((u - c.x) / kRadius, (v - c.y) / kRadius);
+      return own >= 0.0 ? own : 0.2 + 0.05 * std::sin(0.31 * u);
+    };
+    frames.push_back(tests::expose_light(kSize, light, true, kNoise, 7100 + k));
+  }
+  return frames;
+}
+
+/// Off by a constant and by up to a pixel and a half from frame to frame; a fifth of the frames is missing.
+core::TrackedMarker rough_path(double wrong_px) {
+  core::TrackedMarker rough;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    if (k % 5 == 3 || k < 3) continue;
+    const double shake = wrong_px * std::sin(11.0 * static_cast<double>(k * k));
+    const cv::Point2d at = place(k) + cv::Point2d(0.4 + shake, -0.3 - 0.7 * shake);
+    core::MarkerFit fit;
+    fit.centre = at;
+    rough.sightings.push_back({k, at.x, at.y, 0.5, kRadius});
+    rough.fits.push_back(fit);
+  }
+  return rough;
+}
+
+std::optional<core::TrackedMarker> by_template(const std::vector<cv::Mat>& frames, const core::TrackedMarker& rough) {
+  const core::ClipAgain clip{[&] { return std::make_unique<LookClip>(frames); }, frames.size()};
+  const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
+    return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
+  };
+  return core::look_by_template(rough, clip, circle);
+}
+
+/// Standard deviation of the places about the truth, px: a constant offset is free.
+double scatter(const core::TrackedMarker& found) {
+  double sum = 0.0, squares = 0.0;
+  for (const core::MarkerSighting& sighting : found.sightings) {
+    const double off = sighting.u_px - place(sighting.frame).x;
+    sum += off;
+    squares += off * off;
+  }
+  const auto n = static_cast<double>(found.sightings.size());
+  return std::sqrt(squares / n - sum * sum / n / n);
+}
+
+}  // namespace
+
+TEST_CASE("A ring, a bull's eye and quadrants are followed by their own look") {
+  struct Case {
+    const char* name;
+    Look look;
+  };
+  for (const Case& made : {Case{"ring", ring}, Case{"bull's eye", bulls_eye}, Case{"quadrants", quadrants}}) {
+    INFO(made.name);
+    const auto found = by_template(film_look(made.look, false), rough_path(1.5));
+    REQUIRE(found);
+    CHECK(found->sightings.size() + 1 >= kFrames);  // an end may lie off what its neighbours say
+    // Edges of a hundred codes and 2 pi 7 px with a noise of 1.5 give 0.005 px; the look's grid leaves more.
+    CHECK(scatter(*found) < 0.03);
+    const double mean_sd = [&] {
+      double sum = 0.0;
+      for (const auto& sighting : found->sightings) sum += sighting.sd_px / static_cast<double>(kFrames);
+      return sum;
+    }();
+    CHECK(scatter(*found) < 2.5 * mean_sd);
+    CHECK(mean_sd < 0.05);
+  }
+}
+
+TEST_CASE("A post before the marker moves its place by the look little, or hides it") {
+  const auto found = by_template(film_look(quadrants, true), rough_path(1.0));
+  REQUIRE(found);
+  // The post lies within the 1.5 radii that are looked at in 27 px of the path: eight frames at 3.5 px each.
+  CHECK(found->sightings.size() >= kFrames - 8);
+  CHECK(scatter(*found) < 0.15);
+}
+
+TEST_CASE("No look is found where nothing moves along the path") {
+  const auto nothing = [](double, double) { return -1.0; };
+  CHECK_FALSE(by_template(film_look(nothing, false), rough_path(0.5)));
+}
+
+TEST_CASE("A disc of half the stated size is not followed by its own look") {
+  const auto small = [](double x, double y) { return std::hypot(x, y) < 0.5 ? 0.8 : on_plate(x, y) ? 0.05 : -1.0; };
+  CHECK_FALSE(by_template(film_look(small, false), rough_path(0.5)));
+}
+
+TEST_CASE("Sightings that jump about are no path, those of a glider that slows down are one") {
+  core::TrackedMarker steady, jumping;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    const cv::Point2d at = place(k);
+    steady.sightings.push_back({k, at.x, at.y, 0.01, kRadius});
+    const double off = 20.0 * std::sin(13.0 * static_cast<double>(k * k));
+    jumping.sightings.push_back({k, at.x + off, at.y, 0.01, kRadius});
+  }
+  CHECK(core::is_steady(steady));
+  CHECK_FALSE(core::is_steady(jumping));
+}
