@@ -93,7 +93,7 @@ struct MarkerConcealed {
 
 /// How a marker that is not a plain disc is measured.
 struct MarkerMeasuredBy {
-  enum class What { centroid, shading } what = What::centroid;
+  enum class What { centroid, shading, own_look } what = What::centroid;
 };
 
 /// The size of its image over that predicted from its diameter.

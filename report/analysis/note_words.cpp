@@ -90,9 +90,17 @@ struct AnalysisSentence {
                            : "is partly hidden or disturbed (its size or the residuals differ)");
   }
   std::string operator()(const core::MarkerMeasuredBy& of) const {
-    return of.what == core::MarkerMeasuredBy::What::centroid
-               ? "the marker is not a disc; the centroid of its colour is used"
-               : "the marker is lit from one side; its shading is fitted";
+    using What = core::MarkerMeasuredBy::What;
+    switch (of.what) {
+      case What::centroid:
+        return "the marker is not a disc; the centroid of its colour is used";
+      case What::shading:
+        return "the marker is lit from one side; its shading is fitted";
+      case What::own_look:
+        break;
+    }
+    return "the marker is neither a disc nor a sphere; it is followed by what it looks like in the other frames, and "
+           "the origin of x may be off by a part of its diameter";
   }
   std::string operator()(const core::MarkerOfOtherSize& of) const {
     return fmt::format("the marker looks {:.0f} % {} than its diameter predicts", 100.0 * std::abs(of.ratio - 1.0),

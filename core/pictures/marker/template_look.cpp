@@ -180,7 +180,7 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
     tracked.sightings.push_back({frames_[k], marker.centre.x, marker.centre.y, marker.sd_px, marker.radius_px});
     tracked.fits.push_back(marker);
   }
-  tracked.notes.emplace_back(MarkerMeasuredBy{MarkerMeasuredBy::What::centroid});
+  tracked.notes.emplace_back(MarkerMeasuredBy{MarkerMeasuredBy::What::own_look});
   return tracked;
 }
 

@@ -42,6 +42,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::MarkerConcealed{By::disturbance, 5}, "in 5 frames the marker is partly hidden"},
       {core::MarkerMeasuredBy{What::centroid}, "centroid of its colour"},
       {core::MarkerMeasuredBy{What::shading}, "shading is fitted"},
+      {core::MarkerMeasuredBy{What::own_look}, "by what it looks like in the other frames"},
       {core::MarkerOfOtherSize{1.25}, "25 % larger"},
       {core::MarkerOfOtherSize{0.75}, "25 % smaller"},
       {core::MarkerFittedAgain{true, false, 260, 200}, "sphere that is lit from one side, before what moves with it"},
