@@ -7,6 +7,7 @@
 #include "core/pictures/marker/template_look.h"
 #include "tests/catch.h"
 #include "tests/core/lit_scene.h"
+#include "tests/core/made_clip.h"
 
 using namespace glidelab;
 
@@ -44,24 +45,6 @@ double quadrants(double x, double y) {
   return std::hypot(x, y) < 1.0 && x * y < 0.0 ? 0.8 : on_plate(x, y) ? 0.05 : -1.0;
 }
 
-class LookClip : public core::FrameSource {
- public:
-  explicit LookClip(const std::vector<cv::Mat>& frames) : frames_(frames) {}
-  std::optional<core::Frame> next() override {
-    if (next_ == frames_.size()) return std::nullopt;
-    core::Frame frame;
-    frame.grey = frames_[next_];
-    frame.index = next_++;
-    return frame;
-  }
-  std::size_t stated_frames() const override { return frames_.size(); }
-  std::vector<core::Note> notes() const override { return {}; }
-
- private:
-  const std::vector<cv::Mat>& frames_;
-  std::size_t next_ = 0;
-};
-
 /// Before a wall with stripes; a post hides a part of it in some frames.
 std::vector<cv::Mat> film_look(Look look, bool post) {
   std::vector<cv::Mat> frames;
@@ -93,7 +76,7 @@ core::TrackedMarker rough_path(double wrong_px) {
 }
 
 std::optional<core::TrackedMarker> by_template(const std::vector<cv::Mat>& frames, const core::TrackedMarker& rough) {
-  const core::ClipAgain clip{[&] { return std::make_unique<LookClip>(frames); }, frames.size()};
+  const core::ClipAgain clip{[&] { return std::make_unique<tests::MadeClip>(frames); }, frames.size()};
   const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
     return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
   };

@@ -6,6 +6,7 @@
 
 #include "tests/catch.h"
 #include "tests/core/lit_scene.h"
+#include "tests/core/made_clip.h"
 
 using namespace glidelab;
 
@@ -21,24 +22,6 @@ cv::Point2d place(std::size_t k) {
   const double t = static_cast<double>(k);
   return {18.3 + 4.6 * t - 0.022 * t * t, 63.4};
 }
-
-class MadeClip : public core::FrameSource {
- public:
-  explicit MadeClip(const std::vector<cv::Mat>& frames) : frames_(frames) {}
-  std::optional<core::Frame> next() override {
-    if (next_ == frames_.size()) return std::nullopt;
-    core::Frame frame;
-    frame.grey = frames_[next_];
-    frame.index = next_++;
-    return frame;
-  }
-  std::size_t stated_frames() const override { return frames_.size(); }
-  std::vector<core::Note> notes() const override { return {}; }
-
- private:
-  const std::vector<cv::Mat>& frames_;
-  std::size_t next_ = 0;
-};
 
 std::vector<cv::Mat> film(tests::LitBall ball) {
   std::vector<cv::Mat> frames;
@@ -75,7 +58,7 @@ core::TrackedMarker first_look(double off_px, double rms_codes) {
 }
 
 std::optional<core::TrackedMarker> again(const std::vector<cv::Mat>& frames, const core::TrackedMarker& first) {
-  const core::ClipAgain clip{[&] { return std::make_unique<MadeClip>(frames); }, frames.size()};
+  const core::ClipAgain clip{[&] { return std::make_unique<tests::MadeClip>(frames); }, frames.size()};
   const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
     return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
   };
