@@ -190,10 +190,6 @@ SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const Cam
   return *std::move(bright);
 }
 
-double usual_radius_px(const Restitution& restitution, cv::Size image) {
-  return restitution.marker_radius_px({0.5 * image.width, 0.5 * image.height}).value_or(kSomeRadiusPx);
-}
-
 /// Empty if no such object is found either.
 std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSetup& clip,
                                       const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene,
@@ -243,18 +239,22 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   const auto in_more_frames = [&](const SeenClip& found) {
     return static_cast<double>(found.marker.sightings.size()) > kFarBetter * seen_before;
   };
-  const std::array<AnyShape, 3> shapes{AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}};
   std::vector<SeenClip> rough;
-  for (const AnyShape& any : shapes) {
+  for (const AnyShape& any : {AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}}) {
     auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, any);
     if (!found) continue;
     rough.push_back(*found);
     if (better(*found) && in_more_frames(*found)) return *std::move(found);
   }
-  // Neither a disc nor a sphere: by its own look.
-  const double blur_px = kBlurRadii * usual_radius_px(restitution, background.median().size());
+  // Neither a disc nor a sphere: by its own look, unless it is as large as half the image.
+  const cv::Point2d middle(0.5 * background.median().cols, 0.5 * background.median().rows);
+  const double radius_px = restitution.marker_radius_px(middle).value_or(kSomeRadiusPx);
+  const bool too_large = radius_px > 0.5 * std::min(middle.x, middle.y);
+  if (too_large) rough.clear();
   for (const bool dark : {false, true}) {
-    auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, {{}, dark, blur_px});
+    if (too_large) break;
+    auto found =
+        see_any_shape(experiment, clip, setting, open, look_at_scene, counter, {{}, dark, kBlurRadii * radius_px});
     if (found) rough.push_back(*std::move(found));
   }
   for (SeenClip& found : rough) {
@@ -386,8 +386,7 @@ class GroupTracks {
     return of_group;
   }
 
-  /// The effect of the modes on the track: the camera's modes come first; those of this plane follow those of the
-  /// previous groups.
+  /// The effect of the modes on the track: the camera's first, then this plane's, after those of the previous groups.
   void add_shared(const MotionAxis& axis, const std::vector<ModeAxis>& modes, std::size_t of_camera,
                   const std::vector<PlanePoint>& points, std::size_t modes_before, TrackData& track) const {
     std::vector<cv::Point2d> places;
@@ -431,8 +430,7 @@ class GroupTracks {
 
 constexpr double kBeyondDoubt = 10.0;  // log evidence
 
-/// Subtracts the effect of a predictive codec on the positions (codec_drag.h), if the file states such a codec, or if
-/// it states none and the positions leave no doubt. The remaining uncertainty is an additional shared error.
+/// Subtracts the drag of a predictive codec (codec_drag.h) that is stated, or beyond doubt; the rest is a shared error.
 void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenClip>& seen, PictureResults& results) {
   std::vector<DragTrack> tracks;
   std::vector<std::size_t> of_clip;
