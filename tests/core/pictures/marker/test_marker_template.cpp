@@ -6,8 +6,8 @@
 
 #include "core/pictures/marker/template_look.h"
 #include "tests/catch.h"
+#include "tests/core/clip_in_memory.h"
 #include "tests/core/lit_scene.h"
-#include "tests/core/made_clip.h"
 
 using namespace glidelab;
 
@@ -76,7 +76,7 @@ core::TrackedMarker rough_path(double wrong_px) {
 }
 
 std::optional<core::TrackedMarker> by_template(const std::vector<cv::Mat>& frames, const core::TrackedMarker& rough) {
-  const core::ClipAgain clip{[&] { return std::make_unique<tests::MadeClip>(frames); }, frames.size()};
+  const core::ClipAgain clip{[&] { return std::make_unique<tests::ClipInMemory>(frames); }, frames.size()};
   const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
     return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
   };

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tests/catch.h"
+#include "tests/core/clip_in_memory.h"
 #include "tests/core/lit_scene.h"
-#include "tests/core/made_clip.h"
 
 using namespace glidelab;
 
@@ -58,7 +58,7 @@ core::TrackedMarker first_look(double off_px, double rms_codes) {
 }
 
 std::optional<core::TrackedMarker> again(const std::vector<cv::Mat>& frames, const core::TrackedMarker& first) {
-  const core::ClipAgain clip{[&] { return std::make_unique<tests::MadeClip>(frames); }, frames.size()};
+  const core::ClipAgain clip{[&] { return std::make_unique<tests::ClipInMemory>(frames); }, frames.size()};
   const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
     return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
   };

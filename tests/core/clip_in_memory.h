@@ -11,9 +11,9 @@
 namespace glidelab::tests {
 
 /// `frames` outlive it.
-class MadeClip : public core::FrameSource {
+class ClipInMemory : public core::FrameSource {
  public:
-  explicit MadeClip(const std::vector<cv::Mat>& frames) : frames_(frames) {}
+  explicit ClipInMemory(const std::vector<cv::Mat>& frames) : frames_(frames) {}
   std::optional<core::Frame> next() override {
     if (next_ == frames_.size()) return std::nullopt;
     core::Frame frame;
