@@ -249,20 +249,19 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   // Neither a disc nor a sphere: by its own look, unless it is as large as half the image.
   const cv::Point2d middle(0.5 * background.median().cols, 0.5 * background.median().rows);
   const double radius_px = restitution.marker_radius_px(middle).value_or(kSomeRadiusPx);
-  const bool too_large = radius_px > 0.5 * std::min(middle.x, middle.y);
-  if (too_large) rough.clear();
-  for (const bool dark : {false, true}) {
-    if (too_large) break;
-    auto found =
-        see_any_shape(experiment, clip, setting, open, look_at_scene, counter, {{}, dark, kBlurRadii * radius_px});
-    if (found) rough.push_back(*std::move(found));
-  }
-  for (SeenClip& found : rough) {
-    auto marker = look_by_template(found.marker, again, shape_at);
-    if (!marker || !well_seen(*marker)) continue;
-    found.marker = *std::move(marker);
-    if (found.pictures) found.pictures->marker = looks_of(found.marker, found.frame_t_s);
-    if (in_more_frames(found)) return std::move(found);
+  if (radius_px < 0.5 * std::min(middle.x, middle.y)) {
+    for (const bool dark : {false, true}) {
+      const AnyShape blurred{{}, dark, kBlurRadii * radius_px};
+      auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, blurred);
+      if (found) rough.push_back(*std::move(found));
+    }
+    for (SeenClip& found : rough) {
+      auto marker = look_by_template(found.marker, again, shape_at);
+      if (!marker || !well_seen(*marker)) continue;
+      found.marker = *std::move(marker);
+      if (found.pictures) found.pictures->marker = looks_of(found.marker, found.frame_t_s);
+      if (in_more_frames(found)) return std::move(found);
+    }
   }
   if (none) throw NoMarker(*none);
   if (!is_steady(seen->marker)) {

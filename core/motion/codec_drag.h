@@ -52,7 +52,7 @@ struct CodecDrag {
 
 /// `predicts`: the codec is known to predict images from earlier ones. Empty if fewer than 60 points of free motion are
 /// seen. Also empty if the codec is not known and no marker moves by the two pixels per frame with which h recurs:
-/// below that, any error that changes with the speed looks like h (a camera at 1000 frames per second never gets
+/// below that, any error that changes with the speed looks like h (at 1000 frames per second a marker seldom gets
 /// there). Entries of tracks without sightings, or whose marker does not move, are empty.
 std::optional<CodecDrag> find_codec_drag(const std::vector<DragTrack>& tracks, bool predicts);
 

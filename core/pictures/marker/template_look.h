@@ -1,6 +1,6 @@
-/// A clip's marker by its own look (marker_template.h), where it is neither a disc nor a sphere: a ring, a bull's eye,
-/// quadrants, a sphere before the glider with its own shadow. Something of about its size was followed before, if only
-/// roughly.
+/// Tracks a marker that is neither a disc nor a sphere (a ring, a bull's eye, quadrants, a sphere in front of the
+/// glider with its shadow on it) by its own look (marker_template.h). It starts from a rough track of something of
+/// about that size.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace glidelab::core {
 
-/// The clip is read once more. The look and the places in all frames are found in turns, those of frames in which it
-/// was lost from their neighbours outwards. Nothing where what is found is no steady look on a steady path, or is seen
-/// in fewer frames than before.
+/// Reads the clip once more, and finds the look and the positions in all frames in turns. Frames in which the marker
+/// was lost follow from their neighbours outwards. Empty if the look or the path is not steady, or if the marker is
+/// seen in fewer frames than before.
 std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const ClipAgain& clip,
                                               const ShapeAt& shape_at);
 

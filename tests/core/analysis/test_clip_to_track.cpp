@@ -120,6 +120,21 @@ TEST_CASE("a marker whose colour is not stated is found bright on dark and dark 
   CHECK(worst_px(bright, {0.0, 0.0}) < 0.03);
 }
 
+TEST_CASE("spots that jump about are not taken for a marker") {
+  const tests::TempDir dir;
+  std::vector<cv::Mat> frames;
+  for (int k = 0; k < 45; ++k) {
+    cv::Mat picture(kSize, CV_64F, cv::Scalar(110.0));
+    // On the card's path, but ahead of it or behind it by up to 20 px, as golden sections scatter.
+    const double golden = std::fmod(0.618034 * k, 1.0), other = std::fmod(0.754878 * k, 1.0);
+    const cv::Point2d off(40.0 * (golden - 0.5), 40.0 * (other - 0.5));
+    tests::put_disc(picture, place(k / kRate) + off, 6.0, 200.0);
+    frames.push_back(picture);
+  }
+  tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
+  CHECK_THROWS_WITH(only_track(dir / "clip.mkv"), Catch::Matchers::Contains("jumps about"));
+}
+
 TEST_CASE("of a bright and a dark disc the bright one is the marker, and of two bright ones neither") {
   const tests::TempDir dir;
   const core::TrackData both = only_track(card_clip(dir, 110.0, {{{-14.0, 0.0}, 200.0}, {{14.0, 0.0}, 20.0}}));
