@@ -147,7 +147,7 @@ void frames_to_file(benchmark::State& state) {
   const auto codec = static_cast<Codec>(state.range(0));
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() /
-      ("glidelab-bench-" + std::to_string(state.thread_index()) + (codec == Codec::ffv1 ? ".mkv" : ".avi"));
+      ("glidelab-bench-" + std::to_string(state.thread_index()) + file_name_of(codec, ""));
   const auto writer = open_video(path, {codec, made.all.width, made.all.height, 200.0, 1});
   std::vector<std::uint8_t> codes(made.background_e.values.size());
   std::size_t k = 0;
@@ -158,9 +158,10 @@ void frames_to_file(benchmark::State& state) {
   writer->finish();
   std::filesystem::remove(path);
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()));
-  state.SetLabel(codec == Codec::ffv1 ? "ffv1" : "raw");
+  state.SetLabel(name_of(codec));
 }
 BENCHMARK(frames_to_file)
+    ->Arg(static_cast<int>(Codec::magicyuv))
     ->Arg(static_cast<int>(Codec::ffv1))
     ->Arg(static_cast<int>(Codec::raw))
     ->Unit(benchmark::kMillisecond)

@@ -74,8 +74,8 @@ function(glidelab_unity target)
 endfunction()
 
 # glidelab_room(NAME [WORDS] [FOLDERS <folders…>] LINK <public libraries…>): all sources of the folders (default: this one) make
-# glidelab::NAME, included as "room/suite/header.h". WORDS: a room that writes tables, pages and messages and computes nothing at
-# length; it is compiled with -O1, in two thirds of the time.
+# glidelab::NAME, included as "room/suite/header.h". WORDS: a room that writes tables, pages and messages or has others compute, and
+# computes nothing at length itself; it is compiled with -O1, in two thirds of the time.
 function(glidelab_room name)
   cmake_parse_arguments(ROOM "WORDS" "" "FOLDERS;LINK" ${ARGN})
   if(NOT ROOM_FOLDERS)
@@ -102,10 +102,10 @@ function(glidelab_room name)
   endif()
   if(name STREQUAL base)
     glidelab_precompile(glidelab_base OWN cmake/precompiled.h)
-  elseif(name STREQUAL report)
-    glidelab_precompile(glidelab_report OWN cmake/precompiled.h)  # of other options than base's
+  elseif(name STREQUAL validate)
+    glidelab_precompile(glidelab_validate OWN cmake/precompiled.h)  # of other options than base's
   elseif(ROOM_WORDS)
-    glidelab_precompile(glidelab_${name} FROM glidelab_report)
+    glidelab_precompile(glidelab_${name} FROM glidelab_validate)
   else()
     glidelab_precompile(glidelab_${name} FROM glidelab_base)
   endif()

@@ -188,7 +188,7 @@ void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& t
       const std::string name = set.motion(clip).name;
       ClipRenderer renderer = set.renderer(clip, 0);
       VideoFormat format;
-      format.codec = Codec::ffv1;
+      format.codec = Codec::magicyuv;
       format.width = ideal.camera.width_px;
       format.height = ideal.camera.height_px;
       format.frame_rate_hz = ideal.recording.frame_rate_hz;

@@ -120,7 +120,7 @@ struct Scenario {
   Mount mount;
   Sensor sensor;
   Exposure exposure;
-  Codec codec = Codec::ffv1;
+  Codec codec = Codec::magicyuv;
   Compression compression;
   PatternSetup pattern;
   MarkerSetup marker;

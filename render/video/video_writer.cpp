@@ -24,6 +24,8 @@ namespace glidelab::render {
 
 const char* name_of(Codec codec) {
   switch (codec) {
+    case Codec::magicyuv:
+      return "magicyuv";
     case Codec::ffv1:
       return "ffv1";
     case Codec::raw:
@@ -40,6 +42,7 @@ const char* name_of(Codec codec) {
 
 Container usual_container(Codec codec) {
   switch (codec) {
+    case Codec::magicyuv:
     case Codec::ffv1:
       return Container::mkv;
     case Codec::raw:
@@ -108,6 +111,8 @@ const char* format_name(Container container) {
 
 AVCodecID codec_id(Codec codec) {
   switch (codec) {
+    case Codec::magicyuv:
+      return AV_CODEC_ID_MAGICYUV;
     case Codec::ffv1:
       return AV_CODEC_ID_FFV1;
     case Codec::raw:
@@ -216,6 +221,10 @@ class LibavWriter final : public VideoWriter {
       encoder_->thread_count = format_.threads;
       encoder_->thread_type = FF_THREAD_SLICE;
       check(av_opt_set_int(encoder_->priv_data, "slicecrc", 1, 0), path_, "encoder");
+    }
+    if (format_.codec == Codec::magicyuv) {
+      encoder_->slices = 1;  // otherwise one a thread, and the file depends on their number
+      encoder_->thread_count = 1;
     }
     if (format_.codec == Codec::h264) set_h264();
     if ((container_->oformat->flags & AVFMT_GLOBALHEADER) != 0) encoder_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;

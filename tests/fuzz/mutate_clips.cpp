@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
   const auto seed = static_cast<std::uint64_t>(argc > 3 && argv[3][0] != '-' ? std::strtoull(argv[3], nullptr, 10) : 1);
   if (fs::is_directory("/dev/shm")) ::setenv("TMPDIR", "/dev/shm", 0);
   const base::TemporaryFolder place("damage");
-  const std::vector<std::string> codecs = {"ffv1", "raw", "mjpeg", "h264", "png"};
+  const std::vector<std::string> codecs = {"magicyuv", "ffv1", "raw", "mjpeg", "h264", "png"};
   for (const std::string& codec : codecs) {
     for (const int width_px : {kWidthPx, kScaledWidthPx}) {
       const fs::path file = place / fmt::format("{}-{}.toml", codec, width_px);

@@ -149,14 +149,14 @@ void read_container(const TomlTable& table, Scenario& scenario) {
   scenario.compression.container = container;
   if (!fits(scenario.codec, container)) {
     table.reject("container", fmt::format("text \"{}\" for {}", name, name_of(scenario.codec)),
-                 "mkv for ffv1, avi for raw, avi, mkv or mp4 for mjpeg, mp4 or mkv for h264");
+                 "mkv for magicyuv and ffv1, avi for raw, avi, mkv or mp4 for mjpeg, mp4 or mkv for h264");
   }
 }
 
 void read_codec(const std::optional<TomlTable>& table, Scenario& scenario) {
   if (!table) return;
-  const std::string name = table->word("name", {"ffv1", "raw", "png", "mjpeg", "h264"});
-  for (const Codec codec : {Codec::ffv1, Codec::raw, Codec::png, Codec::mjpeg, Codec::h264}) {
+  const std::string name = table->word("name", {"magicyuv", "ffv1", "raw", "png", "mjpeg", "h264"});
+  for (const Codec codec : {Codec::magicyuv, Codec::ffv1, Codec::raw, Codec::png, Codec::mjpeg, Codec::h264}) {
     if (name == name_of(codec)) scenario.codec = codec;
   }
   Compression& compression = scenario.compression;
@@ -171,7 +171,7 @@ void read_codec(const std::optional<TomlTable>& table, Scenario& scenario) {
 void settle_codec(const TomlTable& root, Scenario& scenario) {
   const bool deep = scenario.sensor.bit_depth > 8;
   if (const std::optional<TomlTable> table = root.maybe_table("codec"); !table) {
-    scenario.codec = deep ? Codec::png : Codec::ffv1;
+    scenario.codec = deep ? Codec::png : Codec::magicyuv;
   } else if (deep && scenario.codec != Codec::png) {
     table->reject("name", fmt::format("text \"{}\"", name_of(scenario.codec)),
                   fmt::format("\"png\" for {} bits; the others hold 8", scenario.sensor.bit_depth));

@@ -83,7 +83,7 @@ TEST_CASE("The paper's scenarios read, with the camera that is written there") {
 TEST_CASE("A scenario of motions alone gets a camera that sees them") {
   const Scenario scenario = read("");
   CHECK(scenario.seed == 1);
-  CHECK(scenario.codec == Codec::ffv1);
+  CHECK(scenario.codec == Codec::magicyuv);
   CHECK_FALSE(scenario.plumb);
   CHECK(std::abs(scenario.camera.center_px.x() - 399.5) < 1e-12);
   CHECK(std::abs(scenario.sensor.gain_dn_per_e * scenario.sensor.full_well_e + scenario.sensor.offset_dn - 255.0) <

@@ -59,7 +59,7 @@ TEST_CASE("without any section a scenario is what the documentation shows, which
   CHECK(sections_truth(documented) == sections_truth(empty));
   CHECK(empty.camera.center_px == Eigen::Vector2d(399.5, 299.5));
   CHECK(empty.recording.shutter.rows == 600);
-  CHECK(empty.codec == Codec::ffv1);
+  CHECK(empty.codec == Codec::magicyuv);
 }
 
 TEST_CASE(

@@ -62,7 +62,7 @@ void write_noise(const std::filesystem::path& path, const VideoFormat& format, s
 
 TEST_CASE("Clips of 8 bits read back bit for bit, with their number of frames and their rate") {
   const tests::TempDir dir;
-  for (const Codec codec : {Codec::ffv1, Codec::raw}) {
+  for (const Codec codec : {Codec::magicyuv, Codec::ffv1, Codec::raw}) {
     for (const auto& [width, height] : {std::pair{160, 120}, {161, 121}, {98, 34}}) {
       for (const double rate : {200.0, 240.0, 29.97}) {
         const VideoFormat format{codec, width, height, rate, 1};
@@ -113,7 +113,7 @@ TEST_CASE("Frames of more than 8 bits are a folder of 16-bit pictures in order")
 
 TEST_CASE("The same frames make the same file") {
   const tests::TempDir dir;
-  for (const Codec codec : {Codec::ffv1, Codec::raw}) {
+  for (const Codec codec : {Codec::magicyuv, Codec::ffv1, Codec::raw}) {
     const VideoFormat format{codec, 64, 48, 200.0, 1};
     write_noise(dir / "a", format, 5);
     write_noise(dir / "b", format, 5);
@@ -124,7 +124,7 @@ TEST_CASE("The same frames make the same file") {
 
 TEST_CASE("A full disk is an error that names the file") {
   const tests::TempDir dir;
-  for (const Codec codec : {Codec::ffv1, Codec::raw, Codec::png}) {
+  for (const Codec codec : {Codec::magicyuv, Codec::ffv1, Codec::raw, Codec::png}) {
     // Room for the header and a frame or two; at the very end only the trailer may not fit.
     for (const rlim_t bytes : {rlim_t{300}, rlim_t{30'000}, rlim_t{150'000}}) {
       const auto path = dir / file_name_of(codec, "full");
@@ -143,7 +143,7 @@ TEST_CASE("A full disk is an error that names the file") {
 
 TEST_CASE("A place that cannot be written is an error that names it") {
   const tests::TempDir dir;
-  for (const Codec codec : {Codec::ffv1, Codec::raw}) {
+  for (const Codec codec : {Codec::magicyuv, Codec::ffv1, Codec::raw}) {
     const auto path = dir / "no-such-folder" / "clip";
     CHECK_THROWS_WITH(open_video(path, {codec, 64, 48, 200.0, 1}), Catch::Contains(path.string()));
     CHECK_THROWS_AS(open_video(path, {codec, 64, 48, 200.0, 1}), base::EnvironmentError);

@@ -118,13 +118,13 @@ void retouch_folder(const BlindScene& scene, const render::Scenario& scenario, c
   if (scene.retouch.rewritten) {
     const render::Codec codec = scene.camera.codec == "h264"    ? render::Codec::h264
                                 : scene.camera.codec == "mjpeg" ? render::Codec::mjpeg
-                                                                : render::Codec::ffv1;
+                                                                : render::Codec::magicyuv;
     std::shared_ptr<const render::ClipSet> set;
     if (!scene.retouch.shown_at.empty()) set = std::make_shared<render::ClipSet>(scenario);
     for (std::size_t c = 0; c < scene.motion.clips.size(); ++c) {
       const std::string name = scene.motion.clips[c].name;
       const std::string old_name = render::file_name_of(codec, name),
-                        new_name = render::file_name_of(render::Codec::ffv1, name);
+                        new_name = render::file_name_of(render::Codec::magicyuv, name);
       const fs::path anew = folder / "clips" / ("anew-" + new_name);
       file_anew(scene, c,
                 set ? drawn_anew(set, c, scene.retouch.shown_at[c])

@@ -33,7 +33,7 @@ BlindCamera draw_camera(BlindRandom& random, bool lossless) {
   const double longest_line_s = 0.9 / camera.rate_hz / camera.height_px;
   if (uniform(random, 0.0, 1.0) < 0.25) camera.line_s = uniform(random, 0.3, 1.0) * longest_line_s;
   const double file = uniform(random, 0.0, 1.0);
-  camera.codec = lossless || file < 0.65 ? "ffv1" : file < 0.85 ? "mjpeg" : "h264";
+  camera.codec = lossless || file < 0.65 ? "magicyuv" : file < 0.85 ? "mjpeg" : "h264";
   camera.quality = static_cast<int>(uniform(random, 85.0, 97.0));
   camera.crf = std::floor(uniform(random, 14.0, 21.0));
   return camera;

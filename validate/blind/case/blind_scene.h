@@ -25,11 +25,11 @@ struct BlindCamera {
   double line_s = 0.0;                     ///< above 0: rolling
   double full_well_e = 0.0, read_noise_e = 0.0, prnu = 0.0;
   std::string tone;   ///< "linear", "gamma" or "bt709"
-  std::string codec;  ///< "ffv1", "mjpeg" or "h264"
+  std::string codec;  ///< "magicyuv", "mjpeg" or "h264"
   int quality = 95;   ///< of mjpeg
   double crf = 18.0;  ///< of h264
 
-  bool lossy() const { return codec != "ffv1"; }
+  bool lossy() const { return codec != "magicyuv"; }
   double px_per_m() const { return focal_px / z_m; }
 };
 

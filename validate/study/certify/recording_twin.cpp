@@ -235,7 +235,7 @@ render::Scenario changed(const RecordingTwin& twin, const TwinChange& change, st
   render::Scenario scenario = explained(twin, explanation_of(twin, seed));
   scenario.recording.clock.rate_error_ppm += clock_ppm;
   scenario.marker.diameter_m *= change.marker;
-  if (change.lossless) scenario.codec = render::Codec::ffv1;
+  if (change.lossless) scenario.codec = render::Codec::magicyuv;
   if (change.noise != 1.0) scale_noise(scenario.sensor, change.noise);
   if (change.nominal) take_out_causes(scenario);
   if (change.twice) {

@@ -261,7 +261,7 @@ std::vector<Limit> RecordedRuns::limits() {
   }
   if (render::lossy(setting.scenario.codec)) {
     changed = setting;
-    changed.scenario.codec = render::Codec::ffv1;
+    changed.scenario.codec = render::Codec::magicyuv;
     try_without("codec (lossless instead, by runs)", changed, options_.confirm);
   }
   if (true_camera(setting.scenario.camera)) {
