@@ -3,7 +3,8 @@
 ///
 /// Every engine is std::mt19937_64. It is seeded by a seed sequence of the seed's two halves and, if present, a number
 /// (of the track or case) and the use's word. The draws for a given seed therefore stay the same as long as these stay
-/// the same.
+/// the same. Each use names the file that it was made for; recording_twin.h draws the noise of a twin's tracks by
+/// number, and a twin's clock and scale as the clock of a replicate.
 #pragma once
 
 #include <cstdint>
