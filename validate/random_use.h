@@ -3,12 +3,14 @@
 ///
 /// Every engine is std::mt19937_64. It is seeded by a seed sequence of the seed's two halves and, if present, a number
 /// (of the track or case) and the use's word. The draws for a given seed therefore stay the same as long as these stay
-/// the same. Each use names the file that it was made for; recording_twin.h draws the noise of a twin's tracks by
-/// number, and a twin's clock and scale as the clock of a replicate.
+/// the same. Each use names the file that draws so.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <random>
+
+#include "render/random/streams.h"
 
 namespace glidelab::validate {
 
@@ -21,7 +23,15 @@ enum class RandomUse : std::uint32_t {
   challenge = 0x63686C67,       ///< "chlg" (challenge_case.h)
   twin_remainder = 0x74777265,  ///< "twre" (recording_twin.h)
   twin_explanation = 0x74776578,  ///< "twex": no number (recording_twin.h)
+  twin_noise = 0x74776E6F,        ///< "twno" (recording_twin.h)
+  twin_camera = 0x74776361,       ///< "twca": no number; clock and scale of a twin (recording_twin.h)
 };
+
+inline constexpr std::array kRandomUses = {
+    RandomUse::by_number,   RandomUse::clock_rate, RandomUse::bootstrap,      RandomUse::everyday_case,
+    RandomUse::filmed_case, RandomUse::challenge,  RandomUse::twin_remainder, RandomUse::twin_explanation,
+    RandomUse::twin_noise,  RandomUse::twin_camera};
+static_assert(render::all_distinct(kRandomUses), "two uses would draw the same random numbers");
 
 /// {seed low, seed high, number}, followed by the use's word if it has one.
 inline std::mt19937_64 random_engine(RandomUse use, std::uint64_t seed, std::uint64_t number) {
@@ -40,6 +50,11 @@ inline std::mt19937_64 random_engine(RandomUse use, std::uint64_t seed) {
   std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                          static_cast<std::uint32_t>(use)};
   return std::mt19937_64(sequence);
+}
+
+/// The use's word alone: the same draws for every seed.
+inline std::mt19937_64 random_engine(RandomUse use) {
+  return std::mt19937_64(static_cast<std::uint64_t>(use));
 }
 
 /// The seed of replicate or film `number` of a seed: those of neighbouring seeds coincide only after a million numbers.

@@ -78,8 +78,8 @@ void add_certify(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CertifyCommand>();
   CLI::App* command = app.add_subcommand(
       "certify",
-      "Can I trust it on my recording? Record and analyse twins of it: do the stated intervals hold, what "
-      "limits it, what would help");
+      "Find out whether the results of a recording can be trusted: do its intervals hold in twins of it, what limits "
+      "them, what would help");
   command
       ->add_option("EXPERIMENT", options->experiments,
                    "Folders that hold an experiment.toml; several share the glider and the track. Or files with a "

@@ -19,11 +19,19 @@ enum class RandomPurpose : std::uint32_t {
   fixed_pattern = 2,      ///< differences among a sensor's pixels: {pixel, 0, 0}
   frame_clock = 3,        ///< jitter, dropped and repeated frames: {slot, 0, stream}
   pattern_poses = 4,      ///< poses of the calibration's boards: {view, number, 0}
+  // Of a sweep (validate/study/sweep/design/sweep.h), all {index low, index high, axis}:
+  sweep_seed = 0x5eed,     ///< the seed of a run
+  sweep_draw = 0xd4a3,     ///< the value of a random axis
+  sweep_stratum = 0x57a7,  ///< the place within a stratum
+  sweep_shift = 0x5b0b,    ///< the shift of a low-discrepancy sequence
+  sweep_permute = 0xfe15,  ///< the order of strata
 };
 
-inline constexpr std::array kRandomPurposes = {RandomPurpose::pixel_noise, RandomPurpose::exact_pixel_noise,
+inline constexpr std::array kRandomPurposes = {RandomPurpose::pixel_noise,   RandomPurpose::exact_pixel_noise,
                                                RandomPurpose::fixed_pattern, RandomPurpose::frame_clock,
-                                               RandomPurpose::pattern_poses};
+                                               RandomPurpose::pattern_poses, RandomPurpose::sweep_seed,
+                                               RandomPurpose::sweep_draw,    RandomPurpose::sweep_stratum,
+                                               RandomPurpose::sweep_shift,   RandomPurpose::sweep_permute};
 
 /// Streams: clips are numbered from 0, stills from here.
 inline constexpr std::uint32_t kFirstStillStream = 0x40000000u;

@@ -107,7 +107,7 @@ struct AnalysisSentence {
                        of.ratio > 1.0 ? "larger" : "smaller");
   }
   std::string operator()(const core::MarkerFittedAgain& of) const {
-    return fmt::format("the marker is fitted as a {}, before {}: seen in {} frames, {} without",
+    return fmt::format("the marker is fitted as a {} in front of {}: it is found in {} frames, in {} without this",
                        of.sphere ? "sphere that is lit from one side" : "disc",
                        of.still_background ? "the background that other frames show" : "what moves with it", of.seen,
                        of.seen_before);

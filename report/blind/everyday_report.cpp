@@ -52,7 +52,7 @@ std::string limits_text(const EverydayTarget& target) {
 std::string words_of_class(const std::string& kind) {
   if (kind == "one") return "one cause";
   if (kind == "two") return "two causes";
-  if (kind == "dirt") return "dirt alone";
+  if (kind == "dirt") return "small imperfections alone";
   if (kind == "outside") return "off the list";
   return "all";
 }
@@ -84,8 +84,8 @@ TextRows detail_rows(const EverydayScore& score) {
   const std::string& first = score.methods.front().name;
   add_rows("main cause helps most, claimed or not", score.main_helps, first, rows);
   add_rows("the verdict is unknown", score.unknown, first, rows);
-  rows.push_back(
-      {"claims that are a fair name of the dirt", "dirt alone", "", first, share_and_interval(score.fair_claim)});
+  rows.push_back({"claims that name most of the imperfections rightly", "small imperfections alone", "", first,
+                  share_and_interval(score.fair_claim)});
   return rows;
 }
 
@@ -247,7 +247,11 @@ std::vector<EverydayTarget> everyday_targets(const EverydayScore& score) {
   std::vector<EverydayTarget> targets = {
       {"the main cause is named first", sum_of(diagnosis.main_first), {}, 0.85, 1.0},
       {"two causes: both are named", sum_of(diagnosis.both), {}, 0.70, 1.0},
-      {"dirt alone: a cause with half of the excess is claimed", sum_of(diagnosis.false_claim), {}, 0.0, 0.05},
+      {"small imperfections alone: a cause with half of the excess is claimed",
+       sum_of(diagnosis.false_claim),
+       {},
+       0.0,
+       0.05},
       {"off the list: a wrong name above 0.8", sum_of(diagnosis.wrong_name), {}, 0.0, 0.03},
       {"recovered intervals hold the truth", all_covered(score, ""), {}, 0.90, 0.98}};
   EverydayTarget shares{"rms error of the shares of named causes", {}, {}, 0.0, 0.1};

@@ -357,7 +357,7 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
       {Drawing{script, std::vector{data}, {600, 60 + 24 * std::max(6, static_cast<int>(n))}},
        "How alike two effects (a row and a numbered column) are in these clips, with everything else fitted: at 1 they "
        "cannot be told apart, at 0 they can",
-       "Matrix of likeness between effects"}};
+       "Similarity of the effects"}};
 }
 
 }  // namespace glidelab::report

@@ -360,7 +360,7 @@ std::string routine_words(diagnose::Routine routine) {
       return "Check the stated downhill direction, inclinations and masses, then launch one glider both ways: friction "
              "slows it in both directions, an inclination does not.";
     case Routine::second_mass:
-      return "Record a second mass: with one mass, load-independent friction cannot be told from mu.";
+      return "Record a second mass: with one mass, load-independent friction cannot be told from µ.";
   }
   return {};
 }
@@ -412,8 +412,9 @@ struct Words {
   }
 
   std::string operator()(const diagnose::SharpenParameter& of) const {
-    const base::NamedUnit named =
-        of.effect.empty() ? base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""} : base::name_and_unit(of.key);
+    const base::NamedUnit named = !of.effect.empty() ? base::name_and_unit(of.key)
+                                  : of.key == "mu"   ? base::NamedUnit{"µ", ""}
+                                                     : base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""};
     const std::string weighed = weighed_words(of.weighed);
     std::string text = of.undecided.empty()
                            ? "Nothing else is likely."
@@ -432,7 +433,7 @@ struct Words {
           which);
     }
     if (of.one_mass) {
-      text += " With one mass, load-independent friction cannot be told from mu; a second mass would separate them.";
+      text += " With one mass, load-independent friction cannot be told from µ; a second mass would separate them.";
     }
     return text;
   }

@@ -20,6 +20,7 @@ constexpr double kNear = 0.25;     // of the remaining time to it
 constexpr double kSettled = 1e-9;  // of the limit's value
 constexpr double kLeg = 0.1;       // of u: its fall within one leg
 constexpr int kDrawn = 72;
+constexpr std::uint64_t kSeedOfDrawn = 20260101;  // any: the drawn settings are the same on every page
 constexpr int kReferencePoints = 6;
 
 void add_drag(sim::Body& body, double k, double n) {
@@ -153,7 +154,7 @@ void add_corners(PhaseExplorer& explorer) {
 }
 
 void add_drawn(PhaseExplorer& explorer) {
-  std::mt19937_64 random(20260101);
+  std::mt19937_64 random(kSeedOfDrawn);
   const auto draw = [&](const ExplorerRange& range) {
     return range.low + (range.high - range.low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };

@@ -299,7 +299,7 @@ void move_at(const sim::Body& body, const sim::MotionSetup& motion, const std::v
 
 void add_errors(const RecordingTwin& twin, const ClipNoise& noise, double scale, std::uint64_t seed, std::size_t clip,
                 std::vector<double>& x_m) {
-  std::mt19937_64 engine = random_engine(RandomUse::by_number, seed, clip);
+  std::mt19937_64 engine = random_engine(RandomUse::twin_noise, seed, clip);
   std::normal_distribution<double> deviate(0.0, 1.0);
   double lasting = deviate(engine);
   const double fresh = std::sqrt(1.0 - noise.rho * noise.rho);
@@ -463,7 +463,7 @@ MadeTracks filmed(const RecordingTwin& twin, const TwinChange& change, const ren
 
 MadeTracks record_twin(const RecordingTwin& twin, const TwinChange& change, std::uint64_t seed, TwinStudios& studios,
                        const base::Progress& progress) {
-  std::mt19937_64 engine = random_engine(RandomUse::clock_rate, seed);
+  std::mt19937_64 engine = random_engine(RandomUse::twin_camera, seed);
   std::normal_distribution<double> deviate(0.0, 1.0);
   const double clock_ppm = 1e6 * core::kClockSdRelative * deviate(engine);
   const double scale = 1.0 + (change.camera_known ? 0.0 : twin.scale_sd_relative * deviate(engine));

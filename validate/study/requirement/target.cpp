@@ -88,7 +88,7 @@ void set_limits(const std::vector<double>& sizes, Measure of, double confidence,
 }
 
 double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
-  std::mt19937_64 random(static_cast<std::uint64_t>(RandomUse::bootstrap));
+  std::mt19937_64 random = random_engine(RandomUse::bootstrap);
   std::vector<double> resample(sizes.size()), found(kResamples);
   for (double& value : found) {
     for (double& size : resample) size = sizes[random() % sizes.size()];

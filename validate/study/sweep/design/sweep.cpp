@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 #include "base/math/distributions.h"
-#include "render/random/random_numbers.h"
+#include "render/random/streams.h"
 
 namespace glidelab::validate {
 
@@ -20,19 +20,10 @@ std::string Analysis::name() const {
 
 namespace {
 
-/// The use of random words; the last word of the counter.
-enum Purpose : std::uint32_t {
-  kSeedOfRun = 0x5eed,
-  kDraw = 0xd4a3,
-  kStratum = 0x57a7,
-  kShift = 0x5b0b,
-  kPermute = 0xfe15
-};
-
-std::uint64_t words(std::uint64_t key, std::uint64_t index, std::uint32_t axis, Purpose purpose) {
+std::uint64_t words(std::uint64_t key, std::uint64_t index, std::uint32_t axis, render::RandomPurpose purpose) {
   const render::PhiloxCounter drawn =
-      render::philox({static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), axis, purpose},
-                     {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)});
+      render::random_words(purpose, {static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), axis},
+                           {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)});
   return static_cast<std::uint64_t>(drawn[0]) << 32 | drawn[1];
 }
 
@@ -61,7 +52,7 @@ std::uint64_t permuted(std::uint64_t index, std::uint64_t count, std::uint64_t k
   do {
     std::uint64_t left = value >> half, right = value & mask;
     for (std::uint32_t round = 0; round < 4; ++round) {
-      const std::uint64_t mixed = left ^ (words(key, right, round, kPermute) & mask);
+      const std::uint64_t mixed = left ^ (words(key, right, round, render::RandomPurpose::sweep_permute) & mask);
       left = right;
       right = mixed;
     }
@@ -134,7 +125,7 @@ std::uint64_t run_count(const Sweep& sweep) {
 }
 
 std::uint64_t seed_of(const Sweep& sweep, std::uint64_t run) {
-  return words(sweep.seed, run, 0, kSeedOfRun) >> 1;  // fits a signed number, as used in files
+  return words(sweep.seed, run, 0, render::RandomPurpose::sweep_seed) >> 1;  // fits a signed number, as used in files
 }
 
 std::vector<base::TomlScalar> values_of(const Sweep& sweep, std::uint64_t run) {
@@ -148,7 +139,7 @@ std::vector<base::TomlScalar> values_of(const Sweep& sweep, std::uint64_t run) {
     const AxisSource& source = sweep.axes[i].source;
     const auto number = static_cast<std::uint32_t>(i);
     if (source.drawn()) {
-      values[i] = value_at(source, unit(words(sweep.seed, run, number, kDraw)));
+      values[i] = value_at(source, unit(words(sweep.seed, run, number, render::RandomPurpose::sweep_draw)));
       continue;
     }
     --dimension;
@@ -157,11 +148,13 @@ std::vector<base::TomlScalar> values_of(const Sweep& sweep, std::uint64_t run) {
       values[i] = all[rest % all.size()];
       rest /= all.size();
     } else if (sweep.design == Design::latin_hypercube) {
-      const std::uint64_t stratum = permuted(point, sweep.samples, words(sweep.seed, 0, number, kPermute));
-      const double within = unit(words(sweep.seed, point, number, kStratum));
+      const std::uint64_t stratum =
+          permuted(point, sweep.samples, words(sweep.seed, 0, number, render::RandomPurpose::sweep_permute));
+      const double within = unit(words(sweep.seed, point, number, render::RandomPurpose::sweep_stratum));
       values[i] = value_at(source, (static_cast<double>(stratum) + within) / static_cast<double>(sweep.samples));
     } else {
-      values[i] = value_at(source, sobol(dimension, designed, point, words(sweep.seed, 0, number, kShift)));
+      values[i] = value_at(
+          source, sobol(dimension, designed, point, words(sweep.seed, 0, number, render::RandomPurpose::sweep_shift)));
     }
   }
   return values;
