@@ -1,4 +1,4 @@
-/// A magnetic drag K v / (1 + (v/v_c)²): eddy currents grow less than in proportion to the speed. Fitted: 1/v_c².
+/// A magnetic drag K v / (1 + (v/v_c)²): eddy currents grow more slowly than the speed. Fitted: 1/v_c².
 #include "diagnose/effects/effect.h"
 
 #include <cmath>
