@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kSameScale = 1.05;
 
-/// `share` of the way from the set-up's own middle to that of all.
+/// For each set-up, the position at `share` of the distance from the set-up's own middle to the middle of all.
 std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, double share_sd) {
   std::vector<DiagnosedParameter> parameters;
   for (std::size_t g = 0; g < set.groups.size(); ++g) {
@@ -30,7 +30,7 @@ std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, doubl
   return parameters;
 }
 
-/// Pixels of a metre along the motion; 0 where the clips do not have one.
+/// Pixels per metre along the motion; 0 if the clips do not agree on it.
 double px_per_m(const PictureEvidence& pictures) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const FilmedClip& clip : pictures.clips) {
@@ -83,9 +83,9 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
 
 namespace {
 
-constexpr double kBelowZero = 5.0;    // standard deviations from which on a drag or friction counts as negative
-constexpr double kContradicts = 5.0;  // standard deviations of a statement from everything else
-constexpr double kLargePart = 0.2;    // of the motion: from here on a reader must know that it is set aside
+constexpr double kBelowZero = 5.0;    // standard deviations below 0 at which a drag or friction counts as negative
+constexpr double kContradicts = 5.0;  // standard deviations between a statement and everything else
+constexpr double kLargePart = 0.2;    // of the motion: from here on the reader must be told that it is set aside
 
 std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
   std::vector<NegativeLoss> found;
@@ -108,7 +108,7 @@ std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, co
   return found;
 }
 
-/// Positions that no explanation answers for: those that look like a hand or a stop, or lie far off.
+/// Positions that no explanation covers: those that look like a hand or a stop, or that lie far off.
 std::optional<SetAside> set_aside(const TrackSet& set) {
   double points = 0.0, outliers = 0.0;
   for (const TrackedMotion& motion : set.motions) {
@@ -131,12 +131,12 @@ VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit) {
 
 namespace {
 
-constexpr double kNotable = 3.0;  // log evidence from which on an unnamed family is worth a region
+constexpr double kNotable = 3.0;  // log evidence from which a function without a name is worth a region
 constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
-constexpr double kBelieved = 2.0;  // times what accelerations lack, up to which a size is believed: a fit takes up some
+constexpr double kBelieved = 2.0;  // times what the accelerations lack: a larger size is not believed
 
-/// Place, speed and acceleration of what a fit leaves of a motion, each at its largest; the latter two by the parabola
+/// The largest residual of a motion's positions and its largest first and second time derivative, these by the parabola
 /// through nine neighbours at even times, none of them set aside.
 struct LargestRest {
   double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;
@@ -215,16 +215,16 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
   const Lacking most = most_lacking(set, nominal);
   std::vector<const UnnamedFamily*> sorted;
   for (const UnnamedFamily& family : families) sorted.push_back(&family);
-  // The evidence is that of a linear neighbourhood: where it is large it is not known to a hundredth, and what clips
-  // share goes before curves of each.
+  // The evidence holds in a linear neighbourhood. Where it is large it is not known to a hundredth, and a function that
+  // clips share goes before curves of each clip's own.
   const auto weight = [](const UnnamedFamily* family) {
     return (family->variable == GapVariable::clip ? 0.99 : 1.0) * family->log_evidence;
   };
   std::sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return weight(a) > weight(b); });
-  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
+  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // corrected for as many looks
   std::set<std::pair<GapVariable, GapKind>> shown;                                   // variables and what acts there
   for (const UnnamedFamily* family : sorted) {
-    // What a verdict rests on has its place named, however many looks there were.
+    // The function on which a verdict rests has its place named, however many looks there were.
     const bool rests = diagnosis.verdict == Verdict::unknown && diagnosis.regions.empty() && family == sorted.front();
     if (family->log_evidence < (rests ? 0.0 : notable)) break;
     const auto what = std::pair(family->variable, family->what);
@@ -250,7 +250,7 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
         const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
                                        [&](const GapRegion& other) { return other.clip == clip.name; });
-        if (named) continue;  // by what explains it better
+        if (named) continue;  // by a function that explains it better
         region.variable = GapVariable::time;
         region.clip = clip.name;
         region.from = 0.0;
