@@ -263,7 +263,7 @@ std::size_t Choice::path_at_start() const {
                                       : fmt::format("frame {}, which start_s names", start_frame_),
                     best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
         fmt::format("one of about {:.1f} px radius within {:.0f} px{}", radius_px_, allowed,
-                    start_frame_ == 0 ? "; of one that comes into view later, start_s in its [[clip]] says when "
+                    start_frame_ == 0 ? "; for one that comes into view later, start_s in its [[clip]] says when "
                                         "it is there"
                                       : "")));
   }
@@ -278,11 +278,11 @@ std::size_t Choice::resting_path(std::vector<Note>& notes) const {
     if (2 * paths_[i].seen.size() >= frames_ && ratio > 0.75 && ratio < 1.33) candidates.push_back(i);
   }
   if (candidates.size() != 1) {
-    throw NoMarker(
-        issue(fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
-                          candidates.empty() ? "" : fmt::format(", and {} such things rest", candidates.size())),
-              "a marker of the stated diameter, brighter or darker than its surroundings (or of the stated colour), or "
-              "start_px"));
+    throw NoMarker(issue(
+        fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
+                    candidates.empty() ? "" : fmt::format(", and {} such objects are at rest", candidates.size())),
+        "a marker of the stated diameter, brighter or darker than its surroundings (or of the stated colour), or "
+        "start_px"));
   }
   notes.emplace_back(MarkerAtRest{});
   return candidates.front();
