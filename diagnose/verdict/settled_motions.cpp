@@ -48,7 +48,7 @@ void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
         {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
          fmt::format("clip \"{}\"", set.clips[c].name),
          of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
-         fmt::format("at least {} in all clips together: fewer carry no verdict", kFewestPositions)});
+         fmt::format("at least {} in all clips together: fewer support no verdict", kFewestPositions)});
   }
   throw base::InputError(std::move(issues));
 }

@@ -26,7 +26,7 @@ EffectInfo power_law_drag() {
   return {
       .id = ids::power_law_drag,
       .stage = Stage::dynamics,
-      .words = "a drag that grows with another power of the speed",
+      .words = "a drag that grows as some other power of the speed",
       .name = "power-law drag",
       .meaning = "K v becomes K v |v|^(n − 1), v in m/s",
       .search = Search::amplitude,

@@ -31,7 +31,7 @@ EffectInfo rotational_inertia() {
   return {
       .id = ids::rotational_inertia,
       .stage = Stage::dynamics,
-      .words = "inertia without weight, such as that of wheels, or of air or water that moves along",
+      .words = "inertia without weight, such as that of wheels, or of air or water that moves with the glider",
       .name = "inertia without weight",
       .meaning = "m dv/dt becomes (m + mass) dv/dt",
       .search = Search::amplitude,
