@@ -153,8 +153,8 @@ std::optional<MarkerLighting> lighting_of(const std::vector<MarkerFit>& fits) {
     if (fit.rms > 0.0) outlines.push_back(&fit);
   }
   if (outlines.size() < kFewest) return std::nullopt;
-  const cv::Point2d way = outlines.back()->centre - outlines.front()->centre;
-  const cv::Point2d direction = cv::norm(way) > 0.0 ? way / cv::norm(way) : cv::Point2d(1.0, 0.0);
+  const cv::Point2d travel = outlines.back()->centre - outlines.front()->centre;
+  const cv::Point2d direction = cv::norm(travel) > 0.0 ? travel / cv::norm(travel) : cv::Point2d(1.0, 0.0);
   for (const MarkerFit* fit : outlines) {
     contrasts.push_back(fit->amplitude);
     pulls.push_back(cv::norm(fit->light_px));

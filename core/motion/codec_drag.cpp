@@ -23,7 +23,7 @@ constexpr double kHeld_px = 0.05;                        // per frame; a slower 
 // each side.
 constexpr std::array<double, 3> kHandedOn{0.3, 0.5, 0.7};
 constexpr std::size_t kLeastHanded = 0, kUsualHanded = 1, kMostHanded = 2;
-constexpr double kLeastWay_px = 2.0;  // least distance of a marker that moves
+constexpr double kLeastTravel_px = 2.0;  // least distance of a marker that moves
 constexpr double kPeriod_px =
     2.0;  // per frame, of h: below it nothing of h recurs, and it looks like any law of motion
 constexpr double kFewestPoints = 60.0;
@@ -56,7 +56,7 @@ std::optional<ImagePath> path_of(const TrackData& track) {
   path.direction = axes.vectors.col(1);
   const Eigen::VectorXd along = base::product(place, axes.vectors.col(1));
   const double reach = along.cwiseAbs().maxCoeff();
-  if (!(along.maxCoeff() - along.minCoeff() > kLeastWay_px)) return {};
+  if (!(along.maxCoeff() - along.minCoeff() > kLeastTravel_px)) return {};
   // x as a cubic of the position in the image: perspective and distortion are smooth.
   constexpr Eigen::Index kCoefficients = 4;
   Eigen::MatrixXd powers(n, kCoefficients);

@@ -51,7 +51,7 @@ constexpr double kAnyPushes = 0.1;   // of late releases: pushes of any size and
 constexpr double kPushSpread = 0.5;  // standard deviation of one hand's pushes, relative to their mean
 
 /// The direction in which a motion starts: 1 or -1.
-double way_of(const FitMotion& motion) {
+double start_direction(const FitMotion& motion) {
   const auto moves = std::find_if(motion.v_m_s.begin(), motion.v_m_s.end(), [](double v) { return v != 0.0; });
   return moves != motion.v_m_s.end() && *moves < 0.0 ? -1.0 : 1.0;
 }
@@ -127,7 +127,7 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
       const double norm = fit.motions[i].own.col(o).norm();
       const double size = fit.at.own[i][o], seen = std::abs(size) * norm;
       if (own[static_cast<std::size_t>(o - 2)] == parameter_of(kPush)) {
-        if (norm > 0.0) pushes.add(size * way_of(fit.motions[i]), 1.0 / norm);
+        if (norm > 0.0) pushes.add(size * start_direction(fit.motions[i]), 1.0 / norm);
         continue;
       }
       if (is_phase(own[static_cast<std::size_t>(o - 2)])) {

@@ -240,7 +240,7 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
     for (double power = 0.0; power <= decades; power += step) look(member, most * std::pow(10.0, -power));
   };
   const auto refine = [&](double RemainderSizes::*member, double ratio) {
-    for (int way = 0; way < 2; ++way, ratio = 1.0 / ratio) {
+    for (int direction = 0; direction < 2; ++direction, ratio = 1.0 / ratio) {
       for (int step = 0; step < 6 && best.sizes.*member > 0.0; ++step) {
         if (!look(member, best.sizes.*member * ratio)) break;
       }

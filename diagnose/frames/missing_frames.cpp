@@ -57,11 +57,11 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
     // The neighbours must show the jump themselves.
     // Compared with the six steps around, or, if these differ much, as near a reversal, with the two beside it.
     const auto& late = space.fit().late[i];
-    const double way = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // without the known losses
+    const double moved = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // without the known losses
     const double after = f + 1 < data.x_m.size() ? data.x_m[f + 1] - data.x_m[f] : data.x_m[f - 1] - data.x_m[f - 2];
     const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
-    double jump = way - usual_step(data.x_m, f);
-    const double beside = way - 0.5 * (before + after);
+    double jump = moved - usual_step(data.x_m, f);
+    const double beside = moved - 0.5 * (before + after);
     if (std::abs(beside - v[f] * step) < std::abs(jump - v[f] * step)) jump = beside;
     if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_of(f)) continue;
     if (!known && std::abs(jump) < 3.0 * data.sd_of(f)) continue;

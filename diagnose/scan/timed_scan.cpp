@@ -146,7 +146,7 @@ constexpr double kPushStep_m_s2 = 1e-4;    // of the finite difference
 constexpr double kPushSpread = 0.5;  // sd of one hand's pushes about their common part, over that of the common part
 
 /// The direction of a motion at a time, or as soon after it as the motion moves: 1 or -1.
-double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
+double direction_at(const ScoreSpace& space, std::size_t motion, double t_s) {
   const auto& t = space.set().motions[motion].t_s;
   const auto& v = space.fit().motions[motion].v_m_s;
   std::size_t p = 0;
@@ -156,9 +156,9 @@ double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
 
 /// The matrix from independent unit deviates to the pushes of one hand, which act along the motions and are about
 /// equal.
-Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& ways) {
-  Eigen::MatrixXd sizes(ways.size(), ways.size() + 1);
-  sizes << ways, kPushSpread * Eigen::MatrixXd::Identity(ways.size(), ways.size());
+Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& directions) {
+  Eigen::MatrixXd sizes(directions.size(), directions.size() + 1);
+  sizes << directions, kPushSpread * Eigen::MatrixXd::Identity(directions.size(), directions.size());
   return sizes;
 }
 
@@ -220,9 +220,10 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
         products(a, b) = products(b, a) = space.dot(column, columns[static_cast<std::size_t>(b)]);
       }
     }
-    Eigen::VectorXd ways(n);
-    for (Eigen::Index k = 0; k < n; ++k) ways[k] = way_at(space, from_start[static_cast<std::size_t>(k)], t_r);
-    const Eigen::MatrixXd sizes = pushes_of_one_hand(ways), seen = base::product(products, sizes);
+    Eigen::VectorXd directions(n);
+    for (Eigen::Index k = 0; k < n; ++k)
+      directions[k] = direction_at(space, from_start[static_cast<std::size_t>(k)], t_r);
+    const Eigen::MatrixXd sizes = pushes_of_one_hand(directions), seen = base::product(products, sizes);
     const SpreadEvidence evidence =
         log_spread_evidence(base::transposed_product(sizes, seen), base::transposed_product(sizes, scores));
     const SpreadEvidence any = log_spread_evidence(products, scores);
@@ -234,7 +235,7 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
     const Eigen::MatrixXd covariance = base::product(base::product(sizes, evidence.covariance), sizes.transpose());
     // A hand pushes what it launches. It seldom holds back what it lets go, or does so in one clip and not in the next.
     const double one_sign =
-        log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
+        log_one_sign(push.cwiseProduct(directions), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
     const double of_one_hand = std::log1p(-kShareOfAnyPushes) + evidence.log_evidence + one_sign;
     const double of_any = std::log(kShareOfAnyPushes) + any.log_evidence;
     logs.push_back(base::log_sum({of_one_hand, of_any}));

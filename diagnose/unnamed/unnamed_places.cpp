@@ -206,17 +206,17 @@ bool swings_by_rounding(const TrackSet& set, double f_1_m, double range_m) {
 UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of(GapVariable::position, GapKind::displacement, "m");
-  std::vector<double> ways;
+  std::vector<double> steps;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const auto& at = space.modelled(i);
-    for (std::size_t p = 1; p < at.size(); ++p) ways.push_back(std::abs(at[p] - at[p - 1]));
+    for (std::size_t p = 1; p < at.size(); ++p) steps.push_back(std::abs(at[p] - at[p - 1]));
   }
   const double range = x.high - x.low;
-  if (ways.empty() || !(range > 0.0)) return family;
+  if (steps.empty() || !(range > 0.0)) return family;
   // Half of all frames lie closer together than this: at least two of them to a period. No more trials than
   // kMostSwings.
   const double step = 0.3 / range;
-  const double highest = std::min(0.5 / std::max(core::median_of(std::move(ways)), 1e-9), kMostSwings * step);
+  const double highest = std::min(0.5 / std::max(core::median_of(std::move(steps)), 1e-9), kMostSwings * step);
   std::vector<double> logs;
   const auto try_swing = [&](double f, const std::vector<TurningWaves>& waves) {
     SpreadEvidence evidence;

@@ -28,7 +28,7 @@ constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
 constexpr double kContradiction = 5.0;        // standard deviations between two statements
 constexpr double kLatestLaunch_s = 0.2;       // a motion that starts later is not the launch
 constexpr std::size_t kFirstPoints = 8;       // which show the direction of the launch,
-constexpr double kOtherWay = 10.0;            // by a displacement of so many standard deviations of a position
+constexpr double kOpposite_sd = 10.0;         // by a displacement of so many standard deviations of a position
 constexpr double kMisfit = 1.5;               // chi² per position above which the motion counts as not explained
 
 std::size_t points_of(const TrackSet& set) {
@@ -93,13 +93,13 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   if (!mixed.empty()) set.notes.emplace_back(SplitSetUps{std::move(mixed)});
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
-    const bool stated_way = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
-    if (!stated_way || motion.t_s.front() > kLatestLaunch_s) continue;
+    const bool direction_stated = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
+    if (!direction_stated || motion.t_s.front() > kLatestLaunch_s) continue;
     const std::size_t some = std::min<std::size_t>(kFirstPoints, motion.x_m.size() - 1);
-    const double way = motion.x_m[some] - motion.x_m.front();
+    const double displacement_m = motion.x_m[some] - motion.x_m.front();
     const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;
-    if (way * stated < -kOtherWay * motion.sd_m) {
-      set.notes.emplace_back(LaunchedOtherWay{setup.name, stated < 0.0});
+    if (displacement_m * stated < -kOpposite_sd * motion.sd_m) {
+      set.notes.emplace_back(OppositeLaunch{setup.name, stated < 0.0});
     }
   }
 }

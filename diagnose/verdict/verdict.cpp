@@ -269,9 +269,9 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   const bool beside_named =
       diagnosis.verdict == Verdict::unknown && !std::all_of(leading.begin(), leading.end(), differs_between_clips);
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
-  const bool wrong_way =
+  const bool drives =
       driven && diagnosis.verdict == Verdict::unknown;  // K or mu is negative: no function is known to be missing
-  if (wrong_way) {
+  if (drives) {
     diagnosis.stage = Stage::dynamics;
   } else if (diagnosis.verdict != Verdict::none) {
     if (diagnosis.verdict == Verdict::unknown) {
@@ -283,7 +283,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
-  if (diagnosis.verdict == Verdict::unknown && !wrong_way && set.clips.size() > 1 && noise_alone == nullptr) {
+  if (diagnosis.verdict == Verdict::unknown && !drives && set.clips.size() > 1 && noise_alone == nullptr) {
     // The likeliest function without a name stands for what is missing.
     const UnnamedFamily* family = likeliest_shared(families);
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;

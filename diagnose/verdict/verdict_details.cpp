@@ -23,9 +23,10 @@ constexpr double kSameScale = 1.05;
 std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, double share_sd) {
   std::vector<DiagnosedParameter> parameters;
   for (std::size_t g = 0; g < set.groups.size(); ++g) {
-    const double way = set.x_mid_m - set.groups[g].x_mid_m;
+    const double to_middle_m = set.x_mid_m - set.groups[g].x_mid_m;
     parameters.push_back({set.groups.size() == 1 ? "x_mid_m" : "x_mid_m." + own_name(set, g),
-                          set.groups[g].x_mid_m + share * way, way == 0.0 ? 0.0 : std::abs(way) * share_sd});
+                          set.groups[g].x_mid_m + share * to_middle_m,
+                          to_middle_m == 0.0 ? 0.0 : std::abs(to_middle_m) * share_sd});
   }
   return parameters;
 }

@@ -16,7 +16,7 @@ using tests::MadeEffect;
 using tests::MadeLaunch;
 constexpr tests::MadeGlider kGlider;
 
-double way(double v) {
+double sign_of(double v) {
   return v < 0.0 ? -1.0 : 1.0;
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("friction along the track is a sum of bumps less their means over the 
     for (std::size_t j = 0; j < sizes.size(); ++j) model.effects[diagnose::slot_of("place_friction", j)] = sizes[j];
     const double cos_alpha = std::cos(model.alpha_rad);
     CHECK(apart_m(model, launch, {.force = [&](double m, double x, double v, double) {
-                    return -way(v) * kGlider.mu * (bumps(x) - mean) * m * kGlider.gravity_m_s2 * cos_alpha;
+                    return -sign_of(v) * kGlider.mu * (bumps(x) - mean) * m * kGlider.gravity_m_s2 * cos_alpha;
                   }}) < kSmooth_m);
   }
 }

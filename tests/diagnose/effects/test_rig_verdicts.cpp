@@ -24,7 +24,7 @@ using tests::MadeEffect;
 using tests::MadeLaunch;
 constexpr tests::MadeGlider kGlider;
 
-double way(double v) {
+double sign_of(double v) {
   return v < 0.0 ? -1.0 : 1.0;
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("friction and drag that scatter from clip to clip are named, with thei
 TEST_CASE("a friction that changes along the track is named, with its size and place") {
   const auto s = [](double x) { return 0.5 * std::sin(std::numbers::pi * (x + 0.6) / 0.7); };
   const MadeEffect along{.force = [&](double m, double x, double v, double) {
-    return -way(v) * kGlider.mu * s(x) * m * kGlider.gravity_m_s2;
+    return -sign_of(v) * kGlider.mu * s(x) * m * kGlider.gravity_m_s2;
   }};
   const diagnose::Diagnosis diagnosis = diagnosed(twelve(), along, 5);
   // s has the mean 0 over the range of positions, and mu is the mean friction.
