@@ -13,13 +13,14 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kTail = 5.0, kPower = 2.45;                   // s and n of cause_odds.h
-constexpr double kNamed = 1.1, kLeft = 12.5, kLarger = 0.8;    // a, b and c of cause_odds.h
-constexpr double kLate = 3.2, kScatter = 1.8, kUnnamed = 1.4;  // log odds against each
-constexpr double kAnything = 1.0;                              // log odds against a function without a name alone
-constexpr double kImitated = 0.08;     // part of a cause's probability that belongs to a cause off the list
-constexpr double kFurther = 2.0;       // log odds against each further cause where the noise is negligible
-constexpr double kNotMeasured = -1.0;  // the excess of a gap of 0: no clip was held out
+constexpr double kTailScale = 5.0, kTailPower = 2.45;                     // s and n of cause_odds.h
+constexpr double kNameOdds = 1.1, kLeftSlope = 12.5, kExcessSlope = 0.8;  // a, b and c of cause_odds.h
+constexpr double kAgainstLateRelease = 3.2, kAgainstClipScatter = 1.8,
+                 kAgainstUnnamedBeside = 1.4;  // log odds against each
+constexpr double kAgainstUnnamedAlone = 1.0;   // log odds against a function without a name alone
+constexpr double kImitatedPart = 0.08;         // part of a cause's probability that belongs to a cause off the list
+constexpr double kAgainstFurtherCause = 2.0;   // log odds against each further cause where the noise is negligible
+constexpr double kNotMeasured = -1.0;          // the excess of a gap of 0: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // limits of E in cause_odds.h
 
 bool makes_a_gap(const Hypothesis& hypothesis) {
@@ -62,7 +63,7 @@ std::vector<SameCauses> by_causes(const std::vector<Hypothesis>& all) {
 }
 
 double tempered(double behind) {
-  return -kPower * std::log1p(behind / kTail);
+  return -kTailPower * std::log1p(behind / kTailScale);
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
   double best = -std::numeric_limits<double>::infinity();
   for (const SameCauses& group : groups) best = std::max(best, all[group.plain].log_evidence);
   const bool no_noise = excess.front() > kLargestExcess;
-  const double named = kNamed + kLarger * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
+  const double named = kNameOdds + kExcessSlope * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
   for (Hypothesis& one : all) {
     one.left = part_left(one.fit > 0 ? excess[static_cast<std::size_t>(one.fit)] : excess.front(), excess.front());
   }
@@ -82,15 +83,15 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
     const Hypothesis& one = all[group.plain];
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = tempered(best - evidence);
-    if (no_noise) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
-    if (makes_a_gap(one)) log += named - kLeft * *one.left;
+    if (no_noise) log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
+    if (makes_a_gap(one)) log += named - kLeftSlope * *one.left;
     if (one.unnamed && one.effects.empty()) {
-      log += std::max(0.0, named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
+      log += std::max(0.0, named - kAgainstUnnamedAlone - kLeftSlope * part_left(unnamed_excess, excess.front()));
     }
-    if (has(one, effect_index(ids::late_release))) log -= kLate;
-    if (has(one, effect_index(ids::clip_scatter))) log -= kScatter;
+    if (has(one, effect_index(ids::late_release))) log -= kAgainstLateRelease;
+    if (has(one, effect_index(ids::clip_scatter))) log -= kAgainstClipScatter;
     log += log_prior_odds(comparison, one);
-    if (one.unnamed) log -= kUnnamed;
+    if (one.unnamed) log -= kAgainstUnnamedBeside;
     logs.push_back(log);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
@@ -102,7 +103,7 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
     for (const std::size_t h : of) likeliest = std::max(likeliest, all[h].log_evidence);
     for (const std::size_t h : of) {
       const auto further = static_cast<double>(all[h].effects.size() - all[groups[g].plain].effects.size());
-      const double log = no_noise ? -kFurther * further : tempered(likeliest - all[h].log_evidence);
+      const double log = no_noise ? -kAgainstFurtherCause * further : tempered(likeliest - all[h].log_evidence);
       parts += all[h].probability = std::exp(log);
     }
     for (const std::size_t h : of) all[h].probability *= logs[g] / sum / parts;
@@ -126,8 +127,8 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
   }
   for (Hypothesis& one : all) {
     if (one.unnamed || !makes_a_gap(one)) continue;
-    unknown->probability += kImitated * one.probability;
-    one.probability *= 1.0 - kImitated;
+    unknown->probability += kImitatedPart * one.probability;
+    one.probability *= 1.0 - kImitatedPart;
   }
   set_probabilities(comparison);
 }

@@ -127,7 +127,8 @@ using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePie
                              SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
                              BeyondGravity, MeanIncline, TableOfLines, OnlyFalls>;
 
-/// One note; what copies, moves and destroys it is compiled once (note.cpp), as of core::Note.
+/// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
+/// why the two share no template.
 struct Note : AnyNote {
   using AnyNote::AnyNote;
   Note(const Note&);

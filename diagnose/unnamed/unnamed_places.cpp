@@ -21,7 +21,8 @@ constexpr double kMostPulls = 25.0;                   // periods of a force, whi
                                                       // they are
 constexpr double kMostSwings = 600;                   // periods that are tried in full
 constexpr double kFinestSwings = 2000;                // periods over the whole range: the pixels of a wide image
-constexpr double kShowsALittle = 3.0, kShows = 8.0;   // log likelihood above which a wave is tried on a finer grid
+constexpr double kLeastCoarseGain = 3.0,
+                 kLeastFineGain = 8.0;  // log likelihood above which a wave is tried on a finer grid
 
 struct Ranges {
   Grid x, v, t, speed;
@@ -180,7 +181,7 @@ class FineSwings {
     SpreadEvidence evidence;
     evidence.free_gain = 0.5 * sums.squaredNorm() / squares_;
     evidence.log_evidence = nothing_;
-    if (evidence.free_gain < kShowsALittle) return evidence;
+    if (evidence.free_gain < kLeastCoarseGain) return evidence;
     return log_spread_evidence(squares_ * Eigen::Matrix2d::Identity(), sums);
   }
 
@@ -234,7 +235,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   // the pixels' errors are in the fit.
   if (!set.pictures) {
     FineSwings fine(space, f, step);
-    double most = kShows, best_f = 0.0;
+    double most = kLeastFineGain, best_f = 0.0;
     std::size_t best = 0;
     for (; f < kFinestSwings / range; f += step) {
       const SpreadEvidence evidence = fine.next();

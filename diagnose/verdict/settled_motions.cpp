@@ -174,7 +174,7 @@ void settle(TrackSet& set) {
 
 /// A codec that predicts each image from earlier ones leaves a marker in place if it has moved by less than a few
 /// hundredths of a pixel. The slowest motion then looks like friction.
-constexpr double kHeldPx = 0.05;  // from one frame to the next
+constexpr double kHeldStep_px = 0.05;  // from one frame to the next
 
 /// Records whether the clips went through a lossy codec, as their files say or their images show.
 void note_loss(const PictureEvidence& pictures, TrackSet& set) {
@@ -188,7 +188,7 @@ void note_loss(const PictureEvidence& pictures, TrackSet& set) {
   if (!set.handed_on) return;
   for (const FilmedClip& clip : pictures.clips) {
     if (clip.px_per_m > 0.0) {
-      set.held_m_s = std::max(set.held_m_s, kHeldPx * clip.camera.frame_rate_hz / clip.px_per_m);
+      set.held_m_s = std::max(set.held_m_s, kHeldStep_px * clip.camera.frame_rate_hz / clip.px_per_m);
     }
   }
 }

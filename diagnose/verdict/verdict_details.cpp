@@ -135,7 +135,7 @@ namespace {
 constexpr double kNotable = 3.0;  // log evidence from which a function without a name is worth a region
 constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
-constexpr double kBelieved = 2.0;  // times what the accelerations lack: a larger size is not believed
+constexpr double kMostOverLacking = 2.0;  // times what the accelerations lack: a larger size is not believed
 
 /// The largest residual of a motion's positions and its largest first and second time derivative, these by the parabola
 /// through nine neighbours at even times, none of them set aside.
@@ -144,24 +144,24 @@ struct LargestRest {
 };
 
 LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>& rest_m) {
-  constexpr std::size_t kBeside = 4;
+  constexpr std::size_t kEachSide = 4;
   constexpr double kMean = 20.0 / 3.0, kSquares = 60.0, kFourths = 308.0;  // sums of k², and of (k² - mean)², k to 4
   constexpr double kUneven = 0.2;
   LargestRest largest;
   for (std::size_t p = 0; p < rest_m.size(); ++p) {
     if (motion.outlier[p] == 0) largest.x_m = std::max(largest.x_m, std::abs(rest_m[p]));
   }
-  for (std::size_t p = kBeside; p + kBeside < motion.t_s.size(); ++p) {
-    const double before = motion.t_s[p] - motion.t_s[p - kBeside], behind = motion.t_s[p + kBeside] - motion.t_s[p];
+  for (std::size_t p = kEachSide; p + kEachSide < motion.t_s.size(); ++p) {
+    const double before = motion.t_s[p] - motion.t_s[p - kEachSide], behind = motion.t_s[p + kEachSide] - motion.t_s[p];
     if (std::abs(behind - before) > kUneven * before) continue;
-    const double step = (before + behind) / (2.0 * kBeside);
+    const double step = (before + behind) / (2.0 * kEachSide);
     double first = 0.0, second = 0.0;
     bool aside = false;
-    for (std::size_t j = 0; j <= 2 * kBeside; ++j) {
-      const double k = static_cast<double>(j) - static_cast<double>(kBeside);
-      first += k * rest_m[p - kBeside + j];
-      second += (k * k - kMean) * rest_m[p - kBeside + j];
-      aside = aside || motion.outlier[p - kBeside + j] != 0;
+    for (std::size_t j = 0; j <= 2 * kEachSide; ++j) {
+      const double k = static_cast<double>(j) - static_cast<double>(kEachSide);
+      first += k * rest_m[p - kEachSide + j];
+      second += (k * k - kMean) * rest_m[p - kEachSide + j];
+      aside = aside || motion.outlier[p - kEachSide + j] != 0;
     }
     if (aside) continue;
     largest.v_m_s = std::max(largest.v_m_s, std::abs(first / (kSquares * step)));
@@ -242,7 +242,7 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
       GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
                        regions[r].size,  family->unit,    family->what,  ""};
       const double lacking = most.in(region.unit);
-      if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
+      if (std::abs(region.size) > kMostOverLacking * lacking) region.lacking = lacking;
       if (family->names.empty()) {
         region.size_sd = regions[r].sd;
         region.at = regions[r].at;

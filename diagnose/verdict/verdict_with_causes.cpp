@@ -25,8 +25,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeft = 0.5;    // probability of something without a name, above which a remainder is weighed
-constexpr double kDoubt = 0.05;  // probability of none or unknown, above which names by the noise alone are in doubt
+constexpr double kLeastUnknown = 0.5;  // probability of something without a name, above which a remainder is weighed
+constexpr double kLeastDoubt =
+    0.05;  // probability of none or unknown, above which names by the noise alone are in doubt
 constexpr double kMostOfOneClip = 0.999;  // the highest probability that one clip can support
 
 constexpr double kLeastNamed = 0.1;       // of the excess: a smaller share counts as part of the remainder
@@ -184,7 +185,7 @@ bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
   const Hypothesis* best = best_named(set, by_noise);
   if (best == nullptr || best->fit <= 0) return true;
   const bool is_law = best->effects.size() == 1 && !follows_each_clip(best->effects.front());
-  if (!is_law && by_noise.none + by_noise.unknown > kDoubt) return true;
+  if (!is_law && by_noise.none + by_noise.unknown > kLeastDoubt) return true;
   return has_gap(set, by_noise.fits[static_cast<std::size_t>(best->fit)]);
 }
 
@@ -195,7 +196,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   const std::set<std::size_t> without(left_out.begin(), left_out.end());
   const MotionFit& nominal = first.fits.front();
   std::optional<WeighedCauses> weighed;
-  if (first.unknown > kLeft || leaves_a_gap(set, first)) {
+  if (first.unknown > kLeastUnknown || leaves_a_gap(set, first)) {
     weighed = weigh_causes(set, first, without, jobs, &pictures,
                            [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
   }

@@ -121,10 +121,10 @@ void ClipRenderer::add_views(const FrameMotion& frame) {
   if (scenario_.mount.moves()) {
     const double open_s = scenario_.recording.exposure_s + scenario_.recording.shutter.readout_s();
     double path_px = 0.0;
-    constexpr int kLooks = 32;
+    constexpr int kSteps = 32;
     Eigen::Isometry3d before = mount_at(scenario_.mount, frame.start_s);
-    for (int i = 1; i <= kLooks; ++i) {
-      const Eigen::Isometry3d after = mount_at(scenario_.mount, frame.start_s + open_s * i / kLooks);
+    for (int i = 1; i <= kSteps; ++i) {
+      const Eigen::Isometry3d after = mount_at(scenario_.mount, frame.start_s + open_s * i / kSteps);
       path_px += picture_shift_px(camera, before.inverse() * after);
       before = after;
     }

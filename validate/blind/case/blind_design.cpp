@@ -36,10 +36,10 @@ using State = std::array<double, 2>;  // x, v
 constexpr double kTolerance = 1e-11;                                        // m, m/s: a millionth of the smallest noise
 constexpr double kLongestStep = 2e-3, kFirstStep = 1e-4, kRestStep = 2e-4;  // s
 constexpr std::size_t kHalvings = 60;                                       // of 2 ms: to rounding
-constexpr double kRunsAway = 1e3;                                           // m
+constexpr double kFarthest_m = 1e3;                                         // m
 constexpr std::size_t kMostSteps =
-    200'000;                        // of one motion: 40 s at rest; a vanishing mass under drag would take billions
-constexpr double kSetsOff = 1e-12;  // m/s: a speed that has a direction and moves nothing
+    200'000;  // of one motion: 40 s at rest; a vanishing mass under drag would take billions
+constexpr double kFirstSpeed_m_s = 1e-12;  // m/s: a speed that has a direction and moves nothing
 
 BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
   const double weight = law.mass_kg * law.gravity_m_s2;
@@ -55,7 +55,7 @@ BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
 int direction_from_rest(const BlindLaw& law, double x, double t) {
   const BlindTerms at_rest = terms_of(law, x, 0.0, t);
   const int direction = at_rest.drive_n - at_rest.drag_n > 0.0 ? 1 : -1;
-  const BlindTerms terms = terms_of(law, x, direction * kSetsOff, t);
+  const BlindTerms terms = terms_of(law, x, direction * kFirstSpeed_m_s, t);
   return direction * (terms.drive_n - terms.drag_n) > terms.friction_n ? direction : 0;
 }
 
@@ -98,7 +98,7 @@ class Glider {
       const double end = std::min(t, stepper.current_time());
       State next;
       stepper.calc_state(end, next);
-      if (!(std::abs(next[0]) < kRunsAway) || ++steps_ > kMostSteps) return lose();
+      if (!(std::abs(next[0]) < kFarthest_m) || ++steps_ > kMostSteps) return lose();
       if (next[1] * direction_ < 0.0) {
         stop_within(stepper, t_, end);
         return;
