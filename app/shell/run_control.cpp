@@ -26,11 +26,11 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 
 std::atomic<std::int64_t> first_s = 0;
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "likewise");
-constexpr std::int64_t kSeconds = 2;  // a sender to both the process and its group sends two at once
+constexpr std::int64_t kLeastBetweenSignals_s = 2;  // a sender to both the process and its group sends two at once
 
-sem_t asked;                                   // posted by the first signal
-std::atomic<int> keeping = 0;                  // scopes of keep_on_interrupt()
-constexpr timespec kPatience{0, 800'000'000};  // for work to see the flag and end by itself
+sem_t asked;                                      // posted by the first signal
+std::atomic<int> keeping = 0;                     // scopes of keep_on_interrupt()
+constexpr timespec kGracePeriod{0, 800'000'000};  // for work to see the flag and end by itself
 
 std::int64_t now_s() {
   timespec now = {};
@@ -44,7 +44,7 @@ void set_flag(int signal) {
   if (!flag.exchange(true)) {
     first_s = now_s();
     ::sem_post(&asked);
-  } else if (now_s() - first_s >= kSeconds) {
+  } else if (now_s() - first_s >= kLeastBetweenSignals_s) {
     ::_exit(128 + signal);
   }
 }
@@ -54,7 +54,7 @@ void set_flag(int signal) {
 void end_what_does_not_end() {
   while (::sem_wait(&asked) != 0) {
   }
-  timespec left = kPatience;
+  timespec left = kGracePeriod;
   while (::nanosleep(&left, &left) != 0) {
   }
   if (keeping > 0 || !base::discard_passing_folders()) return;  // ends after the current piece, or is about to end

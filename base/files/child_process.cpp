@@ -32,7 +32,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 /// Waits for the child and returns its status. Once `stop` returns true, its group is asked to end, and killed if it
 /// does not.
 int waited_for(pid_t child, const std::string& program, const std::function<bool()>& stop) {
-  constexpr auto kLook = std::chrono::milliseconds(20);
+  constexpr auto kPollInterval = std::chrono::milliseconds(20);
   constexpr int kPatience = 25;  // looks
   int status = 0, asked = 0;
   while (true) {
@@ -46,7 +46,7 @@ int waited_for(pid_t child, const std::string& program, const std::function<bool
       if (asked == 0) ::kill(-child, SIGTERM);
       if (asked++ == kPatience) ::kill(-child, SIGKILL);
     }
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPollInterval);
   }
 }
 

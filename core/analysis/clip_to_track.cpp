@@ -28,7 +28,7 @@ namespace {
 
 // For a marker of unstated brightness: the fraction of frames, from its first to its last, in which a good marker is
 // seen; and the factor by which a dark one must be seen more often than a bright one.
-constexpr double kWellSeen = 0.9, kFarBetter = 1.2;
+constexpr double kLeastSeenPart = 0.9, kLeastSeenRatio = 1.2;
 constexpr double kBlurRadii = 0.5;     // standard deviation of a blur that fills the hole of a ring
 constexpr double kLeastTravel = 1.5;   // radii from its first position
 constexpr double kSomeRadiusPx = 5.0;  // if the camera has no ray for any requested pixel: small, but visible
@@ -44,7 +44,7 @@ bool moves(const TrackedMarker& marker) {
 bool well_seen(const TrackedMarker& marker) {
   if (!moves(marker)) return false;
   const std::size_t span = marker.sightings.back().frame - marker.sightings.front().frame + 1;
-  return static_cast<double>(marker.sightings.size()) > kWellSeen * static_cast<double>(span);
+  return static_cast<double>(marker.sightings.size()) > kLeastSeenPart * static_cast<double>(span);
 }
 
 /// The marker's image in each frame, from the fits that found it.
@@ -179,7 +179,7 @@ SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const Cam
   try {
     SeenClip seen = look(dark);
     const double others = bright && moves(bright->marker) ? static_cast<double>(bright->marker.sightings.size()) : 0.0;
-    if (well_seen(seen.marker) && static_cast<double>(seen.marker.sightings.size()) > kFarBetter * others) {
+    if (well_seen(seen.marker) && static_cast<double>(seen.marker.sightings.size()) > kLeastSeenRatio * others) {
       seen.dark_marker = true;
       return seen;
     }
@@ -237,7 +237,7 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   if (seen && well_seen(seen->marker)) return *std::move(seen);
   const double seen_before = seen ? static_cast<double>(seen->marker.sightings.size()) : 0.0;
   const auto in_more_frames = [&](const SeenClip& found) {
-    return static_cast<double>(found.marker.sightings.size()) > kFarBetter * seen_before;
+    return static_cast<double>(found.marker.sightings.size()) > kLeastSeenRatio * seen_before;
   };
   std::vector<SeenClip> rough;
   for (const AnyShape& any : {AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}}) {

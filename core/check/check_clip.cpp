@@ -146,24 +146,24 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
 /// Empty for fewer than some twenty outlines (a centroid has none).
 std::optional<MarkerLighting> lighting_of(const std::vector<MarkerFit>& fits) {
   constexpr std::size_t kFewest = 20;
-  constexpr double kRare = 0.05;
+  constexpr double kTailQuantile = 0.05;
   std::vector<double> contrasts, pulls, along;
   std::vector<const MarkerFit*> outlines;
   for (const MarkerFit& fit : fits) {
     if (fit.rms > 0.0) outlines.push_back(&fit);
   }
   if (outlines.size() < kFewest) return std::nullopt;
-  const cv::Point2d way = outlines.back()->centre - outlines.front()->centre;
-  const cv::Point2d direction = cv::norm(way) > 0.0 ? way / cv::norm(way) : cv::Point2d(1.0, 0.0);
+  const cv::Point2d travel = outlines.back()->centre - outlines.front()->centre;
+  const cv::Point2d direction = cv::norm(travel) > 0.0 ? travel / cv::norm(travel) : cv::Point2d(1.0, 0.0);
   for (const MarkerFit* fit : outlines) {
     contrasts.push_back(fit->amplitude);
     pulls.push_back(cv::norm(fit->light_px));
     along.push_back(fit->light_px.dot(direction));
   }
   MarkerLighting light;
-  light.least_contrast = quantile(contrasts, kRare) / quantile(contrasts, 1.0 - kRare);
+  light.least_contrast = quantile(contrasts, kTailQuantile) / quantile(contrasts, 1.0 - kTailQuantile);
   light.pull_px = median_of(pulls);
-  light.pull_change_px = 0.5 * (quantile(along, 1.0 - kRare) - quantile(along, kRare));
+  light.pull_change_px = 0.5 * (quantile(along, 1.0 - kTailQuantile) - quantile(along, kTailQuantile));
   return light;
 }
 

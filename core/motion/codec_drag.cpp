@@ -21,9 +21,9 @@ constexpr Eigen::Index kWaves = 8, kTerms = kWaves + 1;  // down to a quarter of
 constexpr double kHeld_px = 0.05;                        // per frame; a slower marker is held
 // r: H.264 by x264 at 1 to 2 bits a pixel gives 0.3 to 0.5, and more when it compresses more. One standard deviation to
 // each side.
-constexpr std::array<double, 3> kHandedOn{0.3, 0.5, 0.7};
-constexpr std::size_t kLeastHanded = 0, kUsualHanded = 1, kMostHanded = 2;
-constexpr double kLeastWay_px = 2.0;  // least distance of a marker that moves
+constexpr std::array<double, 3> kCarriedOver{0.3, 0.5, 0.7};
+constexpr std::size_t kLeastCarried = 0, kUsualCarried = 1, kMostCarried = 2;
+constexpr double kLeastTravel_px = 2.0;  // least distance of a marker that moves
 constexpr double kPeriod_px =
     2.0;  // per frame, of h: below it nothing of h recurs, and it looks like any law of motion
 constexpr double kFewestPoints = 60.0;
@@ -56,7 +56,7 @@ std::optional<ImagePath> path_of(const TrackData& track) {
   path.direction = axes.vectors.col(1);
   const Eigen::VectorXd along = base::product(place, axes.vectors.col(1));
   const double reach = along.cwiseAbs().maxCoeff();
-  if (!(along.maxCoeff() - along.minCoeff() > kLeastWay_px)) return {};
+  if (!(along.maxCoeff() - along.minCoeff() > kLeastTravel_px)) return {};
   // x as a cubic of the position in the image: perspective and distortion are smooth.
   constexpr Eigen::Index kCoefficients = 4;
   Eigen::MatrixXd powers(n, kCoefficients);
@@ -159,12 +159,12 @@ FreePoints free_points(const Motion& motion, const ClipSetup& setup) {
 
 /// For each r.
 template <typename Of>
-using EachHanded = std::array<Of, kHandedOn.size()>;
+using EachCarried = std::array<Of, kCarriedOver.size()>;
 
 /// Freedom is 0 if there is no free motion.
-EachHanded<TrackSums> sums_of(const ClipSetup& setup, const TrackData& filed,
-                              const EachHanded<Eigen::MatrixXd>& terms) {
-  EachHanded<TrackSums> sums;
+EachCarried<TrackSums> sums_of(const ClipSetup& setup, const TrackData& filed,
+                               const EachCarried<Eigen::MatrixXd>& terms) {
+  EachCarried<TrackSums> sums;
   const TrackData track = put_right(filed, find_lost_frames(filed, motion_of(filed, setup.mass_kg)));
   const Motion measured = motion_of(track, setup.mass_kg);
   const Motion motion = without(measured, find_outliers(measured));
@@ -172,7 +172,7 @@ EachHanded<TrackSums> sums_of(const ClipSetup& setup, const TrackData& filed,
   if (free.point.empty()) return sums;
   const std::vector<std::optional<KernelRow>> rows = lawless_rows(free.input);
   const auto n = static_cast<Eigen::Index>(free.point.size());
-  constexpr auto kColumns = static_cast<Eigen::Index>(kHandedOn.size()) * kTerms;
+  constexpr auto kColumns = static_cast<Eigen::Index>(kCarriedOver.size()) * kTerms;
   Eigen::MatrixXd columns(n, kColumns + 1);
   const double middle_m = motion.y_m[free.point[free.point.size() / 2]];
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -265,8 +265,8 @@ std::vector<double> values_of(const Eigen::MatrixXd& terms, const Eigen::VectorX
 }  // namespace
 
 std::optional<CodecDrag> find_codec_drag(const std::vector<DragTrack>& tracks, bool predicts) {
-  std::vector<EachHanded<Eigen::MatrixXd>> terms(tracks.size());
-  EachHanded<std::vector<TrackSums>> sums;
+  std::vector<EachCarried<Eigen::MatrixXd>> terms(tracks.size());
+  EachCarried<std::vector<TrackSums>> sums;
   double points = 0.0, square = 0.0, count = 0.0;
   std::vector<double> px_per_m(tracks.size(), 0.0);
   double fastest_px = 0.0;  // per frame
@@ -277,24 +277,25 @@ std::optional<CodecDrag> find_codec_drag(const std::vector<DragTrack>& tracks, b
       fastest_px = std::max(fastest_px, std::abs(displacement(*tracks[i].track, *path, k)));
     }
     px_per_m[i] = 1.0 / path->m_per_px[path->m_per_px.size() / 2];
-    for (std::size_t r = 0; r < kHandedOn.size(); ++r) terms[i][r] = terms_of(*tracks[i].track, *path, kHandedOn[r]);
-    EachHanded<TrackSums> of_track = sums_of(*tracks[i].setup, *tracks[i].track, terms[i]);
+    for (std::size_t r = 0; r < kCarriedOver.size(); ++r)
+      terms[i][r] = terms_of(*tracks[i].track, *path, kCarriedOver[r]);
+    EachCarried<TrackSums> of_track = sums_of(*tracks[i].setup, *tracks[i].track, terms[i]);
     if (!(of_track[0].freedom > 0.0) || !(of_track[0].variance > 0.0)) continue;
     points += of_track[0].freedom;
-    for (std::size_t r = 0; r < kHandedOn.size(); ++r) sums[r].push_back(std::move(of_track[r]));
+    for (std::size_t r = 0; r < kCarriedOver.size(); ++r) sums[r].push_back(std::move(of_track[r]));
   }
   if (points < kFewestPoints || (!predicts && fastest_px < kPeriod_px)) return {};
-  EachHanded<Sizes> found;
-  for (std::size_t r = 0; r < kHandedOn.size(); ++r) found[r] = likeliest(std::move(sums[r]), predicts);
-  const Sizes& usual = found[kUsualHanded];
+  EachCarried<Sizes> found;
+  for (std::size_t r = 0; r < kCarriedOver.size(); ++r) found[r] = likeliest(std::move(sums[r]), predicts);
+  const Sizes& usual = found[kUsualCarried];
   CodecDrag drag;
   drag.log_evidence = usual.log_evidence;
   const auto of_tracks = [&](std::size_t r, const Eigen::VectorXd& size_px) {
     std::vector<std::vector<double>> all;
-    for (const EachHanded<Eigen::MatrixXd>& of_track : terms) all.push_back(values_of(of_track[r], size_px));
+    for (const EachCarried<Eigen::MatrixXd>& of_track : terms) all.push_back(values_of(of_track[r], size_px));
     return all;
   };
-  drag.drag_m = of_tracks(kUsualHanded, usual.size_px);
+  drag.drag_m = of_tracks(kUsualCarried, usual.size_px);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     for (const double x_m : drag.drag_m[i]) square += std::pow(x_m * px_per_m[i], 2);
     count += static_cast<double>(drag.drag_m[i].size());
@@ -302,11 +303,11 @@ std::optional<CodecDrag> find_codec_drag(const std::vector<DragTrack>& tracks, b
   drag.rms_px = std::sqrt(square / count);
   const base::SymmetricEigen modes = base::symmetric_eigen(usual.covariance_px2);
   for (Eigen::Index m = 0; m < kTerms; ++m) {
-    drag.error_m.push_back(of_tracks(kUsualHanded, std::sqrt(std::max(modes.values[m], 0.0)) * modes.vectors.col(m)));
+    drag.error_m.push_back(of_tracks(kUsualCarried, std::sqrt(std::max(modes.values[m], 0.0)) * modes.vectors.col(m)));
   }
   // The posterior of r.
-  std::vector<std::vector<double>> of_r = of_tracks(kMostHanded, found[kMostHanded].size_px);
-  const std::vector<std::vector<double>> least = of_tracks(kLeastHanded, found[kLeastHanded].size_px);
+  std::vector<std::vector<double>> of_r = of_tracks(kMostCarried, found[kMostCarried].size_px);
+  const std::vector<std::vector<double>> least = of_tracks(kLeastCarried, found[kLeastCarried].size_px);
   for (std::size_t i = 0; i < of_r.size(); ++i) {
     for (std::size_t k = 0; k < of_r[i].size(); ++k) of_r[i][k] = 0.5 * (of_r[i][k] - least[i][k]);
   }

@@ -65,14 +65,14 @@ void leave_out(const FreeStretch& stretch, double most_sd_m_s2, const std::vecto
                std::vector<StretchPoint>& points) {
   const std::size_t to = points.size();
   // If all of a is well known compared with its range, all points count.
-  constexpr double kWell = 0.02;
+  constexpr double kMostSdOverRange = 0.02;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t j = from; j < to; ++j) {
     if (!points[j].smoothed) continue;
     low = std::min(low, points[j].y.a_m_s2);
     high = std::max(high, points[j].y.a_m_s2);
   }
-  const double most = std::max(most_sd_m_s2, kWell * (high - low));
+  const double most = std::max(most_sd_m_s2, kMostSdOverRange * (high - low));
   const auto bad = [&](std::size_t j) { return !(sd_m_s2[points[j].point] <= most); };
   std::size_t start = from, end = to;
   while (start < to && bad(start)) ++start;

@@ -132,13 +132,13 @@ std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, s
                        "the motion of a body along a straight line, not a free flight, a swing or a turn; if y is no "
                        "place, say which column is x (--column)");
   }
-  const double way_x = range_of(path.x_m), way_y = range_of(path.y_m);
-  const bool upright = way_y > kOtherAxis * way_x;
+  const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
+  const bool upright = range_y > kOtherAxis * range_x;
   if (upright) {
     notes.emplace_back(
         AboutFile{fmt::format("y covers {:.3g} m and x only {:.2g} m: the motion is taken along y (--column says "
                               "otherwise)",
-                              way_y, way_x)});
+                              range_y, range_x)});
   }
   const double off_deg = upright ? 90.0 - slant_deg(path) : slant_deg(path);
   if (off_deg > kSlanted_deg) {

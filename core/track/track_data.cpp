@@ -121,15 +121,15 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 
 void count_along_motion(TrackData& track) {
   const auto [low, high] = std::minmax_element(track.x_m.begin(), track.x_m.end());
-  double way = track.x_m.back() - track.x_m.front();
-  if (std::abs(way) < kHardlyTurns * (*high - *low)) {
+  double displacement = track.x_m.back() - track.x_m.front();
+  if (std::abs(displacement) < kHardlyTurns * (*high - *low)) {
     // From the positions at both ends and at the middle of the time: the direction of the acceleration.
     const double middle_s = 0.5 * (track.t_s.front() + track.t_s.back());
     const auto at =
         static_cast<std::size_t>(std::lower_bound(track.t_s.begin(), track.t_s.end(), middle_s) - track.t_s.begin());
-    way = track.x_m.front() + track.x_m.back() - 2.0 * track.x_m[at];
+    displacement = track.x_m.front() + track.x_m.back() - 2.0 * track.x_m[at];
   }
-  if (!(way < 0.0)) return;
+  if (!(displacement < 0.0)) return;
   for (double& x : track.x_m) x = -x;
   for (double& force : track.force_n) force = -force;
   track.notes.emplace_back(AboutFile{"x is counted along the motion: its values are taken with the other sign"});

@@ -13,21 +13,23 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kTail = 5.0, kPower = 2.45;                   // s and n
-constexpr double kNamed = 1.1, kLeft = 12.5, kLarger = 0.8;    // a, b and c
-constexpr double kLate = 3.2, kScatter = 1.8, kUnnamed = 1.4;  // log odds against
-constexpr double kAnything = 1.0;                         // log odds against a function without a name, of anything
-constexpr double kImitated = 0.08;                        // of a cause's probability: one off the list that it imitates
-constexpr double kFurther = 2.0;                          // log odds against a further cause, without noise
-constexpr double kNotMeasured = -1.0;                     // a gap of nothing: no clip was held out
-constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // between which a larger excess speaks for a cause
+constexpr double kTailScale = 5.0, kTailPower = 2.45;                     // s and n of cause_odds.h
+constexpr double kNameOdds = 1.1, kLeftSlope = 12.5, kExcessSlope = 0.8;  // a, b and c of cause_odds.h
+constexpr double kAgainstLateRelease = 3.2, kAgainstClipScatter = 1.8,
+                 kAgainstUnnamedBeside = 1.4;  // log odds against each
+constexpr double kAgainstUnnamedAlone = 1.0;   // log odds against a function without a name alone
+constexpr double kImitatedPart = 0.08;         // part of a cause's probability that belongs to a cause off the list
+constexpr double kAgainstFurtherCause = 2.0;   // log odds against each further cause where the noise is negligible
+constexpr double kNotMeasured = -1.0;          // the excess of a gap of 0: no clip was held out
+constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // limits of E in cause_odds.h
 
 bool makes_a_gap(const Hypothesis& hypothesis) {
   return std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
                      [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
 }
 
-/// Friction and drag of each clip are what the remainder of the nominal model has too: as much evidence as nothing.
+/// The remainder of the nominal model contains friction and drag of each clip too, so clip scatter has at least its
+/// evidence.
 bool is_clip_scatter(const Hypothesis& hypothesis) {
   return hypothesis.effects == std::vector<std::size_t>{effect_index(ids::clip_scatter)};
 }
@@ -37,8 +39,8 @@ double part_left(double left, double before) {
   return std::clamp(left / before, 0.0, 1.0);
 }
 
-/// Explanations that differ in the scatter of single positions alone, which makes no gap: they are one explanation of
-/// it, and the one without any stands for them.
+/// Explanations that differ only in the scatter of single positions, which makes no gap. They are one explanation of
+/// the gap, and the one without scatter stands for them.
 struct SameCauses {
   std::size_t plain = 0;
   std::vector<std::size_t> all;
@@ -61,7 +63,7 @@ std::vector<SameCauses> by_causes(const std::vector<Hypothesis>& all) {
 }
 
 double tempered(double behind) {
-  return -kPower * std::log1p(behind / kTail);
+  return -kTailPower * std::log1p(behind / kTailScale);
 }
 
 }  // namespace
@@ -72,7 +74,7 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
   double best = -std::numeric_limits<double>::infinity();
   for (const SameCauses& group : groups) best = std::max(best, all[group.plain].log_evidence);
   const bool no_noise = excess.front() > kLargestExcess;
-  const double named = kNamed + kLarger * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
+  const double named = kNameOdds + kExcessSlope * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
   for (Hypothesis& one : all) {
     one.left = part_left(one.fit > 0 ? excess[static_cast<std::size_t>(one.fit)] : excess.front(), excess.front());
   }
@@ -81,15 +83,15 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
     const Hypothesis& one = all[group.plain];
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = tempered(best - evidence);
-    if (no_noise) log = -kFurther * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
-    if (makes_a_gap(one)) log += named - kLeft * *one.left;
+    if (no_noise) log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
+    if (makes_a_gap(one)) log += named - kLeftSlope * *one.left;
     if (one.unnamed && one.effects.empty()) {
-      log += std::max(0.0, named - kAnything - kLeft * part_left(unnamed_excess, excess.front()));
+      log += std::max(0.0, named - kAgainstUnnamedAlone - kLeftSlope * part_left(unnamed_excess, excess.front()));
     }
-    if (has(one, effect_index(ids::late_release))) log -= kLate;
-    if (has(one, effect_index(ids::clip_scatter))) log -= kScatter;
+    if (has(one, effect_index(ids::late_release))) log -= kAgainstLateRelease;
+    if (has(one, effect_index(ids::clip_scatter))) log -= kAgainstClipScatter;
     log += log_prior_odds(comparison, one);
-    if (one.unnamed) log -= kUnnamed;
+    if (one.unnamed) log -= kAgainstUnnamedBeside;
     logs.push_back(log);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
@@ -101,12 +103,13 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
     for (const std::size_t h : of) likeliest = std::max(likeliest, all[h].log_evidence);
     for (const std::size_t h : of) {
       const auto further = static_cast<double>(all[h].effects.size() - all[groups[g].plain].effects.size());
-      const double log = no_noise ? -kFurther * further : tempered(likeliest - all[h].log_evidence);
+      const double log = no_noise ? -kAgainstFurtherCause * further : tempered(likeliest - all[h].log_evidence);
       parts += all[h].probability = std::exp(log);
     }
     for (const std::size_t h : of) all[h].probability *= logs[g] / sum / parts;
   }
-  // What is beside a cause counts for the cause, and scatter of single positions alone for nothing: it makes no gap.
+  // A function beside a cause counts towards the cause. Scatter of single positions alone counts towards no cause: it
+  // makes no gap.
   for (Hypothesis& from : all) {
     const bool scatter_alone = is_scatter_alone(from);
     if (!scatter_alone && (!from.unnamed || from.effects.empty())) continue;
@@ -115,7 +118,7 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
       pure.probability += std::exchange(from.probability, 0.0);
     }
   }
-  // Some causes off the list look like one of it.
+  // Some causes off the list look like one on it.
   auto unknown =
       std::find_if(all.begin(), all.end(), [](const Hypothesis& one) { return one.unnamed && one.effects.empty(); });
   if (unknown == all.end()) {
@@ -124,8 +127,8 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
   }
   for (Hypothesis& one : all) {
     if (one.unnamed || !makes_a_gap(one)) continue;
-    unknown->probability += kImitated * one.probability;
-    one.probability *= 1.0 - kImitated;
+    unknown->probability += kImitatedPart * one.probability;
+    one.probability *= 1.0 - kImitatedPart;
   }
   set_probabilities(comparison);
 }

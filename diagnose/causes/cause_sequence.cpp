@@ -14,8 +14,8 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kMostCauses = 4;
-constexpr std::size_t kTried = 3;     // further effects that are fitted in full at each step
-constexpr double kWorthTrying = 5.0;  // log evidence, beside the remainder, from which on an effect may help
+constexpr std::size_t kTried = 3;     // further effects fitted in full at each step
+constexpr double kWorthTrying = 5.0;  // log evidence beside the remainder, above which an effect is fitted
 
 struct Step {
   MotionFit fit;
@@ -34,7 +34,7 @@ Step step_of(const TrackSet& set, MotionFit fit) {
   return step;
 }
 
-/// Its stretches or pieces do not differ as clips do: no interval over them.
+/// The stretches or pieces of one clip do not differ as clips do, so there is no interval over them.
 bool is_one_clip(const TrackSet& set) {
   return set.pieces || set.clips.size() < 2;
 }
@@ -53,12 +53,12 @@ ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& befor
   return cause;
 }
 
-/// A cause beside those of the verdict takes more than its uncertainty.
+/// Whether a cause beyond those of the verdict takes more than its uncertainty.
 bool is_worth(const ExplainedCause& cause) {
   return cause.share > kLeastShare && (!cause.share_interval95 || cause.share_interval95->low > 0.0);
 }
 
-/// The fit to `set` with these effects, from where a fit with all of them and others stands.
+/// The fit to `set` with these effects, started from a fit that has all of them, and perhaps more.
 std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, const std::vector<std::size_t>& effects,
                                   const Lateness& late) {
   const ParameterLayout layout(set, effects);
@@ -90,7 +90,7 @@ std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, co
   return fit;
 }
 
-/// The best further cause beside a step's, or nothing.
+/// The best further cause beside those of a step, or nothing.
 std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, const TrackSet& with, const Step& here,
                                                        const std::set<std::size_t>& without) {
   std::set<std::size_t> out = without;
@@ -141,13 +141,14 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   sequence.is_gap = is_above_floor(first);
   if (!sequence.is_gap) return sequence;
 
-  // What the verdict names: of several, each alone first.
+  // The causes that the verdict names. Of several, each is tried alone first.
   Step here = first;
-  std::vector<std::pair<std::size_t, Step>> steps;                // each cause, and where it stands in its own step
-  const std::size_t dropped = effect_index(ids::dropped_frames);  // they are in a fit's times
+  std::vector<std::pair<std::size_t, Step>> steps;  // each cause, and the step that adds it
+  const std::size_t dropped =
+      effect_index(ids::dropped_frames);  // missing frames are in a fit's times, not among its effects
   std::vector<std::size_t> left = named.effects;
   if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
-  // The best of these beside what stands so far, and which of `left` it is.
+  // The best of `left` beside the causes so far, and its index.
   const auto best_of = [&](bool laws_only) {
     std::optional<std::pair<std::size_t, Step>> best;
     for (std::size_t k = 0; k < left.size(); ++k) {
@@ -162,7 +163,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     return best;
   };
   while (!left.empty()) {
-    // Laws that all clips have in common first: sizes of each clip would take up what these explain.
+    // Laws that all clips have in common come first: sizes of each clip's own would absorb what these explain.
     std::optional<std::pair<std::size_t, Step>> best;
     for (const bool laws_only : {true, false}) {
       best = best_of(laws_only);

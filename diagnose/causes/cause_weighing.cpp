@@ -24,17 +24,18 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFirst = 6;      // likeliest by the noise alone: one has the first remainder, and all are weighed
-constexpr double kDecades = 9.2;       // ln of 10^4: over which sizes are uniform in their logarithm
-constexpr double kLeastSeen = 2.0;     // standard deviations: a smaller size is not told from none
-constexpr double kFamilies = 3.0;      // ln of some twenty functions without a name, of which the likeliest is taken
-constexpr std::size_t kProfiled = 14;  // explanations with a remainder of their own
-constexpr double kRemainderCost = 3.0;   // log evidence that a remainder has against it, its sizes being unknown
-constexpr double kNearlyAsLikely = 0.1;  // over the likeliest explanation's probability
+constexpr std::size_t kFirst =
+    6;  // likeliest by the noise alone: the best gives the first remainder, and all are weighed
+constexpr double kDecades = 9.2;         // ln 10^4: sizes are uniform in their logarithm over four decades
+constexpr double kLeastSeen = 2.0;       // standard deviations: a smaller size cannot be told from none
+constexpr double kFamilies = 3.0;        // ln 20: the likeliest of some twenty functions without a name is taken
+constexpr std::size_t kProfiled = 14;    // explanations that get a remainder of their own
+constexpr double kRemainderCost = 3.0;   // log evidence that a remainder costs, its sizes being unknown
+constexpr double kNearlyAsLikely = 0.1;  // relative to the probability of the likeliest explanation
 constexpr std::size_t kMostBeside = 8;   // explanations beside which a function without a name is weighed
-constexpr std::size_t kWithScatter = 3;  // laws that are weighed with clips that scatter beside them
-constexpr double kMuchLeft = 0.1;        // of the excess: a law that leaves less needs nothing beside it
-constexpr double kNotWeighed = 1e3;      // log evidence that what was not fitted is behind
+constexpr std::size_t kWithScatter = 3;  // laws that are weighed together with clip scatter
+constexpr double kMuchLeft = 0.1;        // of the excess: a law that leaves less needs no clip scatter beside it
+constexpr double kNotWeighed = 1e3;      // log evidence by which an explanation without a fit is behind
 
 constexpr EffectSlot kPush = slot_of(ids::late_release, 1);
 
@@ -46,17 +47,17 @@ bool is_phase(const EffectParameter* parameter) {
   return effect_list()[parameter->slot.effect].search == Search::wave;
 }
 
-constexpr double kAnyPushes = 0.1;   // of hands that let go late: pushes of any size and sign, each clip its own
-constexpr double kPushSpread = 0.5;  // of one hand's pushes, over their mean
+constexpr double kAnyPushes = 0.1;   // of late releases: pushes of any size and sign, each motion its own
+constexpr double kPushSpread = 0.5;  // standard deviation of one hand's pushes, relative to their mean
 
-/// Which way a motion goes, at first.
-double way_of(const FitMotion& motion) {
+/// The direction in which a motion starts: 1 or -1.
+double start_direction(const FitMotion& motion) {
   const auto moves = std::find_if(motion.v_m_s.begin(), motion.v_m_s.end(), [](double v) { return v != 0.0; });
   return moves != motion.v_m_s.end() && *moves < 0.0 ? -1.0 : 1.0;
 }
 
-/// Pushes of a hand that lets go late, along each motion: those of one hand are about alike and go with the motion; a
-/// tenth are of any size and sign.
+/// The pushes of a hand that lets go late, positive along the motion. Nine times in ten they are those of one hand,
+/// about equal and along the motion. Otherwise they have any size and sign.
 struct Pushes {
   std::vector<double> along, sds;
 
@@ -64,7 +65,7 @@ struct Pushes {
     along.push_back(push);
     sds.push_back(sd);
   }
-  /// In units of each push's sd.
+  /// Log prior density in units of each push's standard deviation.
   double log_prior() const {
     const double root = 0.5 * std::log(2.0 * std::numbers::pi), n = static_cast<double>(along.size());
     double any = std::log(kAnyPushes), mean = 0.0, mean_sd = 0.0;
@@ -74,7 +75,7 @@ struct Pushes {
       mean_sd += sds[k] / n;
     }
     if (!(mean > 0.0)) return any;
-    const double of_mean = std::max(kPushSpread * mean, mean_sd) / std::sqrt(n);  // how well it is known
+    const double of_mean = std::max(kPushSpread * mean, mean_sd) / std::sqrt(n);  // standard deviation of the mean
     double one_hand =
         std::log1p(-kAnyPushes) + root + std::log(of_mean / (std::max(mean, kLeastSeen * of_mean) * kDecades));
     for (std::size_t k = 0; k < along.size(); ++k) {
@@ -85,7 +86,8 @@ struct Pushes {
   }
 };
 
-/// Log prior density of a fit's effects at its parameters, and sqrt(2 pi) for each, which the likelihood leaves out.
+/// Log prior density of the effects of a fit at its parameters, times sqrt(2 pi) for each parameter, which the
+/// likelihood leaves out.
 double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution) {
   double log = 0.0;
   const double root = 0.5 * std::log(2.0 * std::numbers::pi);
@@ -101,7 +103,7 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
     const EffectInfo& info = effect_list()[of.effect];
     const double fitted = fit.at.global[at] + solution.change[at];
     if (info.search == Search::spread) {
-      // Bumps along the track are of one kind; so is what each clip or configuration has of one parameter.
+      // Bumps along the track are of one kind. So are the values of one parameter for the clips or configurations.
       const bool of_all = of.parameter->each == Each::experiment;
       const EffectParameter* kind = of_all ? &info.parameters.front() : of.parameter;
       spread.push_back(at);
@@ -110,7 +112,7 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
       const double size = std::max(std::abs(fitted), kLeastSeen * sd);
       log += root - std::log(size * kDecades * (info.both_signs ? 2.0 : 1.0));
     } else {
-      // What the data do not tell has its prior's width, and costs nothing.
+      // A parameter that the data leave open has the width of its prior and costs nothing.
       log += root - std::log(std::max(of.range.high - of.range.low, sd / std::exp(-root)));
     }
   }
@@ -125,11 +127,11 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
       const double norm = fit.motions[i].own.col(o).norm();
       const double size = fit.at.own[i][o], seen = std::abs(size) * norm;
       if (own[static_cast<std::size_t>(o - 2)] == parameter_of(kPush)) {
-        if (norm > 0.0) pushes.add(size * way_of(fit.motions[i]), 1.0 / norm);
+        if (norm > 0.0) pushes.add(size * start_direction(fit.motions[i]), 1.0 / norm);
         continue;
       }
       if (is_phase(own[static_cast<std::size_t>(o - 2)])) {
-        // Any phase is as likely as any other, wherever time is counted from.
+        // All phases are equally likely, whatever the origin of time.
         log += root - std::log(std::max(2.0 * std::numbers::pi * norm, std::exp(root)));
         continue;
       }
@@ -155,7 +157,7 @@ Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const Rema
   return profile;
 }
 
-/// The family's columns over the noise alone: what the remainder's whitening took off is put back.
+/// The columns of a family in units of the noise alone: undoes the part of the whitening that the remainder caused.
 RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
   RemainderExtra extra{family.columns, family.tau};
   Eigen::Index row = 0;
@@ -164,7 +166,7 @@ RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
     extra.columns.middleRows(row, n) = without_remainder(motion, extra.columns.middleRows(row, n));
     row += n;
   }
-  if (!std::isfinite(extra.sd)) {  // one bump at the size that it has
+  if (!std::isfinite(extra.sd)) {  // one bump of fixed size
     double largest = 0.0;
     for (const double size : family.size) largest = std::max(largest, std::abs(size));
     extra.sd = largest;
@@ -172,7 +174,8 @@ RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
   return extra;
 }
 
-/// Evidence of a fit with the likeliest function without a name beside it: one that clips share, or a size of each.
+/// Log evidence of a fit with the likeliest function without a name beside it: one that all clips share, or one with a
+/// size for each clip. Empty if there is none.
 std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with, const MotionFit& noise_alone,
                                       const std::vector<UnnamedFamily>& families, const RemainderSizes& start) {
   std::optional<double> log;
@@ -186,7 +189,7 @@ std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with,
   return log;
 }
 
-/// The hypothesis that a fit alone makes: its effects and nothing else.
+/// The hypothesis that consists of the effects of a fit and nothing else; null if there is none.
 const Hypothesis* pure_of(const Comparison& comparison, int fit) {
   for (const Hypothesis& one : comparison.all) {
     if (one.fit != fit || one.unnamed) continue;
@@ -201,7 +204,7 @@ const Hypothesis* pure_of(const Comparison& comparison, int fit) {
   return nullptr;
 }
 
-/// The fits that are weighed anew: the nominal one, and those of the likeliest explanations.
+/// Indices of the fits that are weighed anew: the nominal fit and those of the likeliest explanations.
 std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
   std::vector<Hypothesis> fitted;
   for (const Hypothesis& one : comparison.all) {
@@ -212,14 +215,15 @@ std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
   std::vector<std::size_t> worth = {0};
   for (const Hypothesis& one : fitted) {
     const auto fit = static_cast<std::size_t>(one.fit);
-    // Single effects always: a remainder of their own may serve them better than the common one.
+    // Single effects are always weighed: a remainder of their own may suit them better than the common one.
     if (worth.size() >= kProfiled && one.effects.size() > 1) continue;
     if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
   }
   return worth;
 }
 
-/// What is likeliest by the noise alone is weighed beside a remainder too; the fits that join.
+/// Adds the explanations that are likeliest by the noise alone, so that they are weighed beside a remainder too.
+/// Returns the indices of the added fits.
 std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) {
   std::vector<Hypothesis> likeliest;
   for (const Hypothesis& one : first.all) {
@@ -242,10 +246,10 @@ std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) 
   return joined;
 }
 
-/// Nothing, the two single effects and the pair with the most evidence, and what is nearly as likely as the likeliest:
-/// beside these a function without a name is weighed. Of two explanations that do as well, one by itself must not have
-/// the evidence of such a function and leave the other behind. Beside scatter of single positions, which makes no gap,
-/// it would be the one beside nothing once more.
+/// The explanations beside which a function without a name is weighed: the nominal model, the two single effects and
+/// the pair with the most evidence, and those that are nearly as likely as the likeliest. Of two explanations that do
+/// equally well, both must get the evidence of such a function, or the other falls behind. Scatter of single positions
+/// makes no gap, so a function beside it would only repeat the one beside the nominal model.
 std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<double>& excess, double unnamed_excess) {
   std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
   for (const std::size_t many : {2, 1}) {
@@ -273,7 +277,7 @@ std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<d
   return result;
 }
 
-/// Laws that all clips have in common and that leave much, the likeliest by evidence and share first.
+/// Laws that all clips have in common and that leave much of the excess, by falling probability.
 std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const std::vector<double>& excess,
                                              double unnamed_excess) {
   Comparison so_far;
@@ -290,7 +294,7 @@ std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const
   return laws;
 }
 
-/// What the likeliest function without a name leaves of the gap beside nothing; NaN: there is none.
+/// The excess that the likeliest function without a name leaves on its own; NaN if there is none.
 double unnamed_excess(const TrackSet& set, const Comparison& by_noise) {
   const UnnamedFamily* family = likeliest_shared(by_noise.unnamed);
   if (family == nullptr || set.clips.size() < 2) return std::numeric_limits<double>::quiet_NaN();
@@ -330,7 +334,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   const MotionFit& nominal = first.fits.front();
   const bool searched = held_out_excess(set, nominal) < kLargestExcess;
   if (!searched) {
-    // Next to such a gap there is no noise, and the remainder changes nothing of what is found.
+    // Beside such a gap the noise is negligible, and a remainder would not change what is found.
     comparison = first;
     base::for_each_parallel(comparison.fits.size(), jobs, [&](std::size_t f) {
       comparison.fits[f] = linearise_again(weighed.set, comparison.fits[f]);
@@ -342,7 +346,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   }
   const std::set<int> also = add_likeliest_of(first, comparison);
 
-  // Each fit with a remainder of its own.
+  // Each fit gets a remainder of its own.
   std::vector<MotionFit> noise_alone(comparison.fits.size());
   profiles.assign(comparison.fits.size(), {});
   std::vector<std::size_t> worth = worth_profiling(comparison);
@@ -359,7 +363,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
     const std::size_t f = worth[k];
     if (!std::isfinite(noise_alone[f].cost)) return;
-    // By the noise alone the fit is another: where there is a remainder, the one that leaves less.
+    // A fit by the noise alone differs from one with a remainder. The one that leaves less counts.
     excess[f] = held_out_excess(set, noise_alone[f]);
     if (f == 0 || !searched || also.contains(static_cast<int>(f))) return;
     const MotionFit anew = fit_motions(set, comparison.fits[f].effects, comparison.fits[f].at, comparison.fits[f].late);
@@ -368,8 +372,8 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     }
   });
   done(0.9);
-  // Functions without a name beside nothing and beside the likeliest explanations, each with a remainder of its own.
-  // The search's own stand beside what was best by the common remainder: they are not comparable.
+  // Functions without a name alone and beside the likeliest explanations, each with a remainder of its own. Those of
+  // the search stand beside what was best with the common remainder, so they are not comparable.
   std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed && one.fit > 0; });
   const double nothing = profiles.front().log_evidence;
   for (Hypothesis& one : comparison.all) {

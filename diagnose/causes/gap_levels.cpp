@@ -23,7 +23,8 @@ struct Squares {
   double gap() const { return std::sqrt(std::max(0.0, sum) / freedom); }
 };
 
-/// What a fit leaves, and the positions less its parameters: K, mu and the inclinations that its motions have.
+/// chi² of a fit and its degrees of freedom: positions less the starts of motions, K, mu and the inclinations of its
+/// motions.
 Squares left_by(const TrackSet& set, const MotionFit& fit) {
   Squares left;
   CommonNormal normal = statements_normal(fit);
@@ -39,7 +40,7 @@ Squares left_by(const TrackSet& set, const MotionFit& fit) {
   return left;
 }
 
-/// The motions with these indices, and all that is stated.
+/// The motions with these indices, with everything that is stated.
 TrackSet part_of(const TrackSet& set, const std::vector<std::size_t>& motions) {
   TrackSet part = set;
   part.motions.clear();
@@ -88,7 +89,7 @@ GapLevels levels_of(const TrackSet& set, const MotionFit& nominal, int jobs) {
   levels.configuration = gap_of_parts(
       set, nominal, parts_by(set, [](const TrackedMotion& m) { return std::pair(m.mass, m.group); }), jobs);
   levels.clip = gap_of_parts(set, nominal, parts_by(set, [](const TrackedMotion& m) { return m.clip; }), jobs);
-  const double error = std::sqrt(1.82 / all.freedom);  // of a gap at the floor (held_out.cpp)
+  const double error = std::sqrt(1.82 / all.freedom);  // standard error of a gap at the floor (held_out.cpp)
   if (levels.configuration && levels.all > 1.0 + kClearGap * error) {
     levels.holds_within = holds_within(*levels.configuration, levels.all);
   }

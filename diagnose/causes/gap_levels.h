@@ -1,8 +1,9 @@
-/// Whether the law holds within a clip, within a configuration, or across all of them.
+/// Whether the nominal model holds within a clip, within a configuration, or across all configurations.
 ///
-/// The nominal model is fitted to all clips, to those of each configuration (mass and set-up) by themselves, and to
-/// each clip by itself. The gap of a level is the root of the sum of squared residuals over the noise, divided by the
-/// number of positions less the number of fitted parameters. It is 1 where the law holds at that level.
+/// The nominal model is fitted to all clips together, to the clips of each configuration (one mass on one set-up) by
+/// themselves, and to each clip by itself. The gap of a level is sqrt(chi²/(n - p)), with chi² the sum of squared
+/// residuals in units of the noise, n the number of positions and p the number of fitted parameters. It is 1 where the
+/// model holds at that level.
 #pragma once
 
 #include <optional>
@@ -12,7 +13,7 @@
 
 namespace glidelab::diagnose {
 
-/// `nominal` is the fit to all of `set`, by the noise alone.
+/// `nominal` is the nominal fit to all of `set`, by the noise alone; `jobs` fits run at a time.
 GapLevels levels_of(const TrackSet& set, const MotionFit& nominal, int jobs);
 
 }  // namespace glidelab::diagnose

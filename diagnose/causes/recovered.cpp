@@ -15,19 +15,21 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kUnknownAngle_rad = 0.1, kUnknownMu = 0.3, kUnknownRate = 1.0;  // sd (relative of a rate): not known
-constexpr double kNoLoad = 0.02;        // cos(alpha): less than that and no friction is felt
-constexpr double kInstant_s = 1e-4;     // over which a speed changes by an acceleration
-constexpr double kFastest_m_s = 100.0;  // terminal velocities are sought below
+constexpr double kUnknownAngle_rad = 0.1, kUnknownMu = 0.3,
+                 kUnknownRate = 1.0;    // standard deviations of what is not known (unknown_rate())
+constexpr double kNoLoad = 0.02;        // cos(alpha) below which there is no normal force to speak of
+constexpr double kInstant_s = 1e-4;     // time step over which an acceleration is taken
+constexpr double kFastest_m_s = 100.0;  // upper limit of a terminal velocity
 const char* const kWhyTogether = "these motions do not tell it apart from the other quantities";
 const char* const kWhyApart = "the likely explanations differ too much in it";
 
-/// The standard deviation from which on a rate of drag counts as not known.
+/// The standard deviation from which K/m counts as not known: 1/s or, if larger, K/m itself.
 double unknown_rate(double rate_1_s) {
   return std::max(kUnknownRate, kUnknownRate * std::abs(rate_1_s));
 }
 
-/// Without what acts at some places, times or clips only: a terminal velocity is the configuration's.
+/// Leaves out effects that act only at some positions, times or clips: a terminal velocity is that of the
+/// configuration.
 void leave_out_passing(EffectValues& effects) {
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
     const EffectLaw& law = effect_list()[e].law;
@@ -35,7 +37,7 @@ void leave_out_passing(EffectValues& effects) {
   }
 }
 
-/// Acceleration at speed v > 0 in the middle of the set-up's track.
+/// The acceleration at speed v > 0 in the middle of the set-up's positions.
 double acceleration(TrackModel model, double v_m_s) {
   model.x0_m = model.x_mid_m;
   model.v0_m_s = v_m_s;
@@ -46,7 +48,7 @@ double acceleration(TrackModel model, double v_m_s) {
   return (move(model, times).v_m_s.back() - v_m_s) / kInstant_s;
 }
 
-/// The speed at which the force vanishes; none where the glider stops, or never ceases to gain speed.
+/// The speed at which the force vanishes. Empty if the glider stops, or if it still accelerates at kFastest_m_s.
 std::optional<double> terminal_velocity(const TrackModel& model) {
   double low = 1e-3, high = 1e-3;
   if (!(acceleration(model, low) > 0.0)) return {};
@@ -74,7 +76,7 @@ struct RecoveredSet {
   Recovered k_over_m_1_s, mu, alpha_rad, v_lim_m_s;
 };
 
-/// Each configuration, to its first motion.
+/// The first motion of each configuration.
 std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_motions(const TrackSet& set) {
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> configurations;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
@@ -88,7 +90,8 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
   const RemainderSpace::Solution solution = space.solve(sizes);
   FitPoint at = fit.at;
   at.global += solution.change;
-  // The scatter from motion to motion is known as well as there are motions, that of scores as there are clips.
+  // The degrees of freedom of the scatter from motion to motion are the motions less one, those of the scores the clips
+  // less one.
   const bool scatters = sizes.force_m_s2 > 0.0 || sizes.drag > 0.0;
   const double of_motions =
       scatters ? std::max(1.0, static_cast<double>(set.motions.size()) - 1.0) : std::numeric_limits<double>::infinity();
@@ -100,7 +103,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
   const auto& globals = fit.layout->globals();
   std::vector<RecoveredSet> all;
   for (const auto& [of, motion] : first_motions(set)) {
-    // Each quantity as a function of the common parameters, and its derivatives by finite differences.
+    // The derivatives of a quantity with respect to the common parameters, by finite differences.
     const auto gradient = [&, i = motion](const auto& value) {
       Eigen::VectorXd by = Eigen::VectorXd::Zero(at.global.size());
       for (std::size_t g = 0; g < globals.size(); ++g) {
@@ -141,7 +144,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     one.alpha_rad = found(alpha(at), gradient(alpha), 1.0);
     one.alpha_rad.known &= one.alpha_rad.sd < kUnknownAngle_rad;
     if (const std::optional<double> v = terminal_velocity(model_at(at))) {
-      // v_lim by what a small change of the acceleration moves it: dv = -da/a'(v).
+      // A small change da of the acceleration shifts v_lim by dv = -da/a'(v).
       const double apart = 1e-3 * *v;
       const double slope =
           (acceleration(model_at(at), *v + apart) - acceleration(model_at(at), *v - apart)) / (2.0 * apart);
@@ -156,8 +159,8 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
   return all;
 }
 
-/// What is said of a quantity under one explanation and `others`, as far as they are likely: its own value, and
-/// sd² = sum of p (sd² + (value - own value)²) / sum of p.
+/// A quantity under the reported explanation, with `others` as far as they are likely: the reported value, and sd² =
+/// sum of p (sd² + (value - reported)²) / sum of p.
 core::Quantity mixed(const Recovered& own, double probability, const std::vector<std::pair<Recovered, double>>& others,
                      double unit, double unknown_sd) {
   if (!own.known) return core::undetermined(own.why);

@@ -14,20 +14,21 @@ namespace {
 
 constexpr std::size_t kMostParts = 24, kFewestParts = 6;
 constexpr std::size_t kPointsOfPart = 4;  // at least, on average
-constexpr double kUnseen = 1e-12;         // of the largest square
+constexpr double kUnseen = 1e-12;         // relative to the largest square
 constexpr double kRounding = 1e-13;
 
-/// What the parts' columns rest on.
+/// The parts of a motion over which the acceleration is constant.
 struct Parts {
-  Eigen::MatrixXd columns;  ///< response of x to unit accelerations, over the noise
-  Eigen::MatrixXd shapes;   ///< 1, sign(v), (K/m) v in each
+  Eigen::MatrixXd columns;  ///< response of x to a unit acceleration in each part, in units of the noise
+  Eigen::MatrixXd shapes;   ///< 1, sign(v) and (K/m) v of each part
   double length_s = 0.0;
 };
 
-/// Distance and speed after `t` since a unit acceleration began, which lasts for `length`, with a drag rate k.
+/// The displacement at a time t after the beginning of a unit acceleration that lasts for `length`, with the drag rate
+/// k.
 double response(double t, double length, double k) {
   if (t <= 0.0) return 0.0;
-  // Of a step that never ends: x'' = 1 - k x'.
+  // For an acceleration that never ends: x'' = 1 - k x'.
   const auto step = [k](double s) {
     const double ks = k * s;
     if (std::abs(ks) < 1e-3) return 0.5 * s * s * (1.0 - ks / 3.0 + ks * ks / 12.0);
@@ -75,7 +76,7 @@ Parts parts_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
   return result;
 }
 
-/// A root of S: S = root root'.
+/// A matrix root of S: S = root root'.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& shapes, double part_s, const RemainderSizes& sizes, double wider) {
   const Eigen::Index parts = shapes.rows();
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(parts, parts + 3);
@@ -86,7 +87,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& shapes, double part_s, const Rema
   return root;
 }
 
-/// A factor f of one motion costs what Student's t with four degrees of freedom would ask for it, 4 log f.
+/// The price of a factor f of one motion is the tail of Student's t with four degrees of freedom, 4 log f.
 constexpr double kTails = 4.0;
 
 double price_of(const RemainderSizes& sizes) {
@@ -143,7 +144,7 @@ RemainderSpace::Sums RemainderSpace::sums_of(std::size_t i, const RemainderSizes
   const Eigen::MatrixXd root = root_of(motion.shapes, motion.part_s, sizes, wider);
   const Eigen::MatrixXd b_root = base::product(motion.b_b, root), z_root = base::product(motion.z_b, root);
   Eigen::MatrixXd inner = base::transposed_product(root, b_root);
-  // Rounding of products of noise that is far smaller than the remainder must not make it indefinite.
+  // Where the noise is far smaller than the remainder, rounding must not make the matrix indefinite.
   inner.diagonal().array() += 1.0 + kRounding * inner.diagonal().maxCoeff();
   const Eigen::MatrixXd lower = base::cholesky_lower(inner);
   sums.log_determinant += 2.0 * lower.diagonal().array().log().sum();
@@ -152,7 +153,7 @@ RemainderSpace::Sums RemainderSpace::sums_of(std::size_t i, const RemainderSizes
   const Eigen::Index many = 1 + common_ + extra_;
   Eigen::MatrixXd own = z.bottomRightCorner(motion.own, motion.own);
   for (Eigen::Index o = 0; o < motion.own; ++o) {
-    // What does not act on this motion at all (a push before it begins) costs nothing and brings nothing.
+    // A parameter that does not act on this motion (a push before it begins) neither costs nor gains anything.
     const Eigen::Index at = motion.z_z.rows() - motion.own + o;
     own(o, o) += motion.z_z(at, at) > 0.0 ? kUnseen : 1.0;
   }
@@ -181,7 +182,8 @@ RemainderSpace::Sums RemainderSpace::sums_of(const RemainderSizes& sizes) const 
 }
 
 double RemainderSpace::log_likelihood(const Sums& sums) const {
-  // Scaled, and held back where the data know nothing: such a direction costs every explanation the same.
+  // Scaled, and with a floor for directions of which the data say nothing: such a direction costs every explanation the
+  // same.
   Eigen::MatrixXd scaled = scale_.asDiagonal() * sums.normal * scale_.asDiagonal();
   scaled.diagonal().array() += kUnseen;
   const Eigen::MatrixXd lower = base::cholesky_lower(scaled);
@@ -220,7 +222,7 @@ RemainderSpace::Solution RemainderSpace::solve(const RemainderSizes& sizes) cons
 }
 
 RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) const {
-  // What each size may be at most: a tenth of g at any speed, half of the drag.
+  // The largest sizes of the first search: a tenth of g, and seven tenths of the drag.
   constexpr double kMostForce = 1.0, kMostDrag = 0.7, kDecades = 6.0;
   Best best;
   if (start != nullptr) best.sizes = *start;
@@ -238,14 +240,13 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
     for (double power = 0.0; power <= decades; power += step) look(member, most * std::pow(10.0, -power));
   };
   const auto refine = [&](double RemainderSizes::*member, double ratio) {
-    for (int way = 0; way < 2; ++way, ratio = 1.0 / ratio) {
+    for (int direction = 0; direction < 2; ++direction, ratio = 1.0 / ratio) {
       for (int step = 0; step < 6 && best.sizes.*member > 0.0; ++step) {
         if (!look(member, best.sizes.*member * ratio)) break;
       }
     }
   };
-  // How motions scatter about their mean shows between two of them at least; one by itself hands its own law over to
-  // it.
+  // Scatter from motion to motion takes at least two motions. With one, it would absorb the law itself.
   const bool scatter = motions_.size() > 1;
   if (!scatter) best.sizes.force_m_s2 = best.sizes.drag = 0.0;
   best.log_likelihood = log_likelihood(best.sizes);
@@ -260,7 +261,7 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
     refine(&RemainderSizes::force_m_s2, ratio);
     refine(&RemainderSizes::drag, ratio);
   }
-  // What makes one motion worse leaves the others with less, and that shows it the more.
+  // Once the worst motion has its own factor, the others need less, and the worst one stands out more: repeat.
   constexpr int kRounds = 4;
   constexpr double kSettled = 0.1;  // log likelihood
   for (int round = 0; round < kRounds; ++round) {

@@ -4,18 +4,19 @@
 ///
 ///     dv/dt = F/m + a(t),      a(t) = w(t) + f_1 + f_2 sign(v) + f_3 (K/m) v
 ///
-/// with w white of spectral density q (m²/s³), and f_1, f_2 ~ N(0, s_f²), f_3 ~ N(0, s_k²) drawn anew for every motion:
-/// inclination, friction and drag that scatter from clip to clip. It is the grey-box model of Kristensen, Madsen and
-/// Jørgensen (Automatica 40, 225, 2004): a stochastic differential equation, whose noise is what the model lacks. Here
-/// a(t) is constant over parts of a motion, so that its effect on x is a sum of known columns,
+/// with w white noise of spectral density q (m²/s³), and f_1, f_2 ~ N(0, s_f²), f_3 ~ N(0, s_k²) drawn anew for every
+/// motion: inclination, friction and drag that scatter from motion to motion. This is the grey-box model of Kristensen,
+/// Madsen and Jørgensen (Automatica 40, 225, 2004), a stochastic differential equation whose noise stands for what the
+/// model lacks. Here a(t) is constant over each of up to 24 parts of a motion, so that its effect on x is a sum of
+/// known columns,
 ///
 ///     x = x_model + B a + noise,     B_j(t) = response of dv/dt = -(K/m) v + [t in part j],     a ~ N(0, S(q, s_f,
 ///     s_k))
 ///
-/// and the likelihood, with all parameters of the fit and each motion's start integrated out over flat priors (REML),
-/// costs a few products of small matrices, independent of the number of frames. Linear in the neighbourhood of a fit. A
-/// motion that is worse than the others (a kick, a hand) may have a remainder that is larger by its own factor. SI
-/// units.
+/// and the likelihood, with all parameters of the fit and the start of each motion integrated out over flat priors
+/// (REML), costs a few products of small matrices, independent of the number of frames. The model is linear in the
+/// neighbourhood of a fit. A motion that is worse than the others (a kick, a hand) may have a remainder that is larger
+/// by a factor of its own. SI units.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,50 +30,51 @@ namespace glidelab::diagnose {
 struct RemainderSizes {
   double q_m2_s3 = 0.0;       ///< spectral density of the white part
   double force_m_s2 = 0.0;    ///< s_f
-  double drag = 0.0;          ///< s_k, relative
-  std::vector<double> wider;  ///< of each motion, a factor of all three in standard deviations; empty: 1
+  double drag = 0.0;          ///< s_k, relative to K
+  std::vector<double> wider;  ///< of each motion, a factor on the square root of q, on s_f and on s_k; empty: 1
   double of(std::size_t motion) const { return wider.empty() ? 1.0 : wider[motion]; }
 };
 
-/// More columns of the common parameters, each with a prior N(0, sd²): a function without a name. Rows are those of all
-/// motions one after the other, over the noise, as ScoreSpace has them.
+/// Further columns of common parameters, each with the prior N(0, sd²): a function without a name. The rows are those
+/// of all motions, one motion after the other, in units of the noise, as in ScoreSpace.
 struct RemainderExtra {
   Eigen::MatrixXd columns;
   double sd = 0.0;
 };
 
-/// A fit and its remainder. `fit` is linearised (central derivatives) with the position noise alone.
+/// The likelihood of a fit with a remainder. `fit` must be linearised (by central differences) with the position noise
+/// alone.
 class RemainderSpace {
  public:
   RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra = nullptr);
 
-  /// Log likelihood of the positions, parameters integrated out over flat priors, statements and the extra columns'
-  /// sizes over theirs; up to a constant that all fits to one set share (less 0.5 log(2 pi) a parameter). A motion's
-  /// factor f costs 4 log f.
+  /// Log likelihood of the positions. Parameters are integrated out over flat priors, stated quantities and the sizes
+  /// of the extra columns over theirs. It holds up to a constant that all fits to one set share, and without the 0.5
+  /// log(2 pi) of each parameter. The factor f of a motion costs 4 log f.
   double log_likelihood(const RemainderSizes& sizes) const;
 
   struct Best {
     RemainderSizes sizes;
     double log_likelihood = 0.0;
   };
-  /// The likeliest sizes, by a search along each of their logarithms; from `start` where there is one.
+  /// The likeliest sizes, by a search along the logarithm of each, from `start` if it is given.
   Best likeliest(const RemainderSizes* start = nullptr) const;
 
-  /// The common parameters' change from the fit to the minimum under these sizes, their covariance by the model, and
-  /// by how the scores of clips scatter (recovered.h).
+  /// The change of the common parameters from the fit to the minimum under these sizes, their covariance by the model,
+  /// and their covariance by the scatter of the clips' scores (recovered.h).
   struct Solution {
     Eigen::VectorXd change;
     Eigen::MatrixXd covariance, between_clips;
   };
   Solution solve(const RemainderSizes& sizes) const;
 
-  /// A part's mean length: w averaged over it has the variance q/length.
+  /// The mean length of a part in s. The average of w over a part has the variance q/length.
   double part_s() const { return part_s_; }
 
  private:
   struct Motion {
     Eigen::MatrixXd z_z;  ///< products of [residual, common, extra, own]
-    Eigen::MatrixXd z_b;  ///< with the parts' columns
+    Eigen::MatrixXd z_b;  ///< products of [residual, common, extra, own] with the columns of the parts
     Eigen::MatrixXd b_b;
     double part_s = 0.0;
     Eigen::MatrixXd shapes;  ///< parts x 3: 1, sign(v), (K/m) v
@@ -105,7 +107,7 @@ class RemainderSpace {
   Eigen::VectorXd scale_;
 };
 
-/// Adds the remainder to the noise of each motion, so that every fit, scan and evidence counts it.
+/// Adds the remainder to the noise of each motion of `set`, so that every fit, scan and evidence counts it as noise.
 void add_remainder(const MotionFit& fit, const RemainderSizes& sizes, TrackSet& set);
 
 }  // namespace glidelab::diagnose

@@ -10,8 +10,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr int kWidthsTried = 13;        // three a decade, over four decades
-constexpr double kLeastWidth_sd = 2.0;  // standard deviations: a smaller width is not told from none
+constexpr int kWidthsTried = 13;        // three per decade, over four decades
+constexpr double kLeastWidth_sd = 2.0;  // standard deviations: a smaller width cannot be told from none
 constexpr double kRoundingOfSum = 1e-13;
 constexpr int kRoundsOfWidths = 4;
 
@@ -20,7 +20,7 @@ class Density {
   Density(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& kinds)
       : sizes_(sizes), covariance_(covariance), kinds_(kinds) {}
 
-  /// -log det(C + W)/2 - s' (C + W)^-1 s/2, in units of each size's own spread.
+  /// -log det(C + W)/2 - s' (C + W)⁻¹ s/2, evaluated with each size in units of its own standard deviation.
   double operator()(const std::vector<double>& widths) const {
     Eigen::MatrixXd sum = covariance_;
     Eigen::VectorXd unit(sizes_.size());
@@ -43,14 +43,14 @@ class Density {
   const std::vector<std::size_t>& kinds_;
 };
 
-/// Standard deviation of the best known combination of a kind's sizes.
+/// Standard deviation of the best known combination of the sizes of one kind.
 double least_sd(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& kinds, std::size_t kind) {
   std::vector<Eigen::Index> of;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (kinds[i] == kind) of.push_back(static_cast<Eigen::Index>(i));
   }
   const double least = base::symmetric_eigen(covariance(of, of)).values[0];
-  // Rounding may leave nothing of a combination that is known far better than the others.
+  // Rounding may wipe out the variance of a combination that is known far better than the others.
   const double largest = covariance.diagonal()(of).maxCoeff();
   return std::sqrt(std::max(least, kRoundingOfSum * largest));
 }
@@ -68,7 +68,7 @@ double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& cov
     for (int w = 0; w < kWidthsTried; ++w) tried[k].push_back(least * std::pow(10.0, w / 3.0));
     widths.push_back(tried[k].front());
   }
-  // The best widths, one kind after the other; then the mean along each.
+  // The best widths, one kind after the other; then the average over the widths of each.
   double best = -std::numeric_limits<double>::infinity();
   std::vector<std::vector<double>> logs(many);
   for (int round = 0; round < kRoundsOfWidths; ++round) {

@@ -1,7 +1,7 @@
-/// The list of effects, which names each once. Everything else about an effect is in its file ID.cpp: in force/ what
-/// moves the glider, in camera/ what an image shows, in record/ what the record states and how it is smoothed. A new
-/// effect is a line here and that file. The order is that of the indices by which the searches know an effect. What
-/// only a table of lines shows comes last.
+/// The list of effects, which names each one once. Everything else about an effect is in its file ID.cpp: in force/ if
+/// it acts on the glider, in camera/ if it acts on the image, in record/ if it lies in what the record states or in how
+/// it is smoothed. A new effect is a line here and such a file. The order gives the indices by which the searches know
+/// an effect. Effects that only a table of lines shows come last.
 #pragma once
 
 #include <array>
@@ -53,7 +53,7 @@ namespace glidelab::diagnose {
   EFFECT(smoothing_bias)
 // clang-format on
 
-/// The id of each, for code that means one of them: ids::tether is "tether".
+/// The id of each effect, for code that means a particular one: ids::tether is "tether".
 namespace ids {
 #define GLIDELAB_ID(id) inline constexpr const char* id = #id;
 GLIDELAB_EFFECTS(GLIDELAB_ID)
@@ -65,7 +65,7 @@ inline constexpr std::array kEffectIds = {GLIDELAB_EFFECTS(GLIDELAB_ID)};
 #undef GLIDELAB_ID
 inline constexpr std::size_t kEffects = kEffectIds.size();
 
-/// Index in the list; std::out_of_range for another word.
+/// Index of an effect in the list. std::out_of_range for any other word.
 constexpr std::size_t effect_index(std::string_view id) {
   for (std::size_t i = 0; i < kEffects; ++i) {
     if (kEffectIds[i] == id) return i;
@@ -73,15 +73,15 @@ constexpr std::size_t effect_index(std::string_view id) {
   throw std::out_of_range("no such effect: " + std::string(id));
 }
 
-inline constexpr std::size_t kMostParameters = 6;  ///< that an effect has
+inline constexpr std::size_t kMostParameters = 6;  ///< of one effect
 
-/// Where the value of one parameter stands.
+/// Where the value of one parameter is stored.
 struct EffectSlot {
   std::size_t effect = kEffects, parameter = 0;
   bool operator==(const EffectSlot&) const = default;
 };
 
-/// Of an effect's parameter, in the order in which its file has them.
+/// The slot of an effect's parameter; parameters count in the order of the effect's file.
 constexpr EffectSlot slot_of(std::string_view id, std::size_t parameter = 0) {
   return {effect_index(id), parameter};
 }

@@ -31,8 +31,8 @@ std::vector<double> directions(const TrackedMotion& motion) {
   std::vector<double> direction(motion.x_m.size(), 0.0);
   std::size_t from = 0;
   for (const std::size_t to : ends) {
-    const double way = motion.x_m[to] - motion.x_m[from];
-    for (std::size_t p = from; p <= to; ++p) direction[p] = way > 0.0 ? 1.0 : way < 0.0 ? -1.0 : 0.0;
+    const double displacement = motion.x_m[to] - motion.x_m[from];
+    for (std::size_t p = from; p <= to; ++p) direction[p] = displacement > 0.0 ? 1.0 : displacement < 0.0 ? -1.0 : 0.0;
     from = to;
   }
   return direction;
@@ -66,9 +66,9 @@ Integrated integrated(const TrackSet& set, const TrackedMotion& motion) {
   const double mass = set.masses[motion.mass].mass_kg, g = set.gravity_m_s2;
   const double normal = g * std::cos(set.groups[motion.group].stated_rad);
   const auto count = motion.t_s.size();
-  std::vector<double> way(count), driven(count, 0.0);
-  for (std::size_t p = 0; p < count; ++p) way[p] = motion.x_m[p] - motion.x_m.front();
-  const std::vector<double> path = integral(motion.t_s, way);
+  std::vector<double> displacement(count), driven(count, 0.0);
+  for (std::size_t p = 0; p < count; ++p) displacement[p] = motion.x_m[p] - motion.x_m.front();
+  const std::vector<double> path = integral(motion.t_s, displacement);
   const std::vector<double> sign = integral(motion.t_s, integral(motion.t_s, directions(motion)));
   if (!motion.known.t_s.empty()) driven = integral(motion.t_s, integral(motion.t_s, force_at(motion)));
   Integrated all;

@@ -15,13 +15,13 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kClear = 12.0;   // log likelihood that a missing frame must gain
-constexpr int kMostMissing = 60;  // of those that only the whole fit shows: rounds of one more in each motion
-constexpr double kNearOne = 0.5;  // frames
+constexpr double kLeastFrameGain = 12.0;  // log likelihood that a missing frame must gain
+constexpr int kMostMissing = 60;          // of those that only the whole fit shows: rounds of one more in each motion
+constexpr double kMostOffWhole = 0.5;     // frames
 constexpr int kRounds = 8;
-constexpr std::size_t kMoreInOneMotion = 4;
-constexpr double kMostOff = 50.0;     // log likelihood that one position may cost
-constexpr double kNothingLeft = 2.0;  // chi² a point
+constexpr std::size_t kMostMoreInMotion = 4;
+constexpr double kMostOff = 50.0;          // log likelihood that one position may cost
+constexpr double kMostChi2PerPoint = 2.0;  // chi² a point
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Distance from one point to the next around the step to point f: the median of three steps on each side, so that
@@ -57,11 +57,11 @@ Place best_place(const ScoreSpace& space, std::size_t i, bool known, bool one) {
     // The neighbours must show the jump themselves.
     // Compared with the six steps around, or, if these differ much, as near a reversal, with the two beside it.
     const auto& late = space.fit().late[i];
-    const double way = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // without the known losses
+    const double moved = data.x_m[f] - data.x_m[f - 1] - v[f] * (late[f] - late[f - 1]);  // without the known losses
     const double after = f + 1 < data.x_m.size() ? data.x_m[f + 1] - data.x_m[f] : data.x_m[f - 1] - data.x_m[f - 2];
     const double before = f < 2 ? after : data.x_m[f - 1] - data.x_m[f - 2];
-    double jump = way - usual_step(data.x_m, f);
-    const double beside = way - 0.5 * (before + after);
+    double jump = moved - usual_step(data.x_m, f);
+    const double beside = moved - 0.5 * (before + after);
     if (std::abs(beside - v[f] * step) < std::abs(jump - v[f] * step)) jump = beside;
     if (std::abs(jump - v[f] * step) > 0.35 * std::abs(v[f] * step) + 5.0 * data.sd_of(f)) continue;
     if (!known && std::abs(jump) < 3.0 * data.sd_of(f)) continue;
@@ -84,7 +84,7 @@ std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit
   const TrackModel model = model_of(set, *fit.layout, fit.at, i);
   const double step_s = 1.0 / set.clips[data.clip].frame_rate_hz;
   const std::size_t n = data.t_s.size();
-  const auto states = static_cast<std::size_t>(std::lround(fit.late[i].back() / step_s)) + kMoreInOneMotion + 1;
+  const auto states = static_cast<std::size_t>(std::lround(fit.late[i].back() / step_s)) + kMostMoreInMotion + 1;
   std::vector<double> best(states, kNever);
   best[0] = 0.0;
   std::vector<std::vector<std::size_t>> came(n, std::vector<std::size_t>(states, 0));
@@ -122,7 +122,7 @@ std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit
 /// Whether this many losses in all, with their penalties, are likelier than those found.
 bool lowers(const MotionFit& next, std::size_t count, const MissingFrames& found) {
   const double more = static_cast<double>(count) - static_cast<double>(found.count);
-  return next.cost + 2.0 * kClear * more < found.fit.cost;
+  return next.cost + 2.0 * kLeastFrameGain * more < found.fit.cost;
 }
 
 /// How many frames are lost at each place, all fitted together: the effects of two losses on K, mu and the inclination
@@ -148,12 +148,12 @@ bool add_hidden(const TrackSet& set, bool together, int jobs, MissingFrames& fou
   std::vector<Place> places(set.motions.size());
   base::for_each_parallel(places.size(), jobs,
                           [&](std::size_t i) { places[i] = best_place(space, i, found.count > 0, !together); });
-  std::erase_if(places, [](const Place& place) { return !(place.gain > kClear); });
+  std::erase_if(places, [](const Place& place) { return !(place.gain > kLeastFrameGain); });
   if (together && !places.empty()) {
     const Eigen::VectorXd sizes = sizes_together(space, places);
     std::size_t k = 0;
     std::erase_if(places,
-                  [&](const Place&) { return std::abs(sizes[static_cast<Eigen::Index>(k++)] - 1.0) > kNearOne; });
+                  [&](const Place&) { return std::abs(sizes[static_cast<Eigen::Index>(k++)] - 1.0) > kMostOffWhole; });
   }
   if (places.empty()) return false;
   Lateness tried = found.fit.late;
@@ -173,7 +173,7 @@ void place_anew(const TrackSet& set, MissingFrames& found) {
     Lateness tried;
     double count = 0.0;
     for (std::size_t i = 0; i < set.motions.size(); ++i) {
-      tried.push_back(likeliest_lateness(set, found.fit, i, kClear));
+      tried.push_back(likeliest_lateness(set, found.fit, i, kLeastFrameGain));
       count += tried.back().back() * set.clips[set.motions[i].clip].frame_rate_hz;
     }
     if (tried == found.fit.late) return;
@@ -255,7 +255,7 @@ MissingFrames find_missing_frames(const TrackSet& set, const MotionFit& fit, int
   if (by_analysis.late != by_parabolas.late) try_out(by_analysis);
   if (found.count == 0) all = with_hidden(set, nothing, jobs);
   // Losses that no single jump shows count only if nothing remains: many curves look like a series of losses.
-  if (all.fit.cost < kNothingLeft * points) found = std::move(all);
+  if (all.fit.cost < kMostChi2PerPoint * points) found = std::move(all);
   if (found.count == 0) return found;
   describe(0.5 * (fit.cost - found.fit.cost), penalty_of(found.count, points), points, found);
   return found;
@@ -268,7 +268,7 @@ MissingFrames find_more_missing_frames(const TrackSet& set, const MotionFit& wit
   known.count = missing_in(set, with_losses);
   const double points = points_of(set);
   MissingFrames all = with_hidden(set, known, 1);
-  if (!lowers(all.fit, all.count, known) || all.fit.cost >= kNothingLeft * points) all = known;
+  if (!lowers(all.fit, all.count, known) || all.fit.cost >= kMostChi2PerPoint * points) all = known;
   describe(0.5 * (with_losses.cost - all.fit.cost), penalty_of(all.count, points) - penalty_of(known.count, points),
            points, all);
   return all;

@@ -209,11 +209,11 @@ std::vector<PhaseGap> phase_gaps(const TrackSet& set, const MotionFit& before, c
 
 namespace {
 
-constexpr std::size_t kFewestOneWay = 12;   // points of a stretch in one direction
-constexpr double kOpenMu = 0.1;             // sd of an undetermined friction
-constexpr double kOpenK = 10.0;             // the same for drag, relative to the drag of all
-constexpr double kSameData = 1e-6;          // relative to the variance: below this the part is all there is
-constexpr Eigen::Index kDrag = 0, kMu = 1;  // among common parameters
+constexpr std::size_t kFewestInDirection = 12;  // points of a stretch in one direction
+constexpr double kOpenMu = 0.1;                 // sd of an undetermined friction
+constexpr double kOpenK = 10.0;                 // the same for drag, relative to the drag of all
+constexpr double kSameData = 1e-6;              // relative to the variance: below this the part is all there is
+constexpr Eigen::Index kDrag = 0, kMu = 1;      // among common parameters
 using Kind = ParameterLayout::Global::Kind;
 
 /// The motions of one mass, whole or only the stretches in one direction, with the parameters of a fit to them.
@@ -245,7 +245,7 @@ Part part_of(const TrackSet& set, const MotionFit& fit, std::size_t mass, int di
       to = from + 1;
       if (!(v[from] * direction > 0.0)) continue;
       while (to < v.size() && v[to] * direction > 0.0) ++to;
-      if (to - from < kFewestOneWay) continue;
+      if (to - from < kFewestInDirection) continue;
       TrackedMotion stretch = some_points(motion, from, to);
       if (set.position_noise) whiten(stretch, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
       part.set.motions.push_back(std::move(stretch));

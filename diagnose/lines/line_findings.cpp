@@ -127,10 +127,10 @@ std::vector<LineExplanation> weigh_lines(const LineData& data, const std::vector
 
 namespace {
 
-constexpr double kReadAngle = 0.3;  // degrees: accuracy with which a person reads a plumb line, if the table does not
-                                    // say
-constexpr double kOff = 3.0;        // standard deviations above which a group of lines is off
-constexpr int kPoints = 60;         // of a curve
+constexpr double kReadAngle = 0.3;    // degrees: accuracy with which a person reads a plumb line, if the table does not
+                                      // say
+constexpr double kLeastOff_sd = 3.0;  // standard deviations above which a group of lines is off
+constexpr int kPoints = 60;           // of a curve
 
 /// The projection onto what the columns do not explain.
 Eigen::MatrixXd leaves(const Eigen::MatrixXd& columns) {
@@ -335,7 +335,7 @@ std::vector<GapRegion> line_regions(const std::vector<TableLine>& lines, const L
     const bool slopes = direction == 0;
     const Mean mean = slopes ? mean_of(nominal.off_k, leaves_k, group, scatter.slope)
                              : mean_of(nominal.off_a, leaves_a, group, scatter.intercept_m_s2);
-    if (!(mean.sd > 0.0) || std::abs(mean.value) < kOff * mean.sd) return;
+    if (!(mean.sd > 0.0) || std::abs(mean.value) < kLeastOff_sd * mean.sd) return;
     GapRegion region{variable,           value, value, std::abs(mean.value) / mean.sd, mean.value, "m/s²",
                      GapKind::intercept, ""};
     region.size_sd = mean.sd;

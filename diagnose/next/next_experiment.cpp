@@ -86,8 +86,8 @@ NextStep next_for_unnamed(const TrackSet& set, const MotionFit& nominal, const D
 
 namespace {
 
-constexpr double kDecides = 5.0;       // expected log likelihood above which a change is worth making
-constexpr double kStillLikely = 0.05;  // probability above which an explanation is a rival
+constexpr double kLeastDecisiveGain = 5.0;  // expected log likelihood above which a change is worth making
+constexpr double kStillLikely = 0.05;       // probability above which an explanation is a rival
 constexpr std::size_t kMostRivals = 3;
 constexpr double kSharpens = 0.95;  // of the standard deviation so far: a clip that leaves more is not worth it
 
@@ -200,12 +200,12 @@ Choice choose(const TrackSet& set, const Comparison& comparison, const std::vect
 SettleDoubt settle(const TrackSet& set, const Comparison& comparison, std::vector<Contest> contests) {
   const std::vector<Change> changes = feasible_changes(set, comparison.fits.front());
   Choice best = choose(set, comparison, contests, changes);
-  if (contests.size() > 1 && best.gain < kDecides) {
+  if (contests.size() > 1 && best.gain < kLeastDecisiveGain) {
     contests.erase(contests.begin() + 1, contests.end());
     best = choose(set, comparison, contests, changes);
   }
   SettleDoubt step{alternatives(contests), {}, weighed(changes), best.gain};
-  if (best.change != nullptr && best.gain >= kDecides) step.by = *best.change;
+  if (best.change != nullptr && best.gain >= kLeastDecisiveGain) step.by = *best.change;
   return step;
 }
 

@@ -121,8 +121,8 @@ NoiseLikelihood::NoiseLikelihood(std::vector<NoiseChunk> chunks, std::size_t mot
 
 double NoiseLikelihood::known(const NoiseShape& shape) const {
   if (!handed_on_) return 0.0;
-  constexpr double kAsGoodAsNone = 0.1;
-  return -0.5 * std::pow(std::log(std::max(shape.lasting, kAsGoodAsNone) / kLastingOverS) / kSpreadOfLogLasting, 2);
+  constexpr double kLeastLasting = 0.1;
+  return -0.5 * std::pow(std::log(std::max(shape.lasting, kLeastLasting) / kLastingOverS) / kSpreadOfLogLasting, 2);
 }
 
 Likelihood NoiseLikelihood::of(const NoiseShape& shape) const {

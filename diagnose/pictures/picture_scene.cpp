@@ -23,7 +23,7 @@ constexpr double kLeastFlicker = 0.002;      // of the light: below this, no thr
 constexpr double kLeastFlickerLossy = 0.01;  // a codec's key frames change the brightness by as much
 constexpr double kOfDrift = 0.01;            // of the light, for each pixel that the scene has moved
 constexpr double kUsualGradient_1_m = 0.1;   // of the light, in an ordinary room
-constexpr double kFull = 0.96;               // of the largest code: a marker this bright may be saturated
+constexpr double kSaturatedCode = 0.96;      // of the largest code: a marker this bright may be saturated
 
 /// The sinc factor by which an exposure averages a wave.
 double averaged(double f_hz, double exposure_s) {
@@ -107,7 +107,7 @@ namespace {
 
 /// The effect of light from one side on the centroid of the marker's light, if it exceeds the noise.
 std::string words_of_pull(const std::vector<FilmedClip>& clips) {
-  constexpr double kLeastPull_px = 0.1, kRare = 0.05;
+  constexpr double kLeastPull_px = 0.1, kTailQuantile = 0.05;
   std::vector<double> pulls, along;
   for (const FilmedClip& clip : clips) {
     for (const core::MarkerLook& look : clip.record->marker) {
@@ -117,7 +117,7 @@ std::string words_of_pull(const std::vector<FilmedClip>& clips) {
   }
   const double pull = core::quantile(pulls, 0.5);
   if (pull < kLeastPull_px) return "";
-  const double change = 0.5 * (core::quantile(along, 1.0 - kRare) - core::quantile(along, kRare));
+  const double change = 0.5 * (core::quantile(along, 1.0 - kTailQuantile) - core::quantile(along, kTailQuantile));
   return fmt::format(
       " The centroid of the marker's light lies {:.2g} px from the centre of its outline, which is what is "
       "fitted; this offset changes by ±{:.2g} px along the path.",
@@ -136,7 +136,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
     px_per_m += clips[c].px_per_m / static_cast<double>(clips.size());
     for (const core::MarkerLook& look : clips[c].record->marker) {
       const double code = look.amplitude + look.background;
-      if (!(code > 0.0) || code > kFull * clips[c].record->full_code) continue;
+      if (!(code > 0.0) || code > kSaturatedCode * clips[c].record->full_code) continue;
       Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
       const double along_px =
           clips[c].down ? look.v_px - 0.5 * clips[c].record->height_px : look.u_px - 0.5 * clips[c].record->width_px;

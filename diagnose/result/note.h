@@ -77,7 +77,7 @@ struct SplitSetUps {
 };
 
 /// A clip begins in the opposite direction to its stated launch.
-struct LaunchedOtherWay {
+struct OppositeLaunch {
   std::string clip;
   bool stated_up = false;
 };
@@ -124,10 +124,11 @@ struct TableOfLines {
 
 using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside,
                              PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
-                             SplitSetUps, LaunchedOtherWay, NegativeLoss, ContradictedIncline, ContradictedReading,
+                             SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
                              BeyondGravity, MeanIncline, TableOfLines, OnlyFalls>;
 
-/// One note; what copies, moves and destroys it is compiled once (note.cpp), as of core::Note.
+/// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
+/// why the two share no template.
 struct Note : AnyNote {
   using AnyNote::AnyNote;
   Note(const Note&);

@@ -15,8 +15,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestScattered = 3;  // clips that have a spread
-constexpr double kDerivativeFloor = 1e-15;   // of the raw square: below, the derivatives' errors are all that is left
+constexpr std::size_t kFewestScattered = 3;  // clips that can show a spread
+constexpr double kDerivativeFloor = 1e-15;   // of the raw square: less is only the error of the derivatives
 
 EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
@@ -30,7 +30,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
     const double square = seen_square(space, column);
     const double z_most = most * std::sqrt(square);
     if (z_most < kVisible_sd) {
-      logs.push_back(0.0);  // says nothing
+      logs.push_back(0.0);  // the data say nothing
       continue;
     }
     scan.visible = true;
@@ -54,14 +54,14 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   return scan;
 }
 
-/// Whether sizes of their own can differ in these data.
+/// Whether these data can show that sizes of one kind differ.
 bool can_spread(const TrackSet& set, const EffectInfo& info) {
   std::map<Configuration, std::set<std::size_t>> clips;  // of each configuration
   for (const TrackedMotion& motion : set.motions) clips[{motion.group, motion.mass}].insert(motion.clip);
   switch (info.parameters.front().each) {
     case Each::configuration:
       return clips.size() > 1;
-    case Each::clip:  // of one configuration, and enough for a spread
+    case Each::clip:  // at least two of one configuration, and enough in all for a spread
       return set.clips.size() >= kFewestScattered &&
              std::any_of(clips.begin(), clips.end(), [](const auto& of_one) { return of_one.second.size() > 1; });
     default:
@@ -82,7 +82,7 @@ EffectScan scan_spread(const ScoreSpace& space, std::size_t effect) {
     of.push_back(&global);
   }
   SpreadSeen seen = space.seen(columns);
-  // Sizes over the spread that holds them back, so that those of different kinds are alike.
+  // Sizes in units of their prior's standard deviation, so that those of different kinds are comparable.
   Eigen::VectorXd unit(std::ssize(of));
   double most = 0.0;
   for (Eigen::Index g = 0; g < unit.size(); ++g) {
@@ -163,7 +163,7 @@ std::vector<EffectScan> scan_effects(const ScoreSpace& space, const std::set<std
     waves = waves || list[e].search == Search::wave;
     if (list[e].search != Search::wave) wanted.push_back(e);
   }
-  Wave wave;  // the slowest of all, and both waves' start
+  Wave wave;  // the slowest search, shared by both effects that are waves
   base::for_each_parallel(wanted.size() + 1, jobs, [&](std::size_t i) {
     if (i > 0) {
       scans[wanted[i - 1]] = scan_effect(space, wanted[i - 1]);
@@ -179,13 +179,13 @@ std::vector<EffectScan> scan_effects(const ScoreSpace& space, const std::set<std
 
 namespace {
 
-constexpr double kSameDirection = 1e-6;  // of sin²: one direction is the other, to what derivatives err
+constexpr double kSameDirection = 1e-6;  // of sin²: the two directions agree to within the errors of the derivatives
 
-/// Sizes of two directions fitted together.
+/// The sizes of two directions that are fitted together.
 struct Together {
   double gain = 0.0;
   double first = 0.0, second = 0.0;        // sizes,
-  double first_sd = 0.0, second_sd = 0.0;  // and how well they are known, the other one fitted
+  double first_sd = 0.0, second_sd = 0.0;  // and their standard deviations with the other one fitted
 };
 
 std::optional<Together> fit_together(const TriedShape& a, const TriedShape& b, double ab) {
@@ -204,13 +204,13 @@ bool allowed(double size, const EffectInfo& info) {
   return size > 0.0 || info.both_signs;
 }
 
-/// What a size that is averaged over its prior costs against the best one.
+/// The log likelihood that averaging a size over its prior costs, compared with its best value.
 double price(double size, double sd, double most, bool both_signs) {
   const double z = std::abs(size) / sd;
   return 0.5 * z * z - log_amplitude_evidence(z, most / sd, both_signs);
 }
 
-/// Where a fit begins: well within the range.
+/// A size from which a fit can start: well within its range.
 double start_of(double size, const ParameterRange& range, const EffectInfo& info) {
   return std::clamp(size, info.both_signs ? 0.9 * range.low : info.parameters[0].step, 0.9 * range.high);
 }

@@ -16,15 +16,15 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastWave_px = 0.002;  // in images: what finding a marker among pixels errs by itself
+constexpr double kLeastWave_px = 0.002;  // in images: the error of locating a marker among pixels
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-/// Score and information of (sin, cos) of one frequency in one motion.
+/// Information (ss, sc, cc) and score (rs, rc) of sin and cos of one frequency in one motion.
 struct WavePart {
   double ss = 0.0, sc = 0.0, cc = 0.0, rs = 0.0, rc = 0.0;
 };
 
-/// Waves over the times of each motion.
+/// The waves at the times of each motion.
 std::vector<TurningWaves> waves_of(const TrackSet& set, double f, double step) {
   std::vector<TurningWaves> waves;
   for (const TrackedMotion& motion : set.motions) waves.emplace_back(motion.t_s, f, step);
@@ -58,7 +58,7 @@ WaveEvidence weigh_wave(const std::vector<WavePart>& parts, double least_m) {
     cosine[k] = std::cos(kTurn * static_cast<double>(k) / kPhases);
   }
   for (int a = 0; a < kSizes; ++a) {
-    // Three decades from what begins to show and can be trusted.
+    // Three decades, from the smallest amplitude that shows and can be trusted.
     const double size = std::max(4.0 / std::sqrt(square), least_m) * std::pow(10.0, 3.0 * a / (kSizes - 1.0));
     double log_likelihood = 0.0, gain = 0.0;
     for (const WavePart& part : parts) {
@@ -118,7 +118,7 @@ EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& w
   scan.gain = wave.gain;
   scan.log_evidence = wave.log_evidence;
   const double omega = kTurn * wave.f_hz;
-  const bool force = info.law.moves();  // else what is seen swings
+  const bool force = info.law.moves();  // otherwise the measured position swings
   std::size_t i = 0;
   double amplitude = wave.size_m;
   for (const WavePart& part : wave_parts(space, waves_of(set, wave.f_hz, 0.0))) {
@@ -140,13 +140,13 @@ EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& w
 
 namespace {
 
-constexpr double kShareOfAnyPushes = 0.1;  // of late releases: pushes of any size and sign, each clip its own
-constexpr double kShareOfDragging = 0.1;   // of one hand's: it drags, instead of pushing
+constexpr double kShareOfAnyPushes = 0.1;  // of late releases: pushes of any size and sign, each motion its own
+constexpr double kShareOfDragging = 0.1;   // of those of one hand: it drags instead of pushing
 constexpr double kPushStep_m_s2 = 1e-4;    // of the finite difference
-constexpr double kPushSpread = 0.5;        // standard deviation of one hand's push, over that of the part common to all
+constexpr double kPushSpread = 0.5;  // sd of one hand's pushes about their common part, over that of the common part
 
-/// Which way a motion goes at a time, or first after it.
-double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
+/// The direction of a motion at a time, or as soon after it as the motion moves: 1 or -1.
+double direction_at(const ScoreSpace& space, std::size_t motion, double t_s) {
   const auto& t = space.set().motions[motion].t_s;
   const auto& v = space.fit().motions[motion].v_m_s;
   std::size_t p = 0;
@@ -154,10 +154,11 @@ double way_at(const ScoreSpace& space, std::size_t motion, double t_s) {
   return v[p] < 0.0 ? -1.0 : 1.0;
 }
 
-/// Sizes of pushes from independent ones: one hand's go along the motions and are about alike.
-Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& ways) {
-  Eigen::MatrixXd sizes(ways.size(), ways.size() + 1);
-  sizes << ways, kPushSpread * Eigen::MatrixXd::Identity(ways.size(), ways.size());
+/// The matrix from independent unit deviates to the pushes of one hand, which act along the motions and are about
+/// equal.
+Eigen::MatrixXd pushes_of_one_hand(const Eigen::VectorXd& directions) {
+  Eigen::MatrixXd sizes(directions.size(), directions.size() + 1);
+  sizes << directions, kPushSpread * Eigen::MatrixXd::Identity(directions.size(), directions.size());
   return sizes;
 }
 
@@ -165,8 +166,8 @@ double log_below(double z) {
   return std::log(std::max(1e-300, 0.5 * std::erfc(-z / std::numbers::sqrt2)));
 }
 
-/// log of the probability that all of these normal deviates, taken as independent, are positive, or all negative; of
-/// the latter kShareOfDragging, as far as it was as likely beforehand.
+/// log((1 - d) P(all positive) + d P(all negative)) of normal deviates, taken as independent, with d =
+/// kShareOfDragging.
 double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
   double positive = std::log1p(-kShareOfDragging), negative = std::log(kShareOfDragging);
   for (Eigen::Index k = 0; k < mean.size(); ++k) {
@@ -177,8 +178,7 @@ double log_one_sign(const Eigen::VectorXd& mean, const Eigen::VectorXd& sd) {
   return base::log_mean({positive, negative}) + std::log(2.0);
 }
 
-/// log of the probability that pushes_of_one_hand() all have one sign, of two, before anything is measured: the mean
-/// over the part that is common to all.
+/// Log of the prior probability that pushes_of_one_hand() all have one given sign: the average over their common part.
 double log_one_sign_beforehand(Eigen::Index pushes) {
   constexpr int kParts = 400;
   constexpr double kWidest = 8.0;
@@ -220,9 +220,10 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
         products(a, b) = products(b, a) = space.dot(column, columns[static_cast<std::size_t>(b)]);
       }
     }
-    Eigen::VectorXd ways(n);
-    for (Eigen::Index k = 0; k < n; ++k) ways[k] = way_at(space, from_start[static_cast<std::size_t>(k)], t_r);
-    const Eigen::MatrixXd sizes = pushes_of_one_hand(ways), seen = base::product(products, sizes);
+    Eigen::VectorXd directions(n);
+    for (Eigen::Index k = 0; k < n; ++k)
+      directions[k] = direction_at(space, from_start[static_cast<std::size_t>(k)], t_r);
+    const Eigen::MatrixXd sizes = pushes_of_one_hand(directions), seen = base::product(products, sizes);
     const SpreadEvidence evidence =
         log_spread_evidence(base::transposed_product(sizes, seen), base::transposed_product(sizes, scores));
     const SpreadEvidence any = log_spread_evidence(products, scores);
@@ -232,9 +233,9 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
     }
     Eigen::VectorXd push = base::product(sizes, evidence.mean);
     const Eigen::MatrixXd covariance = base::product(base::product(sizes, evidence.covariance), sizes.transpose());
-    // A hand pushes what it launches; seldom it holds back what it lets go, or this one clip and not the next.
+    // A hand pushes what it launches. It seldom holds back what it lets go, or does so in one clip and not in the next.
     const double one_sign =
-        log_one_sign(push.cwiseProduct(ways), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
+        log_one_sign(push.cwiseProduct(directions), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
     const double of_one_hand = std::log1p(-kShareOfAnyPushes) + evidence.log_evidence + one_sign;
     const double of_any = std::log(kShareOfAnyPushes) + any.log_evidence;
     logs.push_back(base::log_sum({of_one_hand, of_any}));
@@ -243,7 +244,7 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
     const double gain = alike ? evidence.gain : any.gain;
     if (gain <= best) continue;
     best = gain;
-    scan.gain = evidence.free_gain;  // what a full fit is to be held against
+    scan.gain = evidence.free_gain;  // the gain with which a full fit is compared
     scan.values = {t_r};
     scan.own.assign(set.motions.size(), {0.0});
     for (std::size_t k = 0; k < from_start.size(); ++k) {

@@ -18,7 +18,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPixelError_px = 0.01;
-constexpr double kLeastWay_px = 1.0;
+constexpr double kLeastTravel_px = 1.0;
 
 }  // namespace
 
@@ -34,14 +34,14 @@ void add_pixel_modes(const core::ClipResult& clip, const std::vector<std::size_t
   }
   if (frames.empty()) return;
   motion.row_px = rows;
-  const auto way = [](const std::vector<double>& at) {
+  const auto extent_of = [](const std::vector<double>& at) {
     const auto [low, high] = std::minmax_element(at.begin(), at.end());
     return *high - *low;
   };
-  const std::vector<double>& along = way(columns) >= way(rows) ? columns : rows;
-  if (way(along) < kLeastWay_px) return;
+  const std::vector<double>& along = extent_of(columns) >= extent_of(rows) ? columns : rows;
+  if (extent_of(along) < kLeastTravel_px) return;
   motion.along_px = along;
-  motion.m_per_px = way(motion.x_m) / way(along);
+  motion.m_per_px = extent_of(motion.x_m) / extent_of(along);
   motion.shared_m.resize(std::max(motion.shared_m.size(), first_mode + kPixelModes));
   motion.first_pixel_mode = first_mode;
   for (std::size_t k = 0; k < kPixelModes; ++k) {
@@ -143,8 +143,9 @@ std::vector<Run> runs_of(const core::ClipResult& clip, bool all) {
                                  [](const core::MotionPoint& p) { return p.left_out == core::LeftOut::rest; });
       const bool near = motion[i].t_s - motion[last].t_s <= kLongestBridge || i == last + 1;
       const bool room = last >= runs.back().from + 2 && i + 2 < motion.size() && motion[i + 2].measured_m;
-      const bool same_way = i == last + 1 || (room && slope(motion, last - 2, last) * slope(motion, i, i + 2) > 0.0);
-      joins = near && !rest && same_way;
+      const bool same_direction =
+          i == last + 1 || (room && slope(motion, last - 2, last) * slope(motion, i, i + 2) > 0.0);
+      joins = near && !rest && same_direction;
     }
     if (joins) {
       runs.back().to = i;

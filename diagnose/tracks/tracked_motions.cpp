@@ -61,10 +61,10 @@ void thin_out(TrackSet& set, std::size_t fewest) {
 
 namespace {
 
-constexpr double kWayBack = 20.0;      // standard deviations of the noise,
-constexpr double kPartOfRange = 0.02;  // or fraction of the whole distance, by which a motion comes back at a turn
-constexpr std::size_t kMostTurns = 4;  // of a motion that is not cut
-constexpr std::size_t kTurns = 2;      // of a piece
+constexpr double kLeastReturn_sd = 20.0;  // standard deviations of the noise,
+constexpr double kPartOfRange = 0.02;     // or fraction of the whole distance, by which a motion comes back at a turn
+constexpr std::size_t kMostTurns = 4;     // of a motion that is not cut
+constexpr std::size_t kTurns = 2;         // of a piece
 constexpr std::size_t kMostPieces = 40;
 constexpr std::size_t kMostPoints = 8000;
 
@@ -128,19 +128,19 @@ void name_pieces(TrackSet& set) {
 
 std::vector<std::size_t> turns_of(const TrackedMotion& motion) {
   const auto [low, high] = std::minmax_element(motion.x_m.begin(), motion.x_m.end());
-  const double back = std::max(kWayBack * motion.sd_m, kPartOfRange * (*high - *low));
+  const double back = std::max(kLeastReturn_sd * motion.sd_m, kPartOfRange * (*high - *low));
   std::vector<std::size_t> turns;
   std::size_t lowest = 0, highest = 0;  // since the last turn
-  int way = 0;
+  int direction = 0;
   for (std::size_t p = 0; p < motion.x_m.size(); ++p) {
     if (motion.outlier[p]) continue;
     if (motion.x_m[p] < motion.x_m[lowest]) lowest = p;
     if (motion.x_m[p] > motion.x_m[highest]) highest = p;
-    const bool falls = way >= 0 && motion.x_m[highest] - motion.x_m[p] > back;
-    const bool rises = way <= 0 && motion.x_m[p] - motion.x_m[lowest] > back;
+    const bool falls = direction >= 0 && motion.x_m[highest] - motion.x_m[p] > back;
+    const bool rises = direction <= 0 && motion.x_m[p] - motion.x_m[lowest] > back;
     if (!falls && !rises) continue;
-    if (way != 0) turns.push_back(falls ? highest : lowest);
-    way = falls ? -1 : 1;
+    if (direction != 0) turns.push_back(falls ? highest : lowest);
+    direction = falls ? -1 : 1;
     lowest = highest = p;
   }
   return turns;

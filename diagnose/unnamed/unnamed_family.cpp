@@ -8,10 +8,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSure = 2.0;      // standard deviations from which on a place is named
-constexpr double kUnseen = 1e-10;  // relative to the largest square: anything smaller is absorbed by the fitted
-                                   // parameters
-constexpr double kMostSeen = 2e4;  // standard deviations of one bump: four decades from where it begins to show
+constexpr double kLeastPlace_sd = 2.0;  // standard deviations from which on a place is named
+constexpr double kUnseen = 1e-10;       // relative to the largest square: anything smaller is absorbed by the fitted
+                                        // parameters
+constexpr double kMostSeen = 2e4;       // standard deviations of one bump: four decades from where it begins to show
 
 /// Scalar products of columns with each other and with the residual.
 struct Normal {
@@ -157,13 +157,13 @@ void name_regions(UnnamedFamily& family) {
     return family.sd[i] > 0.0 ? std::abs(family.size[i]) / family.sd[i] : 0.0;
   };
   for (std::size_t i = 0; i < family.at.size();) {
-    if (sureness(i) < kSure) {
+    if (sureness(i) < kLeastPlace_sd) {
       ++i;
       continue;
     }
     std::size_t end = i + 1;
     const bool neighbours = family.names.empty();  // members with names have none
-    while (neighbours && end < family.at.size() && sureness(end) >= kSure) ++end;
+    while (neighbours && end < family.at.size() && sureness(end) >= kLeastPlace_sd) ++end;
     UnnamedRegion region{family.at[i], family.at[end - 1], 0.0, 0.0};
     for (std::size_t k = i; k < end; ++k) {
       region.excess = std::max(region.excess, sureness(k));

@@ -21,7 +21,8 @@ constexpr double kMostPulls = 25.0;                   // periods of a force, whi
                                                       // they are
 constexpr double kMostSwings = 600;                   // periods that are tried in full
 constexpr double kFinestSwings = 2000;                // periods over the whole range: the pixels of a wide image
-constexpr double kShowsALittle = 3.0, kShows = 8.0;   // log likelihood above which a wave is tried on a finer grid
+constexpr double kLeastCoarseGain = 3.0,
+                 kLeastFineGain = 8.0;  // log likelihood above which a wave is tried on a finer grid
 
 struct Ranges {
   Grid x, v, t, speed;
@@ -180,7 +181,7 @@ class FineSwings {
     SpreadEvidence evidence;
     evidence.free_gain = 0.5 * sums.squaredNorm() / squares_;
     evidence.log_evidence = nothing_;
-    if (evidence.free_gain < kShowsALittle) return evidence;
+    if (evidence.free_gain < kLeastCoarseGain) return evidence;
     return log_spread_evidence(squares_ * Eigen::Matrix2d::Identity(), sums);
   }
 
@@ -206,17 +207,17 @@ bool swings_by_rounding(const TrackSet& set, double f_1_m, double range_m) {
 UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   const TrackSet& set = space.set();
   UnnamedFamily family = family_of(GapVariable::position, GapKind::displacement, "m");
-  std::vector<double> ways;
+  std::vector<double> steps;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     const auto& at = space.modelled(i);
-    for (std::size_t p = 1; p < at.size(); ++p) ways.push_back(std::abs(at[p] - at[p - 1]));
+    for (std::size_t p = 1; p < at.size(); ++p) steps.push_back(std::abs(at[p] - at[p - 1]));
   }
   const double range = x.high - x.low;
-  if (ways.empty() || !(range > 0.0)) return family;
+  if (steps.empty() || !(range > 0.0)) return family;
   // Half of all frames lie closer together than this: at least two of them to a period. No more trials than
   // kMostSwings.
   const double step = 0.3 / range;
-  const double highest = std::min(0.5 / std::max(core::median_of(std::move(ways)), 1e-9), kMostSwings * step);
+  const double highest = std::min(0.5 / std::max(core::median_of(std::move(steps)), 1e-9), kMostSwings * step);
   std::vector<double> logs;
   const auto try_swing = [&](double f, const std::vector<TurningWaves>& waves) {
     SpreadEvidence evidence;
@@ -234,7 +235,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   // the pixels' errors are in the fit.
   if (!set.pictures) {
     FineSwings fine(space, f, step);
-    double most = kShows, best_f = 0.0;
+    double most = kLeastFineGain, best_f = 0.0;
     std::size_t best = 0;
     for (; f < kFinestSwings / range; f += step) {
       const SpreadEvidence evidence = fine.next();

@@ -35,12 +35,12 @@ std::vector<std::size_t> indices(const std::vector<std::string>& ids) {
   return effects;
 }
 
-/// The fit of the best explanation that names something, or nothing.
+/// The fit of the likeliest explanation; the nominal fit if that explanation has none.
 const MotionFit& best_fit(const Comparison& comparison) {
   return comparison.fits[static_cast<std::size_t>(std::max(0, comparison.all.front().fit))];
 }
 
-/// What the analysis made of the same clips.
+/// Adds the speeds and accelerations that the analysis found in the same clips.
 void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion>& measured) {
   std::vector<std::string> names;
   for (const core::ClipResult& clip : results.clips) names.push_back(clip.name);
@@ -75,7 +75,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   };
   Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.1, 0.5));
   if (set.disputed > 0 && (comparison.all.front().unnamed || is_misfit(set, best_fit(comparison)))) {
-    // Nothing of the list explains the motion with its hand and stops: they are what the analysis took them for.
+    // No effect on the list explains the motion with its hand and stops, so these are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, set.disputed)) {
       set = std::move(*trimmed);
       progress("weighing explanations", 0.5);
@@ -120,7 +120,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     cameras.resize(setups.size(), experiment.camera);
     experiments.push_back(experiment);
   }
-  indices(options.without);  // what is misspelt shows before the clips are read
+  indices(options.without);  // a misspelt id is refused before the clips are read
   const core::AnalysisResults results = analyze_for_diagnosis(folders, options, progress);
   return diagnose_results(results, setups, options, progress, cameras, experiments);
 }

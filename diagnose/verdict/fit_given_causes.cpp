@@ -23,7 +23,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kAllOrders = 3;  // causes of which all orders are tried: six
+constexpr std::size_t kAllOrders = 3;  // up to so many causes all orders are tried, six at most
 
 bool changes_the_motion(const EffectInfo& effect) {
   return shows_in_motion(effect.search) && effect.search != Search::lines;
@@ -41,7 +41,7 @@ bool shows(const EffectScan& scan) {
   return scan.visible && !scan.values.empty();
 }
 
-/// InputError: the cause, and what could be named in its place beside the effects of the fit.
+/// Throws an InputError with the cause, and with the effects that could be named in its place beside those of the fit.
 [[noreturn]] void refuse(const MotionFit& beside, const TrackSet& set, std::size_t effect, const std::string& option) {
   std::vector<std::size_t> candidates;
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
@@ -62,7 +62,7 @@ bool shows(const EffectScan& scan) {
                                    : fmt::format("one that they can show: {}", fmt::join(possible, ", "))});
 }
 
-/// The nominal fit with the effects added one after the other.
+/// The nominal fit with the effects added one after another.
 MotionFit fit_in_order(const TrackSet& set, const MotionFit& nominal, const std::vector<std::size_t>& order,
                        const std::string& option) {
   MotionFit fit = nominal;
@@ -99,14 +99,14 @@ MotionFit best_fit(const TrackSet& set, const MotionFit& nominal, const std::vec
   return std::move(*best);
 }
 
-/// The nominal fit, with the frames that are missing beyond what the analysis corrected.
+/// The nominal fit, corrected for missing frames beyond those that the analysis corrected.
 MotionFit nominal_of(const TrackSet& set) {
   const MotionFit nominal = fit_nominal(set);
   MissingFrames missing = find_missing_frames(set, nominal);
   return missing.count > 0 ? std::move(missing.fit) : nominal;
 }
 
-/// A set with its nominal fit and that with the causes.
+/// A set with its nominal fit and the fit with the causes.
 struct WithCauses {
   TrackSet set;
   MotionFit nominal, fit;
@@ -120,7 +120,7 @@ WithCauses fits_of(TrackSet set, const PictureEvidence& pictures, const std::vec
   return {std::move(set), std::move(nominal), std::move(fit)};
 }
 
-/// What the fit says of each cause when its remainder counts as noise.
+/// The sizes of each cause in a fit that counts the remainder as noise.
 std::vector<GivenCause> sizes_of(const WithCauses& of, const RemainderSizes& remainder, const PictureEvidence& pictures,
                                  const std::vector<std::string>& ids) {
   TrackSet with = of.set;
@@ -173,13 +173,13 @@ GivenCauses fit_given_causes(core::AnalysisResults results, const std::vector<co
   check_given_causes(ids, option);
   std::vector<std::size_t> effects;
   for (const std::string& id : ids) effects.push_back(effect_index(id));
-  for (core::ClipResult& clip : results.clips) clip.lost_frames.clear();  // the times are right already
+  for (core::ClipResult& clip : results.clips) clip.lost_frames.clear();  // the times are corrected already
   progress("fitting with the causes", 0.0);
   TrackSet whole = whole_motions(results, setups);
   const PictureEvidence pictures = picture_evidence(filmed_clips(results, setups, cameras));
   WithCauses of = fits_of(std::move(whole), pictures, effects, option, progress);
   if (of.set.disputed > 0 && is_misfit(of.set, of.fit)) {
-    // The causes do not explain the hand and the stops: they are what the analysis took them for.
+    // The causes do not explain the hand and the stops, so these are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, of.set.disputed)) {
       of = fits_of(std::move(*trimmed), pictures, effects, option, progress);
     }

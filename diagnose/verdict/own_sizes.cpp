@@ -13,11 +13,11 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr Eigen::Index kDrag = 0, kMu = 1;  // among common parameters
-constexpr int kPlaces = 7;                  // at which a friction along the track is told
-constexpr int kDrawn = 141;                 // over which its mean square is taken
+constexpr Eigen::Index kDrag = 0, kMu = 1;  // indices of the common parameters
+constexpr int kPlaces = 7;                  // positions at which a friction along the track is stated
+constexpr int kDrawn = 141;                 // positions over which its mean square is taken
 
-/// A value and its derivatives by the common parameters.
+/// A value and its derivatives with respect to the common parameters.
 struct Told {
   double value = 0.0;
   Eigen::VectorXd by;
@@ -51,7 +51,7 @@ Told enlarged(const Told& a, const Told& b, double sign = 1.0) {
   return {a.value * factor, factor * a.by + sign * a.value * b.by};
 }
 
-/// Standard deviation of some values, of which there are two or more.
+/// The standard deviation of two or more values.
 Told spread(const std::vector<Told>& values) {
   const auto n = static_cast<double>(values.size());
   double mean = 0.0, square = 0.0;
@@ -73,7 +73,8 @@ std::string name_of(const TrackSet& set, const Configuration& configuration) {
   return set.masses.size() == 1 ? group : group + ", " + mass;
 }
 
-/// mu + d or K (1 + d) of each; `sd_key` of their spread, `key` of each one's, with its name, where it is not empty.
+/// mu + d or K (1 + d) of each configuration or clip. `sd_key` is the key of their standard deviation. `key` is that of
+/// each value, followed by its name; if `key` is empty, the values are left out.
 std::vector<DiagnosedParameter> own_values(const TrackSet& set, const MotionFit& fit, const EffectSlot& slot,
                                            Eigen::Index common, const std::string& sd_key, const std::string& key) {
   const std::vector<std::size_t> globals = fit.layout->all_of(slot);
@@ -92,7 +93,7 @@ std::vector<DiagnosedParameter> own_values(const TrackSet& set, const MotionFit&
   return told;
 }
 
-/// s(x) of place_friction, as its law has it: what mu becomes over mu, less 1.
+/// s(x) of place_friction by its law: the ratio of the changed mu to mu, less 1.
 std::vector<DiagnosedParameter> friction_along(const TrackSet& set, const MotionFit& fit, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
   const ParameterRange x = fit.layout->places();
@@ -103,7 +104,7 @@ std::vector<DiagnosedParameter> friction_along(const TrackSet& set, const Motion
   }
   const Teller teller(set, fit);
   const GliderConstants glider{.x_low_m = x.low, .x_high_m = x.high};
-  // It is linear in its sizes: the derivative by each is what one unit of it alone makes.
+  // s is linear in its sizes, so the derivative with respect to a size is s for one unit of that size alone.
   const auto at = [&](double place) {
     Told told{0.0, Eigen::VectorXd::Zero(fit.at.global.size())};
     for (std::size_t j = 0; j < globals.size(); ++j) {

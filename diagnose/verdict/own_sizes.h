@@ -1,5 +1,5 @@
 /// The sizes that are stated for an effect whose parameters have a meaning only together: deviations of each
-/// configuration or clip from a common mu or K, a friction along the track, a drag of each direction.
+/// configuration or clip from a common mu or K, a friction along the track, a drag for each direction.
 ///
 ///     direction_dependent_drag   k_plus_n_s_m, k_minus_n_s_m: K (1 + d) and K (1 - d), towards larger x and back
 ///     place_friction             sd: root mean square of s over the range of positions; s.at X m: s there
@@ -7,8 +7,8 @@
 ///     configuration_drag         sd_n_s_m: of K; k_n_s_m.NAME: K of each
 ///     clip_scatter               sd_mu, sd_k_n_s_m: standard deviations of mu and K over the clips
 ///
-/// Each comes with the standard deviation that the fit's covariance gives it to first order. That of a spread holds
-/// where it is larger than the sizes' own errors.
+/// Each comes with its standard deviation by the fit's covariance, to first order. For a spread this holds only if the
+/// spread is larger than the errors of the sizes themselves.
 #pragma once
 
 #include <string>
@@ -20,10 +20,10 @@
 
 namespace glidelab::diagnose {
 
-/// The group's name, with its inclination where another set-up has that name.
+/// The name of a group, with its inclination if another set-up has the same name.
 std::string own_name(const TrackSet& set, std::size_t group);
 
-/// Empty for an effect whose parameters have a meaning by themselves.
+/// The sizes of an effect in a fit that contains it. Empty for an effect whose parameters have a meaning by themselves.
 std::vector<DiagnosedParameter> own_sizes(const TrackSet& set, const MotionFit& fit, std::size_t effect);
 
 }  // namespace glidelab::diagnose

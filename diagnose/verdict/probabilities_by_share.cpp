@@ -14,7 +14,7 @@ void sort_by_probability(Comparison& comparison) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
-/// Each effect's is the sum over the explanations that have it.
+/// The probability of an effect is the sum over the explanations that contain it.
 void sum_of_effects(Comparison& comparison) {
   std::fill(comparison.effect_probability.begin(), comparison.effect_probability.end(), 0.0);
   for (const Hypothesis& one : comparison.all) {
@@ -23,13 +23,13 @@ void sum_of_effects(Comparison& comparison) {
   }
 }
 
-/// The explanations with `main` have kByShare together, and all else the rest.
+/// Gives the explanations with `main` a total probability of kByShare, and everything else the rest.
 void trust(std::size_t main, const std::vector<std::size_t>& best, Comparison& comparison) {
   double with_main = 0.0, rest = comparison.unknown;
   for (const Hypothesis& one : comparison.all) {
     if (!one.unnamed) (has(one, main) ? with_main : rest) += one.probability;
   }
-  // They may have lost all of it to the unknown; the best one then stands for them.
+  // They may have lost all of their probability to the unknown. The best explanation then stands for them.
   const bool lost = !(with_main > 0.0);
   for (Hypothesis& one : comparison.all) {
     if (lost && !one.unnamed && one.effects == best) {
@@ -87,7 +87,8 @@ void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>
   comparison.unknown += std::exchange(comparison.none, 0.0);
   const Hypothesis of{best};
   if (sequence.named_share < kHalfOfGap && shows_in_gap(of)) {
-    // What explanations that leave more than half had is unknown already; now the best one's is as well.
+    // The probability of explanations that leave more than half is unknown already; now that of the best one is as
+    // well.
     double of_best = 0.0;
     for (const Hypothesis& one : comparison.all) {
       if (!one.unnamed && one.effects == best) of_best += one.probability;
@@ -96,7 +97,7 @@ void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>
   }
   if (sequence.named_share < kMostOfGap || comparison.unknown < 1.0 - kByShare) return;
   const std::size_t main = effect_index(sequence.causes.front().id);
-  // Where the noise is next to nothing any curve has the evidence of certainty, and only the share counts.
+  // Where the noise is negligible, any curve has the evidence of a certainty, and only the share counts.
   const bool no_noise = sequence.gap_before * sequence.gap_before - 1.0 >= kLargestExcess;
   if (no_noise && !follows_each_clip(main)) trust(main, best, comparison);
 }

@@ -23,13 +23,13 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestPositions = 25;  // of all clips together: fewer carry no verdict beside four parameters
+constexpr std::size_t kFewestPositions = 25;  // of all clips together: with four parameters, fewer allow no verdict
 constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
 constexpr double kContradiction = 5.0;        // standard deviations between two statements
-constexpr double kLatestLaunch_s = 0.2;       // a motion that begins later is not the launch
-constexpr std::size_t kFirstPoints = 8;       // that show which way it begins,
-constexpr double kOtherWay = 10.0;            // by so many standard deviations of a position
-constexpr double kMisfit = 1.5;               // chi² per point from which on the motion counts as not explained
+constexpr double kLatestLaunch_s = 0.2;       // a motion that starts later is not the launch
+constexpr std::size_t kFirstPoints = 8;       // which show the direction of the launch,
+constexpr double kOpposite_sd = 10.0;         // by a displacement of so many standard deviations of a position
+constexpr double kMisfit = 1.5;               // chi² per position above which the motion counts as not explained
 
 std::size_t points_of(const TrackSet& set) {
   std::size_t points = 0;
@@ -37,7 +37,7 @@ std::size_t points_of(const TrackSet& set) {
   return points;
 }
 
-/// InputError, an issue for each clip, where all of them together hold too little motion.
+/// InputError with an issue for each clip if all of them together have too little motion.
 void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
   if (points_of(set) >= kFewestPositions) return;
   std::vector<std::size_t> of_clip(set.clips.size(), 0);
@@ -48,7 +48,7 @@ void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
         {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
          fmt::format("clip \"{}\"", set.clips[c].name),
          of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
-         fmt::format("at least {} in all clips together: fewer carry no verdict", kFewestPositions)});
+         fmt::format("at least {} in all clips together: fewer support no verdict", kFewestPositions)});
   }
   throw base::InputError(std::move(issues));
 }
@@ -57,7 +57,8 @@ void add_once(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// A reading without its uncertainty holds no fit: what the accelerations say against it must be said all the same.
+/// A reading without its uncertainty does not constrain a fit. If the accelerations contradict it, the reader must be
+/// told all the same.
 void note_readings(const core::AnalysisResults& results, TrackSet& set) {
   for (const core::ConfigurationResult& found : results.configurations) {
     if (found.incline_sd_deg) continue;
@@ -67,7 +68,8 @@ void note_readings(const core::AnalysisResults& results, TrackSet& set) {
   }
 }
 
-/// What a reader should know of the data before trusting the verdict: one note for what several set-ups share.
+/// Notes on what a reader should know of the data before trusting the verdict: one note for all set-ups that share a
+/// limit.
 void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   std::vector<std::string> free, mixed;
   for (const TrackGroup& group : set.groups) {
@@ -91,18 +93,18 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   if (!mixed.empty()) set.notes.emplace_back(SplitSetUps{std::move(mixed)});
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
-    const bool stated_way = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
-    if (!stated_way || motion.t_s.front() > kLatestLaunch_s) continue;
+    const bool direction_stated = setup.launched == core::Launched::up || setup.launched == core::Launched::down;
+    if (!direction_stated || motion.t_s.front() > kLatestLaunch_s) continue;
     const std::size_t some = std::min<std::size_t>(kFirstPoints, motion.x_m.size() - 1);
-    const double way = motion.x_m[some] - motion.x_m.front();
+    const double displacement_m = motion.x_m[some] - motion.x_m.front();
     const double stated = setup.launched == core::Launched::up ? -1.0 : 1.0;
-    if (way * stated < -kOtherWay * motion.sd_m) {
-      set.notes.emplace_back(LaunchedOtherWay{setup.name, stated < 0.0});
+    if (displacement_m * stated < -kOpposite_sd * motion.sd_m) {
+      set.notes.emplace_back(OppositeLaunch{setup.name, stated < 0.0});
     }
   }
 }
 
-/// Of imported tracks, whose images nobody sees here.
+/// A note on lasting errors of imported tracks, whose images are not available.
 void note_lasting_noise(TrackSet& set) {
   const NoiseShape& shape = set.position_noise->shape;
   if (set.pictures || !(shape.lasting > 0.0)) return;
@@ -111,7 +113,7 @@ void note_lasting_noise(TrackSet& set) {
                                        lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)});
 }
 
-/// One position beyond a gap may as well be an outlier where no frame is missing elsewhere; two at one end are none.
+/// A single position beyond a gap may be an outlier if no frame is missing elsewhere. Two at one end are not.
 void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
   const auto same_end = [&](const EdgePosition& a, const EdgePosition& b) {
     const std::size_t middle = set.motions[a.motion].t_s.size() / 2;
@@ -123,9 +125,9 @@ void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
   });
 }
 
-constexpr double kUnfelt_sd = 0.3, kUnfeltPart = 1e-3;  // of the noise, and of what the nominal model leaves
+constexpr double kUnfelt_sd = 0.3, kUnfeltPart = 1e-3;  // of the noise, and of the nominal model's residuals
 
-/// Recorded forces without what neither the noise nor the misfit would let anyone see.
+/// Removes detail from the recorded forces that would be lost in the noise or in the misfit.
 void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     TrackedMotion& motion = set.motions[i];
@@ -136,8 +138,8 @@ void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
   }
 }
 
-/// The noise of every position, by what single frames tell of it. Frames that are missing are taken out first: a jump
-/// is no noise and no outlier.
+/// Finds the noise of every position from single frames. Missing frames are corrected first: a jump is neither noise
+/// nor an outlier.
 void settle(TrackSet& set) {
   const MotionFit nominal = fit_nominal(set);
   coarsen_forces(set, nominal);
@@ -149,7 +151,7 @@ void settle(TrackSet& set) {
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
   const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
   if (missing.count > 0 && set.pictures) refit();
-  // Of rounded positions neighbours tell no noise but that of rounding, which is known.
+  // Neighbouring rounded positions show only the noise of rounding, which is known.
   if (noise_is_rounding(set)) {
     refit();
     set_tails_aside(set, missing.fit);
@@ -170,23 +172,23 @@ void settle(TrackSet& set) {
   set_tails_aside(set, missing.fit);
 }
 
-/// A codec that predicts each image from those before it leaves a marker in place that has moved by less than some
-/// hundredths of a pixel, and so makes the slowest motion look like friction.
-constexpr double kHeldPx = 0.05;  // from one frame to the next
+/// A codec that predicts each image from earlier ones leaves a marker in place if it has moved by less than a few
+/// hundredths of a pixel. The slowest motion then looks like friction.
+constexpr double kHeldStep_px = 0.05;  // from one frame to the next
 
-/// Whether the files say, or the images show, that they went through a lossy codec.
+/// Records whether the clips went through a lossy codec, as their files say or their images show.
 void note_loss(const PictureEvidence& pictures, TrackSet& set) {
   set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
     return finding.id == ids::compression && (finding.stated || finding.seen);
   });
   set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
-                    return clip.record->codec == "MJPG";  // each image by itself
+                    return clip.record->codec == "MJPG";  // compresses each image by itself
                   });
   set.held_m_s = 0.0;
   if (!set.handed_on) return;
   for (const FilmedClip& clip : pictures.clips) {
     if (clip.px_per_m > 0.0) {
-      set.held_m_s = std::max(set.held_m_s, kHeldPx * clip.camera.frame_rate_hz / clip.px_per_m);
+      set.held_m_s = std::max(set.held_m_s, kHeldStep_px * clip.camera.frame_rate_hz / clip.px_per_m);
     }
   }
 }

@@ -20,9 +20,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSameGain = 3.0;      // log likelihood within which effects are alike: twenty times is no difference
-constexpr double kSameEvidence = 4.6;  // log evidence within which they are: what follows anything is no equal
-constexpr double kNoChance = 5e-4;     // probability below which explanations are ranked by their evidence
+constexpr double kSameGain = 3.0;      // log likelihood within which effects are alike: a factor of 20 is no difference
+constexpr double kSameEvidence = 4.6;  // the same of log evidence (ln 100): a law that can follow anything is no equal
+constexpr double kNoChance = 5e-4;     // probability below which explanations are ranked by evidence
 
 Explanation explanation_of(const Hypothesis& hypothesis) {
   Explanation explanation;
@@ -39,7 +39,7 @@ bool same_but(const std::vector<std::size_t>& a, const std::vector<std::size_t>&
   return expected == other;
 }
 
-/// Beside a remainder much looks alike that would not take the same part of the gap.
+/// Beside a remainder, effects look alike that would not take the same part of the gap.
 bool leaves_as_little(const Hypothesis& other, const Hypothesis& best) {
   return other.left.value_or(0.0) < best.left.value_or(0.0) + kSameLeft;
 }
@@ -72,7 +72,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.key == tracked.key; });
     if (known == parameters.end()) {
       parameters.push_back(tracked);
-    } else if (tracked.sd < known->sd) {  // seen in the images as well, but less well
+    } else if (tracked.sd < known->sd) {  // the images show it too, but less precisely
       *known = tracked;
     }
   }
@@ -81,7 +81,8 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
   return parameters;
 }
 
-/// Parameters that a hypothesis adds to the nominal model: those that a fit of it has, and those of what no fit shows.
+/// The number of parameters that a hypothesis adds to the nominal model: those of its fit, and those of effects that no
+/// fit contains.
 std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, const Hypothesis& hypothesis) {
   const ParameterLayout with(set, hypothesis.effects), nominal(set, {});
   std::size_t count = with.globals().size() - nominal.globals().size() + with.own().size() * set.motions.size();
@@ -136,7 +137,7 @@ std::vector<NamedExplanation> named_explanations(const Comparison& comparison) {
   return named;
 }
 
-/// Of the clips that the twin repeats, from their first motion's start on.
+/// The measured motions of the clips that the twin repeats, from the start of their first motion.
 std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
   std::vector<std::string> names;
   for (const TrackedClip& clip : set.clips) names.push_back(clip.name);
@@ -159,7 +160,7 @@ std::vector<MeasuredMotion> measured_of(const TrackSet& set, const Twin& twin) {
   return measured;
 }
 
-/// The causes that moved the gap by the share that they take, then what of the explanation no motion shows.
+/// The causes of the gap by falling share, then the effects of the explanation that no motion shows.
 std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone* noise_alone) {
   if (noise_alone == nullptr) return best.effects;
   std::vector<std::size_t> effects = noise_alone->best.effects;
@@ -179,8 +180,9 @@ std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypo
     if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
     for (const Hypothesis& other : comparison.all) {
       if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
-      // Scatter of single positions is no other name for what moves them all.
-      const bool same_cause = first_alike(e, filmed) == first_alike(effect, filmed);  // evidence tells them by chance
+      // The scatter of single positions is no other name for an effect that shifts them all.
+      const bool same_cause =
+          first_alike(e, filmed) == first_alike(effect, filmed);  // evidence tells them apart only by chance
       const bool as_likely = (same_cause || other.log_evidence > best.log_evidence - kSameEvidence) &&
                              leaves_as_little(other, best) && is_scatter(e) == is_scatter(effect);
       if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain) others.push_back(e);
@@ -193,7 +195,7 @@ std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypo
 std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison& comparison,
                                           const NoiseAlone* noise_alone) {
   std::vector<RankedExplanation> ranking;
-  std::map<int, double> gaps;  // of each fit once: what single frames and pictures show does not change it
+  std::map<int, double> gaps;  // once for each fit: what single frames and images show does not change it
   for (const Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.unnamed || hypothesis.effects.empty()) continue;
     RankedExplanation ranked{explanation_of(hypothesis),
@@ -215,7 +217,8 @@ std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison&
     ranked.converged = hypothesis.converged;
     ranking.push_back(std::move(ranked));
   }
-  // They come by falling probability; what nobody would tell from 0 by evidence, which does not underflow.
+  // Explanations come by falling probability. Those whose probability is next to 0 come by evidence, which does not
+  // underflow.
   const auto rest =
       std::find_if(ranking.begin(), ranking.end(), [](const auto& ranked) { return ranked.probability < kNoChance; });
   std::stable_sort(rest, ranking.end(),
@@ -234,7 +237,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   const MotionFit& nominal = comparison.fits.front();
   diagnosis.limits = limits_of(set, nominal);
   const bool driven = diagnosis.verdict == Verdict::none && !diagnosis.limits.driving.empty();
-  if (driven) {  // what drives the glider has no name
+  if (driven) {  // whatever drives the glider has no name
     diagnosis.unknown += std::exchange(diagnosis.none, 0.0);
     diagnosis.verdict = verdict_by(diagnosis.none, diagnosis.unknown);
   }
@@ -250,7 +253,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
                                    comparison.effect_probability[e], std::move(alike),
                                    parameters_of(set, comparison, pictures, *best, e)});
     }
-    if (noise_alone == nullptr) {  // else they stand by the share that they take
+    if (noise_alone == nullptr) {  // otherwise they are in order of their shares
       std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
                        [](const auto& a, const auto& b) { return a.probability > b.probability; });
     }
@@ -261,14 +264,14 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   }
   for (const TrackedMotion& motion : set.motions) diagnosis.points += motion.t_s.size();
   diagnosis.ranking = ranking_of(set, comparison, noise_alone);
-  // Beside sizes of each clip's own little of anything is left, and not where it lies.
+  // Beside sizes of each clip's own little is left of any effect, and not where it lies.
   const std::vector<std::size_t>& leading = comparison.all.front().effects;
   const bool beside_named =
       diagnosis.verdict == Verdict::unknown && !std::all_of(leading.begin(), leading.end(), differs_between_clips);
   const std::vector<UnnamedFamily>& families = beside_named ? comparison.unnamed_left : comparison.unnamed;
-  const bool wrong_way =
-      driven && diagnosis.verdict == Verdict::unknown;  // no function of anything is known to be missing
-  if (wrong_way) {
+  const bool drives =
+      driven && diagnosis.verdict == Verdict::unknown;  // K or mu is negative: no function is known to be missing
+  if (drives) {
     diagnosis.stage = Stage::dynamics;
   } else if (diagnosis.verdict != Verdict::none) {
     if (diagnosis.verdict == Verdict::unknown) {
@@ -280,8 +283,8 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   add_picture_regions(pictures, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
-  if (diagnosis.verdict == Verdict::unknown && !wrong_way && set.clips.size() > 1 && noise_alone == nullptr) {
-    // The likeliest function without a name stands in for what is missing.
+  if (diagnosis.verdict == Verdict::unknown && !drives && set.clips.size() > 1 && noise_alone == nullptr) {
+    // The likeliest function without a name stands for what is missing.
     const UnnamedFamily* family = likeliest_shared(families);
     const MotionFit& beside = beside_named ? comparison.fits[static_cast<std::size_t>(comparison.beside_fit)] : nominal;
     if (family != nullptr) {

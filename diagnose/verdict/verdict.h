@@ -1,5 +1,4 @@
-/// From a comparison of hypotheses to the statements about it: the verdict, its effects, where the gap lies, and how
-/// large it is.
+/// From a comparison of hypotheses to a diagnosis: the verdict, its effects, where the gap lies, and how large it is.
 #pragma once
 
 #include <vector>
@@ -10,22 +9,22 @@
 
 namespace glidelab::diagnose {
 
-/// Where the comparison counts a remainder as noise: the same motions with the noise alone, in which the gap is
+/// For a comparison that counts a remainder as noise: the same motions with the noise alone, in which the gap is
 /// measured.
 struct NoiseAlone {
   const TrackSet& set;
   const MotionFit& nominal;
-  const MotionFit& best;  ///< with what the verdict names
+  const MotionFit& best;  ///< with the causes that the verdict names
 };
 
-/// What takes the place of one of an explanation's effects as well: as much evidence, as little left of the gap.
+/// Effects that could replace one effect of an explanation: with as much evidence, and with as little left of the gap.
 std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypothesis& best, std::size_t effect,
                                         bool filmed);
 
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {},
                      const NoiseAlone* noise_alone = nullptr);
 
-/// Explanations that name something, by falling probability; those without a chance by falling evidence.
+/// Explanations that name something, by falling probability; those with next to none by falling evidence.
 std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison& comparison,
                                           const NoiseAlone* noise_alone);
 

@@ -19,18 +19,19 @@ namespace {
 
 constexpr double kSameScale = 1.05;
 
-/// `share` of the way from the set-up's own middle to that of all.
+/// For each set-up, the position at `share` of the distance from the set-up's own middle to the middle of all.
 std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, double share_sd) {
   std::vector<DiagnosedParameter> parameters;
   for (std::size_t g = 0; g < set.groups.size(); ++g) {
-    const double way = set.x_mid_m - set.groups[g].x_mid_m;
+    const double to_middle_m = set.x_mid_m - set.groups[g].x_mid_m;
     parameters.push_back({set.groups.size() == 1 ? "x_mid_m" : "x_mid_m." + own_name(set, g),
-                          set.groups[g].x_mid_m + share * way, way == 0.0 ? 0.0 : std::abs(way) * share_sd});
+                          set.groups[g].x_mid_m + share * to_middle_m,
+                          to_middle_m == 0.0 ? 0.0 : std::abs(to_middle_m) * share_sd});
   }
   return parameters;
 }
 
-/// Pixels of a metre along the motion; 0 where the clips do not have one.
+/// Pixels per metre along the motion; 0 if the clips do not agree on it.
 double px_per_m(const PictureEvidence& pictures) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const FilmedClip& clip : pictures.clips) {
@@ -83,9 +84,9 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
 
 namespace {
 
-constexpr double kBelowZero = 5.0;    // standard deviations from which on a drag or friction counts as negative
-constexpr double kContradicts = 5.0;  // standard deviations of a statement from everything else
-constexpr double kLargePart = 0.2;    // of the motion: from here on a reader must know that it is set aside
+constexpr double kBelowZero = 5.0;    // standard deviations below 0 at which a drag or friction counts as negative
+constexpr double kContradicts = 5.0;  // standard deviations between a statement and everything else
+constexpr double kLargePart = 0.2;    // of the motion: from here on the reader must be told that it is set aside
 
 std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
   std::vector<NegativeLoss> found;
@@ -108,7 +109,7 @@ std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, co
   return found;
 }
 
-/// Positions that no explanation answers for: those that look like a hand or a stop, or lie far off.
+/// Positions that no explanation covers: those that look like a hand or a stop, or that lie far off.
 std::optional<SetAside> set_aside(const TrackSet& set) {
   double points = 0.0, outliers = 0.0;
   for (const TrackedMotion& motion : set.motions) {
@@ -131,36 +132,36 @@ VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit) {
 
 namespace {
 
-constexpr double kNotable = 3.0;  // log evidence from which on an unnamed family is worth a region
+constexpr double kNotable = 3.0;  // log evidence from which a function without a name is worth a region
 constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
-constexpr double kBelieved = 2.0;  // times what accelerations lack, up to which a size is believed: a fit takes up some
+constexpr double kMostOverLacking = 2.0;  // times what the accelerations lack: a larger size is not believed
 
-/// Place, speed and acceleration of what a fit leaves of a motion, each at its largest; the latter two by the parabola
+/// The largest residual of a motion's positions and its largest first and second time derivative, these by the parabola
 /// through nine neighbours at even times, none of them set aside.
 struct LargestRest {
   double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;
 };
 
 LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>& rest_m) {
-  constexpr std::size_t kBeside = 4;
+  constexpr std::size_t kEachSide = 4;
   constexpr double kMean = 20.0 / 3.0, kSquares = 60.0, kFourths = 308.0;  // sums of k², and of (k² - mean)², k to 4
   constexpr double kUneven = 0.2;
   LargestRest largest;
   for (std::size_t p = 0; p < rest_m.size(); ++p) {
     if (motion.outlier[p] == 0) largest.x_m = std::max(largest.x_m, std::abs(rest_m[p]));
   }
-  for (std::size_t p = kBeside; p + kBeside < motion.t_s.size(); ++p) {
-    const double before = motion.t_s[p] - motion.t_s[p - kBeside], behind = motion.t_s[p + kBeside] - motion.t_s[p];
+  for (std::size_t p = kEachSide; p + kEachSide < motion.t_s.size(); ++p) {
+    const double before = motion.t_s[p] - motion.t_s[p - kEachSide], behind = motion.t_s[p + kEachSide] - motion.t_s[p];
     if (std::abs(behind - before) > kUneven * before) continue;
-    const double step = (before + behind) / (2.0 * kBeside);
+    const double step = (before + behind) / (2.0 * kEachSide);
     double first = 0.0, second = 0.0;
     bool aside = false;
-    for (std::size_t j = 0; j <= 2 * kBeside; ++j) {
-      const double k = static_cast<double>(j) - static_cast<double>(kBeside);
-      first += k * rest_m[p - kBeside + j];
-      second += (k * k - kMean) * rest_m[p - kBeside + j];
-      aside = aside || motion.outlier[p - kBeside + j] != 0;
+    for (std::size_t j = 0; j <= 2 * kEachSide; ++j) {
+      const double k = static_cast<double>(j) - static_cast<double>(kEachSide);
+      first += k * rest_m[p - kEachSide + j];
+      second += (k * k - kMean) * rest_m[p - kEachSide + j];
+      aside = aside || motion.outlier[p - kEachSide + j] != 0;
     }
     if (aside) continue;
     largest.v_m_s = std::max(largest.v_m_s, std::abs(first / (kSquares * step)));
@@ -215,16 +216,16 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
   const Lacking most = most_lacking(set, nominal);
   std::vector<const UnnamedFamily*> sorted;
   for (const UnnamedFamily& family : families) sorted.push_back(&family);
-  // The evidence is that of a linear neighbourhood: where it is large it is not known to a hundredth, and what clips
-  // share goes before curves of each.
+  // The evidence holds in a linear neighbourhood. Where it is large it is not known to a hundredth, and a function that
+  // clips share goes before curves of each clip's own.
   const auto weight = [](const UnnamedFamily* family) {
     return (family->variable == GapVariable::clip ? 0.99 : 1.0) * family->log_evidence;
   };
   std::sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return weight(a) > weight(b); });
-  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // as many looks were taken
+  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // corrected for as many looks
   std::set<std::pair<GapVariable, GapKind>> shown;                                   // variables and what acts there
   for (const UnnamedFamily* family : sorted) {
-    // What a verdict rests on has its place named, however many looks there were.
+    // The function on which a verdict rests has its place named, however many looks there were.
     const bool rests = diagnosis.verdict == Verdict::unknown && diagnosis.regions.empty() && family == sorted.front();
     if (family->log_evidence < (rests ? 0.0 : notable)) break;
     const auto what = std::pair(family->variable, family->what);
@@ -241,7 +242,7 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
       GapRegion region{family->variable, regions[r].from, regions[r].to, regions[r].excess,
                        regions[r].size,  family->unit,    family->what,  ""};
       const double lacking = most.in(region.unit);
-      if (std::abs(region.size) > kBelieved * lacking) region.lacking = lacking;
+      if (std::abs(region.size) > kMostOverLacking * lacking) region.lacking = lacking;
       if (family->names.empty()) {
         region.size_sd = regions[r].sd;
         region.at = regions[r].at;
@@ -250,7 +251,7 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
         const auto& clip = set.clips[static_cast<std::size_t>(std::lround(regions[r].from))];
         const bool named = std::any_of(diagnosis.regions.begin(), diagnosis.regions.end(),
                                        [&](const GapRegion& other) { return other.clip == clip.name; });
-        if (named) continue;  // by what explains it better
+        if (named) continue;  // by a function that explains it better
         region.variable = GapVariable::time;
         region.clip = clip.name;
         region.from = 0.0;

@@ -25,15 +25,16 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeft = 0.5;    // probability of something without a name from which on a remainder is weighed
-constexpr double kDoubt = 0.05;  // of names by the noise alone
-constexpr double kMostOfOneClip = 0.999;  // probability that one clip may carry
+constexpr double kLeastUnknown = 0.5;  // probability of something without a name, above which a remainder is weighed
+constexpr double kLeastDoubt =
+    0.05;  // probability of none or unknown, above which names by the noise alone are in doubt
+constexpr double kMostOfOneClip = 0.999;  // the highest probability that one clip can support
 
-constexpr double kLeastNamed = 0.1;       // of the excess: beside a remainder less is part of it
-constexpr double kClearlyLikelier = 0.1;  // of a probability: less is no reason to name another cause
-constexpr double kNotMeasured = 0.5;      // a gap below which the noise is not that of the positions
+constexpr double kLeastNamed = 0.1;       // of the excess: a smaller share counts as part of the remainder
+constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
+constexpr double kNotMeasured = 0.5;      // a gap below which the assumed noise is not that of the positions
 constexpr double kLikelierThanNot = 0.5;
-constexpr double kSureScatter = 0.9;  // the probability of scatter without a gap from which on it is the verdict
+constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
 
 double probability_of_scatter(const Comparison& comparison) {
   double sum = 0.0;
@@ -46,8 +47,8 @@ bool shows_in_images(const Hypothesis& best) {
                      [](std::size_t e) { return effect_list()[e].search == Search::pictures; });
 }
 
-/// Of an unknown cause what helps, less than half of the excess together: a cause that would take more is not likely
-/// enough for its name, and is not said to explain anything.
+/// With an unknown cause, the causes that help and together take less than half of the excess. A cause that would take
+/// more is not likely enough to be named, so it is not said to explain anything.
 std::vector<ExplainedCause> helpful(std::vector<ExplainedCause> causes) {
   double sum = 0.0;
   const auto first_too_many = std::find_if(
@@ -67,7 +68,7 @@ GapRemainder remainder_of(double gap_before, const std::vector<ExplainedCause>& 
   return remainder;
 }
 
-/// Where the rest lies, beside the named causes; nowhere where nothing is left.
+/// Where the rest of the gap lies beside the named causes. Empty if nothing is left.
 std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence, int jobs) {
   if (!(sequence.gap_after > 1.0 + kClearGap * sequence.standard_error)) return {};
   Diagnosis rest;
@@ -76,7 +77,7 @@ std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& 
   return rest.regions;
 }
 
-/// Effects that a verdict names by falling share, then those that no motion shows.
+/// Puts the effects that a verdict names in order of falling share, and then those that no motion shows.
 void order_by_share(Diagnosis& diagnosis) {
   const auto share = [&](const DiagnosedEffect& effect) {
     const auto of = std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
@@ -88,24 +89,24 @@ void order_by_share(Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
-/// The probability of one of an explanation's effects or of what the data cannot tell from it.
+/// The probability of an effect of an explanation or of one that the data cannot tell from it.
 double probability_of(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
   std::vector<std::size_t> any = not_told_apart(comparison, best, effect, filmed);
   any.push_back(effect);
   return probability_of_any(comparison, any);
 }
 
-/// Whether the likeliest effect of an explanation is likelier than not, together with what the data cannot tell from
-/// it: a name that is less is no answer.
+/// Whether the likeliest effect of an explanation, together with those that the data cannot tell from it, is likelier
+/// than not. A name that is less likely is no answer.
 bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
   return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
     return probability_of(comparison, best, e, set.pictures) >= kLikelierThanNot;
   });
 }
 
-/// Where not all of several causes take their part, the one that is clearly likelier is to keep its name, and not the
-/// one that takes most in the place of both: its explanation by itself. Null where the sequence names it, or no fit has
-/// it alone.
+/// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the
+/// one that takes most in place of both. Returns the explanation with that cause alone; null if the sequence names it
+/// already, or if no fit has it alone.
 const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
                                      const CauseSequence& sequence) {
   if (!sequence.is_gap || best.effects.size() < 2) return nullptr;
@@ -125,10 +126,11 @@ const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, 
   return alone != nullptr && alone->fit > 0 ? alone : nullptr;
 }
 
-constexpr double kLikely = 0.02;  // probability from which on an explanation widens what is recovered
+constexpr double kLikely = 0.02;  // probability from which an explanation widens what is recovered
 constexpr std::size_t kMostLikely = 6;
 
-/// Explanations beside the reported one, whose probability is added to it; the nominal model for all that is unknown.
+/// Adds the explanations other than the reported one, and to that one its probability. The nominal model stands for the
+/// unknown.
 void add_others(const WeighedCauses& weighed, const std::vector<Hypothesis>& all, double unknown,
                 const std::vector<std::size_t>& reported, Explanations& explanations) {
   const auto add = [&](std::size_t fit, double probability, const std::vector<std::size_t>& effects) {
@@ -146,7 +148,7 @@ void add_others(const WeighedCauses& weighed, const std::vector<Hypothesis>& all
   }
 }
 
-/// The same by the noise alone, where nothing was weighed with a remainder.
+/// The same by the noise alone, if nothing was weighed with a remainder.
 void add_others(const Comparison& by_noise, const std::vector<Hypothesis>& all, Explanations& explanations) {
   for (const Hypothesis& one : all) {
     const bool fitted = !one.unnamed && !one.effects.empty() && one.fit > 0;
@@ -157,8 +159,8 @@ void add_others(const Comparison& by_noise, const std::vector<Hypothesis>& all, 
   }
 }
 
-/// Each explanation's motions, for studies that record them again. Of effects of the camera they have those that are
-/// reported.
+/// The motions of each explanation as a scenario, for studies that record them again. Every scenario has the reported
+/// effects of the camera.
 std::vector<LikelyTwin> likely_twins(const TrackSet& set, const Explanations& explanations,
                                      const std::vector<DiagnosedEffect>& reported) {
   std::vector<LikelyTwin> twins;
@@ -175,15 +177,15 @@ std::vector<LikelyTwin> likely_twins(const TrackSet& set, const Explanations& ex
   return twins;
 }
 
-/// Whether the nominal model has a gap, and the likeliest explanation by the noise alone leaves one, or a doubt where
-/// it has sizes of each clip or a second cause to follow it with.
+/// Whether the nominal model has a gap and the likeliest explanation by the noise alone leaves one too, or leaves a
+/// doubt although sizes of each clip or a second cause help it to follow the motion.
 bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
   const MotionFit& nominal = by_noise.fits.front();
   if (!has_gap(set, nominal)) return false;
   const Hypothesis* best = best_named(set, by_noise);
   if (best == nullptr || best->fit <= 0) return true;
   const bool is_law = best->effects.size() == 1 && !follows_each_clip(best->effects.front());
-  if (!is_law && by_noise.none + by_noise.unknown > kDoubt) return true;
+  if (!is_law && by_noise.none + by_noise.unknown > kLeastDoubt) return true;
   return has_gap(set, by_noise.fits[static_cast<std::size_t>(best->fit)]);
 }
 
@@ -194,21 +196,22 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   const std::set<std::size_t> without(left_out.begin(), left_out.end());
   const MotionFit& nominal = first.fits.front();
   std::optional<WeighedCauses> weighed;
-  if (first.unknown > kLeft || leaves_a_gap(set, first)) {
+  if (first.unknown > kLeastUnknown || leaves_a_gap(set, first)) {
     weighed = weigh_causes(set, first, without, jobs, &pictures,
                            [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
   }
   progress("measuring the gap", 0.9);
-  const std::vector<Hypothesis> all_before = weighed ? weighed->comparison.all : first.all;  // before the share counts
+  const std::vector<Hypothesis> all_before =
+      weighed ? weighed->comparison.all : first.all;  // before the share changes the probabilities
   const double unknown = weighed ? weighed->comparison.none + weighed->comparison.unknown : first.none + first.unknown;
   const TrackSet& with = weighed ? weighed->set : set;
-  std::optional<Hypothesis> helps;  // what explains most, enough for its name or not
+  std::optional<Hypothesis> helps;  // the best explanation, likely enough to be named or not
   if (weighed) {
     if (const Hypothesis* best = best_named(with, weighed->comparison)) helps = *best;
     move_minorities_to_unknown(weighed->comparison);
   }
   const Comparison& by = weighed ? weighed->comparison : first;
-  // Beside a remainder nothing counts as unknown: there is a gap.
+  // Beside a remainder, `none` counts as unknown: there is a gap.
   const bool claims =
       verdict_by(weighed ? 0.0 : by.none, weighed ? by.none + by.unknown : by.unknown) == Verdict::effect;
   const Hypothesis* found = claims || !helps ? best_named(with, by) : &*helps;
@@ -228,12 +231,12 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   }
   const MotionFit& fit = fit_of(best);
   const bool in_images = found != nullptr && shows_in_images(*found);
-  // Of a verdict by the noise alone: scatter has no fit of its own.
+  // Scatter has no fit of its own: the verdict on it is by the noise alone.
   const bool scatter = found != nullptr && is_scatter_alone(*found) && claims;
   const std::vector<std::size_t> named = names || scatter ? found->effects : std::vector<std::size_t>();
   Diagnosis diagnosis;
   std::vector<std::string> traces;
-  // Where there is no gap nothing remains, and what has no name shows best against the noise alone.
+  // Without a gap nothing remains, and an effect without a name shows best against the noise alone.
   const bool settled = weighed && sequence.is_gap && names;
   if (settled) hold_to_share(sequence, best.effects, weighed->comparison);
   if (settled && !is_likelier_than_not(with, by, best)) {
@@ -243,15 +246,15 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     const NoiseAlone noise_alone{set, nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
   } else {
-    // Below a step of rounding nothing is claimed: what shows there and leaves no gap comes from rounding. Nor is
-    // anything where positions follow the model far better than any sensor could, and their noise is only assumed.
+    // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
+    // anything claimed if the positions follow the model far better than the assumed noise allows.
     const bool not_measured = noise_is_rounding(set) || sequence.gap_before < kNotMeasured;
     const bool below_noise = not_measured && !sequence.is_gap && !in_images;
     if (below_noise) {
       move_to_none([](const Hypothesis&) { return true; }, first);
       first.none += std::exchange(first.unknown, 0.0);
     }
-    // A name that takes next to nothing of a gap explains something else.
+    // A name that takes less than half of a gap does not explain it.
     const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalfOfGap;
     if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
     if (!weighed && sequence.is_gap && names && shows_in_gap(best) && !in_images &&
@@ -263,7 +266,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
       first.unknown += std::exchange(first.none, 0.0);
       set_unknown(std::max(by.none + by.unknown, kJustUnknown), first);
     }
-    // Without a gap a name must do more than small imperfections would. Scatter of single positions shifts no
+    // Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no
     // parameter either: unless it is all but certain, it is a trace.
     if (!weighed && !sequence.is_gap && !below_noise && !named.empty()) {
       if (names && shows_in_gap(best)) allow_for_remainders(set, without, jobs, first);
@@ -282,7 +285,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   diagnosis.traces = std::move(traces);
   diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence.causes) : sequence.causes;
   order_by_share(diagnosis);
-  // Without a gap there is no sequence, and the explanation's own fit has the effect.
+  // Without a gap there is no sequence, and the fit of the explanation itself contains the effect.
   const MotionFit& with_effect = sequence.is_gap ? sequence.named : fit;
   const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;
   const RemainderSpace space(set, reported);

@@ -1,9 +1,9 @@
-/// The verdict, the causes in order, what remains, and what K/m, mu and alpha are with the causes in the model.
+/// The verdict, the causes in order, what remains, and K/m, mu and alpha with the causes in the model.
 ///
-/// Where the likeliest explanation by the noise alone leaves a gap, or something without a name is likely, explanations
-/// are weighed beside a remainder (causes/cause_weighing.h), and the verdict goes by the share of the gap that the
-/// named causes take: `effect` where they take half of it. Without a gap a name must do more than small imperfections
-/// would.
+/// If the likeliest explanation by the noise alone leaves a gap, or if something without a name is likely, explanations
+/// are weighed beside a remainder (causes/cause_weighing.h). The verdict then follows the share of the gap that the
+/// named causes take: it is `effect` if they take half or more. Without a gap, a name must do more than small
+/// imperfections would.
 #pragma once
 
 #include <cstddef>

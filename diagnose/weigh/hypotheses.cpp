@@ -16,12 +16,12 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
-constexpr std::size_t kFitted = 9;     // effects of the short list that are fitted in full
-constexpr double kLeads = 3.0;         // log evidence above which something else is weighed beside an effect
-constexpr double kNoLossSeen = -3.0;   // log evidence of lost frames if none is found
-constexpr double kWeakEvidence = 6.0;  // log evidence below which something unnamed shows only weakly
-constexpr double kWeakShare = 0.01;    // of the effects' log evidence: below this, something unnamed leaves the effects
-                                       // their name
+constexpr std::size_t kFitted = 9;            // effects of the short list that are fitted in full
+constexpr double kLeastEvidenceBeside = 3.0;  // log evidence above which something else is weighed beside an effect
+constexpr double kNoLossSeen = -3.0;          // log evidence of lost frames if none is found
+constexpr double kWeakEvidence = 6.0;         // log evidence below which something unnamed shows only weakly
+constexpr double kWeakShare = 0.01;  // of the effects' log evidence: below this, something unnamed leaves the effects
+                                     // their name
 
 void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) {
   std::vector<Hypothesis> around = leaders_of(comparison, 1, 2);
@@ -31,7 +31,7 @@ void add_unnamed(const TrackSet& set, const Work& work, Comparison& comparison) 
   bool first = true;
   double likeliest = 0.0;
   for (const Hypothesis& named : around) {
-    if (named.log_evidence < kLeads) continue;
+    if (named.log_evidence < kLeastEvidenceBeside) continue;
     work.look();
     const ScoreSpace space(set, comparison.fits[static_cast<std::size_t>(named.fit)]);
     std::vector<UnnamedFamily> families = unnamed_families(space, work.jobs);
@@ -56,7 +56,8 @@ void add_frame_effects(Comparison& comparison) {
   const std::vector<Hypothesis> so_far = comparison.all;
   for (const FrameEffect& frame : comparison.frames) {
     for (const Hypothesis& other : so_far) {
-      if (other.effects.size() > 1 || (other.effects.size() == 1 && other.log_evidence < kLeads)) continue;
+      if (other.effects.size() > 1 || (other.effects.size() == 1 && other.log_evidence < kLeastEvidenceBeside))
+        continue;
       if (std::find(other.effects.begin(), other.effects.end(), frame.effect) != other.effects.end()) continue;
       Hypothesis with = other;
       with.effects.push_back(frame.effect);

@@ -13,10 +13,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kLeaders = 3;   // effects that are tried with a second one
-constexpr std::size_t kSeconds = 4;   // effects tried beside a leader
-constexpr std::size_t kTogether = 4;  // pairs that show only together and that no leader found
-constexpr int kExchanges = 3;         // rounds in which each of the best pair's two effects leads in turn
+constexpr std::size_t kMostLeaders = 3;        // effects that are tried with a second one
+constexpr std::size_t kMostSecondEffects = 4;  // effects tried beside a leader
+constexpr std::size_t kMostJointPairs = 4;     // pairs that show only together and that no leader found
+constexpr int kExchanges = 3;                  // rounds in which each of the best pair's two effects leads in turn
 
 /// A leader with each of the effects that show best beside it.
 void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, const Work& work,
@@ -27,7 +27,7 @@ void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<s
   others.insert(leader.effects.begin(), leader.effects.end());
   work.look();
   const std::vector<EffectScan> scans = scan_effects(space, others, work.jobs);
-  std::vector<const EffectScan*> best = best_of(scans, kSeconds);
+  std::vector<const EffectScan*> best = best_of(scans, kMostSecondEffects);
   std::erase_if(best, [](const EffectScan* scan) { return scan->log_evidence < -1.0; });
   fit_best(set, base, best, leader, work, comparison);
 }
@@ -125,7 +125,7 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
       others.insert(both.effects.begin(), both.effects.end());
       work.look();
       const std::vector<EffectScan> scans = scan_effects(ScoreSpace(set, base), others, work.jobs);
-      std::vector<const EffectScan*> seconds = best_of(scans, kSeconds);
+      std::vector<const EffectScan*> seconds = best_of(scans, kMostSecondEffects);
       std::vector<Found> found(seconds.size());
       base::for_each_parallel(seconds.size(), work.jobs, [&](std::size_t i) {
         work.look();
@@ -150,9 +150,9 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
     if (differs_between_clips(e)) left_out.insert(e);
   }
-  std::vector<Hypothesis> leaders = leaders_of(comparison, 1, kLeaders + 1);
+  std::vector<Hypothesis> leaders = leaders_of(comparison, 1, kMostLeaders + 1);
   std::erase_if(leaders, [](const Hypothesis& one) { return differs_between_clips(one.effects.front()); });
-  leaders.resize(std::min(leaders.size(), kLeaders));
+  leaders.resize(std::min(leaders.size(), kMostLeaders));
   double best_one = 0.0;
   for (const Hypothesis& leader : leaders) {
     if (leader.log_evidence < 0.0) continue;
@@ -161,7 +161,7 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
   }
   std::size_t more = 0;
   for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
-    if (more == kTogether || pair.log_evidence <= best_one) break;
+    if (more == kMostJointPairs || pair.log_evidence <= best_one) break;
     if (find(comparison, {pair.first, pair.second}) != nullptr) continue;
     ++more;
     work.look();

@@ -120,15 +120,15 @@ void ClipRenderer::add_views(const FrameMotion& frame) {
   poses_ = 1;
   if (scenario_.mount.moves()) {
     const double open_s = scenario_.recording.exposure_s + scenario_.recording.shutter.readout_s();
-    double way_px = 0.0;
-    constexpr int kLooks = 32;
+    double path_px = 0.0;
+    constexpr int kSteps = 32;
     Eigen::Isometry3d before = mount_at(scenario_.mount, frame.start_s);
-    for (int i = 1; i <= kLooks; ++i) {
-      const Eigen::Isometry3d after = mount_at(scenario_.mount, frame.start_s + open_s * i / kLooks);
-      way_px += picture_shift_px(camera, before.inverse() * after);
+    for (int i = 1; i <= kSteps; ++i) {
+      const Eigen::Isometry3d after = mount_at(scenario_.mount, frame.start_s + open_s * i / kSteps);
+      path_px += picture_shift_px(camera, before.inverse() * after);
       before = after;
     }
-    poses_ = static_cast<std::size_t>(std::clamp(std::ceil(way_px / kPoseStep), 1.0, kMostPoses));
+    poses_ = static_cast<std::size_t>(std::clamp(std::ceil(path_px / kPoseStep), 1.0, kMostPoses));
   }
   views_.clear();
   for (std::size_t pose = 0; pose < poses_; ++pose) {

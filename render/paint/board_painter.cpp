@@ -72,10 +72,10 @@ bool stands_free(const Camera& camera, const StaticScene& scene) {
     const bool printed_side = scene.board->X_WP.linear().col(2).dot(sight.back()) > 0.0;
     if (!before_wall || !printed_side || !((camera.X_WC.inverse() * corner).z() > 0.0)) return false;
   }
-  constexpr double kAllTheWay = 1e9;
+  constexpr double kUnlimited = 1e9;  // of the vectors to the lamp
   return std::ranges::none_of(scene.boxes, [&](const StaticBox& box) {
     return may_meet(box, std::array{eye}, sight, 1.0) ||
-           (box.casts_shadow && may_meet(box, corners, lamp_directions(), kAllTheWay));
+           (box.casts_shadow && may_meet(box, corners, lamp_directions(), kUnlimited));
   });
 }
 

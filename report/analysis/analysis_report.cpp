@@ -61,7 +61,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
 
 /// If K is the same for all masses within its errors, the drag does not depend on the load.
 std::string damping_sentence(const core::AnalysisResults& results) {
-  constexpr double kChance = 0.01;  // probability that the chi² for equal K exceeds the limit
+  constexpr double kSignificance = 0.01;  // probability that the chi² for equal K exceeds the limit
   struct Damping {
     double mass_kg, k_n_s_m, sd_n_s_m;
   };
@@ -82,7 +82,7 @@ std::string damping_sentence(const core::AnalysisResults& results) {
     chi2 += std::pow((one.k_n_s_m - mean) / one.sd_n_s_m, 2);
     widest = std::max(widest, std::abs(one.k_n_s_m / mean - 1.0));
   }
-  if (chi2 <= base::chi2_upper_quantile(static_cast<double>(all.size() - 1), kChance)) {
+  if (chi2 <= base::chi2_upper_quantile(static_cast<double>(all.size() - 1), kSignificance)) {
     return fmt::format("<p>The damping constant is the same for all masses within its errors: K = {} N s/m.</p>\n",
                        base::value_and_sd_text(mean, 1.0 / std::sqrt(weight)));
   }

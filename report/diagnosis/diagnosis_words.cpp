@@ -144,7 +144,7 @@ struct Sentence {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",
                        ups(of.groups));
   }
-  std::string operator()(const diagnose::LaunchedOtherWay& of) const {
+  std::string operator()(const diagnose::OppositeLaunch& of) const {
     return fmt::format("Clip {} is stated as launched {}, but starts in the opposite direction.", of.clip,
                        of.stated_up ? "up" : "down");
   }

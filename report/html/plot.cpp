@@ -100,8 +100,8 @@ double ValueAxis::from_axis(double place) const {
 }
 
 double ValueAxis::beside(double value, std::size_t i, std::size_t count) const {
-  constexpr double kApart = 0.014;  // of the axis: the width of a bar's end
-  const double step = std::min(kApart * (to_ - from_), 0.7 * least_gap_ / static_cast<double>(count));
+  constexpr double kBarWidth = 0.014;  // of the axis: the width of a bar's end
+  const double step = std::min(kBarWidth * (to_ - from_), 0.7 * least_gap_ / static_cast<double>(count));
   return from_axis(to_axis(value) + step * (static_cast<double>(i) - 0.5 * (static_cast<double>(count) - 1.0)));
 }
 

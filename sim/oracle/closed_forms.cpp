@@ -18,7 +18,7 @@ int sign_of(double value) {
 
 // A motion along its own direction: distance and speed count forward, acceleration too.
 struct Run {
-  double way_m = 0.0;
+  double distance_m = 0.0;
   double speed_m_s = 0.0;
   double acceleration_m_s2 = 0.0;
 };
@@ -43,14 +43,14 @@ Run quadratic_run(double a, double q, double speed0, double t) {
   run.acceleration_m_s2 = a - q * run.speed_m_s * run.speed_m_s;
   if (a > 0.0 && z > 1.0) {  // cosh would overflow for large z
     const double b = q * speed0 / r;
-    run.way_m = (z + std::log(0.5 * ((1.0 + b) + (1.0 - b) * std::exp(-2.0 * z)))) / q;
+    run.distance_m = (z + std::log(0.5 * ((1.0 + b) + (1.0 - b) * std::exp(-2.0 * z)))) / q;
     return run;
   }
   const double half = a < 0.0 ? std::sin(z / 2.0) : std::sinh(z / 2.0);
   const double full = a < 0.0 ? std::sin(z) : std::sinh(z);
   const double root = over_r(2.0 * half, t);
   const double u = 0.5 * a * root * root + speed0 * over_r(full, t);
-  run.way_m = u * log1p_over(q * u);
+  run.distance_m = u * log1p_over(q * u);
   return run;
 }
 
@@ -73,7 +73,7 @@ template <class RunFrom, class StopTime>
 State piecewise(const DryTrack& track, double x0, double v0, double t, RunFrom&& run_from, StopTime&& stop_time) {
   const auto slide = [&](int direction, double start_s, double from_m, double speed0) -> State {
     const Run run = run_from(direction * track.drive_m_s2 - track.friction_m_s2, speed0, t - start_s);
-    return {t, from_m + direction * run.way_m, direction * run.speed_m_s, direction * run.acceleration_m_s2,
+    return {t, from_m + direction * run.distance_m, direction * run.speed_m_s, direction * run.acceleration_m_s2,
             direction < 0 ? Mode::slide_up : Mode::slide_down};
   };
   double rest_s = 0.0;
@@ -84,7 +84,7 @@ State piecewise(const DryTrack& track, double x0, double v0, double t, RunFrom&&
     if (!stop_s || t < *stop_s) return slide(direction, 0.0, x0, std::abs(v0));
     const double a = direction * track.drive_m_s2 - track.friction_m_s2;
     rest_s = *stop_s;
-    rest_m = x0 + direction * run_from(a, std::abs(v0), rest_s).way_m;
+    rest_m = x0 + direction * run_from(a, std::abs(v0), rest_s).distance_m;
   }
   const double held = track.holding_m_s2 * (1.0 + 8.0 * std::numeric_limits<double>::epsilon());
   if (std::abs(track.drive_m_s2) <= held) return {t, rest_m, 0.0, 0.0, Mode::stick};
@@ -181,16 +181,16 @@ State power_law_motion(double k_1_s, double n, double x0_m, double v0_m_s, doubl
   const double speed0 = std::abs(v0_m_s);
   const std::optional<double> stop_s = power_law_stop_time_s(k_1_s, n, v0_m_s);
   if (stop_s && t_s >= *stop_s) {
-    const double way = std::pow(speed0, 2.0 - n) / (k_1_s * (2.0 - n));
-    return {t_s, x0_m + direction * way, 0.0, 0.0, Mode::stick};
+    const double distance = std::pow(speed0, 2.0 - n) / (k_1_s * (2.0 - n));
+    return {t_s, x0_m + direction * distance, 0.0, 0.0, Mode::stick};
   }
   // speed^(1-n) = speed0^(1-n) (1 - (1-n) f t), f the initial rate of decay.
   const double f = k_1_s * std::pow(speed0, n - 1.0);
   const double log_ratio = -f * t_s * log1p_over(-(1.0 - n) * f * t_s);
   const double speed = speed0 * std::exp(log_ratio);
   // distance = (speed0^(2-n) - speed^(2-n)) / ((2-n) k)
-  const double way = std::pow(speed0, 2.0 - n) / k_1_s * -log_ratio * phi1((2.0 - n) * log_ratio);
-  return {t_s, x0_m + direction * way, direction * speed, -direction * k_1_s * std::pow(speed, n),
+  const double distance = std::pow(speed0, 2.0 - n) / k_1_s * -log_ratio * phi1((2.0 - n) * log_ratio);
+  return {t_s, x0_m + direction * distance, direction * speed, -direction * k_1_s * std::pow(speed, n),
           direction < 0 ? Mode::slide_up : Mode::slide_down};
 }
 
@@ -203,7 +203,7 @@ double eddy_rolloff_time_s(double k_1_s, double v_c_m_s, double v0_m_s, double v
   return (std::log(v0_m_s / v_m_s) + (v0_m_s - v_m_s) * (v0_m_s + v_m_s) / (2.0 * v_c_m_s * v_c_m_s)) / k_1_s;
 }
 
-double eddy_rolloff_way_m(double k_1_s, double v_c_m_s, double v0_m_s, double v_m_s) {
+double eddy_rolloff_distance_m(double k_1_s, double v_c_m_s, double v0_m_s, double v_m_s) {
   const double squares = v0_m_s * v0_m_s + v0_m_s * v_m_s + v_m_s * v_m_s;
   return (v0_m_s - v_m_s) * (1.0 + squares / (3.0 * v_c_m_s * v_c_m_s)) / k_1_s;
 }

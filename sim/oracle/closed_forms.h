@@ -75,6 +75,6 @@ std::optional<double> power_law_stop_time_s(double k_1_s, double n, double v0_m_
 double eddy_rolloff_time_s(double k_1_s, double v_c_m_s, double v0_m_s, double v_m_s);
 
 /// The distance from v0 to v of the same motion, (v0 - v + (v0³ - v³) / (3 v_c²)) / k.
-double eddy_rolloff_way_m(double k_1_s, double v_c_m_s, double v0_m_s, double v_m_s);
+double eddy_rolloff_distance_m(double k_1_s, double v_c_m_s, double v0_m_s, double v_m_s);
 
 }  // namespace glidelab::sim

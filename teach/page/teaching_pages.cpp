@@ -23,15 +23,16 @@ std::string array_of(const std::vector<double>& values) {
 }
 
 std::string orbit_json(const Orbit& orbit) {
-  std::vector<double> tau, u, way, slope, bend;
+  std::vector<double> tau, u, distance, slope, bend;
   for (const OrbitPoint& point : orbit) {
     tau.push_back(point.tau);
     u.push_back(point.u);
-    way.push_back(point.way);
+    distance.push_back(point.distance);
     slope.push_back(point.slope);
     bend.push_back(point.bend);
   }
-  return fmt::format("[{},{},{},{},{}]", array_of(tau), array_of(u), array_of(way), array_of(slope), array_of(bend));
+  return fmt::format("[{},{},{},{},{}]", array_of(tau), array_of(u), array_of(distance), array_of(slope),
+                     array_of(bend));
 }
 
 std::string data_of(const PhaseExplorer& explorer) {

@@ -63,8 +63,8 @@ std::vector<double> times(double drive, double n, double u0, double end, std::op
 /// up from the end, so that small ones keep their digits next to large ones.
 Orbit solved(double drive, double n, double u0, const std::vector<double>& tau) {
   const sim::Body body = unit_body(drive, n);
-  const auto point = [&](double at, double u, double way, double slope) {
-    return OrbitPoint{at, u, way, slope, n == 0.0 ? 0.0 : -n * std::pow(u, n - 1.0) * slope};
+  const auto point = [&](double at, double u, double distance, double slope) {
+    return OrbitPoint{at, u, distance, slope, n == 0.0 ? 0.0 : -n * std::pow(u, n - 1.0) * slope};
   };
   Orbit orbit = {point(0.0, u0, 0.0, sim::net_force_n(body, u0, 1))};
   bool moves = true;
@@ -73,21 +73,22 @@ Orbit solved(double drive, double n, double u0, const std::vector<double>& tau) 
     for (std::size_t i = from; i < tau.size(); ++i) leg.push_back(tau[i] - tau[from]);
     const sim::Trajectory motion = sim::simulate(body, 0.0, orbit.back().u, leg);
     const double enough = orbit.back().u > 1.0 ? kLeg * orbit.back().u : 0.0;
-    double way = 0.0;
+    double distance = 0.0;
     for (std::size_t i = 1; moves && i < leg.size() && (i == 1 || orbit.back().u > enough); ++i) {
       if (!motion.changes.empty() && leg[i] >= motion.changes.front().t_s) {
-        orbit.push_back(point(tau[from] + motion.changes.front().t_s, 0.0, motion.changes.front().x_m - way, drive));
+        orbit.push_back(
+            point(tau[from] + motion.changes.front().t_s, 0.0, motion.changes.front().x_m - distance, drive));
         moves = false;
         continue;
       }
       const sim::State& state = motion.states[i];
-      orbit.push_back(point(tau[from + i], state.v_m_s, state.x_m - way, state.a_m_s2));
-      way = state.x_m;
+      orbit.push_back(point(tau[from + i], state.v_m_s, state.x_m - distance, state.a_m_s2));
+      distance = state.x_m;
     }
   }
   double after = 0.0;
   for (auto now = orbit.rbegin(); now != orbit.rend(); ++now) {
-    const double step = std::exchange(now->way, -after);
+    const double step = std::exchange(now->distance, -after);
     after += step;
   }
   return orbit;

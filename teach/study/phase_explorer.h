@@ -24,7 +24,7 @@ namespace glidelab::teach {
 
 /// At tau: u, the distance (integral of u, 0 at the orbit's end: small where u is), du/dtau and d²u/dtau².
 struct OrbitPoint {
-  double tau = 0.0, u = 0.0, way = 0.0, slope = 0.0, bend = 0.0;
+  double tau = 0.0, u = 0.0, distance = 0.0, slope = 0.0, bend = 0.0;
 };
 
 using Orbit = std::vector<OrbitPoint>;

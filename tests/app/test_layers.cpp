@@ -115,7 +115,7 @@ std::vector<std::string> violations(const std::vector<Source>& sources) {
       const std::string other = room_of(include);
       const std::set<std::string>& allowed = kAllowed.at(room);
       if (include.find("..") != std::string::npos) {
-        found.push_back(fmt::format("{} includes {} by a way round", source.path.string(), include));
+        found.push_back(fmt::format("{} includes {} by a relative path", source.path.string(), include));
       } else if (!other.empty() && other != room && !allowed.contains(other) && !allowed.contains(include)) {
         found.push_back(fmt::format("{} includes {}", source.path.string(), include));
       } else if (joins_suites(source.path.string(), include)) {

@@ -7,11 +7,12 @@ using namespace glidelab;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const fuzz::InputFolder folder;
   static const std::string kMasses[] = {"", "1", "mass A", "a.trk: mass A"};
-  using Way = std::optional<core::Downhill>;
-  static const Way kWays[] = {Way(), core::Downhill::minus_x, core::Downhill::plus_y};
+  using Direction = std::optional<core::Downhill>;
+  static const Direction kDirections[] = {Direction(), core::Downhill::minus_x, core::Downhill::plus_y};
   if (size == 0) return 0;
   const auto file = folder.with("made.trz", data + 1, size - 1);
   return fuzz::read_or_refuse([&] {
-    core::read_tracker_project(file, kWays[*data % std::size(kWays)], kMasses[*data / 4 % std::size(kMasses)]);
+    core::read_tracker_project(file, kDirections[*data % std::size(kDirections)],
+                               kMasses[*data / 4 % std::size(kMasses)]);
   });
 }

@@ -56,9 +56,9 @@ void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string
 
 namespace {
 
-constexpr double kMostPart = 0.2;  // largest bandwidth, as a fraction of the longest part
-constexpr double kTrim = 0.1;      // fraction of each part left out at each end
-constexpr std::size_t kEnough = 400;
+constexpr double kMostPart = 0.2;             // largest bandwidth, as a fraction of the longest part
+constexpr double kTrim = 0.1;                 // fraction of each part left out at each end
+constexpr std::size_t kMostUsedPoints = 400;  // more are thinned
 
 }  // namespace
 
@@ -72,7 +72,7 @@ BandwidthScan::BandwidthScan(const BandwidthProblem& problem) : problem_(problem
   }
   for (double h = kLeastBandwidthSteps * problem.step_s; h > 0.0 && h <= kMostPart * longest; h *= kBandwidthRatio)
     grid_.push_back(h);
-  const std::size_t stride = points / kEnough + 1;
+  const std::size_t stride = points / kMostUsedPoints + 1;
   for (std::size_t p = 0; p < problem.parts.size(); ++p) {
     const std::size_t n = problem.parts[p].t_s.size();
     const auto trim = static_cast<std::size_t>(std::ceil(kTrim * static_cast<double>(n)));

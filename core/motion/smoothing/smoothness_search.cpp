@@ -11,13 +11,13 @@ namespace glidelab::core {
 namespace {
 
 constexpr double kTauRatio = 1.5;
-constexpr double kLeastTau = 0.3;     // steps: interpolation
-constexpr double kGreatestTau = 0.5;  // of the longest part
-constexpr double kRateWidth = 3.0;    // of the prior, over the longest part
-constexpr double kWidest = 5.0;       // largest standard deviation of k, over the longest part
-constexpr double kFastest = 0.3;      // rate, per step
-constexpr double kGrowing = 10.0;     // e-folds over the longest part
-constexpr double kOutOfReach = 60.0;  // of -2 log
+constexpr double kLeastTau = 0.3;      // steps: interpolation
+constexpr double kGreatestTau = 0.5;   // of the longest part
+constexpr double kRateWidth = 3.0;     // of the prior, over the longest part
+constexpr double kWidest = 5.0;        // largest standard deviation of k, over the longest part
+constexpr double kFastest = 0.3;       // rate, per step
+constexpr double kGrowing = 10.0;      // e-folds over the longest part
+constexpr double kMostDeficit = 60.0;  // of -2 log
 constexpr int kBrentBits = 8;
 /// Prior odds that a motion follows the process without its noise. With these odds the bands of simulated gliders hold
 /// (docs/evidence/peers.md).
@@ -110,7 +110,7 @@ std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Ra
     if (here < least) {
       least = here;
       first = i;
-    } else if (here > least + 10.0 * kOutOfReach) {
+    } else if (here > least + 10.0 * kMostDeficit) {
       break;
     }
   }
@@ -119,7 +119,7 @@ std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Ra
     std::vector<AtTau> made;
     for (int i = first; i <= count; ++i) {
       made.push_back({{tau(i), 0.0, jump_1_s2}, 0.0, value(i, 0.0)});
-      if (made.back().minus_two_log > least + kOutOfReach) break;
+      if (made.back().minus_two_log > least + kMostDeficit) break;
     }
     return made;
   }
@@ -150,8 +150,8 @@ std::vector<AtTau> along_tau(const PartedMotion<N>& motion, double jump_1_s2, Ra
     last = at_tau(motion, tau(i), start);
     made.push_back(last);
     best = std::min(best, last.minus_two_log);
-    if (made.size() > 2 && last.minus_two_log > best + kOutOfReach &&
-        made[made.size() - 2].minus_two_log > best + kOutOfReach) {
+    if (made.size() > 2 && last.minus_two_log > best + kMostDeficit &&
+        made[made.size() - 2].minus_two_log > best + kMostDeficit) {
       break;
     }
   }
@@ -200,18 +200,18 @@ AtTau with_jump(const PartedMotion<N>& motion, AtTau near) {
 
 template <int N>
 std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best) {
-  constexpr double kNoMatter = 10.0;  // of -2 log: a weight of 0.7 %
-  constexpr double kStep = 0.8;       // standard deviations of log tau
+  constexpr double kMostSpreadDeficit = 10.0;  // of -2 log: a weight of 0.7 %
+  constexpr double kStep = 0.8;                // standard deviations of log tau
   const double from = std::log(least_tau(motion.parts())), to = std::log(greatest_tau(motion.parts()));
   const double middle = std::log(best.how.tau_s), widest = std::log(kTauRatio);
   // The standard deviation of log tau on the side where -2 log rises faster.
   double rise = 0.0;
-  constexpr double kTry = 0.05;
-  for (const double off : {-kTry, kTry}) {
+  constexpr double kTrialStep = 0.05;  // of log tau
+  for (const double off : {-kTrialStep, kTrialStep}) {
     const AtTau here = at_tau(motion, std::exp(std::clamp(middle + off, from, to)), best);
     rise = std::max(rise, here.minus_two_log - best.minus_two_log);
   }
-  const double sd = rise > 0.0 ? kTry / std::sqrt(rise) : widest;
+  const double sd = rise > 0.0 ? kTrialStep / std::sqrt(rise) : widest;
   const double step = std::min(kStep * sd, widest);
   std::vector<AtTau> made{best};
   for (const double sign : {-1.0, 1.0}) {
@@ -220,7 +220,7 @@ std::vector<AtTau> spread(const PartedMotion<N>& motion, const AtTau& best) {
       const double log_tau = middle + sign * i * step;
       if (log_tau < from || log_tau > to) break;
       last = at_tau(motion, std::exp(log_tau), last);
-      if (last.minus_two_log > best.minus_two_log + kNoMatter) break;
+      if (last.minus_two_log > best.minus_two_log + kMostSpreadDeficit) break;
       made.push_back(last);
     }
   }
@@ -236,7 +236,7 @@ AtTau exact(const PartedMotion<N>& motion, const AtTau& best) {
   for (double log_tau = std::log(best.how.tau_s); log_tau < to;) {
     log_tau = std::min(log_tau + std::log(kTauRatio), to);
     last = at_tau(motion, std::exp(log_tau), last);
-    if (last.minus_two_log > best.minus_two_log + kOutOfReach) break;
+    if (last.minus_two_log > best.minus_two_log + kMostDeficit) break;
   }
   last.minus_two_log -= 2.0 * std::log(kSpike * (to - from));
   return last;

@@ -23,10 +23,10 @@ enum class StrengthBy { likelihood, cross_validation };
 constexpr double kMostRows = 300.0;        // for a motion whose kernels reach far; otherwise
 constexpr double kRowsOfParameter = 10.0;  // for each effective parameter of the smoothing
 constexpr int kLeastOrder = 3, kOrders = 3;
-constexpr double kAny = std::numeric_limits<double>::infinity();
-constexpr double kMatters = 20.0;       // of -2 log: orders that are less probable by a factor e^-10 are left out
-constexpr double kLeastWeight = 1e-3;   // of a member, over the most probable one
-constexpr double kBreakSettled = 1e-4;  // of a step
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMostOrderDeficit = 20.0;  // of -2 log: orders that are less probable by a factor e^-10 are left out
+constexpr double kLeastWeight = 1e-3;       // of a member, over the most probable one
+constexpr double kBreakSettled = 1e-4;      // of a step
 constexpr int kBreakPasses = 6, kBreakSearches = 3;
 constexpr double kCostOfParameter = 1.4;  // of cross-validation (Kim and Gu 2004): a value of 1 occasionally follows
                                           // the noise
@@ -53,8 +53,8 @@ std::vector<Choice> search(const MotionParts& parts, std::vector<double> rates_1
   std::vector<Choice> found;
   for_orders([&](auto order) {
     const PartedMotion<order> motion(parts);
-    found.push_back({order, likeliest(along_tau(motion, kAny, Rate::none, {}))});
-    found.push_back({order, likeliest(along_tau(motion, kAny, Rate::any, rates_1_s))});
+    found.push_back({order, likeliest(along_tau(motion, kInfinity, Rate::none, {}))});
+    found.push_back({order, likeliest(along_tau(motion, kInfinity, Rate::any, rates_1_s))});
     rates_1_s.push_back(found.back().at.how.rate_1_s);
   });
   return found;
@@ -122,10 +122,10 @@ std::pair<double, AtTau> by_cross_validation(const PartedMotion<N>& motion, Rate
                                              const std::vector<double>& rates_1_s) {
   const auto criterion = [&](const AtTau& at) {
     const SmoothedSums sums = sums_of(motion.posteriors(at.how), motion.parts());
-    return sums.points > kCostOfParameter * sums.trace ? cross_validation(sums) : kAny;
+    return sums.points > kCostOfParameter * sums.trace ? cross_validation(sums) : kInfinity;
   };
-  const std::vector<AtTau> along = along_tau(motion, kAny, rate, rates_1_s);
-  std::pair<double, AtTau> best{kAny, along.front()};
+  const std::vector<AtTau> along = along_tau(motion, kInfinity, rate, rates_1_s);
+  std::pair<double, AtTau> best{kInfinity, along.front()};
   std::size_t of_best = 0;
   for (std::size_t i = 0; i < along.size(); ++i) {
     const double value = criterion(along[i]);
@@ -272,7 +272,7 @@ class WienerSmoother final : public Smoother {
       if (moved < kBreakSettled * parts.step_s) break;
     }
     const double least = likeliest(orders).at.minus_two_log;
-    std::erase_if(orders, [&](const Choice& one) { return one.at.minus_two_log > least + kMatters; });
+    std::erase_if(orders, [&](const Choice& one) { return one.at.minus_two_log > least + kMostOrderDeficit; });
     for (Choice& choice : orders) {
       for_order(choice.order, [&](auto order) {
         const PartedMotion<order> motion(parts);
@@ -303,7 +303,7 @@ class WienerSmoother final : public Smoother {
  private:
   static Choice cross_validated(const MotionParts& parts, const std::vector<Choice>& orders) {
     Choice best;
-    double least = kAny;
+    double least = kInfinity;
     for_orders([&](auto order) {
       for (const Rate rate : {Rate::none, Rate::any}) {
         const auto [value, at] =
@@ -431,7 +431,9 @@ std::vector<std::optional<KernelRow>> lawless_rows(const SmoothingInput& input) 
   std::vector<std::optional<KernelRow>> rows(input.t_s.size());
   MotionParts parts(input);
   if (parts.parts.empty()) return rows;
-  const auto search_tau = [&]() { return likeliest(along_tau(PartedMotion<kOrder>(parts), kAny, Rate::none, {0.0})); };
+  const auto search_tau = [&]() {
+    return likeliest(along_tau(PartedMotion<kOrder>(parts), kInfinity, Rate::none, {0.0}));
+  };
   AtTau at = search_tau();
   for (int i = 0; parts.breaks() && i < kBreakSearches; ++i) {
     const double moved = settle_breaks(parts, {kOrder, at});

@@ -216,10 +216,10 @@ PlaneFit fit_plane(const CameraModel& camera, const std::vector<BoardCorners>& v
 
 std::optional<PlaneViewsDisagree> disagreement(const PlaneFit& fit, std::size_t views, const CornerNoise& noise,
                                                const std::string& group) {
-  constexpr double kOff = 3.0, kLeastOffPx = 0.05;
+  constexpr double kLeastRmsRatio = 3.0, kLeastOffPx = 0.05;
   // Of one coordinate; every view's pose takes its share out of the residuals, in the plane as in the camera's fit.
   const double expected_px = std::hypot(noise.white_px, noise.correlated_px);
-  if (fit.rms_px <= std::max(kLeastOffPx, kOff * expected_px)) return {};
+  if (fit.rms_px <= std::max(kLeastOffPx, kLeastRmsRatio * expected_px)) return {};
   return PlaneViewsDisagree{group, fit.rms_px, expected_px, views};
 }
 

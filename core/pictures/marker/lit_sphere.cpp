@@ -19,14 +19,13 @@ constexpr int kSphereParameters = kAmbient + 1;
 using Parameters = Eigen::Matrix<double, kSphereParameters, 1>;
 using Equations = NormalEquations<kSphereParameters>;
 
-constexpr int kSamples = 4;  // of the surface, a side of a pixel at the rim
-constexpr double kRim_px =
-    0.85;  // on either side of the outline, where a pixel may be partly covered: its half diagonal
-constexpr double kRimBlurs = 4.0;    // and standard deviations of the edge
-constexpr double kBent_px = 2.0;     // inside the outline, where the surface is bent within a pixel
-constexpr double kSoft_px = 0.25;    // over which a sample's weight falls at the outline: half of their distance
-constexpr double kLampPrior = 0.02;  // codes, a unit of light: keeps what nothing shows from sliding away
-constexpr double kFlatPrior = 1e3;   // the same where there is none
+constexpr int kSamples = 4;        // samples of the surface along a side of a pixel at the rim
+constexpr double kRim_px = 0.85;   // about the outline, where a pixel may be partly covered; half its diagonal is 0.71
+constexpr double kRimBlurs = 4.0;  // and so many standard deviations of the edge
+constexpr double kBent_px = 2.0;   // inside the outline, where the surface curves within a pixel
+constexpr double kSoft_px = 0.25;  // half the width over which a sample's weight falls at the outline
+constexpr double kLampPrior = 0.02;  // codes per unit of light: holds a lamp that no pixel shows
+constexpr double kFlatPrior = 1e3;   // the same for a disc, which has no L_z
 constexpr int kMostIterations = 25;
 constexpr int kToneNodes = 4096;
 
@@ -42,7 +41,7 @@ struct Code {
   double slope;  ///< over the light
 };
 
-/// sRGB from straight lines between nodes (to 2e-5).
+/// The code and its slope. sRGB is interpolated linearly between nodes, to 2e-5.
 Code tone_of(ToneCurve tone, double light) {
   if (light >= 1.0) return {1.0, 0.0};
   if (light <= 0.0) return {0.0, 0.0};
@@ -55,10 +54,10 @@ Code tone_of(ToneCurve tone, double light) {
 
 struct Surface4 {
   double light;
-  double x, y, z;  ///< its derivatives by the lamp
+  double x, y, z;  ///< its derivatives with respect to the lamp
 };
 
-/// A disc that is not lit evenly: a plane of light.
+/// A disc that is lit unevenly: its light is a plane.
 Surface4 flat_at(double x, double y, const Parameters& p) {
   return {p[kAmbient] + p[kLampX] * x + p[kLampY] * y, x, y, 0.0};
 }
@@ -78,7 +77,7 @@ Surface4 surface_at(double x, double y, const Parameters& p) {
   return {p[kAmbient] + lit, x, y, z};
 }
 
-/// How much of the pixel is covered, and the mean of what covers it.
+/// The covered part of a pixel, and the mean surface that covers it.
 struct Seen {
   double covered;
   Surface4 surface;
@@ -148,7 +147,7 @@ double light_in(const SpherePixel& pixel, const Seen& seen) {
 
 constexpr double kStep_px = 2e-3, kSizeStep = 3e-4;
 
-/// The sums over the pixels and what is known beforehand; nothing far outside the range of a marker.
+/// The normal equations of the pixels and the priors. Empty if the size is off by more than a factor of 2.
 std::optional<Equations> equations_at(const std::vector<SpherePixel>& pixels, const SphereGuess& guess,
                                       const Parameters& p, double log_size_sd) {
   if (!p.allFinite() || std::abs(p[kLogSize] - guess.log_size) > 0.7) return std::nullopt;
@@ -193,7 +192,7 @@ std::optional<Equations> equations_at(const std::vector<SpherePixel>& pixels, co
   return equations;
 }
 
-/// By linear least squares over the pixels inside: what a lamp without a shadow's edge gives.
+/// The light by linear least squares over the pixels inside, for a lamp without the edge of a shadow.
 SphereLight light_inside(const std::vector<SpherePixel>& pixels, const SphereGuess& guess) {
   constexpr double kInside = 0.85;
   Eigen::Matrix4d a = Eigen::Matrix4d::Identity() * 0.05;
@@ -212,7 +211,7 @@ SphereLight light_inside(const std::vector<SpherePixel>& pixels, const SphereGue
   }
   if (guess.flat) return {{0.0, 0.0, 0.0}, quantile(std::move(lights), 0.5)};
   const Eigen::Vector4d found = base::solve_positive(a, b);
-  constexpr double kDarkest = 0.05;  // part of the pixels
+  constexpr double kDarkest = 0.05;  // quantile of the pixels, taken as the ambient light
   return {{found[0], found[1], found[2]}, quantile(std::move(lights), kDarkest)};
 }
 
@@ -229,7 +228,7 @@ std::optional<SphereFit> fit_lit_sphere(const std::vector<SpherePixel>& pixels, 
   const auto found = fit_least_squares<kSphereParameters>(
       [&](const Parameters& p) { return equations_at(pixels, guess, p, guess.log_size_sd); }, start, step,
       kMostIterations, [](const auto&, const auto&) { return false; });
-  // A kink (the shadow's edge between pixels) may keep the last thousandth of a pixel from settling.
+  // A kink (the edge of the shadow between pixels) may keep the last thousandth of a pixel from settling.
   if (!base::is_settled(found.stop) && found.stop != base::FitStop::no_descent &&
       found.stop != base::FitStop::iterations) {
     return std::nullopt;

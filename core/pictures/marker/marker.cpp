@@ -17,21 +17,23 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLargestResidual = 1.0 / 3.0;                // of the amplitude; a disc leaves noise only
-constexpr double kMomentReach = 1.1, kMomentMargin_px = 1.5;  // of the radius: room for a smear of 3 px and more
-constexpr double kSharpEdge_px = 0.29;  // the pixel's own extent, 1/sqrt(12): nothing that is not clipped is sharper
-constexpr int kMaxIterations = 14;      // what is a marker takes 3 to 8
-constexpr int kIterationsBeforeHopeless = 4;  // by then the residuals of a disc are nearly those of its fit
+constexpr double kLargestResidual = 1.0 / 3.0;  // relative to the amplitude; a disc leaves only noise
+constexpr double kMomentReach = 1.1,
+                 kMomentMargin_px = 1.5;  // of the radius, with a margin for a smear of 3 px and more
+constexpr double kSharpEdge_px = 0.29;  // standard deviation of a pixel's extent, 1/sqrt(12): a sharper edge is clipped
+constexpr int kMaxIterations = 14;      // a marker takes 3 to 8
+constexpr int kIterationsBeforeHopeless = 4;  // after these, the residuals of a disc are nearly final
 constexpr double kHopelessResidual = 2.0 * kLargestResidual;
-constexpr int kMoreIterations = 16;  // a disc so far, its edge sharper than a pixel: the sensor clips it
+constexpr int kMoreIterations = 16;  // for a disc whose edge is sharper than a pixel, because the sensor clips it
 
-/// sin x for |x| up to pi/2, to 6e-8.
+/// sin x for |x| <= pi/2, to 6e-8.
 double sine(double x) {
   const double x2 = x * x;
   return x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0)))));
 }
 
-/// All pixels within `radius`, tapered towards the rim so that a pixel more or less there does not move the centre.
+/// All pixels within `radius`. Their weights are tapered towards the rim, so that one pixel more or less there does not
+/// move the centre.
 std::optional<MarkerPixels> cut_window(const Signal& signal, cv::Point2d centre, double radius) {
   const int left = static_cast<int>(std::ceil(centre.x - radius));
   const int right = static_cast<int>(std::floor(centre.x + radius));
@@ -58,18 +60,18 @@ std::optional<MarkerPixels> cut_window(const Signal& signal, cv::Point2d centre,
   return window;
 }
 
-/// Weak knowledge that keeps small markers' size and blur apart, and the blur of a sharp image from sliding to
-/// nothing (it has no effect to be seen there); each worth so much of the amplitude in one pixel.
+/// Weak priors. They keep the size and the blur of a small marker apart, and the blur of a sharp image, which has no
+/// visible effect, from drifting to 0. Each counts like a residual of so much of the amplitude in one pixel.
 struct Prior {
   double radius_px;
   double blur_px;
   double amplitude;
 };
-constexpr double kSizeStrength = 0.1;  // a unit of ln(radius)
-constexpr double kBlurStrength = 0.3;  // a unit of ln(blur)
+constexpr double kSizeStrength = 0.1;  // per unit of ln(radius)
+constexpr double kBlurStrength = 0.3;  // per unit of ln(blur)
 constexpr double kShadeStrength = 0.05;
 
-/// The sums over the pixels with what is known beforehand.
+/// The normal equations of the pixels and the priors.
 template <int N>
 std::optional<NormalEquations<N>> evaluate(MarkerModel<N>& pixels, const Prior& prior,
                                            const Eigen::Matrix<double, N, 1>& p) {
@@ -97,7 +99,7 @@ std::optional<NormalEquations<N>> evaluate(MarkerModel<N>& pixels, const Prior& 
   return equations;
 }
 
-/// What the pixels well inside and well outside of the guess are like.
+/// The levels of the pixels well inside and outside the guess.
 struct Contrast {
   double level;      ///< of the background
   double amplitude;  ///< of the marker above it, > 0
@@ -135,7 +137,7 @@ Eigen::Matrix<double, N, 1> start_of(const MarkerGuess& guess, const Contrast& c
   return start;
 }
 
-/// Changes of the parameters that are too small to matter.
+/// Steps of the parameters that are too small to matter.
 template <int N>
 Eigen::Matrix<double, N, 1> steps_of(const MarkerGuess& guess, double amplitude) {
   Eigen::Matrix<double, N, 1> step = Eigen::Matrix<double, N, 1>::Constant(3e-3 * amplitude);
@@ -165,9 +167,9 @@ LeastSquaresFit<N> solve(MarkerModel<N>& pixels, const MarkerGuess& guess, const
   return found;
 }
 
-/// Standard deviation of a coordinate of the centre. The bright marker's pixels are noisier than the background's, and
-/// the taper counts: covariance by the sandwich A^-1 B A^-1 with A = J^T W J, B = sum (w r)^2 J J^T, and N parameters
-/// taken from the residuals' freedom.
+/// Standard deviation of one coordinate of the centre. The pixels of a bright marker are noisier than those of the
+/// background, and the taper counts, so the covariance is the sandwich A^-1 B A^-1 with A = J^T W J and B = sum (w r)^2
+/// J J^T. The N parameters are taken from the degrees of freedom of the residuals.
 template <int N>
 double centre_sd(MarkerModel<N>& pixels, const LeastSquaresFit<N>& found, double total_weight) {
   const Eigen::Matrix<double, N, N> noise =
@@ -183,12 +185,13 @@ struct Moments {
   cv::Vec3d second;
 };
 
-/// Of what is above the fitted background.
+/// The moments of what stands above the fitted background.
 Moments moments_of(const MarkerPixels& window, const MarkerFit& marker, double expected_radius_px) {
   cv::Vec3d moments(0.0, 0.0, 0.0);
   cv::Point2d first;
   double above = 0.0;
-  const double reach = kMomentReach * expected_radius_px + kMomentMargin_px;  // short of what else moves with it
+  const double reach =
+      kMomentReach * expected_radius_px + kMomentMargin_px;  // short of other things that move with the marker
   for (std::size_t i = 0; i < window.size(); ++i) {
     const double du = window.u()[i] - marker.centre.x, dv = window.v()[i] - marker.centre.y;
     if (du * du + dv * dv > reach * reach) continue;
@@ -269,7 +272,8 @@ std::optional<MarkerFit> fit(const Signal& signal, const MarkerGuess& guess) {
   return plausible_marker<N>(*window, guess, pixels, *found);
 }
 
-/// A window that is fitted to the light by a tone, again and again without what a response adds.
+/// A window that is fitted to the light of its codes under a tone curve, repeatedly, each time without what a response
+/// adds.
 template <int N>
 class Refit {
  public:
@@ -282,9 +286,9 @@ class Refit {
     }
   }
 
-  /// Whether the fit settles; `response` null: as the light is.
+  /// Whether the fit settles. A null `response` adds nothing.
   bool settles(const EdgeResponse* response) {
-    constexpr int kRefits = 2;  // what is taken off changes by a tenth of what it changes the fit
+    constexpr int kRefits = 2;  // the response changes by a tenth of the change that it makes to the fit
     found_ = settled_fit<N>(window_, pixels_, of_.guess);
     const std::optional<Contrast> contrast = contrast_of(window_, of_.guess);
     for (int refit = 0; found_ && response != nullptr && refit < kRefits; ++refit) {
@@ -312,7 +316,7 @@ class Refit {
     seen_.model = pixels_.image(p);
     seen_.contrast = p[kBright] - p[kLevel];
     const double blur = std::exp(p[kLogBlur]);
-    constexpr double kSharpest_px = 0.05;  // nothing changes below, at a pixel's width
+    constexpr double kSharpest_px = 0.05;  // below, nothing changes at the width of a pixel
     seen_.at = [p, blur, corner = of_.corner](cv::Point pixel, double narrower_px2) {
       const double sharp = std::sqrt(std::max(blur * blur - narrower_px2, kSharpest_px * kSharpest_px));
       return marker_at(p, sharp, cv::Point2d(pixel - corner));
@@ -392,7 +396,7 @@ double least_centre_sd_px(const DiscImage& disc, double reach_px) {
   p << disc.u, disc.v, disc.radius_px, disc.blur_px, disc.amplitude, 0.0, 0.0, 0.0;
   Eigen::Matrix<double, kDiscParameters, kDiscParameters> information;
   information.setZero();
-  // Central differences: pixels, grey values; the third derivative's share is 1e-6 of the first.
+  // Step of the central differences, in pixels and grey values: the third derivative adds 1e-6 of the first.
   constexpr double kStep = 1e-3;
   for (int v = static_cast<int>(std::ceil(disc.v - reach_px)); v <= disc.v + reach_px; ++v) {
     for (int u = static_cast<int>(std::ceil(disc.u - reach_px)); u <= disc.u + reach_px; ++u) {

@@ -13,13 +13,13 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kReach = 2.2, kReachMargin_px = 2.0;  // of the radius: half a side of the box that is looked at
-constexpr double kRim = 1.6;                           // of the radius: what is farther out is background
-constexpr double kSmallest_px = 1.5;                   // a marker's pixels are looked for so far at least
+constexpr double kReach = 2.2, kReachMargin_px = 2.0;  // of the radius, with a margin: half the side of the box
+constexpr double kRim = 1.6;                           // of the radius: pixels farther out are background
+constexpr double kSmallest_px = 1.5;                   // the marker's pixels are sought at least as far out
 constexpr std::size_t kFewestOfRim = 8;                // pixels
 constexpr double kFloor = 0.2;                         // of the peak
 
-/// The background from the rim of the box, the peak from the brightest tenth near the guess.
+/// The background by the median of the rim of the box, the peak by the brightest tenth near the guess.
 struct Peak {
   double level;
   double amplitude;  ///< above the level, > 0
@@ -71,7 +71,7 @@ std::optional<cv::Point> brightest(const Signal& signal, const cv::Rect& box, co
   return found;
 }
 
-/// Pixels of the box that hang together with the seed, side by side, and stand above the floor; the nearest first.
+/// Pixels of the box above the floor that are connected with the seed side by side, the nearest first.
 std::vector<cv::Point> connected(const Signal& signal, const cv::Rect& box, cv::Point seed, double floor) {
   cv::Mat taken = cv::Mat::zeros(box.size(), CV_8U);
   std::vector<cv::Point> found;
@@ -108,7 +108,7 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
 
   double sum = 0.0, sum_u = 0.0, sum_v = 0.0, area = 0.0;
   for (const cv::Point& here : connected(signal, box, *seed, floor)) {
-    // Rises linearly from nothing at the floor, so that a pixel that comes or goes there does not matter.
+    // The weight rises linearly from 0 at the floor, so that a pixel that comes or goes there does not matter.
     const double weight = std::min((signal.at(here.x, here.y) - floor) / ((1.0 - kFloor) * peak->amplitude), 1.0);
     sum += weight;
     sum_u += weight * here.x;
@@ -127,12 +127,12 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
 
 namespace {
 
-constexpr double kLeastBicGainPerFrame = 10.0;  // a frame, on average: "very strong" on the usual scale
-constexpr double kSmallestShadedPx = 3.0;       // below, shading and place cannot be told apart
-constexpr double kMostDiscResidual = 0.1;       // of the amplitude; what is no disc leaves more
-constexpr double kLeastJitterRatio = 1.2;       // times, by which a centroid must be to be preferred
+constexpr double kLeastBicGainPerFrame = 10.0;  // average per frame: "very strong" on the usual scale
+constexpr double kSmallestShadedPx = 3.0;       // below, shading cannot be told from a shift
+constexpr double kMostDiscResidual = 0.1;       // relative to the amplitude; an object that is no disc leaves more
+constexpr double kLeastJitterRatio = 1.2;       // a centroid must be steadier by this factor to be preferred to a disc
 
-/// What all windows agree on, the image's sharpness and the marker's size, from which each fit then starts.
+/// Starts each fit from what all windows share: the sharpness of the image and the size of the marker.
 void share_guesses(std::vector<MarkerSample>& samples, SignalKind kind) {
   std::vector<double> blurs, sizes;
   for (const MarkerSample& sample : samples) {
@@ -149,12 +149,12 @@ void share_guesses(std::vector<MarkerSample>& samples, SignalKind kind) {
   }
 }
 
-/// The samples measured in every way that may be chosen.
+/// The samples, measured by every method that may be chosen.
 struct Remeasured {
   std::map<MarkerMethod, std::map<std::size_t, MarkerFit>> fits = {
       {MarkerMethod::uniform, {}}, {MarkerMethod::shaded, {}}, {MarkerMethod::centroid, {}}};  ///< by frame
-  double bic_gain = 0.0;  ///< of shading over none, summed over frames
-  std::size_t both = 0;   ///< frames that have both
+  double bic_gain = 0.0;  ///< gain of a shaded over a uniform surface, summed over frames
+  std::size_t both = 0;   ///< frames with both fits
 };
 
 Remeasured remeasure(const std::vector<MarkerSample>& samples, SignalKind kind) {
@@ -210,7 +210,7 @@ std::optional<MarkerFit> measure_marker(const Signal& signal, const MarkerGuess&
   if (method == MarkerMethod::uniform || method == MarkerMethod::undecided)
     fit = fit_marker(signal, guess, Surface::uniform);
   if (method == MarkerMethod::shaded) fit = fit_marker(signal, guess, Surface::shaded);
-  // A thing that is known by its hue may have any shape.
+  // An object that is told by its hue or its light may have any shape.
   if (method == MarkerMethod::centroid || (!fit && method == MarkerMethod::undecided && may_have_any_shape(kind))) {
     fit = centroid_of_marker(signal, guess);
   }
@@ -231,7 +231,7 @@ void choose_method(MarkerPath& path, SignalKind kind, const RadiusAt& radius_at)
     if (again != fits.end()) {
       kept.push_back({sighting.frame, again->second, radius_at(again->second.centre)});
     } else if (!sampled) {
-      kept.push_back(sighting);  // followed back, or asleep
+      kept.push_back(sighting);  // found while following back, or at rest
     }
   }
   path.samples.clear();

@@ -1,5 +1,5 @@
-/// How the object of a path is measured: as a uniform or a shaded disc (marker.h) or, if its hue is known, by its
-/// centroid.
+/// How the object of a path is measured: as a uniform or a shaded disc (marker.h) or, if it may have any shape
+/// (may_have_any_shape() in marker_search.h), by its centroid.
 #pragma once
 
 #include <optional>
@@ -9,22 +9,22 @@
 
 namespace glidelab::core {
 
-/// The centroid of a coloured object that is not a disc.
+/// The centroid of an object that need not be a disc.
 ///
-/// Pixels that stand out from the background by more than a fifth of the peak and hang together with the brightest one
-/// near the guess count in proportion to how far they rise above that floor, so that a pixel that comes or goes at the
-/// edge does not matter. Unlike the fit of marker.h it follows the slope of the background.
+/// Pixels count if they stand out from the background by more than a fifth of the peak and are connected with the
+/// brightest one near the guess. Each counts in proportion to its height above that floor, so that a pixel that comes
+/// or goes at the edge does not matter. Unlike the fit of marker.h, a centroid follows the slope of the background.
 ///
-/// sd_px is not estimated (0). Nothing where nothing stands out, or its size is off by more than a factor of 2.
+/// sd_px is not estimated (0). Empty if nothing stands out, or if its radius is off by more than a factor of 2.
 std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGuess& guess);
 
-/// Nothing if the object cannot be fitted in this way or its contrast is too low. `undecided` is a uniform disc or, if
-/// none fits and a hue is searched for, the centroid.
+/// The object by one method. Empty if it cannot be measured in this way, or if its contrast is too low. `undecided` is
+/// a uniform disc or, if none fits and the object may have any shape, the centroid.
 std::optional<MarkerFit> measure_marker(const Signal& signal, const MarkerGuess& guess, MarkerMethod method,
                                         SignalKind kind);
 
-/// Chooses the path's method by the residuals of its samples (for an object of known hue also by which method is
-/// steadier), and measures its sightings so far again with it.
+/// Chooses the method of a path by the residuals of its samples and, for an object that may have any shape, by which
+/// method is steadier. Replaces the sightings so far by those of that method.
 void choose_method(MarkerPath& path, SignalKind kind, const RadiusAt& radius_at);
 
 }  // namespace glidelab::core

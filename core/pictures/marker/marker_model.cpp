@@ -17,7 +17,7 @@ using Batch = std::array<double, kBatch>;
 
 }  // namespace
 
-/// A row of the Jacobian for each pixel, by columns, then the residual.
+/// The Jacobian of a batch, column by column, and the residuals.
 template <int N>
 struct MarkerSlopes {
   alignas(64) std::array<Batch, N> jacobian;
@@ -28,21 +28,21 @@ namespace {
 
 const NormalNodes kNodes = make_normal_nodes();
 
-/// What does not change from pixel to pixel.
+/// The quantities that are common to all pixels.
 template <int N>
 struct Marker {
   Eigen::Matrix<double, N, 1> p;
   double blur;
   double per_radius;
-  double variance;  // of blur and pixel together
+  double variance;  // of the blur and the pixel together
 };
 
-/// Where a batch's pixels are: d, M d, and the outline next to them.
+/// The geometry of a batch of pixels: d, M d, rho, and the normal of the outline and the distance inside it.
 struct Geometry {
   alignas(64) Batch du, dv, mu, mv, rho, per_steep, normal_u, normal_v, s;
 };
 
-/// Sums over all batches, in strands: the lower half of J' W J by columns, J' W r, W r^2 and W.
+/// Sums over all batches, in strands: the lower half of J' W J by columns with J' W r, then r' W r and the sum of W.
 template <int N>
 struct Sums {
   static constexpr int kProducts = N * (N + 1) / 2 + N + 2;
@@ -52,7 +52,7 @@ struct Sums {
 [[gnu::always_inline]] inline void place(const double* u, const double* v, const double* p, double blur,
                                          Geometry& out) {
   const double a = p[kMuu], b = p[kMuv], c = p[kMvv];
-  const double inside = (kFarFromEdge + 1.0) * blur + 1.0;  // a pixel on the very centre has no normal
+  const double inside = (kFarFromEdge + 1.0) * blur + 1.0;  // for a pixel exactly at the centre, which has no normal
   for (int i = 0; i < kBatch; ++i) {
     const double du = u[i] - p[kU], dv = v[i] - p[kV];
     const double mu = a * du + b * dv, mv = b * du + c * dv;  // M d
@@ -73,7 +73,7 @@ struct Sums {
   }
 }
 
-/// E and its derivatives, in a loop of its own: a longer one is not turned into vectors.
+/// E and its derivatives, in a loop of its own, since a compiler does not vectorise a longer one.
 [[gnu::always_inline]] inline void see_edge(const Geometry& g, double blur, Batch& value, Batch& slope, Batch& bend) {
   for (int i = 0; i < kBatch; ++i) {
     const EdgeBoxes boxes = edge_boxes(g.normal_u[i], g.normal_v[i], blur);
@@ -106,12 +106,13 @@ template <int N>
       surface += (shade_u * du + shade_v * dv) * marker.per_radius + shade_r * (1.0 - g.rho[i] * g.rho[i]);
     }
     const double behind = level + slope_u * du + slope_v * dv;
-    // A slope that ends at an edge keeps, once blurred, a remainder beyond it.
+    // A slope that ends at an edge leaves, once blurred, a remainder beyond the edge.
     const double blurred = marker.variance * slope[i];
     const double remain_u = blurred * g.normal_u[i], remain_v = blurred * g.normal_v[i];
     const double model = behind * rest + surface * edge + slope_u * remain_u + slope_v * remain_v;
     const double to_s = (surface - behind) * slope[i];
-    // ds = -d rho rho / |M^2 d| at fixed steepness; d rho = ((M d) . dM d) / rho, and the centre moves by -d.
+    // At fixed steepness ds = -rho d(rho) / |M^2 d| with d(rho) = ((M d) . dM d) / rho. A shift of the centre changes d
+    // by the opposite.
     const double to_m = -to_s * g.per_steep[i];
     double to_u = to_s * g.normal_u[i] - rest * slope_u;
     double to_v = to_s * g.normal_v[i] - rest * slope_v;
@@ -175,7 +176,8 @@ template <int N>
   }
 }
 
-/// By weights that are a pixel's share in the variance of the gradient, (w r)^2, a step away from where r was taken.
+/// Sums weighted by (w r)^2, a pixel's share in the variance of the gradient, with r a step away from where it was
+/// taken.
 template <int N>
 [[gnu::always_inline]] inline void sum_variance(const MarkerPixels& pixels, const MarkerSlopes<N>* slopes,
                                                 const double* step, Sums<N>& sums) {
@@ -205,7 +207,7 @@ void sum_variance_baseline(const MarkerPixels& pixels, const MarkerSlopes<N>* sl
 }
 
 #if defined(__x86_64__)
-// AVX2 without FMA: the same operations on more lanes.
+// AVX2 without FMA: the same operations in more lanes.
 template <int N>
 [[gnu::target("avx2")]] void sum_pixels_avx2(const MarkerPixels& pixels, const Marker<N>& marker,
                                              MarkerSlopes<N>* slopes, Sums<N>& sums) {

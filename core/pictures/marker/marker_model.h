@@ -1,8 +1,8 @@
-/// The model of marker.h for the pixels of a window: its residuals and their derivatives, summed up.
+/// The model of marker.h for the pixels of a window: residuals, derivatives and their normal equations.
 ///
-/// The pixels are taken in batches, each step for a whole batch, so that a compiler turns the steps into vector
-/// instructions; where the processor has AVX2 these are wider. Sums are taken in four strands by a pixel's place in its
-/// batch, with either set of instructions: the results are the same to the last bit.
+/// Pixels are processed in batches, each step for a whole batch, so that the compiler can use vector instructions;
+/// these are wider if the processor has AVX2. With either instruction set, sums are taken in four strands by the
+/// position of a pixel in its batch, so the results agree to the last bit.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -35,7 +35,7 @@ enum MarkerParameter {
 inline constexpr int kUniformParameters = kShadeU;
 inline constexpr int kShadedParameters = kShadeR + 1;
 
-/// Pixels, each with its weight in the fit.
+/// The pixels of a window, each with its weight in the fit.
 class MarkerPixels {
  public:
   void reserve(std::size_t pixels);
@@ -46,7 +46,7 @@ class MarkerPixels {
     value_[size_] = value;
     weight_[size_++] = weight;
   }
-  /// To be called after the last pixel.
+  /// Must be called after the last add().
   void complete();
 
   std::size_t size() const { return size_; }
@@ -58,52 +58,53 @@ class MarkerPixels {
 
  private:
   std::size_t size_ = 0;
-  /// With room; once complete() whole batches, filled up with pixels of no weight.
+  /// Longer than size_ until complete(); then whole batches, filled up with pixels of weight 0.
   std::vector<double> u_, v_, value_, weight_;
 };
 
-using Vectors = base::Simd;  ///< there is no portable one here: it is the baseline
+using Vectors = base::Simd;  ///< the portable choice is the baseline here
 
-/// The model's residuals and slopes in one batch of pixels.
+/// The residuals of the model and their derivatives in one batch of pixels.
 template <int N>
 struct MarkerSlopes;
 
-/// The sums over a window, whose slopes are kept for a second sum.
+/// The normal equations of a window. The derivatives are kept for a second sum.
 template <int N>
 class MarkerModel {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  /// The pixels, complete(), must outlive it.
+  /// The pixels must be complete() and must outlive the model.
   explicit MarkerModel(const MarkerPixels& pixels, Vectors vectors = Vectors::best);
   MarkerModel(const MarkerModel&) = delete;
   MarkerModel& operator=(const MarkerModel&) = delete;
   ~MarkerModel();
 
-  /// The sums (not complete() yet); nothing where the parameters are no marker's.
+  /// The normal equations at p, not yet complete(). Empty if the parameters cannot be those of a marker.
   std::optional<NormalEquations<N>> equations(const Vector& p);
 
-  /// The variance of the gradient, sum (w r)^2 J J^T: the middle of the sandwich covariance. J is that at p, kept where
-  /// equations() was asked for it last, else taken anew; r is that at p + step, to first order. p must be a marker's.
+  /// The variance of the gradient, sum (w r)^2 J J^T, which is the middle of the sandwich covariance. J is taken at p,
+  /// from the last call of equations() if that was at p; r is taken at p + step, to first order. std::logic_error if p
+  /// cannot be a marker's.
   Eigen::Matrix<double, N, N> gradient_variance(const Vector& p, const Vector& step);
 
-  /// The model's derivatives at p by its parameters, a row for each pixel, and what it gives each pixel. p must be a
+  /// The derivatives of the model at p, one row for each pixel, and its values. std::logic_error if p cannot be a
   /// marker's.
   Eigen::MatrixXd jacobian(const Vector& p);
   Eigen::VectorXd image(const Vector& p);
 
-  /// The pixels' values have changed.
+  /// Must be called after the values of pixels have changed.
   void forget() { known_.reset(); }
 
  private:
   const MarkerPixels& pixels_;
   Vectors vectors_;
   std::unique_ptr<MarkerSlopes<N>[]> slopes_;  ///< of each batch
-  std::optional<Vector> known_;                ///< where they were taken
+  std::optional<Vector> known_;                ///< the parameters at which they were taken
 };
 
-/// The model at one pixel, but for the remainder of a slope beyond the edge, with an edge of another blur. N
-/// parameters.
+/// The model at one pixel with another blur of the edge, and without the remainder of a slope beyond the edge. `p` has
+/// N parameters of one of the surfaces.
 ModelPixel marker_at(const Eigen::VectorXd& p, double blur_px, cv::Point2d pixel);
 
 extern template class MarkerModel<kUniformParameters>;

@@ -16,12 +16,12 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLongestBounceFrames = 30.0;   // frames
+constexpr double kLongestBounceFrames = 30.0;   // frames over which a bounce widens the search
 constexpr std::size_t kSightingsAveraged = 20;  // sightings over which a path's size and brightness are averaged
-constexpr std::size_t kSightingsForSpeed = 4;   // sightings that a path's speed is of
-constexpr std::size_t kSightingsForSize = 50;   // of a path
+constexpr std::size_t kSightingsForSpeed = 4;   // sightings from which a path's speed is taken
+constexpr std::size_t kSightingsForSize = 50;   // sightings from which a path's size is taken
 
-/// A later path goes on where an earlier one was going; it may have bounced while it was hidden.
+/// Whether a later path continues an earlier one. The object may have bounced while it was hidden.
 bool fits_on(const MarkerPath& early, const MarkerPath& late) {
   if (early.seen.back().frame >= late.seen.front().frame) return false;
   const double gap = frames_between(early.seen.back().frame, late.seen.front().frame);
@@ -53,7 +53,7 @@ cv::Point2d MarkerPath::predict(std::size_t frame) const {
 }
 
 void MarkerPath::push(const MarkerSeen& sighting) {
-  // Perspective changes size and brightness slowly; a single frame counts little.
+  // Perspective changes size and brightness slowly, so a single frame counts little.
   const double weight = 1.0 / static_cast<double>(std::min(seen.size() + 1, kSightingsAveraged));
   radius_px += weight * (sighting.fit.radius_px - radius_px);
   amplitude += weight * (sighting.fit.amplitude - amplitude);
@@ -141,7 +141,7 @@ std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& 
 
 namespace {
 
-/// Standard deviation of a coordinate of the weighted sums over consecutive frames.
+/// The standard deviation, per coordinate, of weighted sums over consecutive frames.
 std::optional<double> sd_of_differences(const Places& places, std::span<const double> weights) {
   std::vector<double> squares;
   for (auto first = places.begin(); first != places.end(); ++first) {
@@ -153,7 +153,7 @@ std::optional<double> sd_of_differences(const Places& places, std::span<const do
     if (k == weights.size()) squares.push_back(sum.dot(sum));
   }
   if (squares.size() < 4) return std::nullopt;
-  // The median of the sum of two squared Gaussian coordinates is 2 ln 2 variances; outliers do not matter.
+  // The sum of two squared Gaussian coordinates has the median 2 ln 2 variances; outliers do not matter.
   return std::sqrt(median_of(squares) / (2.0 * std::log(2.0)));
 }
 
@@ -173,11 +173,11 @@ std::optional<double> roughness_of(const Places& places) {
 
 namespace {
 
-constexpr std::size_t kFewestMoving = 8;    // sightings of a path that counts as a marker (fewer in a shorter clip)
-constexpr std::size_t kFewestResting = 10;  // sightings of something that counts as part of the scene
-constexpr double kStartFrames = 5.0;        // around the one that start_px belongs to, in which it is looked at
+constexpr std::size_t kFewestMoving = 8;    // sightings of a path that can be the marker (fewer in a short clip)
+constexpr std::size_t kFewestResting = 10;  // sightings of an object that counts as part of the scene
+constexpr double kStartFrames = 5.0;        // frames around that of start_px in which a path is accepted
 
-/// They are seen in the same frames, half of the shorter path's or more, and look and move alike.
+/// Whether two paths look and move alike and share half or more of the frames of the shorter one.
 bool are_twins(const MarkerPath& one, const MarkerPath& other) {
   std::size_t common = 0;
   for (auto a = one.seen.begin(), b = other.seen.begin(); a != one.seen.end() && b != other.seen.end();) {
@@ -193,7 +193,7 @@ bool are_twins(const MarkerPath& one, const MarkerPath& other) {
          alike(one.amplitude, other.amplitude, 1.4) && alike(one.travel_px, other.travel_px, 1.6);
 }
 
-/// The paths of one clip, of which one is chosen.
+/// The choice of one path among those of a clip.
 class Choice {
  public:
   Choice(const FollowedPaths& followed, const MarkerSetup& marker, const std::filesystem::path& clip)
@@ -225,8 +225,8 @@ class Choice {
   const std::filesystem::path& clip_;
 };
 
-/// Where the path's thing is in a frame: between its sightings before and after, at rest where it was seen last, or
-/// where it is seen within a few frames; nothing where it is not seen around that time.
+/// The position of a path's object in a frame: interpolated between the sightings before and after; where it was seen
+/// last, if it is at rest; or where it is seen within a few frames. Empty if it is not seen around that time.
 std::optional<cv::Point2d> place_in(const MarkerPath& path, std::size_t frame) {
   const auto after = std::lower_bound(path.seen.begin(), path.seen.end(), frame,
                                       [](const MarkerSeen& seen, std::size_t wanted) { return seen.frame < wanted; });
@@ -243,7 +243,7 @@ std::optional<cv::Point2d> place_in(const MarkerPath& path, std::size_t frame) {
   return before.fit.centre + part * (after->fit.centre - before.fit.centre);
 }
 
-/// The path that is nearest to start_px in the frame that it belongs to.
+/// The path that is nearest to start_px in the frame to which start_px refers.
 std::size_t Choice::path_at_start() const {
   std::size_t best = paths_.size();
   double nearest = std::numeric_limits<double>::infinity();
@@ -263,14 +263,14 @@ std::size_t Choice::path_at_start() const {
                                       : fmt::format("frame {}, which start_s names", start_frame_),
                     best == paths_.size() ? "" : fmt::format(" (the nearest is {:.0f} px off)", nearest)),
         fmt::format("one of about {:.1f} px radius within {:.0f} px{}", radius_px_, allowed,
-                    start_frame_ == 0 ? "; of one that comes into view later, start_s in its [[clip]] says when "
+                    start_frame_ == 0 ? "; for one that comes into view later, start_s in its [[clip]] says when "
                                         "it is there"
                                       : "")));
   }
   return best;
 }
 
-/// Where nothing moves: the one thing of the right size that is there all the time.
+/// If nothing moves: the one object of the right size that is seen in at least half of the frames.
 std::size_t Choice::resting_path(std::vector<Note>& notes) const {
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
@@ -278,11 +278,11 @@ std::size_t Choice::resting_path(std::vector<Note>& notes) const {
     if (2 * paths_[i].seen.size() >= frames_ && ratio > 0.75 && ratio < 1.33) candidates.push_back(i);
   }
   if (candidates.size() != 1) {
-    throw NoMarker(
-        issue(fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
-                          candidates.empty() ? "" : fmt::format(", and {} such things rest", candidates.size())),
-              "a marker of the stated diameter, brighter or darker than its surroundings (or of the stated colour), or "
-              "start_px"));
+    throw NoMarker(issue(
+        fmt::format("no marker: nothing of about {:.1f} px radius moves{}", radius_px_,
+                    candidates.empty() ? "" : fmt::format(", and {} such objects are at rest", candidates.size())),
+        "a marker of the stated diameter, brighter or darker than its surroundings (or of the stated colour), or "
+        "start_px"));
   }
   notes.emplace_back(MarkerAtRest{});
   return candidates.front();
@@ -302,7 +302,7 @@ std::size_t Choice::choose_path(std::vector<Note>& notes) const {
     longest = std::max(longest, static_cast<double>(path.seen.size()));
   }
   if (movers.empty()) return resting_path(notes);
-  // Squared deviations from what a marker is like, each over how much it may vary.
+  // Squared deviations from a typical marker, each in units of its spread.
   const auto cost = [&](std::size_t i) {
     const MarkerPath& path = paths_[i];
     const double size = std::log(path.size_ratio()) / 0.2;
@@ -330,7 +330,7 @@ std::size_t Choice::choose_path(std::vector<Note>& notes) const {
   return best;
 }
 
-/// The place of something that rested there long before the path came by.
+/// Whether an object rested at this place long before the path came by.
 bool Choice::is_place_of_another(const MarkerPath& path, const MarkerSeen& sighting) const {
   return std::any_of(paths_.begin(), paths_.end(), [&](const MarkerPath& other) {
     if (&other == &path || other.seen.size() < kFewestResting || other.travel_px > 0.75 * path.radius_px) return false;
@@ -339,8 +339,8 @@ bool Choice::is_place_of_another(const MarkerPath& path, const MarkerSeen& sight
   });
 }
 
-/// Without the frames in which something like it rests at its place, or in which it is half hidden: measured wrong,
-/// smaller or with larger residuals than in the frames around.
+/// The path without the frames in which a similar object rests at its place, or in which the marker is half hidden: its
+/// size then differs from that in other frames, or its residuals are larger.
 TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
   TrackedMarker tracked;
   std::vector<double> sizes, residuals;
@@ -384,7 +384,7 @@ TrackedMarker Choice::marker() const {
     for (const MarkerSighting& sighting : tracked.sightings) {
       places[sighting.frame] = {sighting.u_px, sighting.v_px};
     }
-    // A centroid has no covariance: its noise from the second differences (variance 1 + 4 + 1).
+    // A centroid has no covariance. Its noise comes from the second differences (variance 1 + 4 + 1).
     const double sd = jitter_of(places).value_or(0.0) / std::sqrt(6.0);
     for (MarkerSighting& sighting : tracked.sightings) sighting.sd_px = sd;
     tracked.notes.emplace_back(MarkerMeasuredBy{MarkerMeasuredBy::What::centroid});

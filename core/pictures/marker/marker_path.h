@@ -1,4 +1,4 @@
-/// The paths of objects through a clip, and which of them is the marker's.
+/// The paths of objects through a clip, and the choice of the marker's path among them.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,7 +21,7 @@
 
 namespace glidelab::core {
 
-/// Expected radius of the marker's image at a pixel, in pixels.
+/// The expected radius of the marker's image at a pixel, in pixels.
 using RadiusAt = std::function<double(cv::Point2d)>;
 
 /// How the object of a path is measured in a frame (marker_method.h).
@@ -30,12 +30,12 @@ enum class MarkerMethod { undecided, uniform, shaded, centroid };
 struct MarkerSeen {
   std::size_t frame = 0;
   MarkerFit fit;
-  double expected_px = 0.0;  ///< radius that the marker should have there
+  double expected_px = 0.0;  ///< expected radius at that position
 
   double size() const { return fit.radius_px / std::max(expected_px, 1e-3); }
 };
 
-/// A window around a sighting, kept until the method is chosen.
+/// A window around a sighting, kept until a method is chosen.
 struct MarkerSample {
   std::size_t frame = 0;
   Signal window;
@@ -43,36 +43,36 @@ struct MarkerSample {
   MarkerGuess guess;
 };
 
-/// The path of one object through a clip: where it was seen, where it should be next, and what resembles it.
+/// The path of one object through a clip: where it was seen, where it should be next, and which objects resemble it.
 struct MarkerPath {
   std::vector<MarkerSeen> seen;
   std::vector<MarkerSample> samples;
   MarkerMethod method = MarkerMethod::undecided;
   bool ended = false;
-  bool asleep = false;  ///< at rest, and considered only when the whole image is searched
+  bool asleep = false;  ///< at rest, and no longer followed
   double radius_px = 0.0;
   double amplitude = 0.0;
-  double travel_px = 0.0;  ///< largest distance from the first place
+  double travel_px = 0.0;  ///< largest distance from the first position
 
-  cv::Point2d velocity() const;  ///< pixels a frame, over the last few sightings
+  cv::Point2d velocity() const;  ///< pixels per frame, over the last four sightings
   cv::Point2d predict(std::size_t frame) const;
   void push(const MarkerSeen& sighting);
-  double size_ratio() const;                               ///< of the radii seen and expected, median
-  bool is_like(double radius_px, double amplitude) const;  ///< the same object, judging by size and brightness
-  bool is_like(const MarkerFit& fit) const;                ///< and no longer than a streak of motion
+  double size_ratio() const;                               ///< median ratio of the measured radius to the expected one
+  bool is_like(double radius_px, double amplitude) const;  ///< whether size and brightness are those of this object
+  bool is_like(const MarkerFit& fit) const;                ///< and whether it is no longer than a streak of motion
 };
 
-constexpr double kLargestElongation = 4.0;  ///< a streak of motion may be long
+constexpr double kLargestElongation = 4.0;  ///< long axis over short axis: a streak of motion may be long
 
-/// The distance from its first position at which a path counts as moving, in pixels.
+/// The distance from its first position, in pixels, at which a path counts as moving.
 double least_travel(double radius_px);
 
 double frames_between(std::size_t from, std::size_t to);
 
-/// The paths, joining those of which one ends and another begins later where the first was heading.
+/// The paths, with a path that ends joined to a similar one that begins later where the first was heading.
 std::vector<MarkerPath> joined_pieces(std::vector<MarkerPath> paths);
 
-/// Positions of an object, by frame.
+/// The positions of an object, by frame.
 using Places = std::map<std::size_t, cv::Point2d>;
 
 struct PlaceInFrame {
@@ -80,47 +80,48 @@ struct PlaceInFrame {
   cv::Point2d at;
 };
 
-/// Where an object is in a frame by the frames next to it: on a quadratic through up to ten of its places there, five
-/// on either side. The frames rise. Where it has a place in that frame, this one, unless it is to be `without_itself`.
-/// Nothing more than thirty frames beyond the first or the last, and by fewer than three.
+/// The position of an object in a frame by its neighbours: a quadratic through up to ten positions, five on either side
+/// or more on one side if the other has fewer. `places` must be in order of frames. If there is a position in the frame
+/// itself, the result is that position, unless `without_itself`. Empty for fewer than three neighbours, or more than
+/// thirty frames before the first of them or after the last.
 std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& places, std::size_t frame,
                                                bool without_itself);
 
-/// Standard deviation of a coordinate of the second differences of consecutive frames' places, in pixels; nothing with
-/// fewer than four of them.
+/// The standard deviation, per coordinate, of the second differences of positions in consecutive frames, in pixels.
+/// Empty for fewer than four differences.
 std::optional<double> jitter_of(const Places& places);
 
-/// The same of the fourth differences, over the root of their weights' squares (1, 4, 6, 4, 1): of a coordinate itself,
-/// for a motion leaves next to nothing in them.
+/// The standard deviation of a coordinate itself: the same of the fourth differences, divided by the root sum of
+/// squares of their weights (1, 4, 6, 4, 1). A smooth motion leaves next to nothing in them.
 std::optional<double> roughness_of(const Places& places);
 
-/// Nothing in the clip is like the marker.
+/// Nothing in the clip looks like the marker.
 class NoMarker : public base::InputError {
   using base::InputError::InputError;
 };
 
 struct TrackedMarker {
-  std::vector<MarkerSighting> sightings;  ///< frames rise
+  std::vector<MarkerSighting> sightings;  ///< in order of frames
   std::vector<MarkerFit> fits;            ///< of each sighting
   std::vector<Note> notes;
-  MarkerMethod method = MarkerMethod::undecided;  ///< by which it was measured
+  MarkerMethod method = MarkerMethod::undecided;  ///< by which the marker was measured
 };
 
-/// What was followed through a clip.
+/// The objects that were followed through a clip.
 struct FollowedPaths {
-  std::vector<MarkerPath> paths;  ///< joined, each with a method
-  std::size_t frames = 0;         ///< of the clip
-  double radius_px = 0.0;         ///< that the marker should have in the middle of the image
-  std::size_t start_frame = 0;    ///< the one that start_px belongs to
+  std::vector<MarkerPath> paths;  ///< joined paths, each with a method
+  std::size_t frames = 0;         ///< number of frames of the clip
+  double radius_px = 0.0;         ///< expected radius in the middle of the image
+  std::size_t start_frame = 0;    ///< the frame to which start_px refers
 };
 
-/// Which of the paths through a clip is the marker, and in which of its frames it is seen undisturbed.
+/// Chooses the path of the marker, and the frames in which the marker is seen undisturbed.
 ///
-/// The marker is the path nearest to start_px in the frame that it belongs to where that is given; else, of those that
-/// move, the one that is most like a marker in size, travel, brightness and number of sightings; else the only one of
-/// the right size that rests all the time.
+/// If start_px is given, the marker is the path nearest to it in the frame to which it refers. Otherwise it is the
+/// moving path that is most like a marker in size, travel, brightness and number of sightings. If nothing moves, it is
+/// the only object of the right size that is at rest all the time.
 ///
-/// NoMarker and InputError as MarkerTracker::finish(); `clip` is the file that they name.
+/// Throws NoMarker and InputError like MarkerTracker::finish(); `clip` is the file that they name.
 TrackedMarker choose_marker(const FollowedPaths& followed, const MarkerSetup& marker,
                             const std::filesystem::path& clip);
 

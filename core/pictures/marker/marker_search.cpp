@@ -10,13 +10,13 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kLeastChannelRange = 30.0;  // of 255: largest minus smallest channel; less is a grey with a tinge
+constexpr double kLeastChannelRange = 30.0;  // of 255: largest minus smallest channel; less is a tinted grey
 constexpr double kDarkestGrey = 64.0;        // of 255
-constexpr double kOwnColor = 200.0;          // of 255: the likeness of the marker's own colour
+constexpr double kOwnColor = 200.0;          // of 255: the likeness of the marker's own colour to itself
 constexpr double kWorkingRadiusPx = 3.0;     // the image is shrunk until the marker has this radius
 constexpr double kLeastOverNoise = 5.0;
 constexpr double kLeastShareOfBest = 0.04;           // of the highest contrast in the region
-constexpr int kMostPixelsSearchedWhole = 200 * 200;  // a smaller region is looked at as a whole
+constexpr int kMostPixelsSearchedWhole = 200 * 200;  // a smaller region is searched as a whole
 
 cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
   const double grey = (color[0] + color[1] + color[2]) / 3.0;
@@ -46,21 +46,21 @@ cv::Mat likeness(const cv::Mat& bgr, cv::Vec3b color) {
   return values;
 }
 
-/// How an image is looked at for discs of a radius.
+/// The scale at which an image is searched for discs of a radius.
 struct Scale {
-  double shrink;  ///< of the image
-  double radius;  ///< of the disc, in the shrunk image
+  double shrink;  ///< factor by which the image is shrunk
+  double radius;  ///< of the disc in the shrunk image
   DiscSquares squares;
 
   explicit Scale(double radius_px)
       : shrink(std::max(1.0, radius_px / kWorkingRadiusPx)), radius(radius_px / shrink), squares(radius) {}
-  /// What lies as far around a centre in the region belongs to the image that is looked at.
+  /// The margin around the region that is part of the searched image.
   int surroundings_px() const { return static_cast<int>(std::ceil(3.0 * radius * shrink + 3.0)); }
-  /// No pixel that is farther away counts for the contrast at a place.
+  /// Pixels farther away than this do not count for the contrast at a position.
   int sight_px() const { return static_cast<int>(std::ceil((squares.away + squares.outer + 1.0) * shrink)) + 1; }
 };
 
-/// Adds what stands out in the region. The noise, where it is given, is that of the shrunk image's pixels.
+/// Adds the blobs of a region. `noise`, if given, is that of the pixels of the shrunk image.
 void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& search, const Scale& scale,
                const std::optional<double>& noise, std::vector<Blob>& blobs) {
   const cv::Rect taken = with_border(region, scale.surroundings_px()) & cv::Rect({}, values.size());
@@ -78,7 +78,7 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
     return cv::Point2d((u + 0.5) * fu - 0.5 + taken.x, (v + 0.5) * fv - 0.5 + taken.y);
   };
 
-  // Of the shrunk image, what lies in the region.
+  // The part of the shrunk image that lies in the region.
   const auto first_in = [](int count, double from, const auto& place) {
     int k = 0;
     while (k < count && place(k) < from) ++k;
@@ -107,7 +107,7 @@ void add_blobs(const cv::Mat& values, const cv::Rect& region, const BlobSearch& 
           if ((du == 0 && dv == 0) || u + du < 0 || v + dv < 0 || u + du >= small.cols || v + dv >= small.rows)
             continue;
           const float other = response.at<float>(v + dv, u + du);
-          // Of equal neighbours the first one counts.
+          // Of equal neighbours, the first one counts.
           if (other > here || (other == here && (dv < 0 || (dv == 0 && du < 0)))) highest = false;
         }
       }

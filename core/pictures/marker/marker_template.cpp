@@ -14,19 +14,19 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestWindows = 8;
-constexpr int kSharpenings = 4;           // what is left after them is a hundredth of the look
+constexpr int kSharpenings = 4;           // after these, a hundredth of the look is left
 constexpr int kFewestNodesPerRadius = 3;  // of the grid
-constexpr int kMostNodesPerRadius = 24;   // a larger image is shown in steps of a few pixels
-constexpr int kNodesBeyond = 3;           // that the interpolation needs around
-constexpr double kLeastOfNode = 0.5;      // pixels that a node is the mean of
-constexpr double kRobustTimes = 2.5;      // the usual residual, beyond which a pixel counts less (Huber)
+constexpr int kMostNodesPerRadius = 24;   // the grid of a larger marker has steps of a few pixels
+constexpr int kNodesBeyond = 3;           // margin that the interpolation needs
+constexpr double kLeastOfNode = 0.5;      // weight of pixels, below which a node has no value
+constexpr double kRobustTimes = 2.5;      // times the usual residual, beyond which a pixel counts less (Huber)
 constexpr double kLeastResidual = 0.29;   // codes, 1 / sqrt(12)
 constexpr double kSettled_px = 2e-4;
 constexpr int kMostSteps = 25;
 constexpr double kLeastLightGain = 0.3, kMostLightGain = 3.0;
-constexpr double kLeastPixels = 0.6;  // of those that a whole window would have
+constexpr double kLeastPixels = 0.6;  // relative to the number in a whole window
 
-/// The cubic through four values at -1, 0, 1, 2 with Catmull and Rom's slopes, and its derivative.
+/// Weights of four values at -1, 0, 1, 2 in the Catmull-Rom cubic between 0 and 1, and in its derivative.
 struct Cubic {
   std::array<double, 4> weight, slope;
 };
@@ -37,7 +37,7 @@ Cubic cubic_at(double t) {
           {-1.5 * t2 + 2.0 * t - 0.5, 4.5 * t2 - 5.0 * t, -4.5 * t2 + 4.0 * t + 0.5, 1.5 * t2 - t}};
 }
 
-/// The pixels of a window whose q lies within the reach, with it.
+/// Calls `each` with q and the code for the pixels of a window within the reach.
 template <class Each>
 void for_pixels(const TemplateWindow& window, cv::Point2d centre, const Each& each) {
   for (int v = 0; v < window.codes.rows; ++v) {
@@ -50,7 +50,7 @@ void for_pixels(const TemplateWindow& window, cv::Point2d centre, const Each& ea
   }
 }
 
-/// Values put on the four nodes around them.
+/// Means of values on a grid, each value shared among the four nodes around it.
 class Splat {
  public:
   Splat(int side, double per_node, double origin)
@@ -71,7 +71,7 @@ class Splat {
     }
   }
   const cv::Mat& weights() const { return weights_; }
-  /// 0 where there are none.
+  /// 0 if there are no values.
   double mean(int j, int i) const {
     const double weight = weights_.at<double>(j, i);
     return weight > kLeastOfNode ? sums_.at<double>(j, i) / weight : 0.0;
@@ -189,7 +189,7 @@ std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) con
   fit.centre = window.start;
   const double radius = radius_of(window.shape);
   const cv::Vec3d& m = window.shape;
-  double usual = 0.0;  // residual; 0: not known yet
+  double usual = 0.0;  // the usual residual; 0: not known yet
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   const double whole = 3.14159 * kReach * kReach * radius * radius;
   for (int step = 0; step < kMostSteps; ++step) {
@@ -206,7 +206,7 @@ std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) con
       const double scaled = std::abs(off) * std::sqrt(weight);
       residuals.push_back(scaled);
       if (usual > 0.0 && scaled > kRobustTimes * usual) weight *= kRobustTimes * usual / scaled;
-      // q = M (p - c): moving the centre moves the look the other way.
+      // q = M (p - c): a shift of the centre changes q by -M times the shift.
       const Eigen::Vector4d slope(-fit.gain * (look.x * m[0] + look.y * m[1]),
                                   -fit.gain * (look.x * m[1] + look.y * m[2]), 1.0, look.value);
       information += weight * slope * slope.transpose();

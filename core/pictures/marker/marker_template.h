@@ -1,17 +1,17 @@
-/// The centre of a marker of any look (a ring, a bull's eye, quadrants, a sphere before the glider and its own shadow),
-/// by what it looks like in the other frames of its clip.
+/// The centre of a marker of any appearance (a ring, a bull's eye, quadrants, a sphere in front of the glider and its
+/// own shadow), by its mean appearance, the look, in all frames of its clip.
 ///
 ///     I(p) = a + s T(q),    q = M (p - c)
 ///
-/// T is the mean look of all frames, on a grid of about a pixel in q; M is the outline that the camera would show of a
-/// marker there, so that a lens or a perspective that changes its size does not matter; a and s are the light of the
-/// frame. Pixels in which frames differ (the background that passes by) count less, and so do those of a frame that do
-/// not fit (what is in front of the marker). The look is sharpened until it gives the pixels back; the first guesses of
-/// the centres may be off by a few pixels.
+/// T is the look, on a grid of about one pixel in q. M is the outline that the camera would show of the marker at that
+/// place, so that changes of its size by the lens or by perspective do not matter. a and s describe the light of the
+/// frame. Pixels that differ between frames (the background that passes by) have less weight, and so have pixels of one
+/// frame that do not fit (an object in front of the marker). The look is sharpened in four steps, after which it
+/// reproduces the pixels to a hundredth of its contrast. The first guesses of the centres may be off by a few pixels.
 ///
-/// The centre is that of the guesses on average, so it may be off the marker's own by an amount that is the same in all
-/// frames. Assumes that the marker does not turn and that its look changes slowly. Pixels; the centre of the first
-/// pixel is (0, 0).
+/// On average the centre is that of the guesses, so it may differ from the marker's own by an offset that is the same
+/// in all frames. Assumes that the marker does not turn and that its look changes slowly. Lengths are in pixels, and
+/// the centre of the first pixel is (0, 0).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,9 +21,9 @@
 
 namespace glidelab::core {
 
-/// A frame's pixels around the marker.
+/// The pixels of one frame around the marker.
 struct TemplateWindow {
-  cv::Mat codes;      ///< of floats
+  cv::Mat codes;      ///< CV_32F
   cv::Point corner;   ///< its first pixel in the image
   cv::Vec3d shape;    ///< the elements uu, uv, vv of M (1/px)
   cv::Point2d start;  ///< guess of the centre
@@ -34,39 +34,40 @@ struct TemplateFit {
   double sd_px = 0.0;  ///< of one coordinate
   double level = 0.0;  ///< a
   double gain = 1.0;   ///< s
-  double rms = 0.0;    ///< of the residuals where the look is the same in all frames, in codes
+  double rms = 0.0;    ///< weighted root mean square of the residuals, in codes
 };
 
 class MarkerTemplate {
  public:
-  static constexpr double kReach = 1.5;  ///< of the radius: how far the look is known
+  static constexpr double kReach = 1.5;  ///< in radii: how far out the look is known
 
-  /// The look that these frames have in common, each with the centre and the light of `fits`; those without one do not
-  /// count. Nothing with fewer than eight.
+  /// The look that these frames have in common, each with the centre and the light of its fit in `fits`; frames without
+  /// a fit do not count. Empty for fewer than eight frames with a fit.
   static std::optional<MarkerTemplate> of(const std::vector<TemplateWindow>& windows,
                                           const std::vector<std::optional<TemplateFit>>& fits);
 
-  /// From the window's start. Nothing where it does not converge or moves by more than a radius.
+  /// The fit of a window, from its start. Empty if it does not converge, moves by more than a radius, reaches too few
+  /// pixels (less than 60 % of those that the look covers), or if s leaves 0.3 to 3.
   std::optional<TemplateFit> fit(const TemplateWindow& window) const;
 
-  /// Root mean square of the look about its mean, in codes.
+  /// The root mean square of the look about its mean, in codes.
   double contrast() const { return contrast_; }
 
-  /// Of what changes over the look (the square of its gradient), how much lies between 0.8 and 1.2 radii: a marker of
-  /// the stated size has an edge there, whatever is within.
+  /// The part of the look's squared gradient that lies between 0.8 and 1.2 radii. A marker of the stated size has an
+  /// edge there, whatever is inside.
   double share_at_outline() const;
 
  private:
   struct Value {
-    double value, x, y;  ///< T and its derivatives by q
+    double value, x, y;  ///< T and its derivatives with respect to q
   };
   Value at(double x, double y) const;
   double weight_at(double x, double y) const;
   double step() const { return 1.0 / nodes_per_radius_; }
 
   int nodes_per_radius_ = 0;
-  cv::Mat look_;    ///< T, doubles
-  cv::Mat weight_;  ///< 1 where frames are alike, less where they differ, 0 where the look is not known
+  cv::Mat look_;    ///< T, CV_64F
+  cv::Mat weight_;  ///< 1 where frames agree, less where they differ, 0 where the look is unknown
   double contrast_ = 0.0;
 };
 

@@ -11,19 +11,19 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kSearchPeriod = 10;           // frames from one search of the whole image to the next
-constexpr std::size_t kLongestSearchPeriod = 80;    // the same while the marker is followed
-constexpr double kLongestSearchPeriod_s = 0.4;      // ten frames of a slow camera, which finds what it is to find
-constexpr std::size_t kMostPastBytes = 1 << 27;     // of the frames between, which are kept
-constexpr std::size_t kSamplesToChooseMethod = 24;  // windows that decide how a path is measured
-constexpr std::size_t kMostRestingFollowed = 10;    // resting paths that are followed nonetheless
-constexpr std::size_t kLostAfter = 25;              // frames without a sighting
-constexpr std::size_t kRestFrames = 12;             // after which a path that has not moved may sleep
-constexpr std::size_t kMovingFrames = 10;           // in which five radii are a motion
-constexpr std::size_t kFewestSightings = 5;         // fewer in a row are noise
+constexpr std::size_t kSearchPeriod = 10;           // frames between searches of the whole image
+constexpr std::size_t kLongestSearchPeriod = 80;    // the same while the marker is tracked
+constexpr double kLongestSearchPeriod_s = 0.4;      // limit in time: ten frames of a slow camera
+constexpr std::size_t kMostPastBytes = 1 << 27;     // of the frames kept between searches
+constexpr std::size_t kSamplesToChooseMethod = 24;  // windows from which the method of a path is chosen
+constexpr std::size_t kMostRestingFollowed = 10;    // paths at rest that are followed all the same
+constexpr std::size_t kLostAfter = 25;              // frames without a sighting that end a path
+constexpr std::size_t kRestFrames = 12;             // sightings after which a path that has not moved may sleep
+constexpr std::size_t kMovingFrames = 10;           // sightings of a path that counts as moving after five radii
+constexpr std::size_t kFewestSightings = 5;         // a path with fewer is noise
 constexpr double kSmallestRadiusPx = 1.2;
-constexpr std::size_t kFewestResponseWindows = 16;  // that say how the pixels answer,
-constexpr std::size_t kResponsePixels = 8000;       // and about so many pixels
+constexpr std::size_t kFewestResponseWindows = 16;  // from which the response of the pixels is found,
+constexpr std::size_t kResponsePixels = 8000;       // and about the number of their pixels
 
 bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
   return std::any_of(places.begin(), places.end(),
@@ -47,7 +47,7 @@ MarkerTracker MarkerTracker::of_any_shape(std::filesystem::path clip, const Mark
   return tracker;
 }
 
-/// Where a path's thing is in the next frame: fitted where it should be, or looked for around there.
+/// The object of a path in the next frame: fitted at the expected position, or sought around it.
 std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
                                                               const std::vector<cv::Point2d>& taken) const {
   const cv::Point2d expected = path.predict(frame);
@@ -56,7 +56,7 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
   guess.centre = expected;
   guess.radius_px = path.radius_px;
   const MarkerFit& last = path.seen.back().fit;
-  if (last.blur_px > 0.0) {  // a fit, no centroid
+  if (last.blur_px > 0.0) {  // a fit, not a centroid
     guess.blur_px = last.blur_px;
     guess.shape = last.shape;
   }
@@ -64,7 +64,8 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
     const auto fit = measure_marker(signal, guess, path.method, kind_);
     if (fit && path.is_like(*fit)) return Found{guess, *fit};
   }
-  // Nothing is known of a new path's speed; a known one changes little from frame to frame, but may bounce.
+  // Nothing is known of the speed of a new path. A known speed changes little from frame to frame, but the object may
+  // bounce.
   const double lost = std::abs(frames_between(path.seen.back().frame, frame)) - 1.0;
   const double speed = cv::norm(path.velocity());
   const double gate = is_new ? (6.0 + lost) * path.radius_px + 10.0
@@ -109,7 +110,7 @@ void MarkerTracker::keep(const Signal& signal, std::size_t frame, const Found& f
   kept_.push_back({frame, found.fit.centre, {Signal{signal.values(box).clone()}, box.tl(), guess}});
 }
 
-/// Null where none was kept.
+/// Null if no window was kept.
 const MarkerWindow* MarkerTracker::window_of(const MarkerSighting& sighting) const {
   const cv::Point2d centre(sighting.u_px, sighting.v_px);
   const Kept* nearest = nullptr;
@@ -122,7 +123,7 @@ const MarkerWindow* MarkerTracker::window_of(const MarkerSighting& sighting) con
   return nearest != nullptr ? &nearest->window : nullptr;
 }
 
-/// Centres without what a colour mosaic or a curved tone does to them; all else stays what the codes gave.
+/// Corrects the centres for a colour mosaic and a tone curve. Everything else stays as the codes gave it.
 void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
   if (tracked.method != MarkerMethod::uniform && tracked.method != MarkerMethod::shaded) return;
   const Surface surface = tracked.method == MarkerMethod::uniform ? Surface::uniform : Surface::shaded;
@@ -195,8 +196,8 @@ void MarkerTracker::follow(const Signal& signal, std::size_t frame) {
   for (Path& path : paths_) {
     if (!path.ended && !path.asleep) order.push_back(&path);
   }
-  // What moves and is not lost has the first claim, then what has been seen longest; what is lost may not take what
-  // belongs to another.
+  // Moving paths that are not lost have the first claim, then those that have been seen longest. A lost path may not
+  // take the object of another.
   const auto is_lost = [&](const Path* path) { return path->seen.back().frame + 1 < frame; };
   const auto claim = [&](const Path* path) {
     return is_lost(path) ? 2 : path->travel_px > least_travel(path->radius_px) ? 0 : 1;
@@ -211,7 +212,7 @@ void MarkerTracker::follow(const Signal& signal, std::size_t frame) {
   }
   for (Path* path : order) {
     std::vector<cv::Point2d> not_here = taken;
-    // A new or a lost path does not jump to something that rests; one with a known speed may pass in front of it.
+    // A new or a lost path does not jump to an object at rest. One with a known speed may pass in front of it.
     if (path->seen.size() < 3 || is_lost(path)) not_here.insert(not_here.end(), sleeping.begin(), sleeping.end());
     const auto found = find_again(signal, frame, *path, not_here);
     if (!found) continue;
@@ -220,7 +221,7 @@ void MarkerTracker::follow(const Signal& signal, std::size_t frame) {
   }
 }
 
-/// A path that was just begun, followed back through the frames since the last search.
+/// Follows a new path back through the frames since the last search.
 void MarkerTracker::follow_back(Path& path) {
   Path back = path;
   std::size_t missed = 0;
@@ -240,7 +241,7 @@ void MarkerTracker::follow_back(Path& path) {
   for (const MarkerSeen& sighting : seen) path.push(sighting);
 }
 
-/// Something of the right size that is seen moving in this frame; null where there is nothing yet.
+/// The brightest path of the right size that is seen moving in this frame; null if there is none.
 const MarkerTracker::Path* MarkerTracker::mover(std::size_t frame) const {
   const Path* best = nullptr;
   for (const Path& path : paths_) {
@@ -255,7 +256,7 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
   BlobSearch search;
   search.radius_px = radius_px_;
   search.least_contrast = least_contrast(kind_);
-  // Once something moves, only what is as bright could be another piece of it, or a second marker.
+  // Once something moves, only a blob of similar brightness can be another piece of it, or a second marker.
   if (const Path* moving = mover(frame))
     search.least_contrast = std::max(search.least_contrast, 0.3 * moving->amplitude);
   search.region = cv::Rect(0, 0, signal.values.cols, signal.values.rows);
@@ -276,7 +277,7 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
     if (!fit || fit->elongation > kLargestElongation || is_near_any(known, fit->centre, 0.7 * guess.radius_px))
       continue;
     known.push_back(fit->centre);
-    // A path that has just lost its thing takes up what is found near where that should be.
+    // A path that has just lost its object takes over a blob near the expected position.
     const auto loser = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
       return !path.ended && !path.asleep && path.seen.back().frame < frame && path.seen.size() >= kFewestSightings &&
              path.is_like(*fit) &&
@@ -293,8 +294,8 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
   }
 }
 
-/// What rests is not followed in every frame: nothing of it where something of the right size moves already, else the
-/// ones most like a marker.
+/// Objects at rest are not all followed in every frame: none once something of the right size moves, otherwise those
+/// most like a marker.
 void MarkerTracker::put_to_sleep(std::size_t frame) {
   std::vector<Path*> resting;
   const bool something_moves = mover(frame) != nullptr;
@@ -319,8 +320,8 @@ void MarkerTracker::tidy(std::size_t frame) {
   std::erase_if(paths_, [](const Path& path) { return path.ended && path.seen.size() < kFewestSightings; });
 }
 
-/// A piece of the marker or a second one that is found late is followed back through the frames that are kept; only
-/// what comes and goes in between is missed.
+/// A piece of the marker or a second marker that is found late is followed back through the kept frames. Only an object
+/// that comes and goes between two searches is missed.
 bool MarkerTracker::is_time_to_search(const Signal& signal, const Frame& frame) const {
   if (frame.index % kSearchPeriod != 0) return false;
   const bool any_lost = std::any_of(paths_.begin(), paths_.end(), [&](const Path& path) {
@@ -334,7 +335,7 @@ bool MarkerTracker::is_time_to_search(const Signal& signal, const Frame& frame) 
   return until_next > static_cast<double>(period) || until_next_s > kLongestSearchPeriod_s + 1e-9;
 }
 
-/// What came since the last search, if that was long ago.
+/// Searches for what came since the last search, if that was long ago.
 void MarkerTracker::search_rest() {
   if (past_.size() < kSearchPeriod) return;
   const Past last = past_.back();

@@ -1,11 +1,12 @@
-/// Finds the marker in a clip and follows it through every frame.
+/// Finds the marker in a clip and tracks it through every frame.
 ///
-/// Frames stream through once. Every blob of about the marker's size begins a path; a path is followed by fitting the
-/// marker's model around where it should be (constant velocity), or by searching a window where that fails. The whole
-/// image is searched in the first frame and every tenth one after it, and a path that begins there is followed back
-/// through the frames between; while something like the marker is seen moving and nothing else is lost, less often (up
-/// to eighty frames within 0.4 s). At the end the marker is the path that moves and has the right size and brightness,
-/// not the brightest one; what rests all the time is part of the scene. Frames in which it is not seen stay without.
+/// Frames are read once. Every blob of about the marker's size starts a path. A path is followed by a fit of the
+/// marker's model around the expected position (constant velocity) or, if that fails, by a search in a window. The
+/// whole image is searched in the first frame and in every tenth frame after it, and a path that starts there is
+/// followed back through the frames between. While something like the marker moves and nothing is lost, searches are
+/// rarer: up to eighty frames and at most 0.4 s apart. At the end, the marker is the path that moves and has the right
+/// size and brightness, not the brightest one; an object that is always at rest is part of the scene. Frames in which
+/// the marker is not seen have no sighting.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -27,22 +28,23 @@ namespace glidelab::core {
 
 class MarkerTracker {
  public:
-  /// `start_s`: the time of the frame that the marker's start_px belongs to; nothing: the first frame.
+  /// `radius_at` gives the expected radius. `start_s` is the time of the frame to which the marker's start_px refers;
+  /// empty: the first frame.
   MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at, std::optional<double> start_s = {});
 
-  /// Of something bright, in grey values, that need not look like a disc: the lit part of a sphere.
+  /// A tracker of something bright, in grey values, that need not look like a disc, such as the lit part of a sphere.
   static MarkerTracker of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
                                     std::optional<double> start_s = {});
 
-  /// Windows around sightings take so much memory at most (128 MB); sightings beyond keep what a mosaic or a tone curve
-  /// does to them, and a note says how many.
+  /// Limits the memory of windows around sightings; the default is 128 MiB. Sightings without a window keep the shift
+  /// by a colour mosaic or a tone curve, and a note says how many there are.
   void limit_windows(std::size_t bytes) { most_window_bytes_ = bytes; }
 
-  /// Takes the next frame. InputError where a hue is to be looked for in a grey clip.
+  /// Takes the next frame. InputError if a hue is sought in a grey clip.
   void add(const Frame& frame);
 
-  /// The marker's track. NoMarker where nothing of its size moves (and not exactly one such thing rests), or where
-  /// there is nothing at start_px; InputError where two equal ones move alike and start_px does not say which.
+  /// The track of the marker. NoMarker if nothing of its size moves and not exactly one such object is at rest, or if
+  /// nothing is near start_px. InputError if two alike move alike and start_px does not say which is the marker.
   TrackedMarker finish();
 
  private:
@@ -56,7 +58,7 @@ class MarkerTracker {
     Signal signal;
   };
 
-  /// A window around a sighting of some path.
+  /// A window around a sighting of any path.
   struct Kept {
     std::size_t frame;
     cv::Point2d centre;
@@ -83,16 +85,16 @@ class MarkerTracker {
   MarkerSetup marker_;
   SignalKind kind_;
   RadiusAt radius_at_;
-  double radius_px_ = 0.0;  ///< in the middle of the image
+  double radius_px_ = 0.0;  ///< expected radius in the middle of the image
   std::vector<Path> paths_;
-  std::deque<Past> past_;  ///< since the last search of the whole image
+  std::deque<Past> past_;  ///< frames since the last search of the whole image
   std::vector<Kept> kept_;
   std::size_t kept_bytes_ = 0, most_window_bytes_ = std::size_t{1} << 27;
   std::size_t searched_ = 0;
   double searched_s_ = 0.0;
   std::size_t frames_ = 0;
   std::optional<double> start_s_;
-  std::size_t start_frame_ = 0;  ///< whose time is nearest to start_s_, of those so far
+  std::size_t start_frame_ = 0;  ///< the frame nearest to start_s_ so far
   double from_start_s_ = std::numeric_limits<double>::infinity();
 };
 

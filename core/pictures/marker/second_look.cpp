@@ -15,24 +15,25 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kDiscResidual = 0.04;           // of the amplitude: above what noise leaves of a disc in usual light
-constexpr std::size_t kFewLost = 3;              // frames at either end, or in all between
-constexpr std::size_t kSampled = 24;             // frames that say what all share
-constexpr double kFewestDirections = 1.0 / 3.0;  // that look as they should
-constexpr double kFarOff = 3.0;                  // times the usual residuals: no sphere
+constexpr double kDiscResidual = 0.04;  // relative to the amplitude: more than noise leaves of a disc in usual light
+constexpr std::size_t kFewLost = 3;     // frames without a marker at either end
+constexpr std::size_t kSampled = 24;    // frames from which the common quantities are found
+constexpr double kFewestDirections = 1.0 / 3.0;  // part of the directions with the expected background
+constexpr double kFarOff = 3.0;                  // times the usual residuals: not the marker
 constexpr std::size_t kFewestFits = 8;
-constexpr double kWellKnownSize = 0.05, kLeastSizeSd = 1e-3;  // of the size's logarithm
-constexpr double kRoughest_px = 0.3;                          // a path that the sphere makes
-constexpr double kLargestShare = 0.25;                        // of the contrast in the residuals
-constexpr double kRougher = 1.3;                              // times, that the path may be,
-constexpr double kRougherButExplained = 2.0;                  // where the residuals are nearly noise,
-constexpr double kRougherThanCentroid = 4.0;                  // or the first look's centre is drawn to the light
-constexpr double kExplained = 1.5;                            // times the noise
-constexpr double kOddStray_px = 0.05, kOddStrays = 4.0;       // off the neighbours' course, times the usual distance
+constexpr double kWellKnownSize = 0.05, kLeastSizeSd = 1e-3;  // standard deviations of the log size
+constexpr double kRoughest_px = 0.3;                          // roughness of the new path
+constexpr double kLargestShare = 0.25;                        // of the residuals, relative to the contrast
+constexpr double kRougher = 1.3;                              // times the roughness of the first path that is allowed,
+constexpr double kRougherButExplained = 2.0;                  // the same if the residuals are nearly noise,
+constexpr double kRougherThanCentroid = 4.0;  // and if the first look is a centroid, which follows the light
+constexpr double kExplained = 1.5;            // times the noise: such residuals are nearly noise
+constexpr double kOddStray_px = 0.05,
+                 kOddStrays = 4.0;  // distance from the neighbours' path: offset, and times the usual one
 constexpr double kStray_px = 0.3, kStrays = 8.0;
-constexpr double kLeastGain = 0.8;  // of the residuals
+constexpr double kLeastGain = 0.8;  // ratio of the residuals to those of the first look
 
-/// A frame's window, and what came out of it.
+/// The window of a frame, and its fit.
 struct Look {
   std::size_t frame = 0;
   cv::Mat codes;  ///< of the window
@@ -42,7 +43,7 @@ struct Look {
   cv::Vec3d shape;
 };
 
-/// What all frames share.
+/// The quantities that all frames share.
 struct Shared {
   MarkerBody body = MarkerBody::sphere;
   Behind behind = Behind::still;
@@ -71,7 +72,7 @@ class SecondLook {
   }
 
  private:
-  /// In the first look.
+  /// Whether the first look has a sighting in this frame.
   bool seen_first(std::size_t frame) const {
     return std::binary_search(places_.begin(), places_.end(), PlaceInFrame{frame, {}},
                               [](const PlaceInFrame& a, const PlaceInFrame& b) { return a.frame < b.frame; });
@@ -94,8 +95,8 @@ class SecondLook {
   const ClipAgain& clip_;
   const StillBackground& still_;
   const ShapeAt& shape_at_;
-  std::vector<PlaceInFrame> places_;  ///< of the first look
-  std::vector<Look> looks_;           ///< frames rise
+  std::vector<PlaceInFrame> places_;  ///< sightings of the first look
+  std::vector<Look> looks_;           ///< in order of frames
   KnownBackground background_;
   Shared shared_;
 };
@@ -144,7 +145,7 @@ std::optional<SphereFit> SecondLook::fit(const Look& look, cv::Point2d start, co
   guess.noise = background_.noise();
   guess.light = light;
   std::optional<SphereFit> found;
-  // A second round with the window around the first one's place.
+  // A second round, with the window around the first result.
   for (int round = 0; round < 2; ++round) {
     const auto shape = shape_at_(guess.centre, shared.body);
     if (!shape) return std::nullopt;
@@ -196,7 +197,7 @@ bool SecondLook::find_shared() {
     return true;
   };
   for (const Behind behind : {Behind::still, Behind::moving}) {
-    if (best) break;  // what other frames show is known better than what lies around
+    if (best) break;  // the background of other frames is known better than the surroundings
     for (const auto& [body, tone] : kChoices) {
       Shared shared;
       shared.behind = behind;
@@ -235,12 +236,12 @@ void SecondLook::fit_all() {
     const auto found = fit(look, look.expected, shared_, std::nullopt);
     if (found && is_good(*found)) look.fit = found;
   }
-  drop_strays(kOddStray_px, kOddStrays);  // to be fitted again, from what their neighbours say
+  drop_strays(kOddStray_px, kOddStrays);  // to be fitted again from their neighbours
   fit_lost();
   drop_strays(kStray_px, kStrays);
 }
 
-/// From the neighbours of those that were found, outwards.
+/// Fits the lost frames outwards from their fitted neighbours.
 void SecondLook::fit_lost() {
   for (bool any = true; any;) {
     any = false;
@@ -269,7 +270,7 @@ void SecondLook::fit_lost() {
   }
 }
 
-/// Without fits that lie far off the course of their neighbours.
+/// Drops fits that lie far off the path of their neighbours.
 void SecondLook::drop_strays(double least_px, double times) {
   const std::vector<PlaceInFrame> places = fitted_places();
   std::vector<std::pair<Look*, double>> off;
@@ -317,7 +318,7 @@ bool SecondLook::is_better() const {
   return is_centroid || found > first_.sightings.size() || our_usual < kLeastGain * usual;
 }
 
-/// The residuals are small beside the contrast that makes them.
+/// Whether the residuals are small compared with the contrast.
 bool SecondLook::is_distinct() const {
   std::vector<double> shares;
   for (const Look& look : looks_) {
@@ -326,7 +327,7 @@ bool SecondLook::is_distinct() const {
   return median_of(shares) < kLargestShare;
 }
 
-/// The centroid of what differs from the background within the outline, less the centre.
+/// The centroid, less the centre, of what differs from the background within the outline.
 cv::Point2d SecondLook::light_of(const Look& look) const {
   SphereGuess guess;
   guess.centre = look.fit->centre;
@@ -353,8 +354,8 @@ TrackedMarker SecondLook::tracked() const {
   for (const Look& look : looks_) {
     if (look.fit) places[look.frame] = look.fit->centre;
   }
-  // What correlates over pixels (the model's own errors) is not in the fit's covariance: differences along the path
-  // show it.
+  // Errors that are correlated over pixels (those of the model) are not in the fit's covariance. Differences along the
+  // path show them.
   const double jitter = roughness_of(places).value_or(0.0);
   for (const Look& look : looks_) {
     if (!look.fit) continue;

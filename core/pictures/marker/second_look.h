@@ -1,11 +1,11 @@
-/// A second look at a clip in which the marker was lost now and then, or does not look like a disc: its images against
-/// the background that other frames show, and the marker as a matte sphere that is lit from one side (lit_sphere.h).
+/// A second look at a clip in which the marker was lost now and then, or does not look like a disc. The background is
+/// that of other frames, and the marker is a matte sphere that is lit from one side, or a disc (lit_sphere.h).
 ///
-/// The clip is read once more and a window kept around the place where the marker is or should be in each frame. What
-/// all windows share is found first, from some of them: the camera's tone curve, the edge's blur, the size of the image
-/// over the one that the stated diameter gives. Then each frame is fitted with these held, the lost ones from their
-/// neighbours outwards. Directions in which the background does not look as in the other frames (the glider, a stick, a
-/// shadow) do not count.
+/// The clip is read once more, and a window is kept around the position of the marker, or its expected position, in
+/// each frame. First, what all windows share is found from up to 24 of them: the body, the tone curve of the camera,
+/// the blur of the edge, and the ratio of the size of the image to that of the stated diameter. Then each frame is
+/// fitted with these fixed, the lost ones outwards from their neighbours. Directions in which the background does not
+/// look as in other frames (the glider, a stick, a shadow) do not count.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,31 +21,33 @@
 
 namespace glidelab::core {
 
-/// What the marker is: a sphere, or a disc that lies in the plane of motion.
+/// The shape of the marker: a sphere, or a disc that lies in the plane of motion.
 enum class MarkerBody { sphere, disc };
 
-/// The elements uu, uv, vv of M (1/px): the outline of the marker that is seen at a pixel is |M d| = 1.
+/// The elements uu, uv, vv of M (1/px): |M d| = 1 is the outline of a marker that is seen at a pixel. Empty if the
+/// camera cannot see one there.
 using ShapeAt = std::function<std::optional<cv::Vec3d>(cv::Point2d, MarkerBody)>;
 
-/// A clip that can be read again.
+/// A clip that can be read once more.
 struct ClipAgain {
   std::function<std::unique_ptr<FrameSource>()> open;
   std::size_t frames = 0;
 };
 
-/// Whether the first look leaves something to be wished for: frames without a marker between the first and the last, or
-/// at the clip's ends, or residuals far above what a disc leaves.
+/// Whether a second look may improve on the first: frames without a marker between the first and the last sighting,
+/// more than three such frames at either end of the clip, or residuals far above those of a disc. False for fewer than
+/// eight sightings.
 bool is_worth_a_second_look(const TrackedMarker& first, std::size_t frames);
 
-/// Whether the sightings are those of one thing that moves: in at least half of the frames a place lies within half a
-/// radius of what the frames around it say. Fewer than eight sightings say nothing against it.
+/// Whether the sightings are those of one moving object: in at least half of the frames, the position lies within half
+/// a radius of the one expected from the frames around. True for fewer than eight sightings.
 bool is_steady(const TrackedMarker& marker);
 
-/// The background of the clip.
+/// The background of a clip, which is read once for it.
 StillBackground background_of(const ClipAgain& clip);
 
-/// The marker in the clip, where the sphere explains the images better than what the first look fitted, or in more
-/// frames; nothing elsewhere.
+/// The marker in the clip. Empty unless the sphere or disc explains the images better than the fit of the first look,
+/// or in more frames.
 std::optional<TrackedMarker> look_again(const TrackedMarker& first, const ClipAgain& clip,
                                         const StillBackground& background, const ShapeAt& shape_at);
 

@@ -15,11 +15,11 @@ namespace glidelab::core {
 namespace {
 
 constexpr int kDirections = 24;
-constexpr double kWindowRadii = 1.25, kWindowMargin_px = 2.5;  // as the disc's fit takes (marker.h)
-constexpr double kOutside_px = 1.3;                            // outside the outline: background alone
-constexpr double kStrangeSds = 4.0;                            // of the mean of a direction's pixels
-constexpr double kStrangeCodes = 2.0 / 255.0;                  // that a background may change from frame to frame
-constexpr double kStrangeFrom = 0.6;                           // of the radius: from there on it does not count
+constexpr double kWindowRadii = 1.25, kWindowMargin_px = 2.5;  // those of the disc's fit (marker.h)
+constexpr double kOutside_px = 1.3;                            // outside the outline: from here on only background
+constexpr double kStrangeSds = 4.0;            // standard deviations of the mean of a direction's pixels
+constexpr double kStrangeCodes = 2.0 / 255.0;  // change of a background from frame to frame that is allowed
+constexpr double kStrangeFrom = 0.6;           // of the radius: pixels of a strange direction farther out do not count
 
 std::size_t direction_of(double du, double dv) {
   const double turn = (std::atan2(dv, du) / std::numbers::pi + 1.0) * 0.5 * kDirections;
@@ -31,7 +31,7 @@ struct Around {
   double light;
 };
 
-/// Light as a plane through the pixels around, those far off it left out.
+/// The light of the surrounding pixels as a plane. Pixels far off it are left out.
 std::optional<Eigen::Vector3d> plane_through(const std::vector<Around>& around, double noise) {
   constexpr int kRounds = 6;
   constexpr std::size_t kFewest = 12;
@@ -40,7 +40,7 @@ std::optional<Eigen::Vector3d> plane_through(const std::vector<Around>& around, 
   if (lights.size() < kFewest) return std::nullopt;
   std::nth_element(lights.begin(), lights.begin() + static_cast<std::ptrdiff_t>(lights.size() / 2), lights.end());
   Eigen::Vector3d plane(lights[lights.size() / 2], 0.0, 0.0);
-  double limit = 0.05;  // of full scale: then narrower from round to round
+  double limit = 0.05;  // of full scale, then narrower in each round
   for (int round = 0; round < kRounds; ++round, limit = std::max(0.5 * limit, 4.0 * noise)) {
     Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();

@@ -1,6 +1,6 @@
-/// The pixels around a marker that lit_sphere.h fits, each with what lies behind it: the still background of other
-/// frames, or, for a marker in front of the glider, a plane through the light around it. Directions from the centre in
-/// which the pixels outside the outline do not look like that (a stick, the glider's edge, a shadow) are left out.
+/// The pixels around a marker that lit_sphere.h fits, each with its background: the still one of other frames or, for a
+/// marker in front of the glider, a plane through the light around it. Directions from the centre in which the pixels
+/// outside the outline do not match the background (a stick, the edge of the glider, a shadow) are left out.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -13,8 +13,8 @@
 namespace glidelab::core {
 
 enum class Behind {
-  still,  ///< what other frames show at that place
-  moving  ///< something even that moves with the marker
+  still,  ///< what other frames show there
+  moving  ///< an even surface that moves with the marker
 };
 
 struct KnownBackground {
@@ -27,14 +27,14 @@ struct KnownBackground {
 
 struct SphereWindow {
   std::vector<SpherePixel> pixels;
-  double usable = 0.0;  ///< share of the directions
+  double usable = 0.0;  ///< part of the directions that match
 };
 
-/// `codes` (CV_32F) is what the frame shows in the rectangle `window`. No pixels where they do not reach around the
-/// marker.
+/// `codes` (CV_32F) are the frame's codes in the rectangle `window`. No pixels if the window does not contain the whole
+/// surroundings of the marker, or if no plane fits them.
 SphereWindow cut_sphere_window(const cv::Mat& codes, const cv::Rect& window, const KnownBackground& background,
                                const SphereGuess& guess, Behind behind);
 
-double radius_of(const cv::Vec3d& shape);  ///< of the circle of the same area: M as its elements uu, uv, vv
+double radius_of(const cv::Vec3d& shape);  ///< of the circle of the same area; `shape` has the elements uu, uv, vv of M
 
 }  // namespace glidelab::core

@@ -9,10 +9,10 @@
 namespace glidelab::core {
 namespace {
 
-constexpr std::size_t kMostKept = 41;             // odd: the median is one of them
-constexpr std::size_t kMostKeptBytes = 1U << 27;  // of a large image fewer, but
-constexpr std::size_t kFewestKept = 9;
-constexpr double kNearMedian = 3.0;  // standard deviations: what counts for the mean
+constexpr std::size_t kMostKept = 41;             // frames; odd, so that the median is one of them
+constexpr std::size_t kMostKeptBytes = 1U << 27;  // fewer frames of a large image,
+constexpr std::size_t kFewestKept = 9;            // but at least these
+constexpr double kNearMedian = 3.0;               // standard deviations: codes within these count for the mean
 
 template <class Code>
 void put_median(const std::vector<const Code*>& rows, int columns, Code* out) {
@@ -61,7 +61,7 @@ StillBackground::Part StillBackground::behind(const cv::Rect& region, const Hide
   Part part;
   part.codes = cv::Mat::zeros(region.size(), CV_32F);
   part.known = cv::Mat::zeros(region.size(), CV_8U);
-  // The noise first, from some pixels, to tell what is near the median.
+  // First the noise, from some pixels, to tell which codes are near the median.
   std::vector<double> deviations, codes;
   const auto gather = [&](int u, int v) {
     codes.clear();
@@ -77,14 +77,14 @@ StillBackground::Part StillBackground::behind(const cv::Rect& region, const Hide
       const double middle = median_of(codes);
       double sum = 0.0, count = 0.0;
       for (const double code : codes) {
-        // A pixel's own median hides a part of its deviation: one of the codes is it.
+        // One of the codes is the median itself, so the sum has one degree of freedom less.
         sum += std::abs(code - middle);
         count += 1.0;
       }
       if (count > 1.0) deviations.push_back(sum / (count - 1.0));
     }
   }
-  constexpr double kSdOverMeanMagnitude = 1.2533;  // sqrt(pi / 2), of normal numbers
+  constexpr double kSdOverMeanMagnitude = 1.2533;  // sqrt(pi/2), for a normal distribution
   constexpr double kRounding = 0.29;               // codes, 1 / sqrt(12)
   part.noise = deviations.empty() ? kRounding : std::max(kSdOverMeanMagnitude * median_of(deviations), kRounding);
   for (int v = region.y; v < region.br().y; ++v) {

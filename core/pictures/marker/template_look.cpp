@@ -12,15 +12,15 @@
 namespace glidelab::core {
 namespace {
 
-constexpr int kTurns = 8;                 // of look and places: an error of the guesses shrinks by half in each
+constexpr int kTurns = 8;                 // of look and positions; each halves the errors of the guesses
 constexpr std::size_t kFewestSeen = 8;    // frames
-constexpr double kWorse = 3.0;            // times the usual residuals: something else
-constexpr double kLeastOff_px = 0.3;      // off the neighbours' course, and
-constexpr double kTimesOff = 8.0;         // times the usual distance: something else
+constexpr double kWorse = 3.0;            // times the usual residuals: another object
+constexpr double kLeastOff_px = 0.3;      // from the neighbours' path,
+constexpr double kTimesOff = 8.0;         // plus so many times the usual distance: another object
 constexpr double kRoughestPath_px = 0.3;  // from frame to frame
-constexpr double kMostResidual = 0.35;    // of the look's contrast
-constexpr double kLeastAtOutline = 0.2;   // of the look's edges: less is something of another size
-constexpr double kSlackRadii = 1.0, kLostSlackRadii = 3.0;  // that a window is larger, where it was seen and where not
+constexpr double kMostResidual = 0.35;    // relative to the contrast of the look
+constexpr double kLeastAtOutline = 0.2;   // of the look's edges: less is an object of another size
+constexpr double kSlackRadii = 1.0, kLostSlackRadii = 3.0;  // margin of a window, if the marker was seen or lost
 constexpr double kSlack_px = 6.0;
 
 class TemplateLook {
@@ -61,7 +61,7 @@ class TemplateLook {
   const TrackedMarker& rough_;
   const ClipAgain& clip_;
   const ShapeAt& shape_at_;
-  std::vector<std::size_t> frames_;  ///< of the windows; rise
+  std::vector<std::size_t> frames_;  ///< of the windows, in order
   std::vector<TemplateWindow> windows_;
   std::vector<std::optional<TemplateFit>> fits_;
   std::optional<MarkerTemplate> look_;
@@ -98,7 +98,7 @@ void TemplateLook::read_windows() {
   }
 }
 
-/// The look from the places, then the places from the look.
+/// Finds the look from the positions, then the positions from the look.
 bool TemplateLook::take_turn() {
   look_ = MarkerTemplate::of(windows_, fits_);
   if (!look_) return false;
@@ -126,7 +126,7 @@ std::vector<PlaceInFrame> TemplateLook::places() const {
   return places;
 }
 
-/// From the neighbours of those that were found, outwards.
+/// Fits the lost frames outwards from their fitted neighbours.
 void TemplateLook::fit_lost() {
   for (bool any = true; any;) {
     any = false;
@@ -172,7 +172,7 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
   tracked.method = MarkerMethod::centroid;
   for (std::size_t k = 0; k < fits_.size(); ++k) {
     if (!fits_[k]) continue;
-    MarkerFit marker;  // without an outline
+    MarkerFit marker;  // without a fitted outline
     marker.centre = fits_[k]->centre;
     marker.sd_px = std::max(fits_[k]->sd_px, *roughness);
     marker.radius_px = radius_of(windows_[k].shape);

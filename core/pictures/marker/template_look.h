@@ -1,6 +1,6 @@
 /// Tracks a marker that is neither a disc nor a sphere (a ring, a bull's eye, quadrants, a sphere in front of the
-/// glider with its shadow on it) by its own look (marker_template.h). It starts from a rough track of something of
-/// about that size.
+/// glider with its shadow on it) by its own appearance (marker_template.h). It starts from a rough track of an object
+/// of about that size.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,10 @@
 
 namespace glidelab::core {
 
-/// Reads the clip once more, and finds the look and the positions in all frames in turns. Frames in which the marker
-/// was lost follow from their neighbours outwards. Empty if the look or the path is not steady, or if the marker is
-/// seen in fewer frames than before.
+/// Reads the clip once more, and finds the look and the positions in all frames alternately, eight times. Frames in
+/// which the marker was lost are fitted outwards from their neighbours. Empty if the residuals or the roughness of the
+/// path are too large, if the look has no edge at the expected outline, or if the marker is seen in fewer frames than
+/// before (or in fewer than eight).
 std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const ClipAgain& clip,
                                               const ShapeAt& shape_at);
 

@@ -1,7 +1,9 @@
-/// A camera that sways or shakes: the fixed scene moves in the image, with its own phase in each motion.
+/// A camera that sways or shakes: the fixed scene moves in the image by A sin(2 pi f t + phase), with a phase of its
+/// own in each motion.
 ///
-/// A turning camera moves what is at the sides of the image by more: A (1 + slope (x - x_mid) + bend (x - x_mid)²).
-/// Nobody knows the camera of imported tracks: there the amplitude is the same everywhere.
+/// A camera that turns moves the sides of the image by more: the amplitude is then A (1 + slope (x - x_mid) + bend (x -
+/// x_mid)²), with x_mid the middle of the positions of all set-ups. Nobody knows the camera of imported tracks; there
+/// the amplitude is the same everywhere.
 #include "base/math/angles.h"
 #include "diagnose/effects/effect.h"
 
@@ -12,7 +14,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr double kMostSway_rad = 30.0 / base::kDegreesPerRad;  // that a scenario allows
+constexpr double kMostSway_rad = 30.0 / base::kDegreesPerRad;  // the largest turn that a scenario allows
 
 double sway_seen(const double* p, const GliderConstants& glider, double x_m, double t_s, double seen_m) {
   const double off = x_m - glider.x_mid_all_m;

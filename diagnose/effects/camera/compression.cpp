@@ -1,4 +1,4 @@
-/// A codec that loses detail: edges of blocks, and errors that last over frames.
+/// A codec that loses detail. It leaves block edges in the image, and errors that persist over several frames.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

@@ -1,4 +1,4 @@
-/// An exposure that is longer than stated: the image of the marker is smeared by the speed times the exposure.
+/// An exposure that is longer than stated. The image of the marker is smeared by the speed times the exposure.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

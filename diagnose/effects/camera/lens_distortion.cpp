@@ -1,4 +1,4 @@
-/// A lens whose distortion is not corrected: x becomes x (1 + k (x - x_c)²) about the axis at x_c.
+/// A lens whose distortion is not corrected: x becomes x (1 + k (x - x_c)²), with the optical axis at x_c.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

@@ -1,4 +1,4 @@
-/// Light that flickers: the brightness goes up and down with time.
+/// Light that flickers: its brightness varies periodically in time.
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr double kMostGradient_1_m = 2.0;  // that a scenario allows
+constexpr double kMostGradient_1_m = 2.0;  // the steepest that a scenario allows
 
 void side_light_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto gradient = sizes.of("gradient");

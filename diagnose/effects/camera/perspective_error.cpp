@@ -1,7 +1,7 @@
 /// A calibration pattern that was not in the plane of motion: x becomes x / (1 + p x).
 ///
-/// Its twin is a camera that was turned by atan(downhill p' Z), p' = p/(1 + p x_f), x_f the position that the camera
-/// faces, Z its distance.
+/// Its twin is a camera turned by atan(downhill p' Z), where p' = p/(1 + p x_f), x_f is the position that the camera
+/// faces, and Z is the camera's distance from the plane of motion.
 #include "base/math/angles.h"
 #include "diagnose/effects/effect.h"
 
@@ -11,7 +11,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr double kMostTurn_rad = 30.0 / base::kDegreesPerRad;  // that a scenario allows
+constexpr double kMostTurn_rad = 30.0 / base::kDegreesPerRad;  // the largest turn that a scenario allows
 
 double perspective_seen(const double* p, const GliderConstants&, double, double, double seen_m) {
   return seen_m / (1.0 + p[0] * seen_m);

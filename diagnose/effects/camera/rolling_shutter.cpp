@@ -1,4 +1,5 @@
-/// Rows that are exposed one after the other, each later than the one above by the line time.
+/// A rolling shutter: the rows of the image are exposed one after the other, each later than the one above by the line
+/// time. Fitted: the excess over the stated line time.
 #include "diagnose/effects/effect.h"
 
 #include <cmath>

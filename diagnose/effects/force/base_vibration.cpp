@@ -1,4 +1,4 @@
-/// A table or track that shakes: m A sin(2 pi f t + phase), the phase of each motion its own.
+/// A table or track that shakes: a force m A sin(2 pi f t + phase), with a phase of its own in each motion.
 #include "diagnose/effects/effect.h"
 
 #include <numbers>
@@ -6,7 +6,8 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-// A step may turn the wave by 0.9 where it may slow the glider by 0.3: Simpson's rule errs by (omega h)^4 / 2880 of it.
+// A step is 0.3 of the inverse rate, but it may cover 0.9 rad of the wave: Simpson's rule errs by (omega h)^4/2880 of
+// it.
 constexpr double kTurnOfWave = 0.3 / 0.9;
 
 double vibration_force(const double* p, const GliderConstants& glider, const GliderState& at) {

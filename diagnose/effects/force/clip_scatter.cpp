@@ -1,4 +1,5 @@
-/// A dry friction mu + d and a drag K (1 + e) of each clip, d and e its own. Spreads of 0.02 and 0.5 hold them back.
+/// A dry friction mu + d and a viscous drag K (1 + e), with d and e of each clip its own. Normal priors of standard
+/// deviation 0.02 and 0.5 hold them near 0.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

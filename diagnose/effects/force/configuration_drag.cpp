@@ -1,4 +1,5 @@
-/// A viscous drag K (1 + d) of each configuration, d its own: a mass on a set-up. A spread of 0.5 holds d back.
+/// A viscous drag K (1 + d), with d of each configuration (one mass on one set-up) its own. A normal prior of standard
+/// deviation 0.5 holds d near 0.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

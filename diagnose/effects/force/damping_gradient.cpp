@@ -1,6 +1,7 @@
-/// A drag K (1 + b (x - x_mid)) that changes along the track.
+/// A viscous drag K (1 + b (x - x_mid)) that changes along the track.
 ///
-/// The second parameter moves x_mid: 0 is the set-up's own middle, 1 that of all set-ups (one K(x) for the track).
+/// The second parameter moves x_mid from the middle of the set-up's own positions (0) to the middle of all positions
+/// (1: one K(x) for the track).
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

@@ -1,4 +1,4 @@
-/// A dry friction mu (1 + d sign(v)): the part d acts as a constant force.
+/// A dry friction mu (1 + d sign(v)). The part with d is the constant force -d mu m g cos(alpha).
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

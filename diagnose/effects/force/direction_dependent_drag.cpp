@@ -1,4 +1,4 @@
-/// A viscous drag K (1 + d sign(v)), as of seals, lips and screws.
+/// A viscous drag K (1 + d sign(v)), as seals, lips and screws have.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -8,7 +8,7 @@ void directed_resistance(const double* p, const GliderConstants&, const GliderSt
   of.drag_factor *= at.v < 0.0 ? 1.0 - p[0] : 1.0 + p[0];
 }
 
-/// ln K + d s to first order.
+/// ln K + d s to first order, s the direction.
 LineChange directed_lines(const LineQuantities& line) {
   return {line.direction, 0.0};
 }

@@ -1,4 +1,4 @@
-/// A magnetic drag K v / (1 + (v/v_c)²): eddy currents grow less than in proportion to the speed. Fitted: 1/v_c².
+/// A magnetic drag K v / (1 + (v/v_c)²): eddy currents grow more slowly than the speed. Fitted: 1/v_c².
 #include "diagnose/effects/effect.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ EffectInfo eddy_rolloff() {
   return {
       .id = ids::eddy_rolloff,
       .stage = Stage::dynamics,
-      .words = "a magnetic drag that grows less than in proportion to the speed",
+      .words = "a magnetic drag that grows less than proportionally to the speed",
       .name = "magnetic drag that levels off",
       .meaning = "K v becomes K v / (1 + (v / v_c)²)",
       .search = Search::amplitude,

@@ -1,5 +1,5 @@
-/// A soft bumper that pushes back with -k (x - x_b) beyond x_b, at the end of the track that x_b is nearer to: above
-/// the middle of the data where x > x_b, below it where x < x_b.
+/// A soft bumper at one end of the track, which pushes back with the force -k (x - x_b) beyond x_b. If x_b lies above
+/// the middle of all positions, beyond means x > x_b; otherwise it means x < x_b.
 #include "diagnose/effects/effect.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr int kParts = 32;  // of the range of places, of which x_b is tried in the middle
+constexpr int kParts = 32;  // of the range of positions; x_b is tried in the middle of each
 
 bool touches(double x_m, double stop_m, double middle_m) {
   return stop_m > middle_m ? x_m > stop_m : x_m < stop_m;
@@ -23,7 +23,7 @@ double stop_rate(const double* p, double mass_kg) {
   return std::sqrt(std::max(0.0, p[0]) / mass_kg);
 }
 
-/// Of both ends the outer quarter: a bumper is short.
+/// The outer quarter at either end: a bumper is short.
 std::vector<double> stop_places(const ShapeReach& reach) {
   std::vector<double> places = places_of(reach, kParts);
   places.erase(places.begin() + kParts / 4, places.end() - kParts / 4);

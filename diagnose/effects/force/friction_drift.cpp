@@ -1,5 +1,5 @@
-/// A dry friction mu (1 + r n) that changes from clip to clip, n the number of the clip in the order of the file, from
-/// 0.
+/// A dry friction mu (1 + r n) that changes steadily from clip to clip. n is the number of the clip in the order of the
+/// file, from 0.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -9,7 +9,7 @@ void drifting_friction(const double* p, const GliderConstants& glider, const Gli
   of.mu *= 1.0 + p[0] * glider.clip;
 }
 
-/// Of two clips one always has more friction than the other.
+/// With two clips, any difference would be a drift.
 double drifts(const Circumstances& of) {
   return of.clips < 3 ? 0.0 : 1.0;
 }

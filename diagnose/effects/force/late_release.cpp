@@ -1,4 +1,5 @@
-/// A hand that still pushes until t_r after the first frame: a constant acceleration, each motion its own.
+/// A hand that still pushes until the time t_r after the first frame, with a constant acceleration of its own in each
+/// motion.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

@@ -1,7 +1,8 @@
 /// A dry friction -sign(v) F_0 that does not depend on the load.
 ///
-/// A drag that rolls off, K v / (1 + (v/v_c)²), or grows as v^n with n < 1 is, about the typical speed V of a table's
-/// lines, a line with the intercept - s (2 K V³/v_c²)/m or - s (1 - n) K V^n/m: the same column as this force.
+/// In a table of lines, a drag that rolls off, K v / (1 + (v/v_c)²), or one that grows as K v^n with n < 1, has the
+/// same effect. About a typical speed V its a(v) is a line whose intercept is shifted by -s (2 K V³/v_c²)/m or by -s (1
+/// - n) K V^n/m, just as by this force.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -11,17 +12,17 @@ void fixed_friction(const double* p, const GliderConstants&, const GliderState&,
   of.force_n += p[0];
 }
 
-/// a0 - s F/m.
+/// a0 - s F_0/m, s the direction.
 LineChange fixed_friction_lines(const LineQuantities& line) {
   return {0.0, -line.direction / line.mass_kg};
 }
 
-/// More mu for a lighter glider.
+/// A coefficient of friction that is larger for a lighter glider.
 void fixed_friction_twin(const double* p, TwinForces& forces) {
   forces.others += scenario_force("coulomb", {{"mu", forces.part * p[0] / forces.normal_n}});
 }
 
-/// What falls touches nothing, unless something guides it.
+/// A falling object touches nothing, unless something guides it.
 double without_a_track(const Circumstances& of) {
   return of.only_falls ? 0.25 : 1.0;
 }

@@ -2,7 +2,8 @@
 ///
 ///     s(x) = sum_j b_j (B_j(x) - mean of B_j),   B_j(x) = exp(-(u - j)²/2),   u = 5 (x - x_low)/(x_high - x_low),
 ///
-/// j = 0 to 5, x_low to x_high the range of all positions, over which s has the mean 0. A spread of 1 holds b_j back.
+/// j = 0 to 5. x_low to x_high is the range of all positions, over which s has mean 0. A normal prior of standard
+/// deviation 1 holds each b_j near 0.
 #include "diagnose/effects/effect.h"
 
 #include <array>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::size_t kBumps = 6;
 
-/// Of each bump over the range, u from 0 to 5.
+/// The mean of each B_j over the range, u from 0 to 5.
 std::array<double, kBumps> means_of_bumps() {
   std::array<double, kBumps> means;
   const auto last = static_cast<double>(kBumps - 1);
@@ -29,7 +30,7 @@ std::array<double, kBumps> means_of_bumps() {
 void friction_along(const double* p, const GliderConstants& glider, const GliderState& at, DryFriction& of) {
   static const std::array<double, kBumps> means = means_of_bumps();
   const double u = static_cast<double>(kBumps - 1) * (at.x - glider.x_low_m) / (glider.x_high_m - glider.x_low_m);
-  constexpr double kFar = 30.0;  // bumps: beyond nothing of them is felt
+  constexpr double kFar = 30.0;  // in units of u: beyond, every B_j is negligible
   const bool near = std::abs(u) < kFar;
   // exp(-(u - j)²/2) = exp(-u²/2) exp(u)^j exp(-j²/2)
   static const std::array<double, kBumps> own = [] {

@@ -1,4 +1,4 @@
-/// A drag K v |v/v_1|^(n-1), v_1 = 1 m/s. Fitted: n - 1.
+/// A drag K v |v/v_1|^(n - 1) with v_1 = 1 m/s. Fitted: n - 1.
 #include "diagnose/effects/effect.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ void power_twin(const double* p, TwinForces& forces) {
                       scenario_force("power_law", {{"k_n_s_m", forces.k_n_s_m}, {"n", 1.0 + p[0]}}));
 }
 
-/// An arbitrary power of the speed is less likely than one that has a reason.
+/// An arbitrary power of the speed is less likely than a law with a physical reason.
 double of_any_power(const Circumstances&) {
   return 0.4;
 }
@@ -26,7 +26,7 @@ EffectInfo power_law_drag() {
   return {
       .id = ids::power_law_drag,
       .stage = Stage::dynamics,
-      .words = "a drag that grows with another power of the speed",
+      .words = "a drag that grows as some other power of the speed",
       .name = "power-law drag",
       .meaning = "K v becomes K v |v|^(n − 1), v in m/s",
       .search = Search::amplitude,

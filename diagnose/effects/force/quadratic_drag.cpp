@@ -1,4 +1,4 @@
-/// A drag -C v |v|, as air makes it.
+/// A drag -c v |v|, such as that of air.
 #include "diagnose/effects/effect.h"
 
 #include <cmath>
@@ -14,8 +14,8 @@ void quadratic_twin(const double* p, TwinForces& forces) {
   forces.more_drag += scenario_force("quadratic", {{"c_kg_m", forces.part * p[0]}});
 }
 
-/// At 0.1 m/s the air about a cup of 0.1 m has a Reynolds number of 700: what falls freely, and slowly enough to be
-/// seen to be braked, has such a drag.
+/// The Reynolds number of a cup of 0.1 m in air is 700 at 0.1 m/s already. A free fall whose braking shows is therefore
+/// braked by such a drag.
 double against_air(const Circumstances& of) {
   return of.only_falls ? 4.0 : 1.0;
 }
@@ -26,7 +26,7 @@ EffectInfo quadratic_drag() {
   return {
       .id = ids::quadratic_drag,
       .stage = Stage::dynamics,
-      .words = "a drag that grows with the square of the speed, such as air's",
+      .words = "a drag that grows with the square of the speed, such as that of air",
       .name = "quadratic drag",
       .meaning = "a force −c v |v|",
       .search = Search::amplitude,

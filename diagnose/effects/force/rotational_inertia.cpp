@@ -1,5 +1,5 @@
-/// Inertia m_w that is not in the weighed mass, such as that of wheels, or of air and water that move along:
-/// (m + m_w) dv/dt.
+/// Inertia m_w that is not part of the weighed mass, such as that of wheels, or of air or water that moves with the
+/// glider: (m + m_w) dv/dt.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -9,18 +9,18 @@ double wheels_kg(const double* p, const GliderConstants&) {
   return p[0];
 }
 
-/// a0 (1 - m_w/m) and ln(K/m) - m_w/m, to first order in m_w/m.
+/// ln(K/m) - m_w/m and a0 (1 - m_w/m), to first order in m_w/m.
 LineChange wheels_lines(const LineQuantities& line) {
   return {-1.0 / line.mass_kg, -line.a0_m_s2 / line.mass_kg};
 }
 
-/// All forces are less by m/(m + m_w) already; gravity is so by a constant force.
+/// The other forces of the twin carry the factor m/(m + m_w) already. A constant force gives gravity the same factor.
 void wheels_twin(const double*, TwinForces& forces) {
   if (forces.part == 1.0) return;
   forces.others += scenario_force("constant", {{"force_n", -(1.0 - forces.part) * forces.along_n}});
 }
 
-/// What air brakes takes air along.
+/// An object that air brakes drags some air along.
 double with_air(const Circumstances& of) {
   return of.only_falls ? 2.0 : 1.0;
 }
@@ -31,7 +31,7 @@ EffectInfo rotational_inertia() {
   return {
       .id = ids::rotational_inertia,
       .stage = Stage::dynamics,
-      .words = "inertia without weight, such as that of wheels, or of air or water that moves along",
+      .words = "inertia without weight, such as that of wheels, or of air or water that moves with the glider",
       .name = "inertia without weight",
       .meaning = "m dv/dt becomes (m + mass) dv/dt",
       .search = Search::amplitude,

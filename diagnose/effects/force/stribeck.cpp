@@ -1,4 +1,5 @@
-/// A dry friction mu (1 + (s - 1) exp(-(v/v_s)²)), larger at low speeds. Fitted: s - 1 and v_s.
+/// Stribeck friction: a dry friction mu (1 + (s - 1) exp(-(v/v_s)²)) that is larger at low speeds. Fitted: s - 1 and
+/// v_s.
 #include "diagnose/effects/effect.h"
 
 #include <algorithm>

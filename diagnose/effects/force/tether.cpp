@@ -1,4 +1,4 @@
-/// A cable or spring that pulls back with -k (x - x_t) beyond x_t.
+/// A cable or spring that pulls back with the force -k (x - x_t) where x > x_t.
 #include "diagnose/effects/effect.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// A bowed track: sin(alpha) becomes sin(alpha) + c (x - x_mid).
+/// A bowed track: sin(alpha) becomes sin(alpha) + slope (x - x_mid), x_mid the middle of the set-up's positions.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -8,7 +8,7 @@ void bow_resistance(const double* p, const GliderConstants& glider, const Glider
   of.slope += p[0] * (at.x - glider.x_mid_m);
 }
 
-/// What falls has no track.
+/// A falling object has no track.
 double bows(const Circumstances& of) {
   return of.only_falls ? 0.0 : 1.0;
 }

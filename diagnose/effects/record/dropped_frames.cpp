@@ -1,4 +1,4 @@
-/// Frames that are missing, later ones moved up.
+/// Lost frames. The frames after a loss move up, so that their stated times are too early.
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>
@@ -6,7 +6,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr double kMostDropped = 0.9;  // that a scenario allows
+constexpr double kMostDropped = 0.9;  // the largest fraction that a scenario allows
 
 void dropped_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto fraction = sizes.of("fraction");

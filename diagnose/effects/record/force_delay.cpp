@@ -1,4 +1,4 @@
-/// A recorded force F(t) that acts as F(t - tau).
+/// A recorded force F(t) of which F(t - tau) acts at time t.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

@@ -1,4 +1,4 @@
-/// A frame rate that is not the stated one: the true time step is (1 + e) times the stated one.
+/// A frame rate that differs from the stated one: the true time from frame to frame is (1 + e) times the stated one.
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 namespace glidelab::diagnose::effects {
 namespace {
 
-constexpr double kMostClockError_ppm = 1e5;  // that a scenario allows
+constexpr double kMostClockError_ppm = 1e5;  // the largest that a scenario allows
 
 double rate_stretch(const double* p) {
   return 1.0 + p[0];
@@ -16,7 +16,7 @@ double rate_stretch(const double* p) {
 void rate_twin(const TwinSizes& sizes, TwinCamera& camera) {
   const auto e = sizes.of("e");
   if (!e) return;
-  // The camera runs slower than stated.
+  // If e > 0, the camera runs slower than stated.
   const double ppm = 1e6 * (1.0 / (1.0 + *e) - 1.0);
   const double step_s = camera.stated_frame_s * (1.0 + *e);
   if (std::abs(ppm) > kMostClockError_ppm || step_s < camera.exposure_s) {

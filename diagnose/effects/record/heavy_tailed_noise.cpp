@@ -1,4 +1,4 @@
-/// Outliers: single positions that lie far off.
+/// Outliers: single positions that lie far off the motion.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

@@ -1,5 +1,5 @@
-/// An inertia (1 + e) m where a recorded force drives the glider, m the stated mass: without such a force it cannot be
-/// told from K and mu.
+/// Stated masses that are wrong by a common factor: a glider of stated mass m that a recorded force drives has the
+/// inertia (1 + e) m. Without such a force the error cannot be told from K and mu.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

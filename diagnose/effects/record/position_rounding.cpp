@@ -1,4 +1,5 @@
-/// Positions that are whole multiples of a step. They show it themselves (diagnose/tracks/rounded_positions.h).
+/// Positions that are rounded to whole multiples of a step. The positions themselves show it
+/// (diagnose/tracks/rounded_positions.h).
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

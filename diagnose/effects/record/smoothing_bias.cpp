@@ -1,10 +1,10 @@
-/// The smoothing's own bias, which bends a(v) near v = 0. Only a table of lines shows it.
+/// The bias of the smoothing itself, which bends a(v) near v = 0. Only a table of lines shows it.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
 namespace {
 
-/// a0 - s c (K/m)², c in s² m/s² = m.
+/// a0 - s c (K/m)², s the direction, c in m.
 LineChange smoothing_lines(const LineQuantities& line) {
   return {0.0, -line.direction * line.k_over_m_1_s * line.k_over_m_1_s};
 }

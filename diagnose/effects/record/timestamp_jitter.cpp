@@ -1,4 +1,4 @@
-/// Frames that are not evenly spaced in time: each time has a random error.
+/// Frames that are not evenly spaced in time: the time of each frame has a random error.
 #include "diagnose/effects/effect.h"
 
 #include <fmt/format.h>

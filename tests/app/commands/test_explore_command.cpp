@@ -107,9 +107,9 @@ for (const q of ['x', 'v', 'a']) document.documentElement.dataset['worst' + q] =
     WARN("skipped: no chromium program");
     return;
   }
-  // Polynomials of fifth order through points h = 0.1 of the time apart in which u changes by itself leave
-  // h^6 / 46080 = 2e-11 of its sixth derivative (of 300 at most, tanh's) in u, h times that in a way within one piece,
-  // and some h^5 / 2000 in du/dtau: scaled by 140 m/s, 2e4 m and 2 m/s² below the tens that are allowed here.
+  // Polynomials of fifth order through points h = 0.1 of the time apart in which u changes by itself leave h^6 / 46080
+  // = 2e-11 of its sixth derivative (of 300 at most, tanh's) in u, h times that in a distance within one piece, and
+  // some h^5 / 2000 in du/dtau: scaled by 140 m/s, 2e4 m and 2 m/s² below the tens that are allowed here.
   for (const auto& [name, allowed] : {std::pair{"worstx", 1e-6}, {"worstv", 1e-6}, {"worsta", 1e-5}}) {
     INFO(name << " law k mu alpha v0 t " << opened->data.at(name));
     CHECK(std::stod(opened->data.at(name)) < allowed);

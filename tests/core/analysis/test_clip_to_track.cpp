@@ -60,11 +60,11 @@ TEST_CASE("a rolling shutter's rows have their own times where the experiment de
     const auto results = core::tracks_of(experiment_of(dir / "clip.mkv", declared_s), 1);
     const core::TrackData& track = results.tracks.at(0);
     REQUIRE(track.t_s.size() >= 40);
-    // The origin is the picture's: x at t minus its first value is the way gone since.
+    // The origin is that of the image: x at t minus its first value is the distance travelled since.
     double worst = 0.0;
     for (std::size_t i = 0; i < track.t_s.size(); ++i) {
-      const double way = kSpeed / kPixelsPerMetre * (track.t_s[i] - track.t_s[0]);
-      worst = std::max(worst, std::abs(track.x_m[i] - track.x_m[0] - way));
+      const double moved = kSpeed / kPixelsPerMetre * (track.t_s[i] - track.t_s[0]);
+      worst = std::max(worst, std::abs(track.x_m[i] - track.x_m[0] - moved));
     }
     return worst;
   };

@@ -267,16 +267,16 @@ TEST_CASE("the exposure comes from how much longer than high the marker gets: L^
   for (const double angle : {0.0, 0.7, 2.0}) {
     std::vector<core::MarkerSighting> sightings;
     std::vector<core::MarkerFit> fits;
-    double way_px = 0.0;
+    double travel_px = 0.0;
     for (std::size_t k = 0; k < 60; ++k) {
       const double speed_px_s = 600.0 - 8.0 * static_cast<double>(k);
       const double along = kRadius * kRadius / 4.0 + std::pow(speed_px_s * kExposure, 2) / 12.0;
       const double across = kRadius * kRadius / 4.0, c = std::cos(angle), s = std::sin(angle);
-      sightings.push_back({k, way_px * c, way_px * s, 0.01, kRadius});
+      sightings.push_back({k, travel_px * c, travel_px * s, 0.01, kRadius});
       fits.emplace_back().moments = {c * c * along + s * s * across, c * s * (along - across),
                                      s * s * along + c * c * across};
       // A place changes by the mean of two frames' speeds, so that the central difference is a frame's own.
-      way_px += (speed_px_s - 4.0) / kRate;
+      travel_px += (speed_px_s - 4.0) / kRate;
     }
     const auto smear = core::marker_smear(sightings, fits, kRate);
     REQUIRE(smear.has_value());

@@ -14,7 +14,7 @@ constexpr double kRate = 90.0, kMetresPerPixel = 0.0026;
 constexpr int kFrames = 180;
 
 /// Pixels after t, from v (pixels a frame) to the limit of one pixel a frame: the worst speed, on the codec's grid.
-double way(double v, int frame) {
+double travelled(double v, int frame) {
   constexpr double kFade = 30.0;  // frames
   return frame + (v - 1.0) * kFade * (1.0 - std::exp(-frame / kFade));
 }
@@ -40,7 +40,7 @@ Made made(double dead_px, double cosine = 1.0, double sine = 0.0,
     std::vector<double> off;
     double last = 0.0;
     for (int k = 0; k < kFrames; ++k) {
-      const double place = way(v, k);
+      const double place = travelled(v, k);
       const double predicted = k == 0 ? place : last + 0.25 * std::round(4.0 * (place - last));
       off.push_back(std::clamp(predicted - place, -dead_px, dead_px));
       last = place + off.back();

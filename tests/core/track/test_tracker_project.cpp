@@ -27,7 +27,7 @@ const tests::MadeMass kAlong =
 /// The same downwards.
 const tests::MadeMass kDown = made_mass("ball", 12, [](double i) { return std::pair(50.0, 100.0 + 2.0 * i + i * i); });
 
-double way(std::size_t i) {
+double travelled(std::size_t i) {
   const auto n = static_cast<double>(i);
   return 2.0 * n + n * n;
 }
@@ -62,30 +62,30 @@ TEST_CASE("a project's positions are in its scale, from its origin, at its times
   const core::TrackData track = folder.read(project);
   REQUIRE(track.x_m.size() == 12);
   for (std::size_t i = 0; i < 12; ++i) {
-    CHECK(std::abs(track.x_m[i] - (40.0 + way(i)) / 250.0) < 1e-12);
+    CHECK(std::abs(track.x_m[i] - (40.0 + travelled(i)) / 250.0) < 1e-12);
     CHECK(std::abs(track.t_s[i] - 0.004 * static_cast<double>(i)) < 1e-12);
   }
   CHECK(track.frame_rate_hz == Approx(250.0));
   CHECK(has_note(track, "x is the X of point mass \"mass A\""));
   project.unit = "cm";
-  CHECK(std::abs(folder.read(project).x_m[3] - 0.01 * (40.0 + way(3)) / 250.0) < 1e-12);
+  CHECK(std::abs(folder.read(project).x_m[3] - 0.01 * (40.0 + travelled(3)) / 250.0) < 1e-12);
   project.unit = "";
   CHECK(has_note(folder.read(project), "no unit of length"));
-  CHECK(std::abs(folder.read(project, core::Downhill::minus_x).x_m[3] + (40.0 + way(3)) / 250.0) < 1e-12);
+  CHECK(std::abs(folder.read(project, core::Downhill::minus_x).x_m[3] + (40.0 + travelled(3)) / 250.0) < 1e-12);
 }
 
 TEST_CASE("what falls in the image is positive downwards along Y, unless downhill says otherwise") {
   const Folder folder;
   MadeProject project{{kDown}};
   const core::TrackData down = folder.read(project);
-  CHECK(std::abs(down.x_m[5] - down.x_m[0] - way(5) / 100.0) < 1e-12);
+  CHECK(std::abs(down.x_m[5] - down.x_m[0] - travelled(5) / 100.0) < 1e-12);
   CHECK(has_note(down, "positive towards -Y: it moves most along Y"));
   const core::TrackData up = folder.read(project, core::Downhill::plus_y);
-  CHECK(std::abs(up.x_m[5] - up.x_m[0] + way(5) / 100.0) < 1e-12);
+  CHECK(std::abs(up.x_m[5] - up.x_m[0] + travelled(5) / 100.0) < 1e-12);
   // Axes turned by half a turn: +Y is down.
   project.axes = {{0, 0.0, 0.0, 180.0, 100.0}};
   const core::TrackData turned = folder.read(project);
-  CHECK(std::abs(turned.x_m[5] - turned.x_m[0] - way(5) / 100.0) < 1e-12);
+  CHECK(std::abs(turned.x_m[5] - turned.x_m[0] - travelled(5) / 100.0) < 1e-12);
   CHECK(has_note(turned, "positive towards +Y"));
 }
 
@@ -98,11 +98,11 @@ TEST_CASE("axes along an inclined track give the whole distance, level ones less
   })}};
   project.axes = {{0, 100.0, 300.0, 20.0, 100.0}};
   const core::TrackData along = folder.read(project);
-  for (std::size_t i = 0; i < 12; ++i) CHECK(std::abs(along.x_m[i] - way(i) / 100.0) < 1e-12);
+  for (std::size_t i = 0; i < 12; ++i) CHECK(std::abs(along.x_m[i] - travelled(i) / 100.0) < 1e-12);
   CHECK_FALSE(has_note(along, "degrees with"));
   project.axes = {{0, 100.0, 300.0, 0.0, 100.0}};
   const core::TrackData level = folder.read(project);
-  CHECK(std::abs(level.x_m[9] - std::cos(angle) * way(9) / 100.0) < 1e-12);
+  CHECK(std::abs(level.x_m[9] - std::cos(angle) * travelled(9) / 100.0) < 1e-12);
   CHECK(has_note(level, "makes 20 degrees with X, so x is 6.0 % short"));
 }
 
@@ -112,14 +112,14 @@ TEST_CASE("axes that change from frame to frame hold from their key frame on, wh
   // The camera is pushed by 30 px between frames 4 and 5; whoever tracked it moved the origin along, and saw the scale.
   project.masses[0].points.clear();
   for (long i = 0; i < 12; ++i) {
-    const double seen =
-        i < 5 ? 100.0 + 1.0 * way(static_cast<std::size_t>(i)) : 130.0 + 2.0 * way(static_cast<std::size_t>(i));
+    const double seen = i < 5 ? 100.0 + 1.0 * travelled(static_cast<std::size_t>(i))
+                              : 130.0 + 2.0 * travelled(static_cast<std::size_t>(i));
     project.masses[0].points.push_back({i, {seen, 80.0}});
   }
   project.axes = {{0, 100.0, 0.0, 0.0, 100.0}, {5, 130.0, 0.0, 0.0, 200.0}};
   project.fixed = false;
   const core::TrackData track = folder.read(project);
-  for (std::size_t i = 0; i < 12; ++i) CHECK(std::abs(track.x_m[i] - way(i) / 100.0) < 1e-12);
+  for (std::size_t i = 0; i < 12; ++i) CHECK(std::abs(track.x_m[i] - travelled(i) / 100.0) < 1e-12);
   // Fixed, the last values that are stated count in all frames, as Tracker reads them.
   project.fixed = true;
   CHECK(std::abs(folder.read(project).x_m[0] - (100.0 - 130.0) / 200.0) < 1e-12);

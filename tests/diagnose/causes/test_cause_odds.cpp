@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Nothing, something without a name, and two effects, fits 1 and 2.
+/// A comparison of nothing, something without a name, and two effects (fits 1 and 2).
 diagnose::Comparison comparison_of(double unnamed, double first, double second) {
   diagnose::Comparison comparison;
   comparison.fits.resize(3);
@@ -55,11 +55,11 @@ TEST_CASE("log odds are linear in what is left") {
   CHECK(log_odds(0.0) == Approx(0.0).margin(1e-9));
   CHECK(log_odds(0.4) == Approx(2.0 * log_odds(0.2)).epsilon(1e-9));
   CHECK(log_odds(1.0) == Approx(5.0 * log_odds(0.2)).epsilon(1e-9));
-  CHECK(log_odds(3.0) == Approx(log_odds(1.0)).epsilon(1e-9));  // a cause that makes it worse leaves all
+  CHECK(log_odds(3.0) == Approx(log_odds(1.0)).epsilon(1e-9));  // a cause that makes the gap worse leaves all of it
 }
 
 TEST_CASE("evidence beside a remainder gives no certainty") {
-  // Evidence of 60 more: 1e26 to one against the noise alone.
+  // 60 more in log evidence: 1e26 to one by the noise alone.
   diagnose::Comparison comparison = comparison_of(-1000.0, 60.0, 0.0);
   diagnose::weigh_beside_remainder({10.0, 2.0, 2.0}, kNotMeasured, comparison);
   const double behind = probability_of(comparison, diagnose::ids::track_bow);
@@ -74,7 +74,7 @@ TEST_CASE("evidence beside a remainder gives no certainty") {
   CHECK(odds(1e5) / odds(1e4) == Approx(odds(1e4) / odds(1e3)).epsilon(0.03));
 }
 
-TEST_CASE("where a cause leaves nothing, a function without a name needs much more evidence than it") {
+TEST_CASE("if a cause leaves nothing, a function without a name needs much more evidence than that cause") {
   diagnose::Comparison comparison = comparison_of(30.0, 20.0, 0.0);
   diagnose::weigh_beside_remainder({10.0, 0.3, 8.0}, kNotMeasured, comparison);
   CHECK(comparison.unknown < 0.4);
@@ -83,18 +83,18 @@ TEST_CASE("where a cause leaves nothing, a function without a name needs much mo
   CHECK(far.unknown > 0.9);
 }
 
-TEST_CASE("a function without a name that leaves less than any cause is what is likely") {
+TEST_CASE("a function without a name that leaves less than any cause is the likeliest") {
   const auto unknown = [](double left) {
     diagnose::Comparison comparison = comparison_of(40.0, 20.0, 0.0);
     diagnose::weigh_beside_remainder({10.0, 3.0, 8.0}, left, comparison);
     return comparison.unknown;
   };
   CHECK(unknown(0.2) > 0.9);
-  CHECK(unknown(9.0) == Approx(unknown(10.0)).epsilon(1e-9));  // what leaves all does nothing for it
+  CHECK(unknown(9.0) == Approx(unknown(10.0)).epsilon(1e-9));  // leaving all of the gap does not help it
   CHECK(unknown(2.0) < unknown(1.0));
 }
 
-TEST_CASE("a function without a name beside a cause counts for the cause") {
+TEST_CASE("a function without a name beside a cause counts towards the cause") {
   diagnose::Comparison comparison = comparison_of(0.0, 20.0, 0.0);
   diagnose::Hypothesis with = comparison.all[2];
   with.unnamed = true;
@@ -105,7 +105,7 @@ TEST_CASE("a function without a name beside a cause counts for the cause") {
   CHECK(probability_of(comparison, diagnose::ids::quadratic_drag) > 0.8);
 }
 
-TEST_CASE("a hand that lets go late has the odds against it, since it follows each clip") {
+TEST_CASE("a hand that lets go late has odds against it, since it follows each clip") {
   const auto with_second = [](std::string_view id) {
     diagnose::Comparison comparison = comparison_of(0.0, 20.0, 20.0);
     comparison.all.back().effects = {diagnose::effect_index(id)};
@@ -122,7 +122,7 @@ TEST_CASE("scatter of single positions is no other explanation of a gap, however
     diagnose::weigh_beside_remainder({10.0, 0.5, 2.0}, kNotMeasured, comparison);
     return comparison;
   }();
-  // Outliers beyond doubt were looked for beside nothing and beside the second effect alone.
+  // Outliers were sought only beside nothing and beside the second effect.
   diagnose::Comparison comparison = comparison_of(0.0, 20.0, 15.0);
   const std::size_t tails = diagnose::effect_index(diagnose::ids::heavy_tailed_noise);
   for (const std::size_t of : {0u, 3u}) {
@@ -139,16 +139,16 @@ TEST_CASE("scatter of single positions is no other explanation of a gap, however
   CHECK(comparison.unknown == Approx(pure.unknown).epsilon(1e-9));
   // The second effect has its outliers.
   CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) > 0.9 * probability_of(pure, "track_bow"));
-  // Next to a gap of an encoder there is no noise, and no evidence of its tails.
+  // Beside the gap of an encoder the noise is negligible, and so is the evidence of its tails.
   diagnose::weigh_beside_remainder({1e8, 5e6, 2e7}, kNotMeasured, comparison);
   CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) <
         0.2 * probability_of(comparison, diagnose::ids::track_bow));
 }
 
-TEST_CASE("a cause of the list may be imitated by one that is not: no name is certain") {
+TEST_CASE("a cause on the list may be imitated by one that is not: no name is certain") {
   diagnose::Comparison comparison = comparison_of(0.0, 1e6, 0.0);
   diagnose::weigh_beside_remainder({100.0, 0.0, 90.0}, kNotMeasured, comparison);
-  // Prior odds of 0.2 to 0.5, a fifth imitated.
+  // Prior odds of 0.2 to 0.5, and a fifth of it imitated.
   CHECK(probability_of(comparison, diagnose::ids::quadratic_drag) == Approx(1.0 - 0.2 * 0.2 / 0.5).margin(1e-4));
   CHECK(comparison.unknown == Approx(0.2 * 0.2 / 0.5).margin(1e-4));
   // The same where no function without a name was weighed.

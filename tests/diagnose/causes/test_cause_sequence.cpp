@@ -11,9 +11,9 @@
 
 using namespace glidelab;
 
-TEST_CASE("what a cause leaves below the estimated noise is the floor, and all shares together make the excess") {
-  // A camera that shakes with a period of four frames: neighbouring positions take it for noise, which is thus known
-  // too large by sqrt(1 + A²/2 sd²) or so until the shake is taken out.
+TEST_CASE("a gap below the estimated noise is the floor, and all shares together make the excess") {
+  // A camera that shakes with a period of four frames. By neighbouring positions this looks like noise, whose estimate
+  // is too large by about sqrt(1 + A²/2 sd²) until the shake is in the model.
   constexpr double kSd_m = 1e-4, kAmplitude_m = 3e-4, kRate_hz = 50.0;
   tests::MadeEffect shake;
   shake.seen = [](double x, double t) {
@@ -42,12 +42,12 @@ TEST_CASE("the floor is 1 unless a gap lies clearly below it") {
 }
 
 TEST_CASE(
-    "what the bound of a clear gap buys: recordings that lack nothing have none, at two standard errors some do") {
+    "recordings that lack nothing have no gap at the bound of a clear gap, and some have at two standard errors") {
   const std::vector<tests::MadeLaunch> launches = {{0.4, 4.0, 0.3, -1.1}, {0.4, 4.0, -0.6, 1.2}, {0.5, 4.0, 0.3, -1.0}};
   constexpr unsigned kRecordings = 60;
   int clear = 0, beyond_two = 0;
   for (unsigned seed = 1; seed <= kRecordings; ++seed) {
-    // Noise that neighbouring positions share a little, as those of any tracker do.
+    // Noise that is slightly correlated between neighbouring positions, as that of any tracker.
     const auto made = tests::made_experiment(launches, {}, seed, 2e-4, 40, 50.0, 0.05, 0.15);
     const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
     const diagnose::MotionFit nominal = diagnose::fit_nominal(set);

@@ -17,7 +17,7 @@ using namespace glidelab;
 namespace {
 
 /// What students record: friction that scatters by 10 % from clip to clip, a track that is wavy by 0.3 mrad, a draught
-/// of each clip of 1 mN, positions clicked to 0.2 mm; and a force besides.
+/// of 1 mN in each clip, positions clicked to 0.2 mm, and a force besides.
 class Everyday {
  public:
   Everyday(unsigned seed, std::size_t clips, std::function<double(double x, double v)> force)
@@ -80,7 +80,7 @@ TEST_CASE("a main cause is named beside small imperfections that have no name") 
     CHECK(found.explained.front().id == "quadratic_drag");
     CHECK(found.explained.front().share > 0.5);
     REQUIRE(found.remainder);
-    // By the definition of the shares: what is left of the excess is the remainder.
+    // By definition, the part of the excess that no cause takes is the remainder.
     CHECK(found.remainder->share == Approx(1.0 - sum_of_shares(found)).margin(1e-12));
     const double excess = found.gap->before * found.gap->before - 1.0;
     CHECK((found.remainder->gap * found.remainder->gap - 1.0) / excess == Approx(found.remainder->share).margin(1e-6));
@@ -88,8 +88,9 @@ TEST_CASE("a main cause is named beside small imperfections that have no name") 
   }
 }
 
-TEST_CASE("imperfections by themselves seldom get a name, and none that is sure") {
-  // Friction that scatters is a fair name: it does. With eight clips it falls in some order now and then.
+TEST_CASE("imperfections by themselves seldom get a name, and never a certain one") {
+  // Scattering friction is a fair name, since it does scatter. With eight clips it is in falling or rising order now
+  // and then.
   int wrong = 0;
   double least_unknown = 1.0;
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
@@ -100,7 +101,7 @@ TEST_CASE("imperfections by themselves seldom get a name, and none that is sure"
     REQUIRE(found.verdict != diagnose::Verdict::none);
     if (found.verdict == diagnose::Verdict::unknown) {
       CHECK(found.effects.empty());
-      CHECK(sum_of_shares(found) < 0.5);  // or it would be the cause
+      CHECK(sum_of_shares(found) < 0.5);  // otherwise it would be the cause
       CHECK(found.unknown >= 0.5);
       least_unknown = std::min(least_unknown, found.unknown);
       REQUIRE(found.remainder);
@@ -109,16 +110,15 @@ TEST_CASE("imperfections by themselves seldom get a name, and none that is sure"
     }
     if (found.effects.front().id == "clip_scatter") continue;
     ++wrong;
-    // A name is given from a probability of a half on: one that is hardly above is wrong now and then.
+    // A name needs a probability of a half. One that is hardly above is wrong now and then.
     CHECK(found.effects.front().probability < 0.6);
   }
   CHECK(wrong <= 2);
-  // Against the noise alone the evidence of something without a name is that of certainty; beside a remainder it is
-  // not.
+  // By the noise alone, the evidence of something without a name is a certainty; beside a remainder it is not.
   CHECK(least_unknown < 0.95);
 }
 
-TEST_CASE("what a cause in the model gives of K/m, mu and the inclination holds the truth beside a remainder") {
+TEST_CASE("K/m, mu and the inclination with a cause in the model hold the truth beside a remainder") {
   const diagnose::Diagnosis found = diagnosed(1, [](double, double v) { return -0.15 * v * std::abs(v); });
   REQUIRE(found.recovered.size() == 4);  // two masses, two inclinations
   for (const diagnose::RecoveredConfiguration& one : found.recovered) {
@@ -126,7 +126,8 @@ TEST_CASE("what a cause in the model gives of K/m, mu and the inclination holds 
     REQUIRE(one.k_over_m_1_s.estimate);
     REQUIRE(one.mu.estimate);
     REQUIRE(one.alpha_deg.estimate);
-    // Eight clips, one seed: four standard deviations, which Student's t with seven degrees leaves in 5 of 1000.
+    // Eight clips and one seed: four standard deviations, which Student's t with seven degrees of freedom exceeds in 5
+    // of 1000 cases.
     CHECK(std::abs(one.k_over_m_1_s.estimate->value - 0.93 / one.mass_kg) < 4.0 * one.k_over_m_1_s.estimate->sd);
     CHECK(std::abs(one.mu.estimate->value - 0.006) < 4.0 * one.mu.estimate->sd);
     CHECK(std::abs(one.alpha_deg.estimate->value - one.incline_deg) < 4.0 * one.alpha_deg.estimate->sd);
@@ -146,8 +147,8 @@ TEST_CASE("what a cause in the model gives of K/m, mu and the inclination holds 
   }
 }
 
-TEST_CASE("without a gap nothing stands as well as a cause, where small imperfections would do as much") {
-  // Log evidence of nothing, which is 0 by the noise alone; friction scatters by a third, or does not.
+TEST_CASE("without a gap nothing is as likely as a cause if small imperfections would do as much") {
+  // Log evidence of nothing, which is 0 by the noise alone, for friction that scatters by a third or not at all.
   const auto evidence_of_nothing = [](double part) {
     std::size_t clip = 0;
     double before = 1.0;
@@ -169,13 +170,13 @@ TEST_CASE("without a gap nothing stands as well as a cause, where small imperfec
     }
     return nothing;
   };
-  CHECK(evidence_of_nothing(0.0) < 3.0);  // there is nothing that a remainder would take up
+  CHECK(evidence_of_nothing(0.0) < 3.0);  // there is nothing for a remainder to absorb
   CHECK(evidence_of_nothing(0.33) > 10.0);
 }
 
 namespace {
 
-/// A shaking table on a level track, its phase in each clip another, and a spring; no motion turns round.
+/// A shaking table on a level track, with another phase in each clip, and a spring. No motion turns round.
 diagnose::WeighedCauses weighed_shaking(double spring_n_m) {
   const double phases[] = {0.3, 2.9, 4.4, 1.2, 5.8};
   std::size_t clip = 0;
@@ -196,8 +197,8 @@ diagnose::WeighedCauses weighed_shaking(double spring_n_m) {
 }  // namespace
 
 TEST_CASE("a shaking camera and a shaking table have the same evidence in tracks, whatever their phases") {
-  // On a level track without a reversal x = A sin(2 pi f t + phase) is the table's acceleration of a certain phase: the
-  // two differ in nothing but where phases are counted from.
+  // On a level track without a reversal, x = A sin(2 pi f t + phase) is the response to an acceleration of the table
+  // with a certain phase. The two effects differ only in the origin of the phases.
   const diagnose::WeighedCauses weighed = weighed_shaking(0.0);
   const auto evidence_of = [&](std::string_view id) {
     const diagnose::Hypothesis* one = diagnose::find(weighed.comparison, {diagnose::effect_index(id)});
@@ -208,8 +209,8 @@ TEST_CASE("a shaking camera and a shaking table have the same evidence in tracks
   CHECK(evidence_of("camera_motion") == Approx(evidence_of("base_vibration")).margin(0.3));
 }
 
-TEST_CASE("of pairs that do as well none has a function without a name to itself") {
-  // Camera or table, beside whatever stands for the spring.
+TEST_CASE("of pairs that do equally well none has a function without a name to itself") {
+  // The camera or the table, beside whatever stands for the spring.
   const diagnose::WeighedCauses weighed = weighed_shaking(0.25);
   const auto& all = weighed.comparison.all;
   const auto pairs = std::count_if(
@@ -218,7 +219,7 @@ TEST_CASE("of pairs that do as well none has a function without a name to itself
 }
 
 TEST_CASE("a law beside clips that scatter is weighed as one explanation of both") {
-  // A drag with the square of the speed, and a friction of each clip that is two thirds more or less.
+  // A drag with the square of the speed, and a friction that is two thirds more or less in each clip.
   const double part[] = {0.7, -0.6, 0.2, -0.7, 0.6, 0.5, -0.5, -0.3};
   std::size_t clip = 0;
   double before = 1.0;
@@ -241,7 +242,7 @@ TEST_CASE("a law beside clips that scatter is weighed as one explanation of both
   CHECK(*pair->left < 0.1);
   CHECK(*alone->left > 0.2);
   CHECK(pair->probability > alone->probability);
-  // Left out, it is no part of any explanation.
+  // An effect that is left out is part of no explanation.
   const diagnose::WeighedCauses without =
       diagnose::weigh_causes(set, diagnose::compare_hypotheses(set, {scatter}), {scatter}, 2, nullptr, [](double) {});
   for (const diagnose::Hypothesis& one : without.comparison.all) CHECK_FALSE(diagnose::has(one, scatter));

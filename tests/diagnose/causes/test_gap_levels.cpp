@@ -18,11 +18,11 @@ diagnose::GapLevels levels(const tests::MadeEffect& effect, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("the law holds at every level where nothing is missing") {
+TEST_CASE("the law holds at every level if nothing is missing") {
   const diagnose::GapLevels of = levels({}, 3);
   REQUIRE(of.configuration);
   REQUIRE(of.clip);
-  // 8 clips of some 150 positions: a gap is known to sqrt(1.82/1200) = 0.04; three of these.
+  // 8 clips of about 150 positions: the standard error of a gap is sqrt(1.82/1200) = 0.04; three of these.
   CHECK(std::abs(of.all - 1.0) < 0.12);
   CHECK(std::abs(*of.configuration - 1.0) < 0.12);
   CHECK(std::abs(*of.clip - 1.0) < 0.12);
@@ -42,7 +42,7 @@ TEST_CASE("a friction that differs between masses leaves the law within each con
   CHECK(of.holds_within);
 }
 
-TEST_CASE("a force over the place breaks the law within a configuration too") {
+TEST_CASE("a force that depends on position breaks the law within a configuration too") {
   tests::MadeEffect effect;
   effect.force = [](double m, double x, double, double) { return m * 9.80665 * 2e-3 * std::sin(9.0 * x); };
   const diagnose::GapLevels of = levels(effect, 5);

@@ -26,7 +26,7 @@ diagnose::TrackSet set_of(unsigned seed, const tests::MadeEffect& effect) {
   return diagnose::track_set(made.results, made.setups, true);
 }
 
-/// A fit with one more effect, from a size that is small.
+/// A fit with one more effect, started from a small size.
 diagnose::MotionFit with_effect_of(const diagnose::TrackSet& set, const diagnose::MotionFit& nominal,
                                    std::string_view id, double size) {
   const std::size_t effect = diagnose::effect_index(id);
@@ -38,8 +38,8 @@ diagnose::MotionFit with_effect_of(const diagnose::TrackSet& set, const diagnose
 }  // namespace
 
 TEST_CASE("K/m scatters from clip to clip, and its interval comes from how the clips differ") {
-  // A drag that differs by 10 % from clip to clip; the fit counts it as noise of positions, which would make K/m far
-  // better known than twelve clips make it.
+  // A drag that differs by 10 % from clip to clip. The fit counts it as noise of positions, which would make K/m far
+  // more precise than twelve clips can.
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   std::vector<double> more;
@@ -59,29 +59,30 @@ TEST_CASE("K/m scatters from clip to clip, and its interval comes from how the c
   REQUIRE(found[0].k_over_m_1_s.estimate);
   double square = 0.0;
   for (const double one : more) square += one * one;
-  // The mean of twelve drags is known to their scatter over sqrt(12), if each clip tells K as well as another. Clips
-  // do not, and mu and K go together: within a factor of three.
+  // The mean of twelve drags is known to their scatter over sqrt(12) if every clip determines K equally well. Clips do
+  // not, and mu and K are correlated: within a factor of three.
   const double mean_sd = 0.93 / 0.4 * std::sqrt(square / 12.0) / std::sqrt(12.0);
   const double sd = found[0].k_over_m_1_s.estimate->sd;
   CHECK(sd > mean_sd / 3.0);
   CHECK(sd < mean_sd * 3.0);
-  // The noise alone knows it ten times better.
+  // By the noise alone it would be known ten times better.
   const diagnose::RemainderSpace space(set, fit);
   const diagnose::RemainderSpace::Solution solution = space.solve({});
   CHECK(std::sqrt(solution.covariance(0, 0)) / 0.4 < 0.1 * sd);
   CHECK(std::sqrt(solution.between_clips(0, 0)) / 0.4 == Approx(sd).epsilon(1e-6));
 }
 
-TEST_CASE("without scatter the clips say of the parameters what the noise says") {
+TEST_CASE("without scatter the clips give the same uncertainty as the noise") {
   const diagnose::TrackSet set = set_of(6, {});
   const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
   const diagnose::RemainderSpace space(set, fit);
   const diagnose::RemainderSpace::Solution solution = space.solve({});
-  // Twelve scores: their variance is known to sqrt(2/12), and so the sd to 20 %; three of these and a bit.
+  // The variance of twelve scores is known to sqrt(2/12), and so the standard deviation to 20 %; three of these and a
+  // bit.
   CHECK(std::sqrt(solution.between_clips(0, 0) / solution.covariance(0, 0)) == Approx(1.0).margin(0.7));
 }
 
-TEST_CASE("an explanation that is nearly as likely widens what is recovered by how far it differs") {
+TEST_CASE("an explanation that is nearly as likely widens what is recovered by as much as it differs") {
   const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.1 * v * std::abs(v); }};
   const diagnose::TrackSet set = set_of(7, drag);
   const diagnose::MotionFit nominal = diagnose::linearise_again(set, diagnose::fit_nominal(set));
@@ -93,17 +94,17 @@ TEST_CASE("an explanation that is nearly as likely widens what is recovered by h
   REQUIRE(both.size() == 1);
   const core::Estimate a = *one[0].k_over_m_1_s.estimate, b = *other[0].k_over_m_1_s.estimate,
                        mixed = *both[0].k_over_m_1_s.estimate;
-  CHECK(mixed.value == a.value);  // the reported explanation's
+  CHECK(mixed.value == a.value);  // that of the reported explanation
   CHECK(mixed.sd == Approx(std::sqrt((0.6 * a.sd * a.sd + 0.3 * (b.sd * b.sd + std::pow(b.value - a.value, 2))) / 0.9))
                         .epsilon(1e-12));
-  CHECK(mixed.sd > 2.0 * a.sd);  // or it would show nothing
+  CHECK(mixed.sd > 2.0 * a.sd);  // otherwise the test would show nothing
   CHECK(both[0].with == std::vector<std::string>{"quadratic_drag"});
 }
 
-TEST_CASE("a quantity in which the likely explanations differ by more than itself is not given") {
+TEST_CASE("a quantity in which the likely explanations differ by more than its value is not given") {
   const diagnose::TrackSet set = set_of(7, {});
   const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
-  // The same residuals and derivatives about another point: an explanation with a K/m that is 20 1/s higher.
+  // The same residuals and derivatives about another point: an explanation with a K/m that is higher by 20 1/s.
   diagnose::MotionFit far = fit;
   far.at.global[0] += 20.0 * 0.4;
   const auto alone = diagnose::recovered_of(set, {{&fit, {}, 1.0}});
@@ -113,8 +114,9 @@ TEST_CASE("a quantity in which the likely explanations differ by more than itsel
   CHECK(both[0].mu.estimate);
 }
 
-TEST_CASE("a cable that pulls in the middle of the track, or friction that drifts, moves no terminal velocity") {
-  // m g (sin(alpha) - mu cos(alpha)) = K v, of the law without them.
+TEST_CASE(
+    "a cable that pulls in the middle of the track, or friction that drifts, does not change the terminal velocity") {
+  // m g (sin(alpha) - mu cos(alpha)) = K v, by the law without them.
   const tests::MadeGlider glider;
   const double alpha = 4.0 * std::acos(-1.0) / 180.0;
   const double v_lim = 0.4 * glider.gravity_m_s2 * (std::sin(alpha) - glider.mu * std::cos(alpha)) / glider.k_n_s_m;

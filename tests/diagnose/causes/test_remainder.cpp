@@ -29,8 +29,8 @@ Fitted fitted(const std::vector<tests::MadeLaunch>& launches, unsigned seed, con
   return result;
 }
 
-/// Covariance over the noise that the remainder adds to a motion, by summing the equation of motion in small steps:
-/// dv/dt = -(K/m) v + a, a constant over each of `parts` equal parts of the motion.
+/// The covariance, in units of the noise, that the remainder adds to a motion, by integrating dv/dt = -(K/m) v + a in
+/// small steps, with a constant over each of `parts` equal parts of the motion.
 Eigen::MatrixXd dense_remainder(const Fitted& of, std::size_t i, const diagnose::RemainderSizes& sizes, int parts) {
   const diagnose::TrackedMotion& motion = of.set.motions[i];
   const double k = of.fit.at.global[0] / of.set.masses[motion.mass].mass_kg;
@@ -40,7 +40,7 @@ Eigen::MatrixXd dense_remainder(const Fitted& of, std::size_t i, const diagnose:
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Ones(parts, 3);
   for (int j = 0; j < parts; ++j) {
     double x = 0.0, v = 0.0, t = from, speed = 0.0, sign = 0.0, count = 0.0;
-    constexpr int kSteps = 2000;  // an error of the order of (length/2000)², relative
+    constexpr int kSteps = 2000;  // a relative error of the order of (length/2000)²
     for (std::size_t p = 0; p < n; ++p) {
       const double h = (motion.t_s[p] - t) / kSteps;
       for (int s = 0; s < kSteps && h > 0.0; ++s) {
@@ -112,7 +112,7 @@ TEST_CASE("the likelihood of a remainder is that of its dense covariance") {
   const Fitted of = fitted({{0.4, 4.0, 0.3, -1.1}, {0.4, 4.0, -0.6, 1.2}}, 5);
   REQUIRE(of.set.motions.size() == 2);
   const diagnose::RemainderSpace space(of.set, of.fit);
-  // Sixty positions have 15 parts (four positions each).
+  // Sixty positions make 15 parts of four positions each.
   const int parts = static_cast<int>(of.set.motions[0].t_s.size() / 4);
   REQUIRE(of.set.motions[1].t_s.size() / 4 == of.set.motions[0].t_s.size() / 4);
   const double space_zero = space.log_likelihood(diagnose::RemainderSizes{}),
@@ -121,14 +121,15 @@ TEST_CASE("the likelihood of a remainder is that of its dense covariance") {
                                                 {0.0, 0.02, 0.0, {}},
                                                 {0.0, 0.0, 0.1, {}},
                                                 {3e-5, 0.01, 0.05, {}}}) {
-    // Differences, as constants are left out; the small steps are good to 1e-6 of columns of up to 1e3 over the noise.
+    // Differences, since constants are left out. The small steps are good to 1e-6 of columns of up to 1e3 in units of
+    // the noise.
     const double difference = space.log_likelihood(sizes) - space_zero;
     CHECK(difference == Approx(dense_likelihood(of, sizes, parts) - dense_zero).margin(0.02));
-    CHECK(std::abs(difference) > 0.1);  // or it would show nothing
+    CHECK(std::abs(difference) > 0.1);  // otherwise the test would show nothing
   }
 }
 
-TEST_CASE("whitening with a remainder makes unit white noise of noise and remainder, and goes back") {
+TEST_CASE("whitening with a remainder turns noise and remainder into unit white noise, and can be undone") {
   Fitted of = fitted({{0.4, 4.0, 0.3, -1.1}}, 6);
   const diagnose::RemainderSizes sizes{1e-4, 0.01, 0.02, {}};
   const auto n = static_cast<Eigen::Index>(of.set.motions[0].t_s.size());
@@ -136,14 +137,14 @@ TEST_CASE("whitening with a remainder makes unit white noise of noise and remain
   const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(n, n) + dense_remainder(of, 0, sizes, parts);
   const diagnose::TrackedMotion alone = of.set.motions[0];
   diagnose::add_remainder(of.fit, sizes, of.set);
-  // Columns of the identity are positions over their own noise: W, and W' once more.
+  // The columns of the identity are positions in units of their own noise: W, and then W'.
   const Eigen::MatrixXd noise = diagnose::whitened(alone, Eigen::MatrixXd::Identity(n, n));
   const Eigen::MatrixXd w = diagnose::whitened(of.set.motions[0], Eigen::MatrixXd::Identity(n, n));
-  // The remainder is a covariance over what the noise's own whitening makes of positions.
+  // The remainder is a covariance of positions that are whitened by their own noise.
   const Eigen::MatrixXd both = noise.inverse() * (Eigen::MatrixXd::Identity(n, n)) * noise.inverse().transpose() +
                                (covariance - Eigen::MatrixXd::Identity(n, n));
   const Eigen::MatrixXd unit = w * both * w.transpose();
-  // What is below a thousandth of the noise's variance is left out, in each of at most 18 directions.
+  // Less than a thousandth of the variance of the noise is left out, in each of at most 18 directions.
   CHECK((unit - Eigen::MatrixXd::Identity(n, n)).norm() < 0.02);
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -155,8 +156,8 @@ TEST_CASE("whitening with a remainder makes unit white noise of noise and remain
   CHECK(of_white.col(0).dot(white) == Approx(weights.dot(y)).margin(1e-7));
 }
 
-TEST_CASE("the sizes of a remainder come back from motions that have it, and are small without") {
-  // A constant force of each clip, drawn with a standard deviation of 0.02 m/s², along the track.
+TEST_CASE("the sizes of a remainder are recovered from motions that have it, and are small without") {
+  // A constant force along the track in each clip, drawn with a standard deviation of 0.02 m/s².
   std::vector<tests::MadeLaunch> launches;
   for (int c = 0; c < 12; ++c) launches.push_back({0.4, 4.0, c % 2 == 0 ? 0.3 : -0.6, c % 2 == 0 ? -1.1 : 1.2});
   std::mt19937_64 random(4);
@@ -175,8 +176,8 @@ TEST_CASE("the sizes of a remainder come back from motions that have it, and are
   };
   const Fitted with = fitted(launches, 7, scatter), without = fitted(launches, 7);
   const auto found = diagnose::RemainderSpace(with.set, with.fit).likeliest();
-  // A standard deviation from twelve draws is known to 1/sqrt(24); three of these, and as much for what K and mu take
-  // up.
+  // A standard deviation from twelve draws is known to 1/sqrt(24); three of these, and as much for what K and mu
+  // absorb.
   CHECK(found.sizes.force_m_s2 / std::sqrt(square) > 0.4);
   CHECK(found.sizes.force_m_s2 / std::sqrt(square) < 1.9);
   const auto nothing = diagnose::RemainderSpace(without.set, without.fit).likeliest();
@@ -188,7 +189,7 @@ TEST_CASE("the sizes of a remainder come back from motions that have it, and are
         100.0);
 }
 
-TEST_CASE("one motion that is far worse than the others does not make the remainder of all") {
+TEST_CASE("one motion that is far worse than the others does not set the remainder of all") {
   std::vector<tests::MadeLaunch> launches;
   for (int c = 0; c < 8; ++c) launches.push_back({0.4, 4.0, c % 2 == 0 ? 0.3 : -0.6, c % 2 == 0 ? -1.1 : 1.2});
   std::size_t clip = 0;
@@ -208,7 +209,7 @@ TEST_CASE("one motion that is far worse than the others does not make the remain
   }
 }
 
-TEST_CASE("one motion by itself has no scatter from motion to motion, whatever its law lacks") {
+TEST_CASE("a single motion has no scatter from motion to motion, whatever its law lacks") {
   const tests::MadeEffect bow{.force = [](double m, double x, double, double) { return -0.5 * m * x; }};
   const Fitted one = fitted({{0.4, 4.0, -0.6, 1.2}}, 5, bow);
   const diagnose::RemainderSpace space(one.set, one.fit);

@@ -1,4 +1,5 @@
-// What every effect of the list must have. The compiler finds a member that is missing; this finds one that is empty.
+// What every effect on the list must have. The compiler finds a member that is missing; these tests find one that is
+// empty.
 #include "diagnose/effects/effect_library.h"
 
 #include <cmath>
@@ -25,7 +26,7 @@ bool is_scatter(const diagnose::EffectInfo& effect) {
          effect.search == Search::rows;
 }
 
-/// A glider that runs up, turns, and comes back, with every parameter of the effect at a size that shows.
+/// A glider that runs up, turns and comes back, with every parameter of the effect at a size that shows.
 diagnose::TrackModel glider() {
   diagnose::TrackModel model;
   model.mass_kg = 0.4;
@@ -50,7 +51,7 @@ std::vector<double> times() {
   return t;
 }
 
-/// Within the effect's range, and with its waves slow and its places among the positions.
+/// A size within the range of a parameter, with slow waves, and with places among the positions.
 double typical(const diagnose::EffectParameter& parameter) {
   using diagnose::Reach;
   if (parameter.reach == Reach::places) return 0.45;
@@ -69,12 +70,12 @@ std::string file_text(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("every effect has words, a name, a twin or why there is none, and what to record next") {
+TEST_CASE("every effect has words, a name, a twin or a reason for none, and what to record next") {
   std::set<std::string_view> names, words;
   for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
     INFO(effect.id);
     CHECK_FALSE(effect.words.empty());
-    CHECK(effect.words.find('.') == std::string_view::npos);  // a phrase, no sentence
+    CHECK(effect.words.find('.') == std::string_view::npos);  // a phrase, not a sentence
     CHECK_FALSE(effect.name.empty());
     CHECK(effect.name.size() <= 30);
     names.insert(effect.name);
@@ -82,7 +83,7 @@ TEST_CASE("every effect has words, a name, a twin or why there is none, and what
     const int twins = (effect.twin.why_not.empty() ? 0 : 1) + (effect.twin.force != nullptr ? 1 : 0) +
                       (effect.twin.camera != nullptr ? 1 : 0);
     CHECK(twins == 1);
-    // A launch decides by its motion where a trajectory shows the effect.
+    // If a trajectory shows the effect, the motion of another launch decides.
     if (is_scatter(effect)) CHECK_FALSE(effect.next.empty());
     CHECK((effect.law.moves() ? effect.stage == diagnose::Stage::dynamics : true));
     CHECK((effect.search == diagnose::Search::shape) == (effect.shapes != nullptr));
@@ -108,7 +109,7 @@ TEST_CASE("every parameter of an effect has a key with its unit, a range and a s
       if (parameter.key.empty() || parameter.each == diagnose::Each::motion) continue;
       const base::NamedUnit named = base::name_and_unit(parameter.key);
       CHECK_FALSE(named.name.empty());
-      CHECK(named.name.find("_m_s") == std::string::npos);  // the unit came off
+      CHECK(named.name.find("_m_s") == std::string::npos);  // the unit has been stripped
     }
   }
 }
@@ -143,7 +144,7 @@ TEST_CASE("an id that no effect has is refused, and the ids are those of the fil
     }
     CHECK(files == 1);
   }
-  // smoothing_bias shows in a table of lines alone.
+  // smoothing_bias shows only in a table of lines.
   CHECK(diagnose::effect_list().size() + 1 == diagnose::all_effects().size());
 }
 
@@ -165,7 +166,7 @@ TEST_CASE("effects are absent by default, and each that moves a glider or what i
 
 TEST_CASE(
     "the step of every parameter gives the derivative of the motion that four times finer and coarser ones give") {
-  // A central difference errs by x''' h²/6 and by rounding of x over h, some 1e-16/h. Fits need derivatives to a
+  // A central difference errs by x''' h²/6 and by the rounding of x over h, about 1e-16/h. Fits need derivatives to a
   // thousandth of the largest.
   const std::vector<double> t = times();
   for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {

@@ -1,4 +1,4 @@
-// What rigs have: each law against an independent integration.
+// Effects of test rigs: each law against an independent integration.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -16,17 +16,17 @@ using tests::MadeEffect;
 using tests::MadeLaunch;
 constexpr tests::MadeGlider kGlider;
 
-double way(double v) {
+double sign_of(double v) {
   return v < 0.0 ? -1.0 : 1.0;
 }
 
-/// A motor that pulls to and fro.
+/// The force of a motor that pulls back and forth.
 double pull_n(double t) {
   return 0.25 * std::sin(7.0 * t) + 0.15 * std::sin(17.0 * t);
 }
 
-/// Samples of a force, a hundred times as dense as the frames: linear between them it errs by (17/s)² (1e-4 s)²/8 of
-/// it.
+/// Samples of a force, a hundred times as dense as the frames. Linear interpolation errs by (17/s)² (1e-4 s)²/8 of the
+/// force.
 diagnose::KnownForce samples_of(double (*force)(double)) {
   diagnose::KnownForce known;
   for (int i = -3000; i <= 20000; ++i) {
@@ -51,7 +51,7 @@ diagnose::TrackModel model_of(const MadeLaunch& launch, const diagnose::KnownFor
   return model;
 }
 
-/// The largest distance of the two motions of 1.5 s at 100 frames a second.
+/// The largest distance between the two motions over 1.5 s at 100 frames per second.
 double apart_m(const diagnose::TrackModel& model, const MadeLaunch& launch, const MadeEffect& effect) {
   std::vector<double> t;
   for (int i = 0; i < 150; ++i) t.push_back(0.01 * i);
@@ -62,14 +62,13 @@ double apart_m(const diagnose::TrackModel& model, const MadeLaunch& launch, cons
   return most;
 }
 
-// Steps of 10 ms: the method's own error is below 1e-7 m (tests of the track model); the generator finds v = 0 to
-// a (0.2 ms)²/8, some 1e-8 m.
+// With steps of 10 ms, the error of the method is below 1e-7 m (tests of the track model). The generator finds v = 0 to
+// a (0.2 ms)²/8, about 1e-8 m.
 constexpr double kSmooth_m = 2e-7;
 
 }  // namespace
 
-TEST_CASE(
-    "a drag that depends on the direction, an end stop and a wrong mass move the glider as an integration has it") {
+TEST_CASE("a drag that depends on the direction, an end stop and a wrong mass move the glider as an integration says") {
   using diagnose::slot_of;
   namespace ids = diagnose::ids;
   for (const MadeLaunch& launch : tests::made_launches()) {
@@ -79,8 +78,8 @@ TEST_CASE(
     CHECK(apart_m(directed, launch, {.force = [](double, double, double v, double) {
                     return -0.2 * kGlider.k_n_s_m * std::abs(v);
                   }}) < kSmooth_m);
-    // At x_b the force has a corner. Simpson's rule over a corner errs by at most 1/24 of J h², J = k v/m, h 12.6 ms:
-    // so much in speed, on the way in and on the way out, and m/K times as much in place.
+    // The force has a corner at x_b. Simpson's rule over a corner errs by at most J h²/24 in speed, with J = k v/m and
+    // h = 12.6 ms, once on the way in and once on the way out, and by m/K times as much in position.
     constexpr double kStop_n_m = 8.0, kFastest_m_s = 1.3, kStep_s = 0.0126;
     constexpr double kCorner_m = 2.0 * kStop_n_m * kFastest_m_s * kStep_s * kStep_s / 24.0 / kGlider.k_n_s_m;
     for (const double stop : {-0.45, 0.35}) {
@@ -95,7 +94,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a recorded force that is late, too small, or moves another mass is what an integration makes of it") {
+TEST_CASE("a recorded force that is late, too small, or moves another mass acts as an integration says") {
   using diagnose::slot_of;
   namespace ids = diagnose::ids;
   const diagnose::KnownForce known = samples_of(pull_n);
@@ -115,7 +114,7 @@ TEST_CASE("a recorded force that is late, too small, or moves another mass is wh
   }
 }
 
-TEST_CASE("friction and drag of a configuration, of a clip and of its number are those of the launch") {
+TEST_CASE("friction and drag of a configuration, of a clip and of a clip's number are those of the launch") {
   using diagnose::slot_of;
   namespace ids = diagnose::ids;
   for (MadeLaunch launch : tests::made_launches()) {
@@ -141,7 +140,7 @@ TEST_CASE("friction and drag of a configuration, of a clip and of its number are
 }
 
 TEST_CASE("friction along the track is a sum of bumps less their means over the track") {
-  // The means by a sum over the track, the bumps five widths from end to end.
+  // The means by a sum over the track, which is five bump widths long.
   const std::vector<double> sizes = {0.3, -0.2, 0.4, 0.0, -0.5, 0.1};
   const double low = -0.8, high = 0.9;
   const auto bumps = [&](double x) {
@@ -160,7 +159,7 @@ TEST_CASE("friction along the track is a sum of bumps less their means over the 
     for (std::size_t j = 0; j < sizes.size(); ++j) model.effects[diagnose::slot_of("place_friction", j)] = sizes[j];
     const double cos_alpha = std::cos(model.alpha_rad);
     CHECK(apart_m(model, launch, {.force = [&](double m, double x, double v, double) {
-                    return -way(v) * kGlider.mu * (bumps(x) - mean) * m * kGlider.gravity_m_s2 * cos_alpha;
+                    return -sign_of(v) * kGlider.mu * (bumps(x) - mean) * m * kGlider.gravity_m_s2 * cos_alpha;
                   }}) < kSmooth_m);
   }
 }

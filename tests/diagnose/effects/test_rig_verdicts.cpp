@@ -1,4 +1,5 @@
-// What rigs have: an experiment with one such effect, made by the tests' own generator, has it named with its size.
+// Effects of test rigs: in an experiment with one such effect, simulated by the tests' own generator, it is named with
+// its size.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,11 +24,12 @@ using tests::MadeEffect;
 using tests::MadeLaunch;
 constexpr tests::MadeGlider kGlider;
 
-double way(double v) {
+double sign_of(double v) {
   return v < 0.0 ? -1.0 : 1.0;
 }
 
-/// A motor that pulls to and fro, linear from tenth to tenth of a second, as its samples at 50 Hz have it.
+/// The force of a motor that pulls back and forth, linear over each tenth of a second, so that samples at 50 Hz are
+/// exact.
 double pull_n(double t) {
   const auto at = [](double tenths) { return 0.25 * std::sin(0.7 * tenths) + 0.15 * std::sin(1.7 * tenths); };
   const double before = std::floor(10.0 * t + 1e-9), part = 10.0 * t - before;
@@ -40,8 +42,8 @@ diagnose::Diagnosis diagnosed(const std::vector<MadeLaunch>& launches, const Mad
   return diagnose::diagnose_results(made.results, made.setups, {.without = std::move(without), .jobs = 2});
 }
 
-/// Named with more than nine tenths, and its size within three standard deviations, of which one is less than a fifth
-/// of it.
+/// The effect is named with a probability above 0.9, its size is right to three standard deviations, and one of these
+/// is less than a fifth of it.
 void check_named(const diagnose::Diagnosis& diagnosis, const std::string& id, const std::string& key, double size) {
   INFO(id);
   std::string ranking;
@@ -64,7 +66,7 @@ void check_named(const diagnose::Diagnosis& diagnosis, const std::string& id, co
   CHECK(found->sd < 0.2 * std::abs(size));
 }
 
-/// Of values: about their mean, with n - 1.
+/// Standard deviation about the mean, with n - 1.
 double sd_of(const std::vector<double>& values) {
   double mean = 0.0, square = 0.0;
   for (const double value : values) mean += value / static_cast<double>(values.size());
@@ -72,7 +74,7 @@ double sd_of(const std::vector<double>& values) {
   return std::sqrt(square / static_cast<double>(values.size() - 1));
 }
 
-/// Twelve clips: the eight, and four of them once more.
+/// Twelve clips: the eight, and four of them again.
 std::vector<MadeLaunch> twelve() {
   std::vector<MadeLaunch> launches = tests::made_launches();
   for (const std::size_t again : {2u, 3u, 4u, 5u}) {
@@ -89,7 +91,7 @@ std::size_t configuration(const MadeLaunch& launch) {
 
 }  // namespace
 
-TEST_CASE("a drag that depends on the direction is named, with K of each direction") {
+TEST_CASE("a drag that depends on the direction is named, with K for each direction") {
   const MadeEffect directed{
       .force = [](double, double, double v, double) { return -0.05 * kGlider.k_n_s_m * std::abs(v); }};
   const diagnose::Diagnosis diagnosis = diagnosed(tests::made_launches(), directed, 5);
@@ -107,7 +109,7 @@ TEST_CASE("a soft bumper at the uphill end is named, which no cable can be") {
   check_named(diagnosis, "end_stop", "x_b_m", -0.5);
 }
 
-TEST_CASE("beside a recorded force a mass that is off is named together with the scale, from which nothing tells it") {
+TEST_CASE("with a recorded force, a wrong mass is named together with a wrong scale, from which nothing can tell it") {
   std::vector<MadeLaunch> inert = tests::made_launches();
   for (MadeLaunch& launch : inert) launch.inertia = 1.04;
   const diagnose::Diagnosis diagnosis = diagnosed(inert, {.recorded = pull_n}, 5);
@@ -132,7 +134,8 @@ TEST_CASE("a recorded force that is too small and one that is late are told apar
 
 TEST_CASE("a friction that drifts from clip to clip is named") {
   std::vector<MadeLaunch> launches = twelve();
-  std::rotate(launches.begin(), launches.begin() + 5, launches.end());  // no mass or set-up goes with the number
+  std::rotate(launches.begin(), launches.begin() + 5,
+              launches.end());  // so that neither mass nor set-up follows the number
   for (std::size_t n = 0; n < launches.size(); ++n) launches[n].mu_more = 0.03 * static_cast<double>(n) * kGlider.mu;
   check_named(diagnosed(launches, {}, 5), "friction_drift", "r_1_clip", 0.03);
 }
@@ -155,7 +158,7 @@ TEST_CASE("friction or drag of each configuration is named, with the size of eac
   check_named(drag, "configuration_drag", "k_n_s_m.inclined, 0.335 kg", kGlider.k_n_s_m - 0.04);
 }
 
-TEST_CASE("friction and drag that scatter from clip to clip are named, with how far") {
+TEST_CASE("friction and drag that scatter from clip to clip are named, with their spread") {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal(0.0, 1.0);
   std::vector<MadeLaunch> launches = twelve();
@@ -169,13 +172,13 @@ TEST_CASE("friction and drag that scatter from clip to clip are named, with how 
   check_named(diagnosis, "clip_scatter", "sd_k_n_s_m", sd_of(k));
 }
 
-TEST_CASE("a friction that changes along the track is named, with how far and where") {
+TEST_CASE("a friction that changes along the track is named, with its size and place") {
   const auto s = [](double x) { return 0.5 * std::sin(std::numbers::pi * (x + 0.6) / 0.7); };
   const MadeEffect along{.force = [&](double m, double x, double v, double) {
-    return -way(v) * kGlider.mu * s(x) * m * kGlider.gravity_m_s2;
+    return -sign_of(v) * kGlider.mu * s(x) * m * kGlider.gravity_m_s2;
   }};
   const diagnose::Diagnosis diagnosis = diagnosed(twelve(), along, 5);
-  // Over the range of the positions s has the mean 0, and mu is the mean.
+  // s has the mean 0 over the range of positions, and mu is the mean friction.
   double low = 0.0, high = 0.0, mean = 0.0, square = 0.0;
   for (const MadeLaunch& launch : twelve()) {
     for (const double x : tests::made_motion(kGlider, launch, along, 75, 50.0)) {
@@ -192,7 +195,7 @@ TEST_CASE("a friction that changes along the track is named, with how far and wh
   for (const auto& told : diagnosis.effects.front().parameters) {
     if (!told.key.starts_with("s.at ")) continue;
     INFO(told.key << " " << told.value << " +- " << told.sd);
-    // Six bumps make a sine wave of a period and a half to some hundredths.
+    // Six bumps fit a sine wave of one and a half periods to a few hundredths.
     CHECK(std::abs(told.value - less_mean(std::stod(told.key.substr(5)))) < 3.0 * told.sd + 0.03);
   }
 }

@@ -74,15 +74,15 @@ TEST_CASE("where a codec may hold a slow marker no friction of that speed is loo
   for (const std::vector<double>& shape : diagnose::effect_shapes(set, stribeck)) CHECK(shape.at(0) >= 0.02);
 }
 
-TEST_CASE("pushes that go along the motions are a hand's, the same pushes this way and that are so more seldom") {
+TEST_CASE("pushes along the motions are those of a hand, and the same pushes with mixed signs are so more seldom") {
   // In the linear neighbourhood the two differ by signs alone: what the data show of each push is the same.
-  const auto evidence = [](const std::array<double, 8>& ways, double size) {
+  const auto evidence = [](const std::array<double, 8>& directions, double size) {
     std::size_t clip = 0;
     double last = -1.0;
     const tests::MadeEffect push{.force = [&](double m, double, double, double t) {
       if (t < last - 0.1) ++clip;
       last = t;
-      return t < 0.2 ? size * m * ways[clip] : 0.0;
+      return t < 0.2 ? size * m * directions[clip] : 0.0;
     }};
     const diagnose::TrackSet set = set_with(push, 5);
     const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
@@ -91,11 +91,11 @@ TEST_CASE("pushes that go along the motions are a hand's, the same pushes this w
     return scan.log_evidence - scan.gain;
   };
   // Launches go up, down, up, down. All of one sign has 2 chances in 256 where signs are free: log 128 = 4.9.
-  const std::array<double, 8> along = {-1, 1, -1, 1, -1, 1, -1, 1}, any_way = {1, 1, -1, -1, -1, 1, 1, -1};
-  CHECK(evidence(along, 0.08) > evidence(any_way, 0.08) + 4.0);
+  const std::array<double, 8> along = {-1, 1, -1, 1, -1, 1, -1, 1}, mixed = {1, 1, -1, -1, -1, 1, 1, -1};
+  CHECK(evidence(along, 0.08) > evidence(mixed, 0.08) + 4.0);
   // However plainly they show: log 128 of the signs, one in ten, seven more that are like the first to half their size,
-  // in all 13; twice that. Where pushes must go one way it is hundreds.
-  CHECK(evidence(any_way, 0.8) > evidence(along, 0.8) - 26.0);
+  // in all 13; twice that. If pushes had to have one direction, it would be hundreds.
+  CHECK(evidence(mixed, 0.8) > evidence(along, 0.8) - 26.0);
   // A hand that holds back what it lets go is one in ten of those that do all alike.
   std::array<double, 8> against = {};
   for (std::size_t k = 0; k < against.size(); ++k) against[k] = -along[k];

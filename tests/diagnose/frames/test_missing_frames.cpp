@@ -121,7 +121,7 @@ TEST_CASE("frames lost right behind the first ones of several clips, or before t
 
 TEST_CASE(
     "the only frame that is lost, three before a clip's end, is a lost frame and three positions are no outliers") {
-  // The last three positions are a frame's way off, 1.1 mm at noise of 0.02 mm.
+  // The last three positions are off by the motion of one frame, 1.1 mm with a noise of 0.02 mm.
   Losses losses;
   losses.of_clip.resize(8);
   losses.of_clip[3].insert(kFrames - 4);

@@ -70,7 +70,7 @@ TEST_CASE("a friction that does not grow with the load shows between the masses,
 }
 
 TEST_CASE("lost frames that are known leave no gap between the masses and directions") {
-  // Two in each clip, a way of 5 to 10 mm each time at fifty times the noise.
+  // Two in each clip, each worth a displacement of 5 to 10 mm, fifty times the noise.
   const auto lost = [](std::size_t clip, std::size_t frame) { return (frame + 7 * clip) % 60 == 20; };
   const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {.lost = lost}, 5, 2e-4);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);

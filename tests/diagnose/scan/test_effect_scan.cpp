@@ -11,7 +11,7 @@ using namespace glidelab;
 
 namespace {
 
-/// Of a force c v |v| beside the linear drag, the scans of the drags that have one sign and of one that has both.
+/// For a force c v |v| beside the linear drag: the scan of an effect with one sign and that of one with both signs.
 struct Scans {
   diagnose::EffectScan quadratic, asymmetry;
 };
@@ -35,9 +35,9 @@ TEST_CASE("a drag that brakes is seen, and one that would drive is no drag") {
   REQUIRE(braking.quadratic.visible);
   CHECK(braking.quadratic.gain > 20.0);
   CHECK(braking.quadratic.log_evidence > 20.0);
-  // Of a linear neighbourhood: K takes up most of the force, and by how much changes with the motion itself.
+  // This is a linear neighbourhood: K absorbs most of the force, and how much of it depends on the motion.
   CHECK(braking.quadratic.values.front() == Approx(c).epsilon(0.3));
-  // The same force with the other sign shows as clearly, and an effect that has one sign gains nothing by it.
+  // The same force with the opposite sign shows as clearly, but an effect of one sign gains nothing by it.
   REQUIRE(driving.quadratic.visible);
   CHECK(driving.quadratic.gain == 0.0);
   CHECK(driving.quadratic.log_evidence < -1.0);
@@ -55,28 +55,28 @@ bool is_visible(const std::vector<tests::MadeLaunch>& launches, std::string_view
 
 }  // namespace
 
-TEST_CASE("two clips have no trend: one of them always has more friction than the other") {
+TEST_CASE("two clips show no trend: one of them always has more friction than the other") {
   const tests::MadeLaunch up{0.4, 4.0, 0.3, -1.1}, down{0.4, 4.0, -0.6, 1.2};
   CHECK_FALSE(is_visible({up, down}, "friction_drift"));
   CHECK(is_visible({up, down, up}, "friction_drift"));
 }
 
-TEST_CASE("what falls has no track that could be bowed") {
+TEST_CASE("a falling object has no track that could be bowed") {
   const tests::MadeLaunch fall{0.4, 90.0, 0.0, 0.1}, heavier{0.8, 90.0, 0.0, 0.1}, slope{0.4, 60.0, 0.0, 0.1};
   CHECK_FALSE(is_visible({fall, heavier, fall}, "track_bow"));
   CHECK(is_visible({fall, heavier, fall}, "quadratic_drag"));
   CHECK(is_visible({slope, slope, slope}, "track_bow"));
 }
 
-TEST_CASE("prior odds are those of the recording: what falls is braked by the square of the speed") {
+TEST_CASE("prior odds follow the recording: a falling object is braked by the square of the speed") {
   const tests::MadeLaunch fall{0.4, 90.0, 0.0, 0.1}, slope{0.4, 60.0, 0.0, 0.1};
   const auto odds = [](const std::vector<tests::MadeLaunch>& launches, std::string_view id) {
     const auto made = tests::made_experiment(launches, {}, 3, 5e-5, 60);
     const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
     return diagnose::prior_odds(set, diagnose::effect_index(id));
   };
-  // At a Reynolds number R a sphere has a drag of 24/R (1 + R/24 0.4) or so: where R is 1000, the part that goes with
-  // the square of the speed is seventeen times the other.
+  // At a Reynolds number R the drag coefficient of a sphere is about 24/R (1 + 0.4 R/24). At R = 1000, the part of the
+  // drag that grows with the square of the speed is seventeen times the other.
   CHECK(odds({fall, fall, fall}, "quadratic_drag") > odds({fall, fall, fall}, "eddy_rolloff"));
   CHECK(odds({fall, fall, fall}, "load_independent_friction") < 1.0);
   CHECK(odds({fall, fall, fall}, "track_bow") == 0.0);

@@ -13,7 +13,7 @@ double sign_of(double v) {
   return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0;
 }
 
-/// A friction that does not go with the load, and a pattern that was not in the plane of motion.
+/// A friction that does not depend on the load, and a pattern that was not in the plane of motion.
 tests::MadeExperiment masked(unsigned seed) {
   const tests::MadeEffect effect{.force = [](double, double, double v, double) { return -0.008 * sign_of(v); },
                                  .seen = [](double x, double) { return x / (1.0 + 0.015 * x); }};
@@ -27,7 +27,7 @@ tests::MadeExperiment masked(unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("two effects of which each alone explains less than others do are found together") {
+TEST_CASE("two effects, each of which alone explains less than others do, are found together") {
   const auto made = masked(1);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
@@ -40,7 +40,7 @@ TEST_CASE("two effects of which each alone explains less than others do are foun
   for (std::size_t i = 1; i < pairs.size(); ++i) CHECK(pairs[i].log_evidence <= pairs[i - 1].log_evidence);
 }
 
-TEST_CASE("two directions that are one make no pair") {
+TEST_CASE("two equal directions make no pair") {
   const auto made = masked(1);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);

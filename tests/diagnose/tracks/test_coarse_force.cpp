@@ -21,8 +21,8 @@ diagnose::TrackedMotion pulled(double shake_n) {
   return motion;
 }
 
-/// How far a body is off the middle of its way half way in time, by steps of the samples' tenth: the same whatever
-/// straight line is added.
+/// The distance of a body from the middle of its path at half of the time, by steps of a tenth of the sample interval.
+/// It does not change if a straight line is added.
 double bend(const diagnose::KnownForce& force, double mass_kg) {
   double x = 0.0, v = 0.0, half = 0.0;
   std::size_t before = 0;

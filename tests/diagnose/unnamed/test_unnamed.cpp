@@ -30,16 +30,16 @@ double surest(const diagnose::Diagnosis& diagnosis) {
 
 }  // namespace
 
-TEST_CASE("a picture that creeps in each clip by its own way is no hand that pushes") {
+TEST_CASE("an image that creeps by a distance of its own in each clip is no hand that pushes") {
   // Half as large, a friction that steps at some speed gains nearly as much with one size instead of eight, by chance.
   for (const unsigned seed : {1u, 2u}) {
     std::size_t clip = 0;
     double last = -1.0;
     const tests::MadeEffect creep{.seen = [&](double x, double t) {
-      constexpr std::array<double, 8> kWay = {4e-4, -6e-4, 2e-4, 8e-4, -4e-4, 6e-4, -2e-4, -8e-4};
+      constexpr std::array<double, 8> kCreep_m = {4e-4, -6e-4, 2e-4, 8e-4, -4e-4, 6e-4, -2e-4, -8e-4};
       if (t < last) ++clip;
       last = t;
-      return x + kWay[clip] * std::log1p(t / 0.05);
+      return x + kCreep_m[clip] * std::log1p(t / 0.05);
     }};
     const diagnose::Diagnosis diagnosis = diagnosed(creep, seed);
     CHECK(diagnosis.verdict == diagnose::Verdict::unknown);

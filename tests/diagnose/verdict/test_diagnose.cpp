@@ -31,7 +31,7 @@ struct Case {
   double truth;
 };
 
-/// Each strong enough to move positions by tens of the noise of 30 µm.
+/// Each effect is strong enough to shift positions by tens of times the noise of 30 µm.
 std::vector<Case> strong_cases() {
   const double pi = std::acos(-1.0);
   std::vector<Case> cases;
@@ -74,11 +74,11 @@ TEST_CASE("a strong effect is named first, with its size, and its probabilities 
     CHECK(std::abs(total(diagnosis) - 1.0) < 1e-9);
     for (const auto& parameter : diagnosis.effects.front().parameters) {
       if (diagnosis.effects.front().id != one.id || parameter.key != one.key) continue;
-      // Five standard deviations, and 3 % for what differs between "x_mid = 0" here and the middle of the data there.
+      // Five standard deviations, and 3 % for the difference between "x_mid = 0" here and the middle of the data.
       CHECK(std::abs(parameter.value - one.truth) < 5.0 * parameter.sd + 0.03 * one.truth);
     }
     REQUIRE(diagnosis.gap);
-    // At the floor: one part in ten above it would be four standard errors of 1200 points.
+    // At the floor: a tenth above it would be four standard errors, with 1200 positions.
     CHECK(diagnosis.gap->after < 1.1);
   }
 }
@@ -93,14 +93,16 @@ TEST_CASE("a wrong scale and a wrong frame rate are named together: tracks canno
   named.push_back(first.id);
   CHECK(std::find(named.begin(), named.end(), "scale_error") != named.end());
   CHECK(std::find(named.begin(), named.end(), "frame_rate_error") != named.end());
-  // The inclination alone tells, and no held-out clip lies off: the quantities have the effect in their model as well.
+  // Only the inclination shows it, and no held-out clip is off: the quantities have the effect in their model all the
+  // same.
   REQUIRE_FALSE(diagnosis.recovered.empty());
   for (const auto& one : diagnosis.recovered) CHECK(one.with == std::vector<std::string>{first.id});
 }
 
-TEST_CASE("a size that only the inclination tells is found in full, however well the positions are known") {
-  // 3 µm in 1200 positions know the scale beside K, mu and the inclination by a stated 0.05 degrees alone, thousands of
-  // times less well than by itself. A scale and a clock make the same of positions: one chi², from wherever it starts.
+TEST_CASE("a size that only the inclination shows is found in full, however well the positions are known") {
+  // With a noise of 3 µm in 1200 positions, only the stated 0.05 degrees determine the scale beside K, mu and the
+  // inclination, thousands of times less well than the positions would on their own. A scale and a clock do the same to
+  // positions: one chi², wherever the fit starts.
   const tests::MadeEffect effect{.seen = [](double x, double) { return 1.06 * x; }};
   const auto made = tests::made_experiment(tests::made_launches(), effect, 5, 3e-6);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
@@ -116,7 +118,7 @@ TEST_CASE("a size that only the inclination tells is found in full, however well
     }
   }
   for (const double gain : gains) CHECK(std::abs(gain - gains.front()) < 0.05);  // the fit stops at changes of 0.001
-  CHECK(gains.front() > 8.0);  // 6 % of 4 degrees are 4.8 of 0.05: 11.5, give or take 4.8
+  CHECK(gains.front() > 8.0);  // 6 % of 4 degrees is 4.8 times 0.05: a gain of 11.5, give or take 4.8
 }
 
 TEST_CASE("a nominal experiment has nothing missing, and its gap is at the floor") {
@@ -126,7 +128,7 @@ TEST_CASE("a nominal experiment has nothing missing, and its gap is at the floor
     CHECK(diagnosis.none > 0.5);
     CHECK(std::abs(total(diagnosis) - 1.0) < 1e-9);
     REQUIRE(diagnosis.gap);
-    // Of 1200 points with a noise that is itself estimated: 0.04 is a standard error.
+    // With 1200 positions and a noise that is itself estimated, 0.04 is one standard error.
     CHECK(std::abs(diagnosis.gap->before - 1.0) < 0.16);
   }
 }
@@ -139,14 +141,14 @@ TEST_CASE("the parameters that an explanation is said to add are those that its 
                                      [&](const auto& one) { return one.explanation == diagnose::Explanation{{id}}; });
     return ranked == diagnosis.ranking.end() ? 0 : ranked->parameters;
   };
-  // Tracks tell nothing of a camera that turns: its sway has a size and a frequency, and a phase in each of 8 motions.
+  // Tracks cannot show whether the camera turns: its sway has a size and a frequency, and a phase in each of 8 motions.
   CHECK(added("camera_motion") == 2 + 8);
   CHECK(added("base_vibration") == 2 + 8);
   CHECK(added("stribeck") == 2);
   CHECK(added("timestamp_jitter") == 1);
 }
 
-TEST_CASE("a force that nobody listed is unknown, and the place where it acts is named") {
+TEST_CASE("a force that is not on the list is unknown, and the place where it acts is named") {
   // A rough patch: extra friction between 0.10 and 0.22 m.
   const tests::MadeEffect patch = {[](double m, double x, double v, double) {
                                      const double size = x > 0.10 && x < 0.22 ? 0.15 * m : 0.0;
@@ -157,7 +159,7 @@ TEST_CASE("a force that nobody listed is unknown, and the place where it acts is
   CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
   REQUIRE(!diagnosis.regions.empty());
   CHECK(diagnosis.regions.front().variable == diagnose::GapVariable::position);
-  // What has no chance is ranked by its evidence: probabilities that underflow are all the same.
+  // Explanations without a chance are ranked by evidence, since probabilities that underflow are all the same.
   const auto& ranking = diagnosis.ranking;
   for (std::size_t r = 1; r < ranking.size(); ++r) {
     if (ranking[r - 1].probability < 5e-4) {
@@ -166,9 +168,9 @@ TEST_CASE("a force that nobody listed is unknown, and the place where it acts is
   }
 }
 
-TEST_CASE(
-    "in pictures a strong effect keeps its name beside a rest that shows weakly, and loses it to one that does not") {
-  // Drag that moves positions by centimetres, and a bend of the picture that nobody listed; the noise is 30 µm.
+TEST_CASE("in images a strong effect keeps its name beside a weak rest, and loses it beside a strong one") {
+  // A drag that shifts positions by centimetres, and a distortion of the image that is not on the list. The noise is 30
+  // µm.
   const auto compared = [](double bend_m, bool filmed) {
     const auto made = tests::made_experiment(tests::made_launches(),
                                              {[](double, double, double v, double) { return -0.05 * v * std::abs(v); },
@@ -186,11 +188,11 @@ TEST_CASE(
   double sum = 0.0;
   for (const auto& hypothesis : filmed.all) sum += hypothesis.probability;
   CHECK(std::abs(sum - 1.0) < 1e-9);
-  // 80 µm over 1600 positions: a gain of some thousand.
+  // 80 µm over 1600 positions: a gain of several thousand.
   CHECK(compared(8e-5, true).unknown > 0.8);
 }
 
-TEST_CASE("a launch that is suggested can be made, also where a glider was released from rest") {
+TEST_CASE("a suggested launch can be made, also if a glider was released from rest") {
   const std::vector<tests::MadeLaunch> launches = {
       {0.335, 3.7, 0.75, -1.05}, {0.335, 3.7, 0.7, -0.8}, {0.335, 3.7, -0.1, 0.75}, {0.335, 3.7, -0.12, 0.0}};
   const tests::MadeEffect bow{[](double m, double x, double, double) { return 0.02 * m * x; }, {}};
@@ -212,7 +214,7 @@ TEST_CASE("an effect that is left out of the list is unknown, never another name
   for (const auto& effect : diagnosis.effects) CHECK(effect.probability < 0.8);
 }
 
-TEST_CASE("data that carry no verdict are refused or say so") {
+TEST_CASE("data that support no verdict are refused, or the verdict says so") {
   SECTION("constant positions") {
     const tests::MadeEffect held = {{}, [](double, double) { return 0.25; }};
     CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), held, 1, 0.0)), base::InputError);
@@ -248,8 +250,8 @@ TEST_CASE("data that carry no verdict are refused or say so") {
   }
 }
 
-TEST_CASE("noise that a moving marker's blur adds is no uneven clock in pictures, and may be one in tracks") {
-  // 1.5 µm of noise at rest; and 2 µm more at 1 m/s, which 2 µs of jitter would make as well.
+TEST_CASE("noise that the blur of a moving marker adds is no uneven clock in images, and may be one in tracks") {
+  // A noise of 1.5 µm at rest, and 2 µm more at 1 m/s, as 2 µs of jitter would make too.
   std::mt19937_64 random(17);
   std::normal_distribution<double> normal(0.0, 1.0);
   double last_x = 0.0, last_t = 0.0;
@@ -276,7 +278,7 @@ TEST_CASE("a drag below zero, which would drive the glider, is a note") {
     }
     return {};
   };
-  // Driven by 1.3 K v against its drag of K v: -0.3 K is left, -0.279 N s/m.
+  // Driven by 1.3 K v against its drag of K v: -0.3 K is left, or -0.279 N s/m.
   const double k = tests::MadeGlider{}.k_n_s_m;
   const auto driven = drag_of({.force = [k](double, double, double v, double) { return 1.3 * k * v; }});
   REQUIRE(driven);

@@ -43,8 +43,8 @@ tests::MadeExperiment analysed(const std::vector<tests::NonsenseClip>& clips) {
 }  // namespace
 
 TEST_CASE("motions that no law follows are diagnosed with bounded work, or refused", "[slow]") {
-  // Work is counted in looks: before each fit, scan or search the diagnosis says how far it is. One of six effects and
-  // their pairs looks some hundred times.
+  // Work is counted in reports of progress, of which each fit, scan or search makes one. A diagnosis with six effects
+  // and their pairs makes about a hundred.
   constexpr int kMostLooks = 2000;
   int diagnosed = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {

@@ -43,7 +43,7 @@ bool holds(const core::Quantity& quantity, double truth) {
 
 }  // namespace
 
-TEST_CASE("with the drag that acts in the model, K/m, mu and its size hold the truth that the law alone misses") {
+TEST_CASE("with the acting drag in the model, K/m, mu and its size hold the truth that the nominal model misses") {
   const tests::MadeGlider truth;
   int intervals = 0, held = 0;
   for (const unsigned seed : {11u, 12u, 13u, 14u}) {
@@ -61,11 +61,11 @@ TEST_CASE("with the drag that acts in the model, K/m, mu and its size hold the t
     const diagnose::DiagnosedParameter& size = given.causes[0].parameters[0];
     CHECK(size.key == "c_kg_m");
     CHECK(std::abs(size.value - kDrag_kg_m) < 4.0 * size.sd);
-    CHECK(size.sd < 0.02 * kDrag_kg_m);  // or it would say nothing
+    CHECK(size.sd < 0.02 * kDrag_kg_m);  // otherwise the test would say nothing
     CHECK(given.gap_before > 10.0);
     CHECK(given.gap_after < 1.2);
     CHECK(given.converged);
-    // The law alone is off by many of its own standard deviations.
+    // The nominal model is off by many of its own standard deviations.
     const auto alone = core::join_configurations(made.setups, made.results.clips, truth.gravity_m_s2);
     REQUIRE(alone.size() == 4);
     for (const core::ConfigurationResult& of : alone) {
@@ -75,11 +75,11 @@ TEST_CASE("with the drag that acts in the model, K/m, mu and its size hold the t
       CHECK(off > 5.0 * of.k_over_m_1_s.estimate->sd);
     }
   }
-  // 48 intervals of 95 %, of which few are independent: 2.4 miss on average; 10 are four times as many.
+  // Of 48 intervals of 95 %, few of them independent, 2.4 miss on average; 10 is four times as many.
   CHECK(held >= intervals - 10);
 }
 
-TEST_CASE("a diagnosis that is sure of a cause recovers what the fit with that cause given does") {
+TEST_CASE("a diagnosis that is certain of a cause recovers the same as the fit with that cause given") {
   const tests::MadeExperiment made = with_drag(3);
   const diagnose::GivenCauses given = fit(made, {"quadratic_drag"});
   const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
@@ -94,16 +94,16 @@ TEST_CASE("a diagnosis that is sure of a cause recovers what the fit with that c
                                 &diagnose::RecoveredConfiguration::alpha_deg}) {
       REQUIRE((one.*quantity).estimate);
       REQUIRE((other.*quantity).estimate);
-      // Two ways to one minimum, which ends where chi² changes by less than 1e-3: 0.03 standard deviations.
+      // Two paths to one minimum. Each ends when chi² changes by less than 1e-3, which is 0.03 standard deviations.
       CHECK(std::abs((one.*quantity).estimate->value - (other.*quantity).estimate->value) <
             0.03 * (one.*quantity).estimate->sd);
-      // The diagnosis widens by what else is likely, and never narrows.
+      // The diagnosis widens intervals by other likely explanations, and never narrows them.
       CHECK((other.*quantity).estimate->sd > 0.97 * (one.*quantity).estimate->sd);
     }
   }
 }
 
-TEST_CASE("two causes are fitted together, in whichever order they are named") {
+TEST_CASE("two causes are fitted together, whatever the order in which they are named") {
   const double inertia_kg = 0.02;
   std::vector<tests::MadeLaunch> launches = tests::made_launches();
   for (tests::MadeLaunch& launch : launches) launch.inertia = 1.0 + inertia_kg / launch.mass_kg;
@@ -122,7 +122,7 @@ TEST_CASE("two causes are fitted together, in whichever order they are named") {
   CHECK(other.causes[0].parameters[0].value == Approx(m_w.value).margin(0.03 * m_w.sd));
 }
 
-TEST_CASE("a cause that does not act comes out as nothing, and the gap stays") {
+TEST_CASE("a cause that does not act has a size of 0, and the gap stays") {
   const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 5);
   const diagnose::GivenCauses given = fit(made, {"track_bow"});
   REQUIRE_FALSE(given.causes[0].parameters.empty());
@@ -131,7 +131,7 @@ TEST_CASE("a cause that does not act comes out as nothing, and the gap stays") {
   CHECK(std::abs(given.gap_before - given.gap_after) < 3.0 * given.standard_error);
 }
 
-TEST_CASE("an effect that no fit or no such recording can show is refused, with those that can be named") {
+TEST_CASE("an effect that no fit or no such recording can show is refused, with a list of those that can be named") {
   const tests::MadeExperiment made = with_drag(7);
   const auto says = [](const std::string& text, const std::string& part) {
     INFO(text);

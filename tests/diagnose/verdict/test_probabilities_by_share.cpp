@@ -1,4 +1,4 @@
-/// What the share of the gap does to probabilities: sums that must hold whatever was weighed, and each rule by hand.
+/// How the share of the gap changes probabilities: sums that must hold whatever was weighed, and each rule by hand.
 #include "diagnose/verdict/probabilities_by_share.h"
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct Weighed {
   double left = 0.0;  // of the gap
 };
 
-/// What is left to 1 is unknown.
+/// The rest, up to 1, is unknown.
 Comparison comparison_of(const std::vector<Weighed>& all, double none = 0.0) {
   Comparison comparison;
   comparison.effect_probability.assign(diagnose::effect_list().size(), 0.0);
@@ -51,7 +51,7 @@ diagnose::CauseSequence sequence_of(std::string_view main, double share, double 
   return sequence;
 }
 
-constexpr double kNoNoise = 1e4;  // a gap beside which the noise is next to nothing: its square is above 1e6
+constexpr double kNoNoise = 1e4;  // a gap beside which the noise is negligible: its square is above 1e6
 constexpr double kPlain = 5.0;
 
 double probability_of(const Comparison& comparison, const std::vector<std::size_t>& effects) {
@@ -62,7 +62,7 @@ double probability_of(const Comparison& comparison, const std::vector<std::size_
   return 0.0;
 }
 
-/// Probabilities are some: they sum to 1, and an effect has those of its explanations.
+/// Probabilities sum to 1, and that of an effect is the sum over its explanations.
 void check_sums(const Comparison& comparison) {
   double sum = comparison.none + comparison.unknown;
   std::vector<double> of_effects(comparison.effect_probability.size(), 0.0);
@@ -80,20 +80,20 @@ void check_sums(const Comparison& comparison) {
 
 }  // namespace
 
-TEST_CASE("a law that takes most of a gap without noise has its name, and what stands beside it keeps its own part") {
+TEST_CASE("a law that takes most of a gap without noise is named, and effects beside it keep their part") {
   Comparison comparison = comparison_of({{{kDrag}, 0.06}, {{kDrag, kInertia}, 0.02}, {{kPlace}, 0.12}});
   diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag, kInertia}, comparison);
   check_sums(comparison);
   CHECK(comparison.effect_probability[kDrag] == Approx(0.8));
-  CHECK(comparison.effect_probability[kInertia] == Approx(0.8 * 0.02 / 0.08));  // as likely beside it as before
+  CHECK(comparison.effect_probability[kInertia] == Approx(0.8 * 0.02 / 0.08));  // as likely beside the drag as before
   CHECK(probability_of(comparison, {kDrag}) == Approx(0.8 * 0.06 / 0.08));
-  // 0.12 and 0.8 of the unknown share what is left as they did before.
+  // 0.12 of others and 0.8 of the unknown share what is left in proportion.
   CHECK(probability_of(comparison, {kPlace}) == Approx(0.2 * 0.12 / 0.92));
   CHECK(comparison.unknown == Approx(0.2 * 0.8 / 0.92));
   CHECK(comparison.all.front().effects == std::vector{kDrag});  // the likeliest first
 }
 
-TEST_CASE("a law that lost its probability to the unknown has it back by its share") {
+TEST_CASE("a law that lost its probability to the unknown gets it back by its share") {
   Comparison comparison = comparison_of({{{kDrag}, 0.0}, {{kPlace}, 0.1}});
   diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag}, comparison);
   check_sums(comparison);
@@ -101,7 +101,7 @@ TEST_CASE("a law that lost its probability to the unknown has it back by its sha
   CHECK(comparison.unknown == Approx(0.2 * 0.9));
 }
 
-TEST_CASE("a name by its share alone takes noise that is next to nothing, most of the gap, and a law of all clips") {
+TEST_CASE("a name by its share alone needs negligible noise, most of the gap, and a law of all clips") {
   const auto after = [](std::string_view main, double share, double gap, double probability) {
     const std::size_t effect = effect_index(main);
     Comparison comparison = comparison_of({{{effect}, probability}});
@@ -111,12 +111,12 @@ TEST_CASE("a name by its share alone takes noise that is next to nothing, most o
   };
   CHECK(after(ids::quadratic_drag, 0.9, kNoNoise, 0.1) == Approx(0.8));
   CHECK(after(ids::quadratic_drag, 0.9, kPlain, 0.1) == Approx(0.1));      // the noise counts
-  CHECK(after(ids::quadratic_drag, 0.7, kNoNoise, 0.1) == Approx(0.1));    // half, and not most
-  CHECK(after(ids::clip_scatter, 0.9, kNoNoise, 0.1) == Approx(0.1));      // any clip's size follows any curve
-  CHECK(after(ids::quadratic_drag, 0.9, kNoNoise, 0.95) == Approx(0.95));  // the evidence has more for it
+  CHECK(after(ids::quadratic_drag, 0.7, kNoNoise, 0.1) == Approx(0.1));    // half is not most
+  CHECK(after(ids::clip_scatter, 0.9, kNoNoise, 0.1) == Approx(0.1));      // sizes of each clip follow any curve
+  CHECK(after(ids::quadratic_drag, 0.9, kNoNoise, 0.95) == Approx(0.95));  // the evidence gives it more
 }
 
-TEST_CASE("causes that take less than half of a gap are unknown, and none is not said of a gap") {
+TEST_CASE("causes that take less than half of a gap are unknown, and a gap never has " none "") {
   Comparison comparison = comparison_of({{{kDrag}, 0.7}, {{kPlace}, 0.1}}, 0.15);
   diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, comparison);
   check_sums(comparison);
@@ -140,7 +140,7 @@ TEST_CASE("explanations that leave more than half of the gap give their probabil
   CHECK(comparison.all.front().effects == std::vector{kPlace});
 }
 
-TEST_CASE("what needs no cause counts as none") {
+TEST_CASE("explanations that are not needed count as none") {
   Comparison comparison = comparison_of({{{kDrag}, 0.6}, {{kPlace}, 0.3}}, 0.05);
   diagnose::move_to_none([](const Hypothesis& one) { return one.effects.front() == kDrag; }, comparison);
   check_sums(comparison);
@@ -148,10 +148,10 @@ TEST_CASE("what needs no cause counts as none") {
   CHECK(comparison.effect_probability[kDrag] == Approx(0.0).margin(1e-12));
 }
 
-TEST_CASE("a likelier cause takes the place of named ones only where it leaves a verdict that names something") {
+TEST_CASE("a likelier cause replaces named ones only if the verdict then still names something") {
   const auto share = [](double of) { return sequence_of(ids::quadratic_drag, of, kPlain); };
   CHECK(diagnose::may_displace(share(0.6), share(0.9)));        // it explains the gap as well
-  CHECK_FALSE(diagnose::may_displace(share(0.4), share(0.9)));  // the cause would be unknown where there is a name
+  CHECK_FALSE(diagnose::may_displace(share(0.4), share(0.9)));  // the cause would be unknown although there is a name
   CHECK(diagnose::may_displace(share(0.4), share(0.3)));        // it is unknown anyway
 }
 

@@ -1,4 +1,4 @@
-// What is known of measured recordings that no one here made, beside their diagnosis.
+// What is known of recordings that others measured, and their diagnosis.
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -21,7 +21,7 @@ std::optional<diagnose::Diagnosis> diagnose_real(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("carts whose positions are rounded to 1 cm lack nothing that rounding does not make", "[slow]") {
+TEST_CASE("carts whose positions are rounded to 1 cm lack nothing that rounding does not explain", "[slow]") {
   const auto diagnosis = diagnose_real("incline-cart");
   if (!diagnosis) return;
   CHECK(diagnosis->verdict == diagnose::Verdict::none);
@@ -51,10 +51,10 @@ TEST_CASE("paper cups that fall side by side have a drag with the square of the 
   }
 }
 
-TEST_CASE("three half seconds of a block that slides on wood carry no name", "[slow]") {
+TEST_CASE("three half seconds of a block that slides on wood support no name", "[slow]") {
   const auto diagnosis = diagnose_real("sliding-block");
   if (!diagnosis) return;
-  // Friction of wood differs from place to place: no effect of the list, and no clean experiment either.
+  // The friction of wood differs from place to place: no effect on the list, and no clean experiment either.
   CHECK(diagnosis->verdict == diagnose::Verdict::unknown);
   CHECK(diagnosis->effects.empty());
   REQUIRE(diagnosis->gap);

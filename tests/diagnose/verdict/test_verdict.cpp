@@ -31,10 +31,10 @@ TEST_CASE("two names for one cause count together against one name for another")
         "scale_error");
   CHECK(first(tracks, {of({"direction_asymmetry"}, 0.7), of({"scale_error"}, 0.16), of({"frame_rate_error"}, 0.14)}) ==
         "direction_asymmetry");
-  // Beside another effect as well; a pair is another cause than either alone.
+  // Beside another effect as well. A pair is another cause than either effect alone.
   CHECK(first(tracks, {of({"stribeck", "direction_asymmetry"}, 0.4), of({"stribeck", "frame_rate_error"}, 0.3),
                        of({"scale_error", "stribeck"}, 0.2), of({"scale_error"}, 0.1)}) == "frame_rate_error");
-  // What shakes, camera or table, only pictures can tell.
+  // Only images can tell whether the camera or the table shakes.
   const std::vector<diagnose::Hypothesis> shaken = {of({"stribeck"}, 0.4), of({"camera_motion"}, 0.35),
                                                     of({"base_vibration"}, 0.25)};
   CHECK(first(tracks, shaken) == "camera_motion");
@@ -42,14 +42,14 @@ TEST_CASE("two names for one cause count together against one name for another")
   CHECK(first(tracks, {of({}, 1.0)}).empty());
 }
 
-TEST_CASE("the likeliest cause leads, where its probability is shared out among many second ones") {
+TEST_CASE("the likeliest cause leads, even if its probability is shared out among many pairs") {
   const diagnose::TrackSet tracks;
-  // The bow is in 0.6 of all, the likeliest pair has it not.
+  // The bow is in 0.6 of all, but not in the likeliest pair.
   CHECK(first(tracks, {of({"stribeck", "perspective_error"}, 0.3), of({"tether", "track_bow"}, 0.22),
                        of({"end_stop", "track_bow"}, 0.2), of({"stribeck", "track_bow"}, 0.18)}) == "track_bow");
   CHECK(first(tracks, {of({"stribeck", "perspective_error"}, 0.62), of({"tether", "track_bow"}, 0.22),
                        of({"end_stop", "track_bow"}, 0.16)}) == "perspective_error");
-  // Scatter beside causes leads nowhere; by itself it is a cause.
+  // Scatter beside a cause never leads; by itself it is a cause.
   CHECK(first(tracks, {of({"heavy_tailed_noise", "stribeck"}, 0.4), of({"heavy_tailed_noise", "track_bow"}, 0.35),
                        of({"heavy_tailed_noise"}, 0.25)}) == "stribeck");
   CHECK(first(tracks, {of({"heavy_tailed_noise"}, 0.7), of({"heavy_tailed_noise", "stribeck"}, 0.3)}) ==

@@ -23,7 +23,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Two masses, two launches each, on one inclination of 4 degrees.
+/// Two masses with two launches each, on one inclination of 4 degrees.
 std::vector<tests::MadeLaunch> inclined_launches() {
   return {{0.335, 4.0, 0.3, -1.1}, {0.335, 4.0, -0.6, 1.2}, {0.535, 4.0, 0.3, -0.9}, {0.535, 4.0, -0.6, 0.7}};
 }
@@ -35,7 +35,7 @@ void state(core::ClipSetup& setup, double degrees, double sd_degrees) {
 
 }  // namespace
 
-TEST_CASE("readings of one group are one set-up's as long as they agree, and each counts") {
+TEST_CASE("readings of one group belong to one set-up as long as they agree, and each counts") {
   tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 1, 3e-5, 60);
   state(made.setups[0], 4.0, 0.05);
   state(made.setups[1], 4.1, 0.05);
@@ -43,7 +43,7 @@ TEST_CASE("readings of one group are one set-up's as long as they agree, and eac
   state(made.setups[3], 4.0, 0.2);
   const diagnose::TrackSet one = diagnose::track_set(made.results, made.setups, true);
   REQUIRE(one.groups.size() == 1);
-  CHECK(one.groups[0].statements.size() == 3);  // the third clip repeats the first one's
+  CHECK(one.groups[0].statements.size() == 3);  // the third clip repeats that of the first
 
   state(made.setups[1], 6.0, 0.05);
   const diagnose::TrackSet apart = diagnose::track_set(made.results, made.setups, true);
@@ -53,7 +53,7 @@ TEST_CASE("readings of one group are one set-up's as long as they agree, and eac
   REQUIRE(apart.groups[1].statements.size() == 1);
   CHECK(apart.groups[1].statements[0].alpha_rad == 6.0 * kDegree);
 
-  // Another folder's group of that name is another set-up, with a plumb line of its own.
+  // A group of the same name in another folder is another set-up, with a plumb line of its own.
   state(made.setups[1], 4.1, 0.05);
   made.results.clips[1].experiment = "other";
   core::PlumbResult plumb;
@@ -69,7 +69,7 @@ TEST_CASE("readings of one group are one set-up's as long as they agree, and eac
   CHECK(folders.groups[1].statements[1].alpha_rad == 4.1 * kDegree);
 }
 
-TEST_CASE("what everything else says of an inclination is what a fit without the statement finds") {
+TEST_CASE("the inclination by everything else is the one that a fit without the statement finds") {
   tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 2, 3e-4);
   for (core::ClipSetup& setup : made.setups) state(setup, 4.02, 0.02);
   const diagnose::TrackSet with = diagnose::track_set(made.results, made.setups, true);
@@ -79,15 +79,15 @@ TEST_CASE("what everything else says of an inclination is what a fit without the
   const diagnose::TrackSet without = diagnose::track_set(made.results, made.setups, true);
   const diagnose::MotionFit fit = diagnose::fit_nominal(without);
   const double sd = std::sqrt(diagnose::common_covariance(fit)(2, 2));
-  // Both are the minimum of one chi², up to where the fits stop (a thousandth of its change: 0.03 sd) and alpha's
-  // curvature over 0.02 degrees.
+  // Both are the minimum of one chi², to within the stopping rule (a change by a thousandth: 0.03 standard deviations)
+  // and the curvature in alpha over 0.02 degrees.
   CHECK(std::abs(pulls[0].else_rad - fit.at.global[2]) < 0.05 * sd);
   CHECK(std::abs(pulls[0].else_sd_rad - sd) < 0.02 * sd);
   REQUIRE(pulls[0].z);
   CHECK(std::abs(*pulls[0].z - (4.02 * kDegree - fit.at.global[2]) / std::hypot(0.02 * kDegree, sd)) < 0.05);
 }
 
-TEST_CASE("a stated inclination that the motion contradicts is said first, with both angles") {
+TEST_CASE("a stated inclination that the motion contradicts is reported first, with both angles") {
   tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 3);
   for (core::ClipSetup& setup : made.setups) state(setup, 14.0, 0.05);
   const auto diagnosis = diagnosed(made);
@@ -107,7 +107,8 @@ TEST_CASE("a stated inclination that the motion contradicts is said first, with 
   CHECK(std::get<diagnose::Routine>(diagnosis.next) == diagnose::Routine::measure_inclination);
 }
 
-TEST_CASE("an inclination without its uncertainty that the accelerations contradict is told, whatever the verdict") {
+TEST_CASE(
+    "an inclination without its uncertainty that the accelerations contradict is reported, whatever the verdict") {
   const auto readings = [](const diagnose::Diagnosis& of) {
     return std::count_if(of.notes.begin(), of.notes.end(), [](const diagnose::Note& note) {
       return std::holds_alternative<diagnose::ContradictedReading>(note);
@@ -116,7 +117,7 @@ TEST_CASE("an inclination without its uncertainty that the accelerations contrad
   tests::MadeExperiment made = tests::made_experiment(
       {{0.335, 4.0, -0.6, 1.2}, {0.335, 4.0, 0.5, -1.1}, {0.335, 4.0, -0.6, 1.0}, {0.335, 4.0, 0.4, -1.0}}, {}, 4);
   for (core::ClipSetup& setup : made.setups) setup.incline_sd_rad.reset();
-  core::ConfigurationResult found;  // as the lines would have it
+  core::ConfigurationResult found;  // as a table of lines would have it
   found.mass_kg = 0.335;
   found.incline_deg = 4.0;
   found.alpha_deg.estimate = core::Estimate{4.01, 0.03};
@@ -128,8 +129,8 @@ TEST_CASE("an inclination without its uncertainty that the accelerations contrad
   CHECK(diagnosis.verdict == diagnose::Verdict::none);
 }
 
-TEST_CASE("of positions without noise nothing is claimed below what a sensor could measure, and a drag is named") {
-  // As a simulation writes them, to all digits; also to the ninth place.
+TEST_CASE("for positions without noise nothing is claimed below what a sensor could measure, and a drag is named") {
+  // Positions as a simulation writes them, to all digits, and to nine decimal places.
   const std::function<double(double, double)> to_the_ninth = [](double x, double) {
     return 1e-9 * std::round(1e9 * x);
   };
@@ -148,8 +149,8 @@ TEST_CASE("of positions without noise nothing is claimed below what a sensor cou
 }
 
 TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
-  // Downhill only: what is stated too small of the inclination is taken for friction that drives,
-  // mu' = (mu cos 4 - sin 4 + sin 3)/cos 3 = -0.0114.
+  // Downhill only: an inclination that is stated too small is taken for friction that drives, mu' = (mu cos 4 - sin 4 +
+  // sin 3)/cos 3 = -0.0114.
   const double mu =
       (0.006 * std::cos(4.0 * kDegree) - std::sin(4.0 * kDegree) + std::sin(3.0 * kDegree)) / std::cos(3.0 * kDegree);
   tests::MadeExperiment made = tests::made_experiment(
@@ -164,15 +165,15 @@ TEST_CASE("friction below zero forbids the verdict that nothing is missing") {
   CHECK(std::abs(sum - 1.0) < 1e-9);
   REQUIRE(diagnosis.limits.driving.size() == 1);
   CHECK(diagnosis.limits.driving.front().of == diagnose::NegativeLoss::Of::friction);
-  CHECK(std::abs(diagnosis.limits.driving.front().value - mu) < 1e-4);  // as many digits as its error has
+  CHECK(std::abs(diagnosis.limits.driving.front().value - mu) < 1e-4);  // to the precision of its error
   CHECK(diagnosis.regions.empty());
   REQUIRE(diagnosis.gap);
-  CHECK(diagnosis.gap->before < 1.16);  // as of a nominal experiment: the positions tell nothing
+  CHECK(diagnosis.gap->before < 1.16);  // as in a nominal experiment: the positions show nothing
   CHECK(diagnosis.gap->after == diagnosis.gap->before);
   CHECK(std::get<diagnose::Routine>(diagnosis.next) == diagnose::Routine::check_statements);
 }
 
-TEST_CASE("where a fifth of the motion is set aside, a reader is told how much") {
+TEST_CASE("if a fifth of the motion is set aside, the reader is told how much") {
   const auto made = tests::made_experiment(inclined_launches(), {}, 5, 3e-5, 60);
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   CHECK(set.left_out == 0);
@@ -184,13 +185,13 @@ TEST_CASE("where a fifth of the motion is set aside, a reader is told how much")
   REQUIRE(diagnose::limits_of(set, fit).set_aside);
   CHECK(diagnose::limits_of(set, fit).set_aside->positions == 1000);
   CHECK(std::abs(diagnose::limits_of(set, fit).set_aside->part - 0.21) < 1e-12);
-  // Outliers count with what is left out: 0.19 + 0.81 * 0.05 = 0.23.
+  // Outliers count together with what is left out: 0.19 + 0.81 * 0.05 = 0.23.
   set.left_out = 190;
   for (diagnose::TrackedMotion& motion : set.motions) std::fill_n(motion.outlier.begin(), motion.t_s.size() / 20, 1);
   CHECK(std::abs(diagnose::limits_of(set, fit).set_aside.value().part - 0.2305) < 0.001);
 }
 
-TEST_CASE("too little motion is told clip by clip, with their files") {
+TEST_CASE("too little motion is reported clip by clip, with the files") {
   tests::MadeExperiment made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-5, 20);
   const tests::MadeEffect held = {{}, [](double, double) { return 0.25; }};
   const tests::MadeExperiment still = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, held, 1, 0.0);
@@ -200,7 +201,7 @@ TEST_CASE("too little motion is told clip by clip, with their files") {
   made.setups.back().track = "still.csv";
   try {
     diagnosed(made);
-    FAIL("twenty positions carry no verdict");
+    FAIL("twenty positions support no verdict");
   } catch (const base::InputError& error) {
     REQUIRE(error.issues().size() == 2);
     CHECK(error.issues()[0].file == "none.csv");
@@ -212,7 +213,7 @@ TEST_CASE("too little motion is told clip by clip, with their files") {
   }
 }
 
-TEST_CASE("the middle that a gradient or a bow is about is stated, for each set-up") {
+TEST_CASE("the middle about which a gradient or a bow is defined is stated for each set-up") {
   // K(x) = 0.93 (1 + 0.1 x) = K (1 + b (x - x_mid)): b = 0.1 / (1 + 0.1 x_mid).
   const tests::MadeEffect gradient = {[](double, double x, double v, double) { return -0.93 * 0.1 * x * v; }, {}};
   const auto made = tests::made_experiment(inclined_launches(), gradient, 6);
@@ -250,7 +251,7 @@ TEST_CASE("the middle that a gradient or a bow is about is stated, for each set-
   }
 }
 
-TEST_CASE("a camera's sway is stated in pixels where they are known and of one size") {
+TEST_CASE("the sway of a camera is stated in pixels if they are known and of one size") {
   const auto made = tests::made_experiment(inclined_launches(), {}, 8, 3e-5, 60);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const std::size_t sway = diagnose::effect_index("camera_motion");

@@ -12,7 +12,7 @@ using namespace glidelab;
 
 namespace {
 
-/// A small experiment of which nothing is asked: what is compared is put in by hand.
+/// A small experiment that only provides a set: the compared hypotheses are put in by hand.
 const diagnose::TrackSet& small_set() {
   static const diagnose::TrackSet set = [] {
     const auto made = tests::made_experiment({{0.4, 0.0, 0.5, -1.2}, {0.4, 4.0, -0.6, 1.2}}, {}, 1, 3e-5, 80);
@@ -39,7 +39,7 @@ diagnose::Diagnosis verdict_on(std::vector<diagnose::Hypothesis> all) {
   return diagnose::verdict_of(small_set(), comparison);
 }
 
-/// Whether quadratic drag is said to be what these data cannot tell from a tether.
+/// Whether these data are said not to tell quadratic drag from a tether.
 bool alike(double less_log_evidence, double less_gain) {
   const auto diagnosis =
       verdict_on({only(diagnose::ids::tether, 0.9, 50.0, 60.0),
@@ -52,7 +52,7 @@ bool alike(double less_log_evidence, double less_gain) {
 
 }  // namespace
 
-TEST_CASE("effects are alike up to twenty times less likelihood and a hundred times less evidence, and no farther") {
+TEST_CASE("effects are alike down to a twentieth of the likelihood and a hundredth of the evidence, and no farther") {
   CHECK(alike(0.0, 0.0));
   CHECK(alike(0.9 * std::log(100.0), 0.0));
   CHECK(alike(0.0, 0.9 * std::log(20.0)));
@@ -60,21 +60,21 @@ TEST_CASE("effects are alike up to twenty times less likelihood and a hundred ti
   CHECK_FALSE(alike(0.0, 1.1 * std::log(20.0)));
 }
 
-TEST_CASE("effects are alike only if they take the same part of the gap, and scatter is like no law") {
+TEST_CASE("effects are alike only if they take the same part of the gap, and scatter is alike to no law") {
   const auto alike = [](std::string_view id, double left) {
     diagnose::Hypothesis tether = only(diagnose::ids::tether, 0.9, 50.0, 60.0), other = only(id, 0.1, 50.0, 60.0);
     tether.left = 0.1;
     other.left = left;
     return !verdict_on({tether, other}).effects.front().equivalent_to.empty();
   };
-  // Odds of twenty for what is left, 12.5 of a whole excess (cause_odds.h): 0.24.
+  // Odds of 20 for what is left, with log odds of 12.5 for a whole excess (cause_odds.h): 0.24.
   CHECK(alike(diagnose::ids::quadratic_drag, 0.1 + 0.9 * std::log(20.0) / 12.5));
   CHECK_FALSE(alike(diagnose::ids::quadratic_drag, 0.1 + 1.1 * std::log(20.0) / 12.5));
   CHECK_FALSE(alike(diagnose::ids::heavy_tailed_noise, 0.1));
 }
 
-TEST_CASE("explanations that a page gives no chance stand by their evidence, all others by their probability") {
-  // A page says "< 0.001" of what is rounded to 0.000: half of that.
+TEST_CASE("explanations that a page gives no chance are ordered by evidence, all others by probability") {
+  // A page shows "< 0.001" for what rounds to 0.000: half of that.
   const auto order = [](double second, double third) {
     const auto diagnosis = verdict_on({only(diagnose::ids::tether, 1.0 - second - third, 50.0, 60.0),
                                        only(diagnose::ids::quadratic_drag, second, 20.0, 30.0),

@@ -53,7 +53,7 @@ TEST_CASE("frames that are lost beside a force are named with it") {
   for (const auto& effect : with_bow.effects) {
     if (effect.id != "dropped_frames") continue;
     REQUIRE(effect.parameters.size() == 1);
-    // 24 of 1200, of which those show whose way is several times the noise, 2 mm/s and faster: nearly all; Poisson.
+    // 24 of 1200. Those show that move the glider by several times the noise, at 2 mm/s or faster: nearly all. Poisson.
     CHECK(std::abs(effect.parameters.front().value - 0.02) < 0.008);
   }
 }

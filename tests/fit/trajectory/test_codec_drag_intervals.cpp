@@ -25,7 +25,7 @@ const cv::Size kSize(640, 40);
 
 /// x after t from (0, v): dv/dt = g (sin(alpha) - sign(v) mu cos(alpha)) - k v, solved in closed form on both sides of
 /// the turn.
-double way(double v, double t) {
+double travelled(double v, double t) {
   const double alpha = kAlphaDeg * base::kRadPerDegree;
   const double drive = kGravity * std::sin(alpha), friction = kMu * kGravity * std::cos(alpha);
   const auto glide = [](double from, double limit, double s) {
@@ -106,7 +106,7 @@ Recovered experiment(int number, double dead_px, bool says_so) {
     const auto clip = static_cast<std::size_t>(file == "up" ? 0 : file == "down" ? 1 : 2);
     std::vector<double> places;
     for (int k = 0; k < kFrames; ++k) {
-      places.push_back(kPixelsPerMetre * (starts[clip].first + shift + way(starts[clip].second, k / kRate)));
+      places.push_back(kPixelsPerMetre * (starts[clip].first + shift + travelled(starts[clip].second, k / kRate)));
     }
     const std::uint64_t seed = 1000 * (3 * static_cast<std::uint64_t>(number) + clip) + 7;
     return std::make_unique<PaintedFrames>(drawn(places, dead_px), seed, says_so);

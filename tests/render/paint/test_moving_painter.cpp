@@ -139,10 +139,10 @@ TEST_CASE("A marker's pixels agree in their moments with rays cast one by one") 
   CHECK(worst < 0.0015);
 }
 
-TEST_CASE("A marker that moves is smeared by its way, about the middle of it") {
-  // A disc's picture smeared evenly over L has its variance along the way grown by L²/12 (and of the sampling by n
-  // equal parts, L²/(12 n²) less). The centre is that of the middle up to the perspective's change over the way, 1e-4
-  // px.
+TEST_CASE("A marker that moves is smeared by its displacement, about the middle of it") {
+  // The image of a disc that is smeared evenly over L has a variance along the motion that is larger by L²/12 (less
+  // L²/(12 n²) for sampling in n equal parts). The centre is that of the middle, up to the change of perspective over
+  // the displacement, 1e-4 px.
   const Camera camera = paper_like_camera(kNoLens);
   const RayTable rays = make_ray_table(camera);
   const MovingBody body = marker_at(camera, {402.3, 305.8}, 2.4, 5.0);
@@ -159,17 +159,17 @@ TEST_CASE("A marker that moves is smeared by its way, about the middle of it") {
   };
   const MovingLayer still = paint(camera, rays, body, kStill);
   const auto pixel_at = [&](double x) { return project(camera, body.marker->center_W + x * body.direction_W).value(); };
-  for (const double way_m : {0.0005, 0.004, 0.020}) {
-    const Eigen::Vector2d way_px = pixel_at(0.5 * way_m) - pixel_at(-0.5 * way_m);
+  for (const double smear_m : {0.0005, 0.004, 0.020}) {
+    const Eigen::Vector2d smear_px = pixel_at(0.5 * smear_m) - pixel_at(-0.5 * smear_m);
     std::vector<double> x;
-    const int parts = static_cast<int>(std::ceil(2.0 * way_px.norm()));
-    for (int i = 0; i < parts; ++i) x.push_back(way_m * ((i + 0.5) / parts - 0.5));
+    const int parts = static_cast<int>(std::ceil(2.0 * smear_px.norm()));
+    for (int i = 0; i < parts; ++i) x.push_back(smear_m * ((i + 0.5) / parts - 0.5));
     const MovingLayer moved = paint(camera, rays, body, x);
-    CAPTURE(way_px.norm(), parts);
+    CAPTURE(smear_px.norm(), parts);
     CHECK((moments_of(moved).centroid - moments_of(still).centroid).norm() <
           0.006);  // the pixels' own sampling, see above
-    const double grown = way_px.squaredNorm() / 12.0 * (1.0 - 1.0 / (parts * parts));
-    const double seen = variance_along(moved, way_px.normalized()) - variance_along(still, way_px.normalized());
+    const double grown = smear_px.squaredNorm() / 12.0 * (1.0 - 1.0 / (parts * parts));
+    const double seen = variance_along(moved, smear_px.normalized()) - variance_along(still, smear_px.normalized());
     CHECK(std::abs(seen - grown) < 0.01 * grown + 0.01);
     CHECK(std::abs(moments_of(moved).area / moments_of(still).area - 1.0) < 1e-3);
   }

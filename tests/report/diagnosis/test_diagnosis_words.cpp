@@ -43,7 +43,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::NoInclination{{"level", "inclined"}}, "Set-ups \"level\", \"inclined\" have neither"},
       {diagnose::NoInclination{{"level"}}, "Set-up \"level\" has neither"},
       {diagnose::SplitSetUps{{"flat"}}, "Clips of set-up \"flat\""},
-      {diagnose::LaunchedOtherWay{"up_1", true}, "launched up"},
+      {diagnose::OppositeLaunch{"up_1", true}, "launched up"},
       {diagnose::NegativeLoss{diagnose::NegativeLoss::Of::drag, -0.279, 0.004},
        "The fitted drag is below zero (-0.2790 ± 0.0040 N"},
       {diagnose::ContradictedIncline{"flat", "plumb", 0.1, 0.001, 0.2, 0.001, true, 70.0}, "by the plumb line"},

@@ -101,7 +101,7 @@ diagnose::Diagnosis evil_diagnosis() {
   of.limits.contradicted = {{kEvil, kEvil, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
   of.notes = {diagnose::NoFreeMotion{kEvil, 12},       diagnose::StatementsDisagree{kEvil, kEvil, kEvil, 7.0},
               diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
-              diagnose::LaunchedOtherWay{kEvil, true}, diagnose::ContradictedReading{0.3, {}},
+              diagnose::OppositeLaunch{kEvil, true},   diagnose::ContradictedReading{0.3, {}},
               of.limits.contradicted.front()};
   of.pictures = {{kEvil, diagnose::Stage::optics, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
   of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};

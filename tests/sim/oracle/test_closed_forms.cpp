@@ -62,7 +62,7 @@ TEST_CASE("equations (6) and (7) are the linear motion as k goes to 0, without a
   const Kinematics uniform = uniform_motion(a, 0.1, 0.5, 2.0);
   for (const double k : {0.0, 1e-300, 1e-18, 1e-15, 1e-12, 1e-10}) {
     const Kinematics linear = linear_motion(a, k, 0.1, 0.5, 2.0);
-    // To first order the way differs by k |v0 t² / 2 + a t³ / 6| < 4 k, beside rounding of terms of 5 m.
+    // To first order the distance differs by k |v0 t² / 2 + a t³ / 6| < 4 k, beside rounding of terms of 5 m.
     CHECK(std::abs(linear.x_m - uniform.x_m) < 4.0 * k + 2e-15);
     CHECK(std::abs(linear.v_m_s - uniform.v_m_s) < 8.0 * k + 2e-15);
   }
@@ -124,7 +124,7 @@ TEST_CASE("the quadratic drag goes over into (6) and (7) as q goes to 0") {
     const State without = viscous_coulomb_motion(track, 0.0, 0.1, v0, 1.5);
     for (const double q : {0.0, 1e-300, 1e-18, 1e-14, 1e-11}) {
       const State with = quadratic_coulomb_motion(track, q, 0.1, v0, 1.5);
-      // dv <= q int v² dt < 5 q over 1.5 s at |v| < 2 m/s, and the way 1.5 s times that; rounding of a few 1e-16.
+      // dv <= q int v² dt < 5 q over 1.5 s at |v| < 2 m/s, and the distance 1.5 s times that; rounding of a few 1e-16.
       CHECK(std::abs(with.x_m - without.x_m) < 10.0 * q + 2e-15);
       CHECK(std::abs(with.v_m_s - without.v_m_s) < 10.0 * q + 2e-15);
     }
@@ -165,7 +165,7 @@ TEST_CASE("a power law stops in finite time below n = 1 only, and is exponential
   CHECK(*power_law_stop_time_s(2.0, 0.5, -1.44) == 1.2);  // 2 sqrt(1.44) / 2
   CHECK_FALSE(power_law_stop_time_s(2.0, 1.0, -1.44));
   CHECK(power_law_motion(2.0, 0.5, 0.0, -1.44, 1.3).mode == Mode::stick);
-  // way = v0^1.5 / (1.5 k)
+  // distance = v0^1.5 / (1.5 k)
   CHECK(std::abs(power_law_motion(2.0, 0.5, 0.0, -1.44, 1.3).x_m + 1.728 / 3.0) < 1e-15);
   CHECK(std::abs(power_law_motion(2.0, 1.0, 0.0, 1.0, 0.7).v_m_s - std::exp(-1.4)) < 1e-15);
   for (const double off : {1e-9, -1e-9}) {

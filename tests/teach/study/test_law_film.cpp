@@ -15,8 +15,8 @@ using namespace glidelab;
 
 namespace {
 
-/// The middle of what is white about a place, along the row, and how many pixels that is. The window is lower than the
-/// marker, and than the way from it to the glider's magnets.
+/// The middle along the row of the white pixels about a place, and their number. The window is lower than the marker,
+/// and than the distance from it to the glider's magnets.
 struct Seen {
   double u_px = 0.0;
   int pixels = 0;

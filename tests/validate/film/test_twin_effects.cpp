@@ -70,8 +70,8 @@ double seen_at(const Written& twin, double x_m) {
   REQUIRE(pixel);
   const Eigen::Vector2d ray = *render::undistorted_at(scenario.camera, *pixel);
   const Eigen::Vector3d eye = scenario.camera.X_WC.translation(),
-                        way = scenario.camera.X_WC.linear() * Eigen::Vector3d(ray.x(), ray.y(), 1.0);
-  return twin.view.downhill * (eye - eye.z() / way.z() * way).x();
+                        along = scenario.camera.X_WC.linear() * Eigen::Vector3d(ray.x(), ray.y(), 1.0);
+  return twin.view.downhill * (eye - eye.z() / along.z() * along).x();
 }
 
 }  // namespace

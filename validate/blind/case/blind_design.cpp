@@ -36,10 +36,10 @@ using State = std::array<double, 2>;  // x, v
 constexpr double kTolerance = 1e-11;                                        // m, m/s: a millionth of the smallest noise
 constexpr double kLongestStep = 2e-3, kFirstStep = 1e-4, kRestStep = 2e-4;  // s
 constexpr std::size_t kHalvings = 60;                                       // of 2 ms: to rounding
-constexpr double kRunsAway = 1e3;                                           // m
+constexpr double kFarthest_m = 1e3;                                         // m
 constexpr std::size_t kMostSteps =
-    200'000;                        // of one motion: 40 s at rest; a vanishing mass under drag would take billions
-constexpr double kSetsOff = 1e-12;  // m/s: a speed that has a direction and moves nothing
+    200'000;  // of one motion: 40 s at rest; a vanishing mass under drag would take billions
+constexpr double kFirstSpeed_m_s = 1e-12;  // m/s: a speed that has a direction and moves nothing
 
 BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
   const double weight = law.mass_kg * law.gravity_m_s2;
@@ -52,17 +52,17 @@ BlindTerms terms_of(const BlindLaw& law, double x, double v, double t) {
 
 /// The direction in which it leaves rest, 1 or -1; 0: it stays. The friction that holds it is that of the direction in
 /// which it would leave. If neither direction's friction held it, it would set off, stop at once, and so on.
-int way_from_rest(const BlindLaw& law, double x, double t) {
+int direction_from_rest(const BlindLaw& law, double x, double t) {
   const BlindTerms at_rest = terms_of(law, x, 0.0, t);
-  const int way = at_rest.drive_n - at_rest.drag_n > 0.0 ? 1 : -1;
-  const BlindTerms terms = terms_of(law, x, way * kSetsOff, t);
-  return way * (terms.drive_n - terms.drag_n) > terms.friction_n ? way : 0;
+  const int direction = at_rest.drive_n - at_rest.drag_n > 0.0 ? 1 : -1;
+  const BlindTerms terms = terms_of(law, x, direction * kFirstSpeed_m_s, t);
+  return direction * (terms.drive_n - terms.drag_n) > terms.friction_n ? direction : 0;
 }
 
 class Glider {
  public:
   Glider(const BlindLaw& law, State start, double t) : law_(law), s_(start), t_(t) {
-    way_ = s_[1] > 0.0 ? 1 : s_[1] < 0.0 ? -1 : 0;
+    direction_ = s_[1] > 0.0 ? 1 : s_[1] < 0.0 ? -1 : 0;
   }
 
   std::size_t steps() const { return steps_; }
@@ -71,7 +71,7 @@ class Glider {
     while (t_ < t) {
       if (++steps_ > kMostSteps) {
         lose();
-      } else if (way_ == 0) {
+      } else if (direction_ == 0) {
         rest_until(t);
       } else {
         slide_until(t);
@@ -82,14 +82,14 @@ class Glider {
 
  private:
   void rest_until(double t) {
-    way_ = way_from_rest(law_, s_[0], t_);
-    if (way_ == 0) t_ = std::min(t, t_ + kRestStep);
+    direction_ = direction_from_rest(law_, s_[0], t_);
+    if (direction_ == 0) t_ = std::min(t, t_ + kRestStep);
   }
 
   void slide_until(double t) {
     const auto derivative = [this](const State& s, State& d, double at) {
       const BlindTerms terms = terms_of(law_, s[0], s[1], at);
-      d = {s[1], (terms.drive_n - terms.drag_n - way_ * terms.friction_n) / terms.inertia_kg};
+      d = {s[1], (terms.drive_n - terms.drag_n - direction_ * terms.friction_n) / terms.inertia_kg};
     };
     auto stepper = odeint::make_dense_output(kTolerance, kTolerance, kLongestStep, odeint::runge_kutta_dopri5<State>());
     stepper.initialize(s_, t_, std::min(kFirstStep, t - t_));
@@ -98,8 +98,8 @@ class Glider {
       const double end = std::min(t, stepper.current_time());
       State next;
       stepper.calc_state(end, next);
-      if (!(std::abs(next[0]) < kRunsAway) || ++steps_ > kMostSteps) return lose();
-      if (next[1] * way_ < 0.0) {
+      if (!(std::abs(next[0]) < kFarthest_m) || ++steps_ > kMostSteps) return lose();
+      if (next[1] * direction_ < 0.0) {
         stop_within(stepper, t_, end);
         return;
       }
@@ -120,18 +120,18 @@ class Glider {
     for (std::size_t i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (from + to);
       stepper.calc_state(middle, s);
-      (s[1] * way_ < 0.0 ? to : from) = middle;
+      (s[1] * direction_ < 0.0 ? to : from) = middle;
     }
     stepper.calc_state(to, s);
     s_ = {s[0], 0.0};
     t_ = to;
-    way_ = way_from_rest(law_, s_[0], t_);
+    direction_ = direction_from_rest(law_, s_[0], t_);
   }
 
   const BlindLaw& law_;
   State s_;
   double t_ = 0.0;
-  int way_ = 0;
+  int direction_ = 0;
   std::size_t steps_ = 0;
 };
 

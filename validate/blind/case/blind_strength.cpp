@@ -201,9 +201,9 @@ class LawFit {
  private:
   /// Whether the fitted mass is that of another glider: the fit then no longer describes this one.
   bool is_lost(const BlindDesign& fitted) const {
-    constexpr double kLeft = 0.5;  // of a mass
+    constexpr double kLeastMassPart = 0.5;  // of a mass
     for (std::size_t m = 0; m < fitted.masses.size(); ++m) {
-      if (!(fitted.masses[m].true_kg > kLeft * design_.masses[m].true_kg)) return true;
+      if (!(fitted.masses[m].true_kg > kLeastMassPart * design_.masses[m].true_kg)) return true;
     }
     return false;
   }

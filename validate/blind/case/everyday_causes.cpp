@@ -15,7 +15,7 @@ using Parameters = std::map<std::string, double>;
 
 constexpr double kLeastFactor = 0.15;  // of a separate friction or drag: it must remain one
 
-double way_of(double v) {
+double direction_of_motion(double v) {
   return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0;
 }
 
@@ -48,7 +48,7 @@ BlindEffect drag_of_direction(const BlindDesign&, BlindRandom& random) {
   effect.largest = 0.7;
   effect.put = [=](double size, std::size_t, BlindFilm& film) {
     film.law.changes.push_back(
-        [=](double, double v, double, BlindTerms& f) { f.drag_n *= 1.0 + sign * size * way_of(v); });
+        [=](double, double v, double, BlindTerms& f) { f.drag_n *= 1.0 + sign * size * direction_of_motion(v); });
   };
   effect.truth = [=](double size) { return Parameters{{"d", sign * size}}; };
   return effect;

@@ -16,7 +16,7 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr int kAsTheyAre = 6;  // significant digits that are still readable
+constexpr int kMostReadableDigits = 6;  // significant digits that are still readable
 constexpr int kShownDigits = 4;
 
 bool digit_at(std::string_view text, std::size_t at) {
@@ -90,7 +90,7 @@ std::string without_numbers(std::string_view text) {
 std::string with_rounded_numbers(std::string_view text) {
   return rewritten(text, [](std::string_view number) {
     const bool whole = number.find_first_of(".eE") == std::string_view::npos;
-    if (whole || significant_digits(number) <= kAsTheyAre) return std::string(number);
+    if (whole || significant_digits(number) <= kMostReadableDigits) return std::string(number);
     return base::number_text(std::strtod(std::string(number).c_str(), nullptr), kShownDigits);
   });
 }

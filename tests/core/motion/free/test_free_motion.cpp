@@ -126,12 +126,13 @@ TEST_CASE("an end stop within the data, its rebound and what follows do not chan
   }
 }
 
-TEST_CASE("many bounces give a stretch for each way up and down, of one law") {
+TEST_CASE("many bounces give a stretch for each run up and down, of one law") {
   const Law law{2.0, 0.003, 0.05};
   SimulatedMotion motion;
   motion.rest(0.5).slide(law, 20.0, 0.7, 0.75);
   const auto clip = analyze(tests::clip_setup(core::Launched::released, 2.0), motion, {100.0, 20.0, 2e-4});
-  // The ways get shorter by the restitution, 0.75; those below 0.57 of the first one of their direction are left out.
+  // The runs get shorter by the coefficient of restitution, 0.75. Those below 0.57 of the first one in their direction
+  // are left out.
   CHECK(clip.stretches.size() == 4);
   CHECK(count(clip, LeftOut::short_stretch) > 0);
   for (std::size_t i = 1; i < clip.stretches.size(); ++i) {

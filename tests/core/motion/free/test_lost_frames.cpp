@@ -42,7 +42,7 @@ tests::SimulatedMotion up_and_down() {
 }  // namespace
 
 TEST_CASE("frames lost without a gap in the times are found one by one with their number") {
-  // 30 frames a second, 25 um: a frame's way is 20 to 45 mm at these places.
+  // 30 frames per second and a noise of 25 um: the glider moves 20 to 45 mm per frame at these places.
   const tests::Filming how{30.0, 2.0, 2.5e-5, 3};
   const TrackData track = film_without(up_and_down(), how, {5, 11, 12, 40, 43, 50});
   const auto lost = lost_in(track);

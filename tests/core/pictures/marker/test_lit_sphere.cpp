@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRadius = 7.0;
 constexpr double kNoise = 1.5;    // codes
-constexpr double kBehind = 0.12;  // the light of the wall, and of the ball's unlit side
+constexpr double kBehind = 0.12;  // the light of the wall and of the unlit side of the ball
 
 std::vector<core::SpherePixel> pixels_of(const cv::Mat& picture, double behind) {
   std::vector<core::SpherePixel> pixels;
@@ -39,7 +39,7 @@ core::SphereGuess guess_at(cv::Point2d centre, core::ToneCurve tone) {
   return guess;
 }
 
-/// Its unlit side cannot be told from the wall.
+/// A ball whose unlit side cannot be told from the wall.
 tests::LitBall side_lit(cv::Point2d centre) {
   tests::LitBall ball;
   ball.centre = centre;
@@ -56,7 +56,7 @@ cv::Mat picture_of(const tests::LitBall& ball, bool srgb, std::uint64_t seed, do
       {25, 25}, [&](double u, double v) { return tests::light_of(ball, u, v, kBehind); }, srgb, noise, seed);
 }
 
-/// Of what is brighter than the wall.
+/// The centroid of what is brighter than the wall.
 double centroid_u(const cv::Mat& picture) {
   const double wall = 255.0 * tests::srgb_of_light(kBehind);
   double sum = 0.0, sum_u = 0.0;
@@ -90,13 +90,14 @@ TEST_CASE("A sphere whose unlit side looks like the wall is found at its centre,
     CHECK(std::abs(centroid_u(picture) - centre.x) > 1.0);
   }
   CHECK(sd < 0.02);
-  // The squares of 2 x 40 errors over their variance: chi-squared, mean 1 and standard deviation sqrt(2 / 80) = 0.16
-  // for each; 0.5 and 1.6 are 3.2 and 3.8 standard deviations away, the upper with room for the kink at the shadow's
-  // edge.
+  // The mean of 2 x 40 squared errors over their variance has the mean 1 and the standard deviation sqrt(2/80) = 0.16.
+  // The limits 0.5 and 1.6 are 3.2 and 3.8 standard deviations away, the upper with room for the kink at the edge of
+  // the shadow.
   const double per_coordinate = squares / (2.0 * kFrames);
   CHECK(per_coordinate > 0.5);
   CHECK(per_coordinate < 1.6);
-  // No bias: the mean of 40 within 4 standard deviations, and a hundredth of a pixel for the rim's finite samples.
+  // No bias: the mean of 40 lies within 4 standard deviations, plus a hundredth of a pixel for the finite samples of
+  // the rim.
   CHECK(std::abs(sum_u / kFrames) < 4.0 * sd / std::sqrt(double{kFrames}) + 0.01);
 }
 
@@ -104,7 +105,7 @@ TEST_CASE("The wrong tone curve leaves larger residuals") {
   for (const bool srgb : {false, true}) {
     const cv::Mat picture = picture_of(side_lit({12.2, 11.9}), srgb, 7);
     const auto pixels = pixels_of(picture, kBehind);
-    // In other codes the same wall has another light.
+    // With another tone curve, the same codes of the wall mean another light.
     auto pixels_linear = pixels;
     const double code = srgb ? tests::srgb_of_light(kBehind) : kBehind;
     for (auto& pixel : pixels_linear) pixel.behind = code;
@@ -116,12 +117,13 @@ TEST_CASE("The wrong tone curve leaves larger residuals") {
     REQUIRE(by_srgb);
     const double right = srgb ? by_srgb->rms : by_linear->rms, wrong = srgb ? by_linear->rms : by_srgb->rms;
     CHECK(wrong > 1.3 * right);
-    // Noise and rounding (1/12), 3 % by 600 pixels, and a tenth for what the shadow's edge leaves.
+    // Noise and rounding (1/12), known to 3 % from 600 pixels, and a tenth more for residuals at the edge of the
+    // shadow.
     CHECK(right * 255.0 < 1.15 * std::sqrt(kNoise * kNoise + 1.0 / 12.0));
   }
 }
 
-TEST_CASE("A disc is fitted where it is, as a flat marker without a lamp") {
+TEST_CASE("A disc is fitted at its centre, as a flat marker without a lamp") {
   tests::LitBall disc = side_lit({12.3, 11.8});
   disc.is_disc = true;
   disc.ambient = 0.6;
@@ -131,7 +133,8 @@ TEST_CASE("A disc is fitted where it is, as a flat marker without a lamp") {
   REQUIRE(fit);
   CHECK(std::abs(fit->light.ambient - 0.6) < 0.01);
   CHECK(std::abs(fit->light.lamp[2]) < 1e-3);
-  // Its light has no slope: 150 pixels of noise 1.5 codes, where the tone curve's slope is 0.53, know it to 5e-3.
+  // Its light has no slope. 150 pixels with a noise of 1.5 codes determine it to 5e-3, where the slope of the tone
+  // curve is 0.53.
   CHECK(std::hypot(fit->light.lamp[0], fit->light.lamp[1]) < 0.02);
   CHECK(cv::norm(fit->centre - disc.centre) < 4.0 * fit->sd_px + 0.005);
 }

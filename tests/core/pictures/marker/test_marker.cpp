@@ -15,7 +15,7 @@ constexpr double kNoise = 2.0;  // grey values
 constexpr double kBright = 220.0;
 constexpr double kBackground = 80.0;
 
-/// Background with a slope, and a disc in it.
+/// A disc on a sloping background.
 cv::Mat picture_of(cv::Point2d centre, double radius, double blur_px, cv::Point2d slope = {1.2, -0.7}) {
   cv::Mat picture(49, 49, CV_64F);
   for (int v = 0; v < picture.rows; ++v) {
@@ -28,10 +28,10 @@ cv::Mat picture_of(cv::Point2d centre, double radius, double blur_px, cv::Point2
 }
 
 core::Signal exact(const cv::Mat& picture) {
-  return {tests::expose(200.0 * picture, 0.0, 1, CV_16U)};  // rounding: 0.0014 of a grey value
+  return {tests::expose(200.0 * picture, 0.0, 1, CV_16U)};  // rounding error: 0.0014 of a grey value
 }
 
-/// As in a clip: the blur and size of the frames before are known, the place to a third of a pixel.
+/// As in a clip: blur and size are known from earlier frames, and the position to a third of a pixel.
 core::MarkerGuess guess_of(cv::Point2d centre, double radius, double blur_px) {
   core::MarkerGuess guess;
   guess.centre = centre + cv::Point2d(0.3, -0.25);
@@ -69,7 +69,7 @@ TEST_CASE("a disc's centre is found to 0.01 px without noise at any sub-pixel pl
 }
 
 TEST_CASE("the centroid of a marker's light lies off its centre by a quarter of the shading's share of the radius") {
-  // Above the background A (1 + k x / r): the centroid is at k r / 4.
+  // The light above the background is A (1 + k x / r), whose centroid is at k r / 4.
   constexpr double kRadius = 8.0;
   const cv::Point2d centre(24.3, 24.6);
   for (const double share : {0.0, 0.2}) {
@@ -79,7 +79,7 @@ TEST_CASE("the centroid of a marker's light lies off its centre by a quarter of 
     });
     const auto fit = core::fit_marker(exact(picture), guess_of(centre, kRadius, 0.2), core::Surface::shaded);
     REQUIRE(fit);
-    // The centre is good to 0.01 px; 16 samples a pixel of the rim change the sum by less than that.
+    // The centre is good to 0.01 px. The 16 samples per pixel at the rim change the sum by less than that.
     CHECK(std::abs(fit->light_px.x - share * kRadius / 4.0) < 0.02);
     CHECK(std::abs(fit->light_px.y) < 0.02);
   }
@@ -107,7 +107,7 @@ TEST_CASE("a centroid above a threshold would be pulled by the background's slop
   CHECK(std::abs(fit->centre.x - centre.x) < 0.01);
 }
 
-TEST_CASE("the centre's noise is within 1.3 times the Cramer-Rao bound and is stated right") {
+TEST_CASE("the noise of the centre is within 1.3 times the Cramer-Rao bound and is stated correctly") {
   for (const double radius : {3.0, 5.0, 10.0}) {
     for (const double blur_px : {0.4, 0.8}) {
       const cv::Point2d centre(24.37, 24.61);
@@ -123,7 +123,8 @@ TEST_CASE("the centre's noise is within 1.3 times the Cramer-Rao bound and is st
         variance += 0.5 * squared(fit->centre - mean->centre) / kTrials;
         stated += fit->sd_px * fit->sd_px / kTrials;
       }
-      // Information on u: the sum over pixels of (dI/du)^2, by differences of two pictures; noise with its rounding.
+      // Information on u: the sum over pixels of (dI/du)^2, by the difference of two images. The noise includes
+      // rounding.
       const double step = 0.05;
       const cv::Mat right = picture_of(centre + cv::Point2d(step, 0), radius, blur_px, {0.0, 0.0});
       const cv::Mat left = picture_of(centre - cv::Point2d(step, 0), radius, blur_px, {0.0, 0.0});
@@ -139,7 +140,7 @@ TEST_CASE("the centre's noise is within 1.3 times the Cramer-Rao bound and is st
   }
 }
 
-TEST_CASE("a sphere that is lit from one side keeps its centre where its shading is fitted") {
+TEST_CASE("a sphere that is lit from one side keeps its centre if its shading is fitted") {
   const cv::Point2d centre(24.3, 24.8);
   const double radius = 7.0;
   const cv::Point2d light(0.6, -0.3);
@@ -149,7 +150,7 @@ TEST_CASE("a sphere that is lit from one side keeps its centre where its shading
         const double x = (u - centre.x) / radius, y = (v - centre.y) / radius;
         const double rho2 = x * x + y * y;
         if (rho2 >= 1.0) return 60.0;
-        // Lambert's law under a light in front and to the side, plus light from all around.
+        // Lambert's law for a lamp in front and to the side, plus ambient light.
         const double facing = light.x * x + light.y * y + 0.74 * std::sqrt(1.0 - rho2);
         return 90.0 + 120.0 * std::max(0.0, facing);
       },
@@ -161,8 +162,8 @@ TEST_CASE("a sphere that is lit from one side keeps its centre where its shading
   INFO("uniform off by " << cv::norm(uniform->centre - centre) << " px, shaded by "
                          << cv::norm(shaded->centre - centre));
   CHECK(cv::norm(uniform->centre - centre) > 0.2);
-  // The quadratic surface is not Lambert's: a few hundredths of a pixel are left, a seventh of a per cent of the
-  // radius.
+  // The quadratic surface is not exactly Lambert's. A few hundredths of a pixel are left, a seventh of a per cent of
+  // the radius.
   CHECK(cv::norm(shaded->centre - centre) < 0.05);
   CHECK(shaded->bic < uniform->bic);
 }
@@ -186,7 +187,8 @@ TEST_CASE("an ellipse and a streak of motion keep their centre and show their el
 }
 
 TEST_CASE("the body that carries the marker hardly moves its centre") {
-  // A dark glider below the marker's lower rim, the wall above: a step of 40 grey values, 1.2 radii below the centre.
+  // A dark glider below the lower rim of the marker, and the wall above: a step of 40 grey values, 1.2 radii below the
+  // centre.
   const double radius = 6.0;
   double first = 0.0;
   for (const double phase : {0.0, 0.25, 0.5, 0.75}) {
@@ -196,7 +198,8 @@ TEST_CASE("the body that carries the marker hardly moves its centre") {
     tests::put_disc(picture, centre, radius, kBright, 0.5);
     const auto fit = core::fit_marker(exact(picture), guess_of(centre, radius, 0.5), core::Surface::uniform);
     REQUIRE(fit);
-    // Along the glider nothing changes; across, a constant offset may be left, which does not vary with the phase.
+    // Along the glider nothing changes. Across it, a constant offset may be left, which does not vary with the phase of
+    // the pixels.
     CHECK(std::abs(fit->centre.x - centre.x) < 0.01);
     CHECK(std::abs(fit->centre.y - centre.y) < 0.1);
     if (phase == 0.0) first = fit->centre.y - centre.y;
@@ -204,7 +207,7 @@ TEST_CASE("the body that carries the marker hardly moves its centre") {
   }
 }
 
-TEST_CASE("what is no marker gives nothing") {
+TEST_CASE("an object that is no marker gives no fit") {
   const cv::Mat flat(49, 49, CV_64F, cv::Scalar(90.0));
   const core::MarkerGuess guess = guess_of({24.0, 24.0}, 6.0, 0.5);
   CHECK_FALSE(core::fit_marker({tests::expose(flat, 2.0, 3)}, guess, core::Surface::uniform));
@@ -221,8 +224,8 @@ TEST_CASE("what is no marker gives nothing") {
   CHECK_FALSE(core::fit_marker({tests::expose(disc, 2.0, 3)}, much_larger, core::Surface::uniform));
 }
 
-TEST_CASE("the centroid of a thing of any shape moves with it") {
-  // A rectangle of 11 x 14 px, turned; its centroid is its middle. On a background without a slope.
+TEST_CASE("the centroid of an object of any shape moves with it") {
+  // A rotated rectangle of 11 x 14 px on a background without a slope. Its centroid is its middle.
   const double angle = 0.4;
   for (const double phase : {0.0, 0.3, 0.6}) {
     const cv::Point2d centre(24.0 + phase, 23.5 - phase);
@@ -236,7 +239,7 @@ TEST_CASE("the centroid of a thing of any shape moves with it") {
         8, 0.7);
     const auto found = core::centroid_of_marker(exact(picture), guess_of(centre, 7.0, 0.5));
     REQUIRE(found);
-    // The floor cuts the blurred rim unevenly along 50 px of it: hundredths of a pixel.
+    // The floor cuts the blurred rim unevenly along its 50 px, which shifts the centroid by hundredths of a pixel.
     CHECK(cv::norm(found->centre - centre) < 0.03);
     CHECK(std::abs(found->radius_px - std::sqrt(154.0 / std::numbers::pi)) < 0.5);
   }

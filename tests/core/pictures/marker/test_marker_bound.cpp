@@ -36,10 +36,10 @@ core::MarkerGuess guess_of(cv::Point2d centre, double radius, double blur_px) {
 
 }  // namespace
 
-TEST_CASE("the bound of a large disc is that of its rim's length") {
-  // The rim's normals' mean cos^2 is 1/2: information pi R A^2 / s^2 times the integral of E'^2, which for a Gaussian
-  // edge of sd b is 1 / (2 b sqrt(pi)); a blur of 1.5 px swallows the pixel (b^2 + 1/12). The background's slope costs
-  // what an odd pattern shares with it.
+TEST_CASE("the bound of a large disc is that of the length of its rim") {
+  // The mean of cos^2 over the normals of the rim is 1/2, so the information is pi R A^2 / s^2 times the integral of
+  // E'^2, which is 1 / (2 b sqrt(pi)) for a Gaussian edge of standard deviation b. With a blur of 1.5 px, the pixel
+  // only adds 1/12 to b^2. The slope of the background costs the overlap of an odd pattern with it.
   const double radius = 15.0, blur = 1.5;
   const double b = std::sqrt(blur * blur + 1.0 / 12.0);
   const double information =
@@ -66,7 +66,7 @@ TEST_CASE("the centre's variance is within 1.2 of the Cramer-Rao bound") {
         squares += off.dot(off);
       }
       const double variance = 0.5 * (squares - sum.dot(sum) / kTrials) / (kTrials - 1);
-      const double noise = std::sqrt(kNoise * kNoise + 1.0 / 12.0);  // with the rounding to grey values
+      const double noise = std::sqrt(kNoise * kNoise + 1.0 / 12.0);  // including the rounding to grey values
       const double bound =
           core::least_centre_sd_px({centre.x, centre.y, radius, blur_px, kAmplitude, noise}, 1.25 * radius + 2.5);
       const double ratio = variance / (bound * bound);

@@ -19,7 +19,7 @@ Eigen::Matrix<double, N, 1> parameters() {
   return p;
 }
 
-/// A disc's surroundings with values that no model gives; not a whole number of batches.
+/// A window around a disc with values that no model gives, and not a whole number of batches.
 MarkerPixels pixels() {
   MarkerPixels made;
   std::mt19937 engine(3);
@@ -40,9 +40,10 @@ void check_gradient() {
   MarkerModel<N> model(window);
   const auto here = model.equations(p);
   REQUIRE(here);
-  // Those of brightness, background and shading; the outline's leave out how its steepness changes.
+  // The derivatives with respect to brightness, background and shading. Those with respect to the outline neglect the
+  // change of its steepness.
   for (int k = kBright; k < N; ++k) {
-    // Truncation: 1e-10 of the third derivative; rounding: 1e-16 of a cost of 1e6 over 1e-5.
+    // Truncation is 1e-10 of the third derivative, and rounding 1e-16 of a cost of 1e6, over 1e-5.
     constexpr double kStep = 1e-5;
     Eigen::Matrix<double, N, 1> up = p, down = p;
     up[k] += kStep;
@@ -55,12 +56,14 @@ void check_gradient() {
 
 }  // namespace
 
-TEST_CASE("the marker model's slopes in brightness, background and shading are those of finite differences") {
+TEST_CASE(
+    "the derivatives of the marker model with respect to brightness, background and shading are those of finite "
+    "differences") {
   check_gradient<kUniformParameters>();
   check_gradient<kShadedParameters>();
 }
 
-TEST_CASE("the sums over a marker's pixels are those of the model written out for one pixel after the other") {
+TEST_CASE("the sums over the pixels of a marker are those of the model written out pixel by pixel") {
   const MarkerPixels window = pixels();
   const auto p = parameters<kUniformParameters>();
   const Eigen::Matrix2d m{{p[kMuu], p[kMuv]}, {p[kMuv], p[kMvv]}};
@@ -91,21 +94,22 @@ TEST_CASE("the sums over a marker's pixels are those of the model written out fo
   CHECK(std::abs(sums->weight / weight - 1.0) < 1e-12);
   CHECK(std::abs(sums->jtj(kBright, kBright) / edges - 1.0) < 1e-12);
   CHECK(std::abs(fitted.gradient_variance(p, none)(kBright, kBright) / variance - 1.0) < 1e-12);
-  // In brightness and background the model is linear: a step there gives the residuals that are taken behind it.
+  // The model is linear in brightness and background, so a step in these gives the residuals after it.
   auto brighter = none, behind = p;
   brighter[kBright] = 3.0;
   brighter[kLevel] = -2.0;
   behind += brighter;
   const auto stepped = fitted.gradient_variance(p, brighter);
   CHECK(std::abs(fitted.gradient_variance(behind, none)(kBright, kBright) / stepped(kBright, kBright) - 1.0) < 1e-12);
-  // Slopes that were taken elsewhere since do not count.
+  // Derivatives that were taken elsewhere in between do not count.
   auto elsewhere = p;
   elsewhere[kU] += 1.0;
   fitted.equations(elsewhere);
   CHECK(std::abs(fitted.gradient_variance(p, none)(kBright, kBright) / variance - 1.0) < 1e-12);
 }
 
-TEST_CASE("wide vectors give a marker's sums to the last bit, and a pixel on the very centre counts as marker") {
+TEST_CASE(
+    "wide vectors give the sums of a marker to the last bit, and a pixel exactly at the centre counts as marker") {
   const MarkerPixels window = pixels();
   auto p = parameters<kShadedParameters>();
   p[kU] = 20.0;
@@ -123,7 +127,7 @@ TEST_CASE("wide vectors give a marker's sums to the last bit, and a pixel on the
   CHECK(by_wide.gradient_variance(p, step) == by_plain.gradient_variance(p, step));
 }
 
-TEST_CASE("parameters that are no marker's give no sums") {
+TEST_CASE("parameters that cannot be those of a marker give no sums") {
   const MarkerPixels window = pixels();
   auto p = parameters<kUniformParameters>();
   p[kMuv] = 0.5;  // no ellipse

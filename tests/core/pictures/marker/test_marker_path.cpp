@@ -1,4 +1,4 @@
-/// Which path is the marker's where start_px says so, in the frame that it belongs to.
+/// The choice of the marker's path by start_px, in the frame to which it refers.
 #include "core/pictures/marker/marker_path.h"
 
 #include <fmt/format.h>
@@ -21,12 +21,12 @@ const cv::Size kSize(240, 160);
 constexpr std::size_t kFrames = 80;
 constexpr double kRadius = 5.0, kRate = 50.0;
 
-/// Comes into view at the left edge about frame 26 and leaves at the right one.
+/// A marker that comes into view at the left edge near frame 26 and leaves at the right edge.
 cv::Point2d late(std::size_t k) {
   return {5.0 * (static_cast<double>(k) - 26.0) - 4.0, 60.3};
 }
 
-/// Of the same speed, below it, and ahead.
+/// A second marker with the same speed, below the first and ahead of it.
 cv::Point2d ahead(std::size_t k) {
   return late(k) + cv::Point2d(40.0, 50.0);
 }
@@ -78,14 +78,15 @@ const Scene kTwo = [](cv::Mat& p, std::size_t k) {
   tests::put_disc(p, ahead(k), kRadius, 210.0);
 };
 
-// Noise 2 of 150 at radius 5 leaves 0.006 px a coordinate; the largest of a hundred.
+// A noise of 2 with a contrast of 150 and a radius of 5 px leaves 0.006 px per coordinate; this is the largest of a
+// hundred.
 constexpr double kWorstPx = 0.05;
 
 }  // namespace
 
-TEST_CASE("a marker that comes into view later is followed from where it is first seen whole") {
+TEST_CASE("a marker that comes into view later is followed from where it is first fully in view") {
   const auto tracked = track(kLate, {}, {});
-  // Whole in the window of its fit (1.25 radii and 2.5 px) from frame 29 on, until 231 px in frame 73.
+  // The window of its fit (1.25 radii plus 2.5 px) is within the image from frame 29 on, until 231 px in frame 73.
   CHECK(tracked.sightings.front().frame >= 27);
   CHECK(tracked.sightings.front().frame <= 31);
   CHECK(tracked.sightings.back().frame >= 71);
@@ -93,8 +94,8 @@ TEST_CASE("a marker that comes into view later is followed from where it is firs
   CHECK(worst_px(tracked, late) < kWorstPx);
 }
 
-TEST_CASE("start_px belongs to the frame at start_s, and to the first one where none is given") {
-  // Its place in frame 45 (0.9 s), and the nearest frame to a time between two.
+TEST_CASE("start_px refers to the frame at start_s, and to the first one if none is given") {
+  // Its position in frame 45 (0.9 s), and the nearest frame to a time between two frames.
   for (const double start_s : {0.9, 0.9049}) {
     const auto tracked = track(kLate, point(late(45)), start_s);
     CHECK(tracked.sightings.size() >= 40);
@@ -107,15 +108,15 @@ TEST_CASE("start_px belongs to the frame at start_s, and to the first one where 
 TEST_CASE("of two that look and move alike start_px takes the one that is there at start_s") {
   CHECK(worst_px(track(kTwo, point(late(50)), 1.0), late) < kWorstPx);
   CHECK(worst_px(track(kTwo, point(ahead(50)), 1.0), ahead) < kWorstPx);
-  // Where the other was a little before.
+  // The position of the other one a little earlier.
   CHECK_THAT(refusal(kTwo, point(ahead(40)), 1.0), Contains("no marker near start_px"));
 }
 
-TEST_CASE("a marker that rests until it is released is found by its place at rest, at any time before") {
+TEST_CASE("a marker that is at rest until its release is found by its position at rest, at any time before") {
   const Scene released = [](cv::Mat& p, std::size_t k) {
     const double since = k < 40 ? 0.0 : static_cast<double>(k - 40);
     tests::put_disc(p, {60.4 + 0.1 * since * since, 70.2}, kRadius, 210.0);
-    tests::put_disc(p, {120.3, 120.6}, kRadius, 210.0);  // rests all the time
+    tests::put_disc(p, {120.3, 120.6}, kRadius, 210.0);  // always at rest
   };
   for (const double start_s : {0.0, 0.3, 0.6, 0.8}) {
     INFO("start_s = " << start_s);
@@ -137,7 +138,7 @@ TEST_CASE("the roughness of a path is its noise, whatever cubic it follows, and 
   }
   CHECK(*core::roughness_of(smooth) < 1e-9);
   CHECK(*core::jitter_of(smooth) > 1e-5);  // second differences see the motion
-  // The median of some 1800 sums that share neighbours: 8 % is three of its standard deviations, generously.
+  // The median of some 1800 sums that share neighbours: 8 % is a generous three standard deviations.
   CHECK(*core::roughness_of(noisy) == Approx(0.02).epsilon(0.08));
   CHECK_FALSE(core::roughness_of({{3, {}}, {4, {}}, {5, {}}, {6, {}}, {7, {}}}));
 }

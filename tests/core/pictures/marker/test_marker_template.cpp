@@ -18,13 +18,13 @@ constexpr std::size_t kFrames = 40;
 constexpr double kRadius = 7.3;
 constexpr double kNoise = 1.5;  // codes
 
-/// Slows down, and goes down a little.
+/// A motion that slows down and drops a little.
 cv::Point2d place(std::size_t k) {
   const double t = static_cast<double>(k);
   return {24.3 + 5.6 * t - 0.031 * t * t, 41.2 + 0.173 * t};
 }
 
-/// Light at an offset from the centre, in radii; below 0 where there is nothing of the marker.
+/// The light at an offset from the centre, in radii; negative outside the marker.
 using Look = double (*)(double, double);
 
 bool on_plate(double x, double y) {
@@ -45,7 +45,7 @@ double quadrants(double x, double y) {
   return std::hypot(x, y) < 1.0 && x * y < 0.0 ? 0.8 : on_plate(x, y) ? 0.05 : -1.0;
 }
 
-/// Before a wall with stripes; a post hides a part of it in some frames.
+/// A marker in front of a striped wall. A post hides part of it in some frames.
 std::vector<cv::Mat> film_look(Look look, bool post) {
   std::vector<cv::Mat> frames;
   for (std::size_t k = 0; k < kFrames; ++k) {
@@ -60,7 +60,8 @@ std::vector<cv::Mat> film_look(Look look, bool post) {
   return frames;
 }
 
-/// Off by a constant and by up to a pixel and a half from frame to frame; a fifth of the frames is missing.
+/// Rough positions, off by a constant and by up to one and a half pixels from frame to frame. A fifth of the frames is
+/// missing.
 core::TrackedMarker rough_path(double wrong_px) {
   core::TrackedMarker rough;
   for (std::size_t k = 0; k < kFrames; ++k) {
@@ -83,7 +84,7 @@ std::optional<core::TrackedMarker> by_template(const std::vector<cv::Mat>& frame
   return core::look_by_template(rough, clip, circle);
 }
 
-/// Standard deviation of the places about the truth, px: a constant offset is free.
+/// Standard deviation of the positions about the truth in px. A constant offset is allowed.
 double scatter(const core::TrackedMarker& found) {
   double sum = 0.0, squares = 0.0;
   for (const core::MarkerSighting& sighting : found.sightings) {
@@ -106,8 +107,9 @@ TEST_CASE("A ring, a bull's eye and quadrants are followed by their own look") {
     INFO(made.name);
     const auto found = by_template(film_look(made.look, false), rough_path(1.5));
     REQUIRE(found);
-    CHECK(found->sightings.size() + 1 >= kFrames);  // an end may lie off what its neighbours say
-    // Edges of a hundred codes and 2 pi 7 px with a noise of 1.5 give 0.005 px; the look's grid leaves more.
+    CHECK(found->sightings.size() + 1 >= kFrames);  // an end may lie off the position expected from its neighbours
+    // Edges of a hundred codes, 2 pi 7 px long, with a noise of 1.5 codes give 0.005 px. The grid of the look leaves
+    // more.
     CHECK(scatter(*found) < 0.03);
     const double mean_sd = [&] {
       double sum = 0.0;
@@ -119,10 +121,10 @@ TEST_CASE("A ring, a bull's eye and quadrants are followed by their own look") {
   }
 }
 
-TEST_CASE("A post before the marker moves its place by the look little, or hides it") {
+TEST_CASE("A post in front of the marker hardly shifts its position by the look, or hides it") {
   const auto found = by_template(film_look(quadrants, true), rough_path(1.0));
   REQUIRE(found);
-  // The post lies within the 1.5 radii that are looked at in 27 px of the path: eight frames at 3.5 px each.
+  // The post lies within 1.5 radii of the marker over 27 px of the path: eight frames at 3.5 px each.
   CHECK(found->sightings.size() >= kFrames - 8);
   CHECK(scatter(*found) < 0.15);
 }
@@ -137,7 +139,7 @@ TEST_CASE("A disc of half the stated size is not followed by its own look") {
   CHECK_FALSE(by_template(film_look(small, false), rough_path(0.5)));
 }
 
-TEST_CASE("Sightings that jump about are no path, those of a glider that slows down are one") {
+TEST_CASE("Sightings that jump about make no path, and those of a glider that slows down make one") {
   core::TrackedMarker steady, jumping;
   for (std::size_t k = 0; k < kFrames; ++k) {
     const cv::Point2d at = place(k);

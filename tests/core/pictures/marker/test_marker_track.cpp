@@ -18,7 +18,7 @@ const cv::Size kSize(240, 160);
 constexpr std::size_t kFrames = 60;
 constexpr double kRadius = 5.0;
 
-/// A wall that gets brighter to the right, with slow spots.
+/// A wall that gets brighter to the right, with broad smooth spots.
 cv::Mat wall(double slope = 0.3) {
   cv::Mat picture(kSize, CV_64F);
   for (int v = 0; v < kSize.height; ++v) {
@@ -29,7 +29,7 @@ cv::Mat wall(double slope = 0.3) {
   return picture;
 }
 
-/// Slows down as under friction: from u = 20 to about 190, rising 0.15 px a pixel.
+/// A motion that slows down as under friction, from u = 20 to about 190, and climbs 0.15 px per pixel.
 cv::Point2d place(std::size_t k) {
   const double t = static_cast<double>(k);
   const double u = 20.3 + 4.6 * t - 0.03 * t * t;
@@ -79,7 +79,7 @@ std::vector<cv::Mat> clip(const std::function<void(cv::Mat&, std::size_t)>& scen
   return frames;
 }
 
-/// Root mean square distance from where the marker was painted.
+/// Root mean square distance from the positions at which the marker was painted.
 double error_px(const core::TrackedMarker& tracked, const std::function<cv::Point2d(std::size_t)>& truth = place) {
   double sum = 0.0;
   for (const core::MarkerSighting& sighting : tracked.sightings) {
@@ -89,8 +89,8 @@ double error_px(const core::TrackedMarker& tracked, const std::function<cv::Poin
   return std::sqrt(sum / static_cast<double>(tracked.sightings.size()));
 }
 
-// At radius 5, contrast of 100 to 150 and noise 2 a coordinate's standard deviation is 0.006 px (test_marker.cpp); two
-// coordinates and the wall's curvature: 0.015 px.
+// At a radius of 5 px, a contrast of 100 to 150 and a noise of 2, the standard deviation of a coordinate is 0.006 px
+// (test_marker.cpp). Two coordinates and the curvature of the wall make 0.015 px.
 constexpr double kNoiseLimitPx = 0.015;
 
 }  // namespace
@@ -102,7 +102,7 @@ TEST_CASE("a marker that moves over a wall of uneven brightness is found in ever
   CHECK(tracked.notes.empty());
 }
 
-TEST_CASE("clutter brighter than the marker, and a resting thing just like it, are not taken for it") {
+TEST_CASE("clutter brighter than the marker, and an object at rest that looks just like it, are not taken for it") {
   const auto tracked = track(clip([](cv::Mat& p, std::size_t k) {
     tests::put_box(p, {5, 5, 70, 22}, 250.0);  // a lamp
     tests::put_box(p, {200, 120, 30, 30}, 240.0);
@@ -115,7 +115,7 @@ TEST_CASE("clutter brighter than the marker, and a resting thing just like it, a
   CHECK(error_px(tracked) < kNoiseLimitPx);
 }
 
-TEST_CASE("a larger and brighter thing that moves along is not the marker") {
+TEST_CASE("a larger and brighter object that moves with the marker is not taken for it") {
   const auto tracked = track(clip([](cv::Mat& p, std::size_t k) {
     tests::put_disc(p, place(k) + cv::Point2d(-2.0, 30.0), 1.9 * kRadius, 250.0);
     tests::put_disc(p, place(k), kRadius, 170.0);
@@ -132,11 +132,12 @@ TEST_CASE("a marker on a dark glider with a bright plate beside it keeps its pla
     tests::put_disc(p, place(k), kRadius, 200.0);
   }));
   CHECK(tracked.sightings.size() == kFrames);
-  // The glider is painted to whole pixels, so that its rim 4 px above the centre jitters by half a pixel beside it.
+  // The glider is painted at whole pixels, so that its rim, 4 px above the centre, jitters by half a pixel relative to
+  // the marker.
   CHECK(error_px(tracked) < 0.25);
 }
 
-TEST_CASE("a marker that rests before and after its motion is found in all frames") {
+TEST_CASE("a marker that is at rest before and after its motion is found in all frames") {
   const auto where = [](std::size_t k) { return place(k < 20 ? 0 : std::min<std::size_t>(2 * (k - 20), 50)); };
   const auto tracked = track(clip([&](cv::Mat& p, std::size_t k) { tests::put_disc(p, where(k), kRadius, 210.0); }));
   CHECK(tracked.sightings.size() == kFrames);
@@ -154,8 +155,8 @@ TEST_CASE("a marker that bounces within one frame is followed") {
   CHECK(error_px(tracked, where) < kNoiseLimitPx);
 }
 
-TEST_CASE("frames in which the marker is hidden stay without a sighting") {
-  // A post 18 px wide hides the marker whole, or in part, for some frames; the wall behind is flat beside the post.
+TEST_CASE("frames in which the marker is hidden have no sighting") {
+  // A post 18 px wide hides the marker, in whole or in part, for some frames. The wall beside the post is flat.
   std::size_t free = 0;
   const auto frames = clip([&](cv::Mat& p, std::size_t k) {
     tests::put_disc(p, place(k), kRadius, 210.0);
@@ -171,11 +172,11 @@ TEST_CASE("frames in which the marker is hidden stay without a sighting") {
   CHECK(tracked.sightings.size() >= free - 4);
   CHECK(tracked.sightings.size() < kFrames);
   CHECK(tracked.sightings.back().frame == kFrames - 1);
-  // Next to the post the window holds its edge.
+  // Next to the post, the window contains its edge.
   CHECK(error_px(tracked) < 0.2);
 }
 
-TEST_CASE("a marker that comes into the picture late is followed back to where it came in") {
+TEST_CASE("a marker that comes into view late is followed back to where it came in") {
   const auto where = [](std::size_t k) { return cv::Point2d(-60.0 + 4.0 * static_cast<double>(k), 70.0); };
   const auto tracked = track(clip([&](cv::Mat& p, std::size_t k) { tests::put_disc(p, where(k), kRadius, 210.0); }));
   // Its window (1.25 radii + 2.5 px = 8.75 px) is inside from u = 9 on: frame 18.
@@ -223,7 +224,7 @@ TEST_CASE("two equal markers that move alike are an error, unless start_px says 
   CHECK(error_px(tracked, [&](std::size_t k) { return place(k) + off; }) < kNoiseLimitPx);
 }
 
-TEST_CASE("a second marker that comes while the first is followed is found, and followed back to where it came") {
+TEST_CASE("a second marker that appears while the first is followed is found, and followed back to where it appeared") {
   for (const std::size_t came : {23u, 35u}) {
     const std::string error = error_of(clip([&](cv::Mat& p, std::size_t k) {
       tests::put_disc(p, place(k), kRadius, 210.0);
@@ -235,31 +236,31 @@ TEST_CASE("a second marker that comes while the first is followed is found, and 
 
 TEST_CASE("a clip without a marker is an error, and so is a start_px with nothing there") {
   CHECK_THAT(error_of(clip([](cv::Mat&, std::size_t) {})), Catch::Contains("clip.mkv") && Catch::Contains("no marker"));
-  // Two things rest and none moves.
+  // Two objects are at rest and none moves.
   CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t) {
                tests::put_disc(p, {60.0, 60.0}, kRadius, 210.0);
                tests::put_disc(p, {160.0, 60.0}, kRadius, 210.0);
              })),
-             Catch::Contains("2 such things rest"));
+             Catch::Contains("2 such objects are at rest"));
   core::MarkerSetup elsewhere = marker();
   elsewhere.start_px = {200.0, 20.0};
   CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); }), elsewhere),
              Catch::Contains("no marker near start_px"));
 }
 
-TEST_CASE("something far larger than the marker that moves is no marker") {
+TEST_CASE("a moving object far larger than the marker is not the marker") {
   CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), 3.0 * kRadius, 210.0); })),
              Catch::Contains("no marker"));
 }
 
-TEST_CASE("a marker that rests all the time is found, with a note") {
+TEST_CASE("a marker that is always at rest is found, with a note") {
   const auto tracked = track(clip([](cv::Mat& p, std::size_t) { tests::put_disc(p, {60.3, 60.7}, kRadius, 210.0); }));
   CHECK(tracked.sightings.size() == kFrames);
   REQUIRE(tracked.notes.size() == 1);
   CHECK(std::holds_alternative<core::MarkerAtRest>(tracked.notes[0]));
 }
 
-TEST_CASE("a thing of a known colour is found among brighter ones of other colours") {
+TEST_CASE("an object of a known colour is found among brighter ones of other colours") {
   core::MarkerSetup green = marker();
   green.color_bgr = {70, 115, 45};
   std::vector<cv::Mat> frames;
@@ -277,13 +278,13 @@ TEST_CASE("a thing of a known colour is found among brighter ones of other colou
   }
   const auto tracked = track(frames, green, 2.0);
   CHECK(tracked.sightings.size() == kFrames);
-  // The hue's contrast is a third of a grey marker's, and likeness is worked out in whole steps of 255.
+  // The contrast of the hue is a third of that of a grey marker, and likeness is quantised in whole steps of 255.
   CHECK(error_px(tracked) < 4.0 * kNoiseLimitPx);
   CHECK_THAT(error_of(clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); }), green),
              Catch::Contains("without colours"));
 }
 
-TEST_CASE("a dark marker is found where its colour says that it is dark") {
+TEST_CASE("a dark marker is found if its colour says that it is dark") {
   core::MarkerSetup dark = marker();
   dark.color_bgr = {16, 16, 16};
   const auto frames = clip([](cv::Mat& p, std::size_t k) {
@@ -295,7 +296,7 @@ TEST_CASE("a dark marker is found where its colour says that it is dark") {
   CHECK(error_px(tracked) < kNoiseLimitPx);
 }
 
-TEST_CASE("a diameter stated wrong by a quarter still finds the marker, with a note") {
+TEST_CASE("a marker whose stated diameter is wrong by a quarter is still found, with a note") {
   const auto frames = clip([](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), kRadius, 210.0); });
   const auto tracked = track(frames, marker(), 2.0, 0.75 * kRadius);
   CHECK(tracked.sightings.size() == kFrames);
@@ -310,13 +311,13 @@ TEST_CASE("small and large markers are found") {
     const auto frames = clip([&](cv::Mat& p, std::size_t k) { tests::put_disc(p, place(k), radius, 210.0); });
     const auto tracked = track(frames, marker(), 2.0, radius);
     INFO("radius " << radius << ": " << error_px(tracked) << " px");
-    // The largest one's window (20 px) leaves the picture in the first frame.
+    // The window of the largest one (20 px) leaves the image in the first frame.
     CHECK(tracked.sightings.size() >= kFrames - (radius > 10.0 ? 1 : 0));
     CHECK(error_px(tracked) < 3.0 * kNoiseLimitPx);
   }
 }
 
-TEST_CASE("the lit part of a sphere is followed where it need not look like a disc") {
+TEST_CASE("the lit part of a sphere is followed if it need not look like a disc") {
   std::vector<cv::Mat> frames;
   for (std::size_t k = 0; k < kFrames; ++k) {
     tests::LitBall ball;
@@ -348,8 +349,8 @@ TEST_CASE("the lit part of a sphere is followed where it need not look like a di
 
 namespace {
 
-/// A small sharp disc that moves 1.04 px a frame behind a mosaic and a tone curve: what repeats with the pixels becomes
-/// a wave of 25 frames.
+/// A small sharp disc that moves 1.04 px per frame, seen through a mosaic and a tone curve. An error that repeats with
+/// the pixels becomes a wave with a period of 25 frames.
 struct MosaicClip {
   static constexpr double kSmall = 3.7;
   static constexpr std::size_t kCount = 150;
@@ -377,10 +378,11 @@ struct MosaicClip {
 
 }  // namespace
 
-TEST_CASE("sightings that are not corrected for the pixels' answer are counted in a note") {
+TEST_CASE("sightings that are not corrected for the response of the pixels are counted in a note") {
   const MosaicClip clip;
   CHECK(tests::note_of<core::PixelsAnswerLeft>(clip.tracked().notes) == nullptr);
-  // Codes of one byte, 2 (1.25 r + 2.5, rounded up, + 1) + 1 pixels wide: 17 for r = 3.2, 21 for r = 4.3 px.
+  // A window has codes of one byte and is 2 (ceil(1.25 r + 2.5) + 1) + 1 pixels wide: 17 px for r = 3.2 px, 21 px for r
+  // = 4.3 px.
   constexpr std::size_t kWindows = 60, kLargest = 21 * 21, kSmallest = 17 * 17;
   const core::TrackedMarker limited = clip.tracked(kWindows * kSmallest);
   const auto* note = tests::note_of<core::PixelsAnswerLeft>(limited.notes);
@@ -391,8 +393,8 @@ TEST_CASE("sightings that are not corrected for the pixels' answer are counted i
 }
 
 TEST_CASE("a colour mosaic and a tone curve do not move a small sharp marker") {
-  // Without the pixels' answer taken off, the centre is off by 0.017 and 0.021 px (rms); noise of 1 code and a bit
-  // leaves 0.005 px.
+  // Without a correction for the response of the pixels, the centre is off by 0.017 and 0.021 px (rms). Noise of a
+  // little over 1 code leaves 0.005 px.
   constexpr std::size_t kCount = MosaicClip::kCount;
   for (const int interpolation : {cv::COLOR_BayerRG2BGR, cv::COLOR_BayerRG2BGR_EA}) {
     const core::TrackedMarker tracked = MosaicClip{interpolation}.tracked();

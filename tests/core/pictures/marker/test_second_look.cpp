@@ -17,7 +17,7 @@ constexpr std::size_t kFrames = 44;
 constexpr double kRadius = 7.0;
 constexpr double kNoise = 1.5;  // codes
 
-/// Slows down; it passes below the lamp on the wall, which it covers in part.
+/// A sphere that slows down and passes below the lamp on the wall, which it partly covers.
 cv::Point2d place(std::size_t k) {
   const double t = static_cast<double>(k);
   return {18.3 + 4.6 * t - 0.022 * t * t, 63.4};
@@ -28,7 +28,7 @@ std::vector<cv::Mat> film(tests::LitBall ball) {
   ball.radius_px = kRadius;
   for (std::size_t k = 0; k < kFrames; ++k) {
     ball.centre = place(k);
-    // Its stick moves with it.
+    // The stick of the sphere moves with it.
     const auto light = [&](double u, double v) {
       const double off = u - ball.centre.x;
       const bool stick = std::abs(off) < 1.0 && v > ball.centre.y;
@@ -39,7 +39,8 @@ std::vector<cv::Mat> film(tests::LitBall ball) {
   return frames;
 }
 
-/// As a disc's fit or a centroid leaves it: drawn to the light, and lost at the start and before the lamp.
+/// The first look of a disc's fit or of a centroid: shifted towards the light, and lost at the start and in front of
+/// the lamp.
 core::TrackedMarker first_look(double off_px, double rms_codes) {
   core::TrackedMarker first;
   for (std::size_t k = 4; k < kFrames; ++k) {
@@ -76,7 +77,7 @@ tests::LitBall side_lit() {
 
 }  // namespace
 
-TEST_CASE("A sphere in side light that passes a lamp is seen in every frame, where it is") {
+TEST_CASE("A sphere in side light that passes a lamp is found in every frame, at its centre") {
   const std::vector<cv::Mat> frames = film(side_lit());
   const auto found = again(frames, first_look(-1.8, 12.0));
   REQUIRE(found);
@@ -88,18 +89,18 @@ TEST_CASE("A sphere in side light that passes a lamp is seen in every frame, whe
     sum += off;
   }
   for (std::size_t i = 0; i < found->fits.size(); ++i) {
-    // Drawn to the light at its upper left by more than a pixel, but for frames in which the lamp on the wall stands
-    // out.
+    // The first look is shifted towards the light at the upper left by more than a pixel, except in frames in which the
+    // lamp on the wall stands out.
     if (std::abs(found->sightings[i].u_px - 130.0) > 30.0) CHECK(found->fits[i].light_px.x < -0.8);
   }
-  // A rim of 2 pi 7 px of which half stands out, by 50 codes and more with a noise of 1.5: 0.01 px where the size is
-  // known, twice that with the directions of the stick left out. The mean may be off by what the size is (a hundredth
-  // of the radius, all of it on the lit side).
+  // Half of a rim of 2 pi 7 px stands out, by 50 codes or more with a noise of 1.5 codes. That gives 0.01 px with a
+  // known size, and twice that without the directions of the stick. The mean may be off by the error of the size (a
+  // hundredth of the radius, all of it on the lit side).
   CHECK(std::sqrt(squares / kFrames) < 0.05);
   CHECK(std::abs(sum / kFrames) < 0.04);
 }
 
-TEST_CASE("A disc that the first look fits to the noise stays as it was fitted") {
+TEST_CASE("A disc that the first look fits to within the noise keeps its fit") {
   tests::LitBall disc;
   disc.is_disc = true;
   disc.ambient = 0.6;
@@ -117,7 +118,7 @@ TEST_CASE("A disc that the first look fits to the noise stays as it was fitted")
   CHECK_FALSE(again(frames, first));
 }
 
-TEST_CASE("Nothing is found again where no marker is") {
+TEST_CASE("Nothing is found again where there is no marker") {
   std::vector<cv::Mat> frames;
   for (std::size_t k = 0; k < kFrames; ++k)
     frames.push_back(tests::expose_light(kSize, tests::wall_light, true, kNoise, 900 + k));

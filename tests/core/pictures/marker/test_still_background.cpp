@@ -7,7 +7,8 @@
 
 using namespace glidelab;
 
-TEST_CASE("What rests at one place in most frames is not taken for the background where it is known to hide it") {
+TEST_CASE(
+    "An object that stays at one place in most frames is not taken for the background if it is known to hide it") {
   const cv::Size size(40, 20);
   constexpr std::size_t kFrames = 30;
   constexpr double kNoise = 2.0;
@@ -24,7 +25,7 @@ TEST_CASE("What rests at one place in most frames is not taken for the backgroun
     return std::abs(off.x) <= 3 && std::abs(off.y) <= 3;
   };
   const auto part = background.behind(cv::Rect(2, 2, 36, 16), hides);
-  // The mean of ten codes or more; 6 standard deviations over 576 pixels.
+  // Each is the mean of ten codes or more: 6 standard deviations, over 576 pixels.
   const double limit = 6.0 * kNoise / std::sqrt(10.0);
   for (int v = 0; v < 16; ++v) {
     for (int u = 0; u < 36; ++u) {
@@ -32,7 +33,7 @@ TEST_CASE("What rests at one place in most frames is not taken for the backgroun
       CHECK(std::abs(part.codes.at<float>(v, u) - 80.0) < limit);
     }
   }
-  // The standard deviation by 18 pixels' mean magnitudes about a median: to a fifth.
+  // The standard deviation from the mean magnitudes of 18 pixels about their medians is good to a fifth.
   CHECK(std::abs(part.noise / std::hypot(kNoise, 1.0 / std::sqrt(12.0)) - 1.0) < 0.2);
 }
 

@@ -88,11 +88,11 @@ TEST_CASE("with every law a glider launched upward stops when and where the inte
       const double v0 = 1.4;
       const auto seconds = [&](double speed) { return kMass / (weight + law.brake_n(speed)); };
       const double stop_s = tests::integrate(v0, seconds);
-      const double way_m = tests::integrate(v0, [&](double speed) { return speed * seconds(speed); });
+      const double distance_m = tests::integrate(v0, [&](double speed) { return speed * seconds(speed); });
       const Trajectory trajectory = simulate(glider, 0.5, -v0, std::vector<double>{2.0 * stop_s});
       REQUIRE(trajectory.changes.size() == 1);
       CHECK(std::abs(trajectory.changes[0].t_s - stop_s) < 1e-9);
-      CHECK(std::abs(trajectory.changes[0].x_m - (0.5 - way_m)) < 1e-10);
+      CHECK(std::abs(trajectory.changes[0].x_m - (0.5 - distance_m)) < 1e-10);
       CHECK(trajectory.changes[0].to == mode_at_rest(glider));
     }
   }
@@ -108,10 +108,10 @@ TEST_CASE("with every law a glider that is released downhill reaches a speed whe
     const double speed = 0.3;  // below every v_lim here
     const auto seconds = [&](double v) { return kMass / (weight - law.brake_n(v)); };
     const double reached_s = tests::integrate(speed, seconds);
-    const double way_m = tests::integrate(speed, [&](double v) { return v * seconds(v); });
+    const double distance_m = tests::integrate(speed, [&](double v) { return v * seconds(v); });
     const Trajectory trajectory = simulate(glider, 0.0, 0.0, std::vector<double>{reached_s});
     CHECK(std::abs(trajectory.states[0].v_m_s - speed) < 1e-10);
-    CHECK(std::abs(trajectory.states[0].x_m - way_m) < 1e-10);
+    CHECK(std::abs(trajectory.states[0].x_m - distance_m) < 1e-10);
   }
 }
 
@@ -187,7 +187,7 @@ TEST_CASE("eddy-current roll-off alone on a level track fulfils its implicit t(v
     for (const State& state : trajectory.states) {
       // At v -> 0 the time is ln v / k: an error of t is one of v / v, so it shows whether v is good relatively.
       CHECK(std::abs(eddy_rolloff_time_s(k, v_c, v0, state.v_m_s) - state.t_s) < 1e-9);
-      CHECK(std::abs(0.1 + eddy_rolloff_way_m(k, v_c, v0, state.v_m_s) - state.x_m) < 1e-9);
+      CHECK(std::abs(0.1 + eddy_rolloff_distance_m(k, v_c, v0, state.v_m_s) - state.x_m) < 1e-9);
     }
   }
 }

@@ -32,8 +32,9 @@ validate::BlindDesign small_design() {
   design.masses.push_back({0.3, 0.3, 0.0});
   design.masses.push_back({0.5, 0.5, 0.0});
   for (std::size_t c = 0; c < 4; ++c) {
-    const double way = c % 2 == 0 ? -1.0 : 1.0;
-    design.clips.push_back({"c" + std::to_string(c), 0, c / 2, -0.3 * way, way * (0.6 + 0.1 * double(c)), 50.0, 50});
+    const double direction = c % 2 == 0 ? -1.0 : 1.0;
+    design.clips.push_back(
+        {"c" + std::to_string(c), 0, c / 2, -0.3 * direction, direction * (0.6 + 0.1 * double(c)), 50.0, 50});
   }
   return design;
 }
