@@ -116,7 +116,7 @@ TEST_CASE("a name by its share alone needs negligible noise, most of the gap, an
   CHECK(after(ids::quadratic_drag, 0.9, kNoNoise, 0.95) == Approx(0.95));  // the evidence gives it more
 }
 
-TEST_CASE("causes that take less than half of a gap are unknown, and a gap never has " none "") {
+TEST_CASE("causes that take less than half of a gap are unknown, and no gap counts as none") {
   Comparison comparison = comparison_of({{{kDrag}, 0.7}, {{kPlace}, 0.1}}, 0.15);
   diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, comparison);
   check_sums(comparison);
