@@ -15,9 +15,8 @@ namespace {
 
 constexpr double kTailScale = 5.0, kTailPower = 2.45;                     // s and n of cause_odds.h
 constexpr double kNameOdds = 1.1, kLeftSlope = 12.5, kExcessSlope = 0.8;  // a, b and c of cause_odds.h
-constexpr double kAgainstLateRelease = 3.2, kAgainstClipScatter = 1.8,
-                 kAgainstUnnamedBeside = 1.4;  // log odds against each
-constexpr double kAgainstUnnamedAlone = 1.0;   // log odds against a function without a name alone
+constexpr double kAgainstUnnamedBeside = 1.4;  // log odds against a function without a name beside causes,
+constexpr double kAgainstUnnamedAlone = 1.0;   // and alone
 constexpr double kImitatedPart = 0.08;         // part of a cause's probability that belongs to a cause off the list
 constexpr double kAgainstFurtherCause = 2.0;   // log odds against each further cause where the noise is negligible
 constexpr double kNotMeasured = -1.0;          // the excess of a gap of 0: no clip was held out
@@ -88,8 +87,7 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
     if (one.unnamed && one.effects.empty()) {
       log += std::max(0.0, named - kAgainstUnnamedAlone - kLeftSlope * part_left(unnamed_excess, excess.front()));
     }
-    if (has(one, effect_index(ids::late_release))) log -= kAgainstLateRelease;
-    if (has(one, effect_index(ids::clip_scatter))) log -= kAgainstClipScatter;
+    for (const std::size_t e : one.effects) log += effect_list()[e].log_odds_beside_remainder;
     log += log_prior_odds(comparison, one);
     if (one.unnamed) log -= kAgainstUnnamedBeside;
     logs.push_back(log);

@@ -189,10 +189,18 @@ enum class Reach {
 /// How a fitted parameter is shown.
 enum class ShownAs {
   itself,
-  one_more,      ///< n, where n - 1 is fitted; s, where s - 1 is
-  inverse_root,  ///< v_c, where 1/v_c² is fitted
-  together,      ///< all of its kind together under one key (derived_parameters() in verdict_details.h)
+  itself_and_directions,  ///< d, and K (1 + d) and K (1 - d) under k_plus_n_s_m and k_minus_n_s_m
+  one_more,               ///< n, where n - 1 is fitted; s, where s - 1 is
+  inverse_root,           ///< v_c, where 1/v_c² is fitted
+  of_mu,                  ///< deviations d of mu: the standard deviation of all mu + d, and each of them (own_sizes.h)
+  of_drag,                ///< relative deviations d of K: the same of all K (1 + d)
+  along_track,            ///< with the effect's other parameters, as a function of position (own_sizes.h)
 };
+
+/// Whether it is shown only together with others of its kind.
+constexpr bool shown_together(ShownAs how) {
+  return how == ShownAs::of_mu || how == ShownAs::of_drag || how == ShownAs::along_track;
+}
 
 /// What has a parameter value of its own. A configuration is one mass on one set-up.
 enum class Each { experiment, configuration, clip, motion };
@@ -206,7 +214,8 @@ struct EffectParameter {
   Reach reach = Reach::stated;
   ShownAs shown_as = ShownAs::itself;
   Each each = Each::experiment;
-  bool only_filmed = false;  ///< fitted to filmed motions only
+  std::string_view each_key = {};  ///< for ShownAs::of_mu and of_drag: the key of single values; empty: not shown
+  bool only_filmed = false;        ///< fitted to filmed motions only
   /// Standard deviation of a normal prior about 0, for parameters of which the data determine only combinations: the
   /// deviations of clips, configurations or places from a mean that is fitted too. 0: no prior.
   double held_sd = 0.0;
@@ -275,6 +284,13 @@ struct Alike {
   bool filmed = false;       ///< nor can filmed clips
 };
 
+/// Where images show an effect by themselves, whatever the positions do.
+struct InImages {
+  GapVariable over;
+  GapKind what;
+  bool along_track = false;  ///< over rows if the track runs down the image
+};
+
 /// What the prior odds of an effect depend on.
 struct Circumstances {
   std::size_t clips = 0;
@@ -294,12 +310,16 @@ struct EffectInfo {
   bool both_signs;
   /// Prior odds relative to another effect; 0 if such a recording cannot show this one at any size. Null: 1.
   double (*odds)(const Circumstances& of);
+  /// Log of a further factor of these odds where explanations are weighed with a remainder. Below 0 for an effect that
+  /// fits nearly any small imperfection of single clips; the two values are fitted (cause_odds.h).
+  double log_odds_beside_remainder;
   std::vector<EffectParameter> parameters;  ///< the amplitude first, then the shape parameter
   EffectLaw law;
   std::vector<double> (*shapes)(const ShapeReach& reach);  ///< for Search::shape: the grid of the second parameter
   OnLines lines;
   EffectTwin twin;
-  std::string_view next;  ///< what to record next, and why; empty if the motion of another launch decides
+  std::optional<InImages> in_images;  ///< for effects that images show by themselves
+  std::string_view next;              ///< what to record next, and why; empty if the motion of another launch decides
   Alike alike;
 };
 

@@ -223,7 +223,7 @@ std::vector<Weak> named_parameters(const MotionFit& fit) {
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const auto at = static_cast<Eigen::Index>(g);
     if (globals[g].parameter == nullptr || globals[g].parameter->key.empty()) continue;
-    if (globals[g].parameter->shown_as == ShownAs::together) continue;
+    if (shown_together(globals[g].parameter->shown_as)) continue;
     const ShownValue value = shown(*globals[g].parameter, fit.at.global[at]);
     if (!std::isfinite(value.value)) continue;  // a v_c that fits best where it is absent
     named.push_back({std::string(globals[g].parameter->key), std::string(effect_list()[globals[g].effect].id), at,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -51,7 +50,7 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const EffectParameter* parameter = globals[g].parameter;
     if (parameter == nullptr || globals[g].effect != effect || parameter->key.empty()) continue;
-    if (parameter->shown_as == ShownAs::together) continue;
+    if (shown_together(parameter->shown_as)) continue;
     const auto at = static_cast<Eigen::Index>(g);
     ShownValue value = shown(*parameter, fit.at.global[at]);
     if (parameter->slot == slot_of(ids::rolling_shutter)) value.value += stated_line_s;
@@ -278,21 +277,13 @@ bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
 }
 
 void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
-  static const std::map<std::string, std::pair<GapVariable, GapKind>> kWhere = {
-      {ids::exposure_blur, {GapVariable::speed, GapKind::marker_width}},
-      {ids::rolling_shutter, {GapVariable::row, GapKind::marker_shear}},
-      {ids::light_flicker, {GapVariable::time, GapKind::brightness}},
-      {ids::light_gradient, {GapVariable::column, GapKind::brightness}},
-      {ids::camera_motion, {GapVariable::time, GapKind::scene_place}},
-      {ids::compression, {GapVariable::column, GapKind::block_steps}}};
   for (const DiagnosedEffect& effect : diagnosis.effects) {
+    const std::optional<InImages>& where = effect_of(effect.id).in_images;
     for (const PictureFinding& finding : pictures.findings) {
-      const auto where = kWhere.find(finding.id);
-      if (finding.id != effect.id || !finding.seen || where == kWhere.end() || finding.parameters.empty()) continue;
+      if (finding.id != effect.id || !finding.seen || !where || finding.parameters.empty()) continue;
       GapRegion region;
-      region.variable = where->second.first;
-      if (finding.id == ids::light_gradient && pictures.clips.front().down) region.variable = GapVariable::row;
-      region.what = where->second.second;
+      region.variable = where->along_track && pictures.clips.front().down ? GapVariable::row : where->over;
+      region.what = where->what;
       const core::PictureRecord& record = *pictures.clips.front().record;
       region.to = region.variable == GapVariable::column ? record.width_px
                   : region.variable == GapVariable::row  ? record.height_px

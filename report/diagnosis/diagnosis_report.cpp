@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
-#include "diagnose/effects/effect_list.h"
+#include "diagnose/effects/effect_library.h"
 #include "report/diagnosis/cause_words.h"
 #include "report/diagnosis/diagnosis_answer.h"
 #include "report/diagnosis/diagnosis_plots.h"
@@ -187,7 +187,8 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
     text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-    if (effect.id != diagnose::ids::rolling_shutter && effect.id != diagnose::ids::camera_motion) continue;
+    const diagnose::EffectInfo& info = diagnose::effect_of(effect.id);
+    if (!info.in_images || !diagnose::takes_part_of_gap(info.search)) continue;
     text += fmt::format(
         "<p class=\"note\">{} acts only in the twin's images, so the comparison here differs by its effect.</p>\n",
         effect_html(effect.id));

@@ -95,8 +95,7 @@ std::string alike_words(const diagnose::Diagnosis& diagnosis) {
   std::string text;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const std::string& id : effect.equivalent_to) {
-      if (id == diagnose::ids::eddy_rolloff || id == diagnose::ids::power_law_drag)
-        text += (text.empty() ? "" : " or ") + id;
+      if (!diagnose::effect_of(id).lines.same_as.empty()) text += (text.empty() ? "" : " or ") + id;
     }
   }
   if (text.empty()) return text;

@@ -48,6 +48,7 @@ EffectInfo camera_motion() {
       .search = Search::wave,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "amplitude_m", .absent = 0.0, .low = 0.0, .high = 0.05, .step = 1e-8},
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
                      {.key = {}, .absent = 0.0, .low = -2.0, .high = 2.0, .step = 1e-4, .only_filmed = true},
@@ -57,6 +58,7 @@ EffectInfo camera_motion() {
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::mount, sway_twin),
+      .in_images = InImages{.over = GapVariable::time, .what = GapKind::scene_place},
       .next =
           "Put the camera on a stand that does not touch the table, with a mark fixed to the wall in view, and record "
           "the same launch again: a swaying camera moves the mark and the glider alike.",

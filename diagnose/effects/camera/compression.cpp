@@ -20,11 +20,13 @@ EffectInfo compression() {
       .search = Search::pictures,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::codec, codec_twin),
+      .in_images = InImages{.over = GapVariable::column, .what = GapKind::block_steps},
       .next =
           "Record the same launch again without loss (FFV1 or single images; at least MJPEG in place of H.264): block "
           "edges and errors that persist over frames come from the codec and disappear with it.",

@@ -25,11 +25,13 @@ EffectInfo exposure_blur() {
       .search = Search::pictures,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::exposure, blur_twin),
+      .in_images = InImages{.over = GapVariable::speed, .what = GapKind::marker_width},
       .next =
           "Record the same launch again with half the exposure and twice the light: the marker's smear is the speed "
           "times the exposure, and halves if the exposure causes it.",

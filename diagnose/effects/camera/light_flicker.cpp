@@ -25,11 +25,13 @@ EffectInfo light_flicker() {
       .search = Search::pictures,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::light, flicker_twin),
+      .in_images = InImages{.over = GapVariable::time, .what = GapKind::brightness},
       .next =
           "Record the same launch again with an exposure of one whole period of the flicker (lamps flicker at twice "
           "the mains' frequency: 10 ms at 50 Hz, 8.3 ms at 60 Hz), or under lamps on direct current: then every frame "

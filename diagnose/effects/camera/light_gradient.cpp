@@ -30,11 +30,13 @@ EffectInfo light_gradient() {
       .search = Search::pictures,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::light, side_light_twin),
+      .in_images = InImages{.over = GapVariable::column, .what = GapKind::brightness, .along_track = true},
       .next =
           "Record the same launch again with a second lamp from the other side, or through a diffuser: where the "
           "light is even, nothing pulls the marker's centre to the brighter side.",

@@ -45,11 +45,13 @@ EffectInfo perspective_error() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "p_1_m", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-7}},
       .law = {.seen_m = perspective_seen, .seen_by = SeenBy::plane},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::mount, perspective_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

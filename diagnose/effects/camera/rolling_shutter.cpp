@@ -33,11 +33,13 @@ EffectInfo rolling_shutter() {
       .search = Search::rows,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "line_s", .absent = 0.0, .low = -3e-4, .high = 3e-4, .step = 1e-7}},
       .law = {.row_s = rows_late},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::shutter, rows_twin),
+      .in_images = InImages{.over = GapVariable::row, .what = GapKind::marker_shear},
       .next =
           "Turn the camera upside down and record the same launch again (or film it with a global shutter): rows are "
           "then read across the track in the opposite order, so their delay and the marker's shear change sign, "

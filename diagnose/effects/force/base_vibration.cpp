@@ -30,6 +30,7 @@ EffectInfo base_vibration() {
       .search = Search::wave,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "a_m_s2", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5},
                      {.key = "f_hz", .absent = 0.0, .low = 0.2, .high = 1e4, .step = 1e-5, .reach = Reach::waves},
                      {.key = "phase", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .each = Each::motion}},
@@ -37,6 +38,7 @@ EffectInfo base_vibration() {
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on time"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

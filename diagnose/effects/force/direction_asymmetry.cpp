@@ -24,11 +24,13 @@ EffectInfo direction_asymmetry() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "d", .absent = 0.0, .low = -1.0, .high = 1.0, .step = 1e-5}},
       .law = {.resistance = asymmetry_resistance},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_force(asymmetry_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -28,6 +28,7 @@ EffectInfo eddy_rolloff() {
       .search = Search::amplitude,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "v_c_m_s",
                       .absent = 0.0,
                       .low = 0.0,
@@ -38,6 +39,7 @@ EffectInfo eddy_rolloff() {
       .shapes = nullptr,
       .lines = {.same_as = ids::load_independent_friction},
       .twin = EffectTwin::as_force(eddy_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -42,6 +42,7 @@ EffectInfo end_stop() {
       .search = Search::shape,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 2000.0, .step = 1e-5, .reach = Reach::with_mass},
            {.key = "x_b_m",
@@ -54,6 +55,7 @@ EffectInfo end_stop() {
       .shapes = stop_places,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on position"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -53,7 +53,7 @@ EffectParameter bump(std::string_view key) {
           .low = -20.0,
           .high = 20.0,
           .step = 1e-4,
-          .shown_as = ShownAs::together,
+          .shown_as = ShownAs::along_track,
           .held_sd = 1.0};
 }
 
@@ -69,11 +69,13 @@ EffectInfo place_friction() {
       .search = Search::spread,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {bump("sd"), bump({}), bump({}), bump({}), bump({}), bump({})},
       .law = {.sizes = kBumps, .friction = friction_along, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on position"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

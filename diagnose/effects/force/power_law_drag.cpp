@@ -32,12 +32,14 @@ EffectInfo power_law_drag() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = of_any_power,
+      .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "n", .absent = 0.0, .low = -0.9, .high = 2.0, .step = 1e-6, .shown_as = ShownAs::one_more}},
       .law = {.resistance = power_resistance},
       .shapes = nullptr,
       .lines = {.same_as = ids::load_independent_friction},
       .twin = EffectTwin::as_force(power_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

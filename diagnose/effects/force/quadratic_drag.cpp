@@ -32,12 +32,14 @@ EffectInfo quadratic_drag() {
       .search = Search::amplitude,
       .both_signs = false,
       .odds = against_air,
+      .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "c_kg_m", .absent = 0.0, .low = 0.0, .high = 1.0, .step = 1e-6, .reach = Reach::with_mass}},
       .law = {.resistance = quadratic_resistance},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_force(quadratic_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

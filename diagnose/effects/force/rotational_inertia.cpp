@@ -37,12 +37,14 @@ EffectInfo rotational_inertia() {
       .search = Search::amplitude,
       .both_signs = false,
       .odds = with_air,
+      .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "mass_kg", .absent = 0.0, .low = 0.0, .high = 0.5, .step = 1e-7, .reach = Reach::with_mass}},
       .law = {.inertia_kg = wheels_kg},
       .shapes = nullptr,
       .lines = {.change = wheels_lines, .key = "mass_kg", .largest = 0.3},
       .twin = EffectTwin::as_force(wheels_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

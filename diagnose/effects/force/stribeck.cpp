@@ -34,6 +34,7 @@ EffectInfo stribeck() {
       .search = Search::shape,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "s", .absent = 0.0, .low = 0.0, .high = 50.0, .step = 1e-5, .shown_as = ShownAs::one_more},
            {.key = "v_s_m_s", .absent = 0.05, .low = 0.003, .high = 1.0, .step = 1e-5, .reach = Reach::held_speed}},
@@ -41,6 +42,7 @@ EffectInfo stribeck() {
       .shapes = stribeck_speeds,
       .lines = {},
       .twin = EffectTwin::as_force(stribeck_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

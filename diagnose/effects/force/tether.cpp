@@ -32,6 +32,7 @@ EffectInfo tether() {
       .search = Search::shape,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 200.0, .step = 1e-5, .reach = Reach::with_mass},
            {.key = "x_t_m",
@@ -44,6 +45,7 @@ EffectInfo tether() {
       .shapes = tether_places,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on position"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -25,11 +25,13 @@ EffectInfo track_bow() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = bows,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "slope_1_m", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
       .law = {.resistance = bow_resistance},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on position"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -27,11 +27,13 @@ EffectInfo dropped_frames() {
       .search = Search::frames,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::clock, dropped_twin),
+      .in_images = std::nullopt,
       .next =
           "Record the same launch again at half the frame rate or with a smaller image, and keep the camera's own "
           "time stamps: frames are lost when writing cannot keep up, and only a time stamp shows the gap.",

@@ -20,11 +20,13 @@ EffectInfo force_delay() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "tau_s", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-5}},
       .law = {.known_late_s = delay_s},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on time"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -20,11 +20,13 @@ EffectInfo force_gain() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.9, .high = 5.0, .step = 1e-6}},
       .law = {.known_factor = gain_factor},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on time"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -39,11 +39,13 @@ EffectInfo frame_rate_error() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
       .law = {.stretch = rate_stretch},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::clock, rate_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };

@@ -12,11 +12,13 @@ EffectInfo heavy_tailed_noise() {
       .search = Search::noise,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("a scenario has no outliers of its own"),
+      .in_images = std::nullopt,
       .next =
           "Record the same launch again with a larger, higher-contrast marker and no other round object in the image: "
           "single outlying positions come from frames in which another object was mistaken for part of the marker.",

@@ -21,11 +21,13 @@ EffectInfo mass_error() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.9, .high = 5.0, .step = 1e-6}},
       .law = {.inertia_kg = wrong_mass_kg},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("a scenario has no recorded force, and without one a wrong mass does not show"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {.id = ids::frame_rate_error, .filmed = true},
   };

@@ -13,11 +13,13 @@ EffectInfo position_rounding() {
       .search = Search::noise,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("the positions of a scenario are not rounded"),
+      .in_images = std::nullopt,
       .next =
           "Export the positions again with more decimals, or with the sensor nearer to the glider: repetition cannot "
           "recover what rounding has removed.",

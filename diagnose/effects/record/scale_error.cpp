@@ -29,11 +29,13 @@ EffectInfo scale_error() {
       .search = Search::amplitude,
       .both_signs = true,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
       .law = {.seen_m = scale_seen, .seen_by = SeenBy::scale},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::mount, scale_twin),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {.id = ids::frame_rate_error, .filmed = true},
   };

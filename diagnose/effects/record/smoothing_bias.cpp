@@ -21,11 +21,13 @@ EffectInfo smoothing_bias() {
       .search = Search::lines,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {.change = smoothing_lines, .key = "intercept_s2_m_s2", .largest = 1.0},
       .twin = EffectTwin::none("a table of lines has no motion to simulate"),
+      .in_images = std::nullopt,
       .next =
           "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its "
           "square.",

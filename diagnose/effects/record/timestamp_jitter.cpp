@@ -33,11 +33,13 @@ EffectInfo timestamp_jitter() {
       .search = Search::noise,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters = {},
       .law = {},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_camera(TwinPart::clock, jitter_twin),
+      .in_images = std::nullopt,
       .next =
           "Record the same launch again with the camera's own time stamps, or with a lamp in the image that counts "
           "milliseconds: a wrong time shifts a position by the speed times its error, and only a clock shows the "

@@ -1,4 +1,4 @@
-// An orbit is [tau, u, way, slope, bend], five arrays. Between two points u is the polynomial of fifth order in s (0 to 1)
+// An orbit is [tau, u, distance, slope, bend], five arrays. Between two points u is the polynomial of fifth order in s (0 to 1)
 // with the values, slopes and bends that are known at both; a distance is its integral.
 function polynomial(orbit, i) {  // h, and u = c[0] + c[1] s + ... + c[5] s^5
   const [t, u, , slope, bend] = orbit, h = t[i + 1] - t[i];
@@ -20,13 +20,13 @@ function piece(column, value) {  // the last i with column[i] not beyond value, 
 }
 function at(orbit, tau) {  // {u, slope, and where in the orbit that is: the point before it, and the distance from there}
   const [t, u, , slope] = orbit, last = t.length - 1;
-  if (tau >= t[last]) return { u: u[last], slope: slope[last], i: last, way: u[last] * (tau - t[last]) };
+  if (tau >= t[last]) return { u: u[last], slope: slope[last], i: last, distance: u[last] * (tau - t[last]) };
   const i = piece(t, tau), p = polynomial(orbit, i), s = (tau - t[i]) / p.h;
-  return { u: valueOf(p, s), slope: slopeOf(p, s), i, way: integralOf(p, s) };
+  return { u: valueOf(p, s), slope: slopeOf(p, s), i, distance: integralOf(p, s) };
 }
 // The distance between two places. Within one piece it is not taken from the distance along the whole orbit, in which it would drown.
-function wayBetween(orbit, from, to) {
-  return (from.i === to.i ? 0 : orbit[2][to.i] - orbit[2][from.i]) + (to.way - from.way);
+function distanceBetween(orbit, from, to) {
+  return (from.i === to.i ? 0 : orbit[2][to.i] - orbit[2][from.i]) + (to.distance - from.distance);
 }
 function tauOf(orbit, value) {  // where u is this value
   const [t, u] = orbit, last = t.length - 1, up = u[last] >= u[0];
@@ -57,7 +57,7 @@ function side(law, k, B, w0) {
   return { stop, limit: B > 0 && n > 0 ? W : null,
            at(t) {
              const p = at(orbit, start + t / T);
-             return { w: W * p.u, way: W * T * wayBetween(orbit, from, p), a: W / T * p.slope };
+             return { w: W * p.u, distance: W * T * distanceBetween(orbit, from, p), a: W / T * p.slope };
            } };
 }
 
@@ -71,7 +71,7 @@ function motion(p) {
   if (v !== 0) {
     const s = Math.sign(v), first = side(law, p.k, s * A - F, Math.abs(v));
     parts.push({ t, x, s, side: first });
-    if (first.stop < Infinity) { t = first.stop; x += s * first.at(t).way; v = 0; }
+    if (first.stop < Infinity) { t = first.stop; x += s * first.at(t).distance; v = 0; }
   }
   if (v === 0) parts.push(rests ? { t, x, s: 0 } : { t, x, s: Math.sign(A), side: side(law, p.k, Math.abs(A) - F, 0) });
   const stop = parts.length > 1 ? parts[1].t : p.v0 === 0 ? 0 : null;
@@ -83,7 +83,7 @@ function motion(p) {
              const part = parts.length > 1 && time >= parts[1].t ? parts[1] : parts[0];
              if (part.s === 0) return { x: part.x, v: 0, a: 0 };
              const p = part.side.at(time - part.t);
-             return { x: part.x + part.s * p.way, v: part.s * p.w, a: part.s * p.a };
+             return { x: part.x + part.s * p.distance, v: part.s * p.w, a: part.s * p.a };
            } };
 }
 // a on the side s of v = 0 at the speed w.

@@ -27,12 +27,14 @@ EffectInfo toy_effect() {
       .search = Search::amplitude,
       .both_signs = false,
       .odds = nullptr,
+      .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 20.0, .step = 1e-5, .reach = Reach::with_mass}},
       .law = {.force_n = spring_force, .rate_1_s = spring_rate},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on position"),
+      .in_images = std::nullopt,
       .next = {},
       .alike = {},
   };
