@@ -114,6 +114,22 @@ TEST_CASE("a quantity in which the likely explanations differ by more than its v
   CHECK(both[0].mu.estimate);
 }
 
+TEST_CASE("motion in one direction gives neither mu nor alpha where the inclination is not known otherwise") {
+  // Only mu - tan(alpha) acts downhill: the inclination, known to 10 degrees, passes its uncertainty on to mu.
+  const std::vector<tests::MadeLaunch> downhill = {{0.4, 4.0, -0.6, 1.2}, {0.4, 4.0, -0.6, 0.6}};
+  for (const double incline_sd_deg : {10.0, 0.05}) {
+    const tests::MadeExperiment made = tests::made_experiment(downhill, {}, 11, 1e-4, 60, 50.0, incline_sd_deg);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+    const auto found = diagnose::recovered_of(set, {{&fit, {}, 1.0}});
+    REQUIRE(found.size() == 1);
+    INFO("inclination known to " << incline_sd_deg << " degrees");
+    CHECK(found[0].k_over_m_1_s.estimate.has_value());
+    CHECK(found[0].mu.estimate.has_value() == (incline_sd_deg < 1.0));
+    CHECK(found[0].alpha_deg.estimate.has_value() == (incline_sd_deg < 1.0));
+  }
+}
+
 TEST_CASE(
     "a cable that pulls in the middle of the track, or friction that drifts, does not change the terminal velocity") {
   // m g (sin(alpha) - mu cos(alpha)) = K v, by the law without them.

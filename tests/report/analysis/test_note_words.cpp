@@ -46,7 +46,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::MarkerOfOtherSize{1.25}, "25 % larger"},
       {core::MarkerOfOtherSize{0.75}, "25 % smaller"},
       {core::MarkerFittedAgain{true, false, 260, 200},
-       "sphere that is lit from one side in front of what moves with it"},
+       "sphere that is lit from one side in front of what moves with it: it is found in 260 frames"},
       {core::PixelsAnswerLeft{3, 50}, "in 3 of 50 frames the marker's place is not corrected"},
       {core::DarkMarker{}, "darker than its surroundings"},
       {core::NotOfStatedSize{"no marker"}, "is not found: no marker"},
