@@ -53,20 +53,22 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
         for (const InclineStatement& s : set.groups[global.index].statements) {
           statements.push_back({g, s.alpha_rad, s.sd_rad, s.against, true});
         }
-        statements.push_back({g, set.groups[global.index].stated_rad,
-                              is_fall(set.groups[global.index]) ? kFallInclination_rad : kOpenInclination_rad, "",
+        statements.push_back({g,
+                              set.groups[global.index].stated_rad,
+                              is_fall(set.groups[global.index]) ? kFallInclination_rad : kOpenInclination_rad,
+                              {},
                               false});
         break;
       case Global::Kind::mu:
-        if (only_falls(set)) statements.push_back({g, 0.0, kFallFriction, "", false});
+        if (only_falls(set)) statements.push_back({g, 0.0, kFallFriction, {}, false});
         break;
       case Global::Kind::mass:
       case Global::Kind::mode:
       case Global::Kind::scale:
-        statements.push_back({g, 0.0, 1.0, "", true});
+        statements.push_back({g, 0.0, 1.0, {}, true});
         break;
       case Global::Kind::effect:
-        if (global.parameter->held_sd > 0.0) statements.push_back({g, 0.0, global.parameter->held_sd, "", false});
+        if (global.parameter->held_sd > 0.0) statements.push_back({g, 0.0, global.parameter->held_sd, {}, false});
         break;
       default:
         break;

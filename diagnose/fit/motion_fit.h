@@ -24,8 +24,8 @@ struct FitStatement {
   std::size_t global = 0;
   double value = 0.0;
   double sd = 0.0;
-  std::string against;
-  bool counts = true;  ///< false: a prior for what the data leave undetermined, not evidence
+  std::optional<Against> against = {};  ///< none: a prior
+  bool counts = true;                   ///< false: a prior for what the data leave undetermined, not evidence
 };
 
 struct MotionFit {

@@ -330,7 +330,7 @@ std::vector<GapOfParameter> parameter_gaps(const TrackSet& set, const MotionFit&
         if (var_alone - var_together < kSameData * var_together) continue;  // the part is all there is
         GapOfParameter gap;
         gap.quantity = quantity == kDrag ? "k_n_s_m" : "mu";
-        gap.against = "all clips";
+        gap.against = Against::all_clips;
         gap.group = fmt::format("{:g} kg{}", set.masses[mass].mass_kg,
                                 direction == 0  ? ""
                                 : direction > 0 ? ", downhill"

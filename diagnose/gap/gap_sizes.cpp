@@ -202,7 +202,7 @@ GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& 
 
 std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<PictureFinding>& pictures,
                                    const std::vector<DiagnosedEffect>& named) {
-  std::vector<GapDomain> domains = {{"positions", gap.before, gap.after}};
+  std::vector<GapDomain> domains = {{GapDomainKind::positions, gap.before, gap.after}};
   RootMeanSquare a_before, a_after, q_before, q_after;
   bool all_after = true;  // whether every parameter with a value before has one after
   for (const PhaseGap& of : gap.phase_plane) {
@@ -212,7 +212,7 @@ std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<Pictur
       a_after.add(bin.after.value / bin.after.sd);
     }
   }
-  if (a_before.value()) domains.push_back({"phase_plane", *a_before.value(), a_after.value()});
+  if (a_before.value()) domains.push_back({GapDomainKind::phase_plane, *a_before.value(), a_after.value()});
   for (const GapOfParameter& of : gap.parameters) {
     if (!of.z_before) continue;
     q_before.add(*of.z_before);
@@ -220,9 +220,10 @@ std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<Pictur
     q_after.add(of.z_after.value_or(0.0));
   }
   if (q_before.value()) {
-    domains.push_back({"parameters", *q_before.value(), all_after ? q_after.value() : std::nullopt});
+    domains.push_back({GapDomainKind::parameters, *q_before.value(), all_after ? q_after.value() : std::nullopt});
   }
-  if (!pictures.empty()) domains.push_back({"picture", most_seen(pictures, {}), most_seen(pictures, named)});
+  if (!pictures.empty())
+    domains.push_back({GapDomainKind::images, most_seen(pictures, {}), most_seen(pictures, named)});
   return domains;
 }
 

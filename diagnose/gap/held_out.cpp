@@ -214,11 +214,11 @@ std::vector<StatementPull> statement_pulls(const TrackSet& set, const MotionFit&
   const Eigen::MatrixXd covariance = common_covariance(fit);
   std::vector<StatementPull> pulls;
   for (const FitStatement& s : fit.statements) {
-    if (s.against.empty()) continue;
+    if (!s.against) continue;
     const auto g = static_cast<Eigen::Index>(s.global);
     // Residual of a datum that took part in the fit: its variance is sd² minus that of the fitted value.
     const double variance = s.sd * s.sd - covariance(g, g), off = s.value - fit.at.global[g];
-    StatementPull pull{"alpha_deg", s.against, set.groups[fit.layout->globals()[s.global].index].name, {}};
+    StatementPull pull{"alpha_deg", *s.against, set.groups[fit.layout->globals()[s.global].index].name, {}};
     pull.stated_rad = s.value;
     pull.stated_sd_rad = s.sd;
     if (variance > kLeastKnown * s.sd * s.sd) {

@@ -57,7 +57,7 @@ MotionFit at_linear_minimum(const TrackSet& set, MotionFit fit);
 /// removed again: (fitted sd² - stated C)/(sd² - C) ± sd sqrt(C/(sd² - C)). The fit must be at its minimum.
 struct StatementPull {
   std::string quantity;  ///< "alpha_deg"
-  std::string against;   ///< "plumb", "stated"
+  Against against = Against::stated;
   std::string group;
   std::optional<double> z;  ///< none if all other data determine the angle a hundred times worse than the statement
   double stated_rad = 0.0, stated_sd_rad = 0.0;

@@ -179,13 +179,13 @@ double mean_intercept(const std::vector<TableLine>& lines, double incline_deg) {
 void compare_inclination(double stated_deg, double intercept_m_s2, double g, LineGap& gap) {
   const std::string stated = fmt::format("{} deg", stated_deg);
   if (!(std::abs(intercept_m_s2) <= g)) {
-    gap.sizes.parameters.push_back({"alpha_deg", "stated", stated});
+    gap.sizes.parameters.push_back({"alpha_deg", Against::stated, stated});
     gap.notes.emplace_back(BeyondGravity{stated_deg, intercept_m_s2, g});
     return;
   }
   const double degrees = std::asin(intercept_m_s2 / g) * 180.0 / std::numbers::pi;
   const double z = (degrees - stated_deg) / kReadAngle;
-  gap.sizes.parameters.push_back({"alpha_deg", "stated", stated, z, z});
+  gap.sizes.parameters.push_back({"alpha_deg", Against::stated, stated, z, z});
   gap.notes.emplace_back(MeanIncline{stated_deg, degrees, kReadAngle});
 }
 

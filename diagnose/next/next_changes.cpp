@@ -155,7 +155,7 @@ void add_statements(const TrackSet& set, const SoFar& so, std::vector<Change>& c
   };
   for (const std::size_t group : so.groups) {
     const auto& known = set.groups[group].statements;
-    if (std::any_of(known.begin(), known.end(), [](const auto& s) { return s.against == "plumb"; })) continue;
+    if (std::any_of(known.begin(), known.end(), [](const auto& s) { return s.against == Against::plumb; })) continue;
     add(ChangeKind::plumb, name_among(set, group), {{NextStatement::Of::inclination, group, 0.0, 0.0, kPlumb_rad}});
   }
   const ParameterRange places = range_of_places(set);

@@ -79,7 +79,9 @@ struct GapCurve {
 };
 
 struct GapOfParameter {
-  std::string quantity, against, group;
+  std::string quantity;
+  Against against = Against::stated;
+  std::string group;
   std::optional<double> z_before = {}, z_after = {};  ///< none if undetermined
   /// From a part of the data alone, and from all: fits of the nominal model, in the quantity's unit.
   std::optional<DiagnosedParameter> alone = {}, together = {};
@@ -115,7 +117,7 @@ struct PhaseGap {
 
 /// The size of the gap in one domain, relative to that due to noise alone (1).
 struct GapDomain {
-  std::string domain;  ///< positions, phase_plane, parameters, picture
+  GapDomainKind domain = GapDomainKind::positions;
   double before = 0.0;
   std::optional<double> after = {};  ///< none if undetermined
 };

@@ -80,4 +80,30 @@ std::string_view to_text(GapKind kind) {
   return {};
 }
 
+std::string_view to_text(Against against) {
+  switch (against) {
+    case Against::plumb:
+      return "plumb";
+    case Against::stated:
+      return "stated";
+    case Against::all_clips:
+      return "all clips";
+  }
+  return {};
+}
+
+std::string_view to_text(GapDomainKind domain) {
+  switch (domain) {
+    case GapDomainKind::positions:
+      return "positions";
+    case GapDomainKind::phase_plane:
+      return "phase_plane";
+    case GapDomainKind::parameters:
+      return "parameters";
+    case GapDomainKind::images:
+      return "picture";
+  }
+  return {};
+}
+
 }  // namespace glidelab::diagnose

@@ -30,11 +30,21 @@ enum class GapKind {
   block_steps
 };
 
+/// Where a value comes from with which a fit, or a part of the data, is compared.
+enum class Against { plumb, stated, all_clips };
+
+/// What is compared with the model. Images are compared only if there are any.
+enum class GapDomainKind { positions, phase_plane, parameters, images };
+
 /// The word used in files: "dynamics".
 std::string_view to_text(Stage stage);
 /// The word used in diagnosis.json: "x_m", "group".
 std::string_view to_text(GapVariable variable);
 /// The words used in files and pages: "viscous drag".
 std::string_view to_text(GapKind kind);
+/// The words used in diagnosis.json and in tables: "plumb", "all clips".
+std::string_view to_text(Against against);
+/// The word used in diagnosis.json: "phase_plane"; "picture" for images.
+std::string_view to_text(GapDomainKind domain);
 
 }  // namespace glidelab::diagnose

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result/analysis_note.h"
+#include "diagnose/result/gap_place.h"
 
 namespace glidelab::diagnose {
 
@@ -59,7 +60,8 @@ struct LastingErrors {
 
 /// Two statements of one set-up's inclination contradict each other.
 struct StatementsDisagree {
-  std::string group, one, other;
+  std::string group;
+  Against one = Against::stated, other = Against::stated;
   double z = 0.0;  ///< standard deviations apart
 };
 
@@ -90,7 +92,8 @@ struct NegativeLoss {
 
 /// A stated inclination that the motion contradicts.
 struct ContradictedIncline {
-  std::string group, against;  ///< against: "plumb", "stated"
+  std::string group;
+  Against against = Against::stated;  ///< where the statement comes from
   double stated_rad = 0.0, stated_sd_rad = 0.0;
   double motion_rad = 0.0, motion_sd_rad = 0.0;
   bool named = false;  ///< by the model with the named effects, not by the nominal model

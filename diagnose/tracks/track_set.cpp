@@ -230,13 +230,13 @@ void add_statements(const core::AnalysisResults& results, const std::vector<core
       if (plumb.group != setup.group || plumb.experiment != results.clips[motion.clip].experiment) continue;
       if (!plumb.plumb_deg.estimate) continue;
       const core::Estimate& deg = *plumb.plumb_deg.estimate;
-      add(motion.group, {deg.value * base::kRadPerDegree, deg.sd * base::kRadPerDegree, "plumb"});
+      add(motion.group, {deg.value * base::kRadPerDegree, deg.sd * base::kRadPerDegree, Against::plumb});
     }
   }
   for (const TrackedMotion& motion : set.motions) {
     const core::ClipSetup& setup = setups[motion.clip];
     if (!setup.incline_sd_rad || !(*setup.incline_sd_rad > 0.0)) continue;
-    add(motion.group, {setup.incline_rad, *setup.incline_sd_rad, "stated"});
+    add(motion.group, {setup.incline_rad, *setup.incline_sd_rad, Against::stated});
   }
 }
 

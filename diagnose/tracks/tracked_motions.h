@@ -75,7 +75,7 @@ struct TrackedMass {
 struct InclineStatement {
   double alpha_rad = 0.0;
   double sd_rad = 0.0;
-  std::string against;  ///< "plumb" or "stated"
+  Against against = Against::stated;  ///< the plumb line, or a reading
 };
 
 struct TrackGroup {

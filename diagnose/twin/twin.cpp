@@ -197,7 +197,7 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
       place.group + 1, place.mass + 1, model.mass_kg, model.alpha_rad * base::kDegreesPerRad,
       group.stated_rad * base::kDegreesPerRad, twin_name(group.name));
   for (const InclineStatement& statement : group.statements) {
-    if (statement.against == "stated")
+    if (statement.against == Against::stated)
       text += fmt::format("stated_incline_sd_deg = {:.9g}\n", statement.sd_rad * base::kDegreesPerRad);
   }
   text += sections_of(forces_of(model));

@@ -131,7 +131,7 @@ Json gap_json(const diagnose::GapSizes& gap) {
   for (const diagnose::GapOfParameter& parameter : gap.parameters) {
     Json one;
     one["quantity"] = parameter.quantity;
-    one["against"] = parameter.against;
+    one["against"] = to_text(parameter.against);
     one["group"] = parameter.group;
     put(one, "z_before", parameter.z_before, "this part of the data hardly constrains it");
     put(one, "z_after", parameter.z_after, "no effect is named, or this part of the data hardly constrains it");
@@ -147,7 +147,7 @@ Json gap_json(const diagnose::GapSizes& gap) {
   object["domains"] = Json::array();
   for (const diagnose::GapDomain& of : gap.domains) {
     Json one;
-    one["domain"] = of.domain;
+    one["domain"] = to_text(of.domain);
     put(one, "before", of.before);
     put(one, "after", of.after, "it cannot be determined");
     object["domains"].push_back(std::move(one));

@@ -111,7 +111,7 @@ std::string parameter_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table(header, 3);
   for (const diagnose::GapOfParameter& p : parameters) {
     const std::string symbol = p.quantity == "k_n_s_m" ? "K" : symbol_of(p.quantity);
-    std::vector<std::string> row = {escape(symbol), escape(p.group), escape(p.against)};
+    std::vector<std::string> row = {escape(symbol), escape(p.group), escape(std::string(to_text(p.against)))};
     if (fits) row.insert(row.end(), {fit(p.alone), fit(p.together)});
     row.insert(row.end(), {z_text(p.z_before), z_text(p.z_after)});
     table.row(row);

@@ -125,10 +125,13 @@ struct Sentence {
         of.next, of.fourth);
   }
   std::string operator()(const diagnose::StatementsDisagree& of) const {
+    const char* const which = of.one != of.other                   ? "the stated inclination and that by the plumb line"
+                              : of.one == diagnose::Against::plumb ? "the inclinations by two plumb lines"
+                                                                   : "two stated inclinations";
     return fmt::format(
-        "Set-up \"{}\": the {} and the {} inclination contradict each other by {:.1f} standard deviations. One of them "
-        "is wrong, and the results that depend on them are uncertain.",
-        of.group, of.one, of.other, of.z);
+        "Set-up \"{}\": {} contradict each other by {:.1f} standard deviations. One of them is wrong, and the results "
+        "that depend on them are uncertain.",
+        of.group, which, of.z);
   }
   std::string operator()(const diagnose::NoInclination& of) const {
     return fmt::format(
@@ -167,7 +170,7 @@ struct Sentence {
     };
     const std::string stated = fmt::format("The inclination of set-up \"{}\" is {} {}, and the motion gives ", of.group,
                                            with_sd(of.stated_rad, of.stated_sd_rad),
-                                           of.against == "plumb" ? "by the plumb line" : "as " + of.against);
+                                           of.against == diagnose::Against::plumb ? "by the plumb line" : "as stated");
     if (!(of.motion_sd_rad > 0.0)) {
       return stated + fmt::format("{:.2f}° by the nominal model, which leaves out what is missing.",
                                   base::kDegreesPerRad * of.motion_rad);

@@ -22,12 +22,18 @@ constexpr std::size_t kCells = 60;      // per row of the map
 constexpr double kDeepest = 5.0;        // standard deviations at which the colours end
 constexpr std::size_t kMostNamed = 40;  // rows with readable names
 
-std::string domain_name(const std::string& domain) {
-  if (domain == "positions") return "positions of held-out clips";
-  if (domain == "phase_plane") return "phase plane: a over v";
-  if (domain == "parameters") return "parameters: K, µ, α";
-  if (domain == "picture") return "images";
-  return domain;
+std::string domain_name(diagnose::GapDomainKind domain) {
+  switch (domain) {
+    case diagnose::GapDomainKind::positions:
+      return "positions of held-out clips";
+    case diagnose::GapDomainKind::phase_plane:
+      return "phase plane: a over v";
+    case diagnose::GapDomainKind::parameters:
+      return "parameters: K, µ, α";
+    case diagnose::GapDomainKind::images:
+      return "images";
+  }
+  return {};
 }
 
 /// One bar of a horizontal chart from the axis' left end to `value`.

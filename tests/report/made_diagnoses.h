@@ -67,7 +67,7 @@ inline diagnose::Diagnosis two_causes() {
                      0.4,
                      {{"k_n_s_m", 0.911234, 0.00001}},
                      {{"k_n_s_m", 0.941234, 0.0000077}}}};
-  gap.domains = {{"positions", 5.3, gap.after}, {"parameters", 3.0, {}}};
+  gap.domains = {{diagnose::GapDomainKind::positions, 5.3, gap.after}, {diagnose::GapDomainKind::parameters, 3.0, {}}};
   of.gap = gap;
   of.explained = {{"quadratic_drag", 0.91, diagnose::GapInterval{0.86, 0.95}, gap_with_left(5.3, 0.09)},
                   {"rotational_inertia", 0.06, diagnose::GapInterval{0.02, 0.1}, gap_with_left(5.3, 0.03)}};

@@ -65,7 +65,7 @@ TEST_CASE("readings of one group belong to one set-up as long as they agree, and
   REQUIRE(folders.groups.size() == 2);
   CHECK(folders.groups[0].statements.size() == 2);
   REQUIRE(folders.groups[1].statements.size() == 2);
-  CHECK(folders.groups[1].statements[0].against == "plumb");
+  CHECK(folders.groups[1].statements[0].against == diagnose::Against::plumb);
   CHECK(folders.groups[1].statements[1].alpha_rad == 4.1 * kDegree);
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("a stated inclination that the motion contradicts is reported first, w
   REQUIRE(diagnosis.limits.contradicted.size() == 1);
   const diagnose::ContradictedIncline& incline = diagnosis.limits.contradicted.front();
   CHECK(incline.group == "inclined");
-  CHECK(incline.against == "stated");
+  CHECK(incline.against == diagnose::Against::stated);
   CHECK(std::abs(incline.stated_rad - 14.0 * kDegree) < 1e-12);
   CHECK(std::abs(incline.stated_sd_rad - 0.05 * kDegree) < 1e-12);
   CHECK(incline.motion_sd_rad < 0.01 * kDegree);

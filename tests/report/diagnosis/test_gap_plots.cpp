@@ -31,7 +31,7 @@ diagnose::Diagnosis two_masses() {
       {"k_n_s_m", "all clips", "0.335 kg", -3.0, {}, {{"k_n_s_m", 0.91, 0.01}}, {{"k_n_s_m", 0.94, 0.005}}}};
   const diagnose::PhaseBin bin{-0.2, -0.1, -0.15, 40, {0.02, 0.001}, {0.0005, 0.001}};
   gap.phase_plane = {{{}, {bin}}, {0.335, {bin}}, {0.535, {bin}}};
-  gap.domains = {{"positions", 6.0, 1.1}, {"parameters", 3.0, {}}};
+  gap.domains = {{diagnose::GapDomainKind::positions, 6.0, 1.1}, {diagnose::GapDomainKind::parameters, 3.0, {}}};
   of.gap = gap;
   of.curves = {
       {diagnose::GapVariable::position, diagnose::GapKind::force, "N", 40.0, {0.0, 0.1}, {0.001, 0.002}, {1e-4, 1e-4}},
@@ -145,7 +145,7 @@ TEST_CASE("a logarithmic axis of gaps begins below the smallest of them") {
   of.gap->before_by_clip = {20.0, 30.0};
   of.gap->after_by_clip = {0.25, 1.0};
   CHECK(has(report::verdict_plots(of).back().drawing.script, "set xrange [0.2:45]"));
-  of.gap->domains = {{"positions", 30.0, 0.25}};
+  of.gap->domains = {{diagnose::GapDomainKind::positions, 30.0, 0.25}};
   CHECK(has(report::domain_plots(of).front().drawing.script, "set xrange [0.2:45]"));
   CHECK(report::domain_plots(of).front().drawing.data.at(1).rows.at(0).at(3) == Approx(0.25));
 }

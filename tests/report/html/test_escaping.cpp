@@ -99,9 +99,12 @@ diagnose::Diagnosis evil_diagnosis() {
   of.recovered = {{kEvil, 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}},
                   {"other", 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}}};
   of.limits.contradicted = {{kEvil, kEvil, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
-  of.notes = {diagnose::NoFreeMotion{kEvil, 12},       diagnose::StatementsDisagree{kEvil, kEvil, kEvil, 7.0},
-              diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
-              diagnose::OppositeLaunch{kEvil, true},   diagnose::ContradictedReading{0.3, {}},
+  of.notes = {diagnose::NoFreeMotion{kEvil, 12},
+              diagnose::StatementsDisagree{kEvil, diagnose::Against::plumb, diagnose::Against::stated, 7.0},
+              diagnose::NoInclination{{kEvil, kEvil}},
+              diagnose::SplitSetUps{{kEvil}},
+              diagnose::OppositeLaunch{kEvil, true},
+              diagnose::ContradictedReading{0.3, {}},
               of.limits.contradicted.front()};
   of.pictures = {{kEvil, diagnose::Stage::optics, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
   of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
@@ -123,7 +126,7 @@ diagnose::Diagnosis evil_diagnosis() {
   gap.after_by_clip = {1.0, 1.1};
   gap.interval95.too_few = 1;
   gap.parameters = {{kEvil, kEvil, kEvil, 4.0, 0.3, diagnose::DiagnosedParameter{kEvil, 1.0, 0.1, "", ""}, {}}};
-  gap.domains = {{"positions", 5.0, 1.0}};
+  gap.domains = {{diagnose::GapDomainKind::positions, 5.0, 1.0}};
   of.gap = gap;
   return of;
 }
