@@ -298,7 +298,7 @@ MotionFit with_unnamed(const TrackSet& set, const MotionFit& fit, const UnnamedF
     from += n;
   }
   for (Eigen::Index b = 0; b < more && std::isfinite(family.tau); ++b) {
-    with.statements.push_back({static_cast<std::size_t>(before + b), 0.0, family.tau, "", false});
+    with.statements.push_back({static_cast<std::size_t>(before + b), 0.0, family.tau, {}, false});
   }
   return at_linear_minimum(set, std::move(with));
 }

@@ -61,7 +61,7 @@ inline diagnose::Diagnosis two_causes() {
   gap.interval95.after = {1.1, 1.6};
   gap.interval95.shrink = {0.88, 0.95};
   gap.parameters = {{"k_n_s_m",
-                     "all clips",
+                     diagnose::Against::all_clips,
                      "0.335 kg",
                      -3.0,
                      0.4,

@@ -109,9 +109,9 @@ struct BlindScore {
   std::vector<BlindMethod> methods;              ///< the diagnosis first
   std::map<std::string, BlindShare> in_set;      ///< single cases: truth among the names, by strength
   std::map<std::string, BlindShare> exact;       ///< single cases: the exact id comes first, by strength
-  std::map<std::string, BlindShare> recognised;  ///< outside: unknown, by strength
+  std::map<std::string, BlindShare> recognised;  ///< outside: unknown, or a fair name, by strength
   BlindShare false_alarm;                        ///< none: anything else
-  BlindShare wrong_name;                         ///< outside: a sure name (kSureName)
+  BlindShare wrong_name;                         ///< outside: a sure name (kSureName) that is not fair
   BlindShare where;                              ///< outside and unknown: the true variable among the regions
   BlindShare where_first;                        ///< outside and unknown: the true variable is that of the first region
   std::vector<ReliabilityBin> reliability;       ///< ten of equal width, from 0 to 1

@@ -16,7 +16,9 @@ TEST_CASE("the gap of each domain is the root mean square of its differences ove
     return diagnose::PhaseBin{0.0, 0.1, 0.05, 9, {before, 0.5}, {after, 0.25}};
   };
   gap.phase_plane = {{{}, {bin(100.0, 100.0)}}, {0.3, {bin(1.5, 0.25)}}, {0.4, {bin(-2.0, 0.0)}}};
-  gap.parameters = {{"mu", "all clips", "a", 3.0, 0.0}, {"mu", "all clips", "b", 4.0, 1.0}, {"mu", "all clips", "c"}};
+  gap.parameters = {{"mu", diagnose::Against::all_clips, "a", 3.0, 0.0},
+                    {"mu", diagnose::Against::all_clips, "b", 4.0, 1.0},
+                    {"mu", diagnose::Against::all_clips, "c"}};
   diagnose::PictureFinding blur, blocks, light;
   blur.id = "exposure_blur";
   blur.log_evidence = 8.0;

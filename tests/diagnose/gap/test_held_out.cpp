@@ -30,7 +30,7 @@ struct Linear {
 
 Linear linear_case(bool data_see_alpha, double likeness, double tau) {
   Linear made;
-  made.set.groups.push_back({"g", 0.0, {{kStated, kSd, "stated"}}, 0.0});
+  made.set.groups.push_back({"g", 0.0, {{kStated, kSd, diagnose::Against::stated}}, 0.0});
   made.set.masses.push_back({0.4, 0.0});
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -62,7 +62,7 @@ Linear linear_case(bool data_see_alpha, double likeness, double tau) {
   }
   made.fit.layout = std::make_shared<const diagnose::ParameterLayout>(made.set, std::vector<std::size_t>{});
   made.fit.at.global = Eigen::Vector3d::Zero();
-  made.fit.statements = {{2, kStated, kSd, "stated", true}};
+  made.fit.statements = {{2, kStated, kSd, diagnose::Against::stated, true}};
   return made;
 }
 

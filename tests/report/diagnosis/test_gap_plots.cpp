@@ -26,9 +26,14 @@ diagnose::Diagnosis two_masses() {
   diagnose::GapSizes gap;
   gap.before = 6.0;
   gap.after = 1.1;
-  gap.parameters = {
-      {"alpha_deg", "stated", "slope", 1.5, 0.2},
-      {"k_n_s_m", "all clips", "0.335 kg", -3.0, {}, {{"k_n_s_m", 0.91, 0.01}}, {{"k_n_s_m", 0.94, 0.005}}}};
+  gap.parameters = {{"alpha_deg", diagnose::Against::stated, "slope", 1.5, 0.2},
+                    {"k_n_s_m",
+                     diagnose::Against::all_clips,
+                     "0.335 kg",
+                     -3.0,
+                     {},
+                     {{"k_n_s_m", 0.91, 0.01}},
+                     {{"k_n_s_m", 0.94, 0.005}}}};
   const diagnose::PhaseBin bin{-0.2, -0.1, -0.15, 40, {0.02, 0.001}, {0.0005, 0.001}};
   gap.phase_plane = {{{}, {bin}}, {0.335, {bin}}, {0.535, {bin}}};
   gap.domains = {{diagnose::GapDomainKind::positions, 6.0, 1.1}, {diagnose::GapDomainKind::parameters, 3.0, {}}};

@@ -22,8 +22,8 @@ diagnose::Diagnosis with_incline(double before) {
   of.gap.emplace();
   of.gap->before = of.gap->after = before;
   of.gap->standard_error = 0.03;
-  of.limits.contradicted = {
-      {"inclined", "stated", 14.0 * kDegree, 0.05 * kDegree, 4.001 * kDegree, 0.004 * kDegree, false, 199.4}};
+  of.limits.contradicted = {{"inclined", diagnose::Against::stated, 14.0 * kDegree, 0.05 * kDegree, 4.001 * kDegree,
+                             0.004 * kDegree, false, 199.4}};
   return of;
 }
 

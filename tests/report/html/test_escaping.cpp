@@ -98,7 +98,7 @@ diagnose::Diagnosis evil_diagnosis() {
   of.traces = {kEvil};
   of.recovered = {{kEvil, 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}},
                   {"other", 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}}};
-  of.limits.contradicted = {{kEvil, kEvil, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
+  of.limits.contradicted = {{kEvil, diagnose::Against::plumb, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
   of.notes = {diagnose::NoFreeMotion{kEvil, 12},
               diagnose::StatementsDisagree{kEvil, diagnose::Against::plumb, diagnose::Against::stated, 7.0},
               diagnose::NoInclination{{kEvil, kEvil}},
@@ -125,7 +125,8 @@ diagnose::Diagnosis evil_diagnosis() {
   gap.before_by_clip = {5.0, 4.0};
   gap.after_by_clip = {1.0, 1.1};
   gap.interval95.too_few = 1;
-  gap.parameters = {{kEvil, kEvil, kEvil, 4.0, 0.3, diagnose::DiagnosedParameter{kEvil, 1.0, 0.1, "", ""}, {}}};
+  gap.parameters = {
+      {kEvil, diagnose::Against::plumb, kEvil, 4.0, 0.3, diagnose::DiagnosedParameter{kEvil, 1.0, 0.1, "", ""}, {}}};
   gap.domains = {{diagnose::GapDomainKind::positions, 5.0, 1.0}};
   of.gap = gap;
   return of;

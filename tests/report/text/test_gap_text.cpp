@@ -19,7 +19,7 @@ diagnose::Diagnosis with_gap() {
   gap.shrink = 0.95;
   gap.acceleration_before = 0.02;
   gap.acceleration_after = 0.01;
-  gap.parameters.push_back({"alpha_deg", "plumb", "all", 3.0, {}});
+  gap.parameters.push_back({"alpha_deg", diagnose::Against::plumb, "all", 3.0, {}});
   gap.interval95.before = diagnose::GapInterval{4.0, 6.25};
   gap.interval95.after = diagnose::GapInterval{1.0, 1.44};
   gap.interval95.shrink = diagnose::GapInterval{0.9, 1.0};

@@ -254,6 +254,19 @@ TEST_CASE("a score counts names, alarms and what was not recognised") {
   CHECK(std::abs(score.calibration_error - (4.0 * 0.15 + 0.6 + 0.5) / 6.0) < 1e-6);  // as std::to_string has it
 }
 
+TEST_CASE("a cause that is drawn as one outside the list may be called by what the list has for it") {
+  using validate::BlindKind;
+  const auto score = validate::score_blind({
+      outcome(BlindKind::outside, "friction_of_each_run", 100.0, "effect", "clip_scatter", 0.9),
+      outcome(BlindKind::outside, "drag_by_load", 100.0, "effect", "configuration_drag", 0.9),
+      outcome(BlindKind::outside, "drag_of_each_run", 100.0, "effect", "tether", 0.9),
+      outcome(BlindKind::outside, "cogging", 100.0, "effect", "clip_scatter", 0.9),
+  });
+  CHECK(score.recognised.at("strong").yes == 2);
+  CHECK(score.wrong_name.yes == 2);
+  CHECK(score.calibration_error == Approx(0.4).margin(1e-6));  // 0.9 stated, half of them right
+}
+
 TEST_CASE("a case that could not be diagnosed is right by no method, though nothing was withheld in it") {
   const auto score = validate::score_blind({outcome(validate::BlindKind::none, "", 0.0, "failed", "", 0.0)});
   REQUIRE(score.methods.size() == 4);  // the last picks at random
