@@ -1,6 +1,8 @@
 /// Names, titles, notes and reasons that come from files are text on every page, whatever is written in them.
 #include <algorithm>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "base/files/file_io.h"
 #include "report/analysis/analysis_report.h"
@@ -145,10 +147,18 @@ TEST_CASE("the page of a check has every name from a file as text") {
   core::RecordingCheck check;
   check.name = kEvil;
   check.usable = false;
-  check.findings = {{core::Severity::unusable, kEvil, kEvil, kEvil}};
-  for (const core::Note& note : evil_notes()) {
-    check.findings.push_back({core::Severity::note, kEvil, {}, {}, core::Topic::other, note});
+  const core::Subject evil{core::Subject::Part::clips, {kEvil}};
+  core::found::AgainstStatedLaunch launch;
+  launch.launched = launch.clip = kEvil;
+  launch.downhill = kEvil;
+  launch.against = 2;
+  for (core::Found found :
+       std::vector<core::Found>{core::found::NoCamera{kEvil, 1, 2}, core::found::NoPatternIn{{kEvil}},
+                                core::found::NotTracked{kEvil}, core::found::NoPlumbAngle{kEvil},
+                                core::found::MassesApart{{{kEvil, 300.0}}, {kEvil, 0.3}, 100.0}, std::move(launch)}) {
+    check.findings.push_back({core::Severity::unusable, evil, std::move(found)});
   }
+  for (const core::Note& note : evil_notes()) check.findings.push_back({core::Severity::note, evil, note});
   check.findings[0].follow = check.findings;
   core::PatternCheck pattern;
   pattern.views = {{kEvil, true, 0.1, 3.0, {{100.0, 100.0}}}};
