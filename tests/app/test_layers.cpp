@@ -58,6 +58,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "diagnose/result/given_causes.h",
       "diagnose/result/next_step.h",
       "diagnose/result/note.h",
+      "diagnose/result/picture_fact.h",
       "diagnose/effects/effect_library.h",
       "diagnose/effects/effect_list.h",
       "validate/film/twin_motions.h",

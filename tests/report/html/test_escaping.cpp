@@ -105,7 +105,13 @@ diagnose::Diagnosis evil_diagnosis() {
               diagnose::NoInclination{{kEvil, kEvil}}, diagnose::SplitSetUps{{kEvil}},
               diagnose::LaunchedOtherWay{kEvil, true}, diagnose::ContradictedReading{0.3, {}},
               of.limits.contradicted.front()};
-  of.pictures = {{kEvil, diagnose::Stage::optics, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
+  of.pictures = {{kEvil,
+                  diagnose::Stage::optics,
+                  true,
+                  3.0,
+                  false,
+                  {{kEvil, 1.0, 0.1, "", ""}},
+                  diagnose::picture::Compression{true, kEvil, 0.1, {}}}};
   of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
   of.residuals = {{kEvil,
                    {0.0, 1.0, 2.0},
