@@ -44,6 +44,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "core/analysis/preview.h",
       "core/characterize/camera_measurement.h",
       "core/characterize/camera_note.h",
+      "core/characterize/measured.h",
       "core/check/finding.h",
       "core/check/recording_check.h",
       "validate/truth/comparison.h",

@@ -313,11 +313,6 @@ TEST_CASE("the page of a measured camera has every name from a file as text") {
   camera.folder.name = camera.folder.price_class = kEvil;
   camera.width_px = 640;
   camera.height_px = 480;
-  for (core::Measured* of : {&camera.gain_dn_per_e, &camera.offset_dn, &camera.full_well_e}) {
-    *of = {1.0, 0.1, kEvil, "", {}};
-  }
-  camera.read_noise_e = {{}, 0.0, "", kEvil, 3.0};
-  camera.prnu = {{}, 0.0, "", kEvil, {}};
   camera.curve = {{kEvil, 0.001, 300.0, 300.0, 125.0, 0.5, 0.0, true},
                   {kEvil, 0.002, 600.0, 600.0, 245.0, 1.0, 0.0, false}};
   camera.saturation_dn = 3600.0;
