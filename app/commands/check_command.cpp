@@ -13,6 +13,7 @@
 #include "core/check/check_recording.h"
 #include "core/track/bare_track.h"
 #include "report/check/check_report.h"
+#include "report/check/finding_words.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::app {
@@ -46,7 +47,7 @@ void check(const CheckOptions& options) {
   print_result(options.common.json ? json : report::check_text(found));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (!found.usable) {
-    const core::Finding& worst = found.findings.front();
+    const report::WordedFinding worst = report::worded(found.findings).front();
     throw base::NotMet(fmt::format("{}: not usable as it is: {}: {}", options.input, worst.about, worst.found));
   }
 }

@@ -9,17 +9,9 @@
 
 #include "core/characterize/camera_note.h"
 #include "core/characterize/flat_field_folder.h"
+#include "core/characterize/measured.h"
 
 namespace glidelab::core {
-
-/// A number with its standard deviation, or the reason why there is none.
-struct Measured {
-  std::optional<double> value;
-  double sd = 0.0;
-  std::string how;              ///< the method; empty if there is only one
-  std::string why;              ///< why there is no value; empty if there is one
-  std::optional<double> limit;  ///< if there is no value: the upper or lower limit mentioned in `why`
-};
 
 /// One level of light in the photon-transfer diagram.
 struct TransferPoint {

@@ -1,7 +1,5 @@
 #include "core/characterize/photon_checks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -48,9 +46,7 @@ Measured linearity_error(const Evidence& evidence, const FlatFieldFolder& folder
     line.add(1.0 / (level.mean_dn * level.mean_dn), level.exposure_s, level.mean_dn);
   }
   if (levels.size() < 3 || !line.is_regular(1e-9)) {
-    result.why =
-        "it requires three or more levels, 5 to 95 % of saturation, taken with different exposures to the same light "
-        "(exposures_s)";
+    result.why = unmeasured::NoExposures{};
     return result;
   }
   const double slope = line.slope(), intercept = line.intercept();
@@ -160,56 +156,32 @@ LineQuality line_quality(const CameraEvidence& gathered, const FlatFieldFolder& 
   return quality;
 }
 
-std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quality, const FittedLine& line,
-                        const Measured& linearity) {
+std::optional<WhyUnmeasured> why_no_gain(const CameraEvidence& gathered, const LineQuality& quality,
+                                         const FittedLine& line, const Measured& linearity) {
   const Evidence& evidence = gathered.evidence;
   const bool dark_in_line = evidence.dark_weight > 0.0;
-  if (quality.points < 3) {
-    return fmt::format(
-        "{} usable point{} in the diagram; at least 3 are needed: levels above the quantisation noise and below 70 % "
-        "of saturation{}",
-        quality.points, quality.points == 1 ? "" : "s",
-        dark_in_line ? "" : " (the dark frames show no noise beyond the quantisation)");
-  }
+  if (quality.points < 3) return unmeasured::FewPoints{quality.points, dark_in_line};
   const FlatFieldStack& bright = evidence.flats[*gathered.middle_level];
   if (neighbour_correlation(bright) > kCorrelationRefused) {
-    return fmt::format(
-        "the noise of neighbouring pixels is correlated ({:.2f}), an effect of demosaicing, denoising, scaling or "
-        "lossy "
-        "compression; raw images are needed",
-        neighbour_correlation(bright));
+    return unmeasured::PixelsTogether{neighbour_correlation(bright)};
   }
   if (bright.successive_ratio && *bright.successive_ratio < kSuccessiveRefused) {
-    return fmt::format(
-        "the noise of successive frames is correlated (their differences have {:.0f} % of the variance of frames two "
-        "apart), an effect of denoising over time; raw images are needed",
-        100.0 * *bright.successive_ratio);
+    return unmeasured::FramesTogether{*bright.successive_ratio};
   }
-  const std::string curve =
-      ": the codes are not linear in the light (gamma, tone curve, video range), or the light is not constant; "
-      "linear or raw images are needed";
-  if (!(line.gain > 0.0)) return "the variance does not rise with the mean" + curve;
-  if (quality.bend > kBendRefused) {
-    return fmt::format("the variance departs from a straight line over the mean by {:.0f} %{}", 100.0 * quality.bend,
-                       curve);
-  }
+  using Shown = unmeasured::NotLinear::Shown;
+  if (!(line.gain > 0.0)) return unmeasured::NotLinear{Shown::variance_falls};
+  if (quality.bend > kBendRefused) return unmeasured::NotLinear{Shown::variance_bends, quality.bend};
   const double at_half = 0.5 * line.gain * quality.most_dn;
   const double slack = kBendRefused * at_half + kMisfitSignificance * line.intercept_sd_dn2;
   if (!dark_in_line && !gathered.dark_clipped && line.intercept_dn2 > square(kHiddenNoise_dn) + slack) {
-    return "the line of variance over mean meets the dark level far above the dark frames' noise" + curve;
+    return unmeasured::NotLinear{Shown::line_above_dark};
   }
-  if (line.intercept_dn2 < -slack) {
-    return "the line of variance over mean meets the dark level below zero" + curve;
-  }
+  if (line.intercept_dn2 < -slack) return unmeasured::NotLinear{Shown::line_below_zero};
   if (linearity.value && *linearity.value > kLinearityRefused) {
-    return fmt::format("the mean departs from a straight line over the exposure by {:.0f} %{}",
-                       100.0 * *linearity.value, curve);
+    return unmeasured::NotLinear{Shown::mean_bends, *linearity.value};
   }
-  if (line.gain_sd > kMostRelativeGainSd * line.gain) {
-    return fmt::format("it is {:.2g} with a standard deviation of {:.2g}: more light, frames or pixels are needed",
-                       line.gain, line.gain_sd);
-  }
-  return {};
+  if (line.gain_sd > kMostRelativeGainSd * line.gain) return unmeasured::UncertainGain{line.gain, line.gain_sd};
+  return std::nullopt;
 }
 
 namespace {

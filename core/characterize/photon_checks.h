@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/characterize/camera_evidence.h"
@@ -46,8 +45,8 @@ struct FittedLine {
 };
 
 /// Why the variance over the mean does not give the gain; empty if it does.
-std::string why_no_gain(const CameraEvidence& gathered, const LineQuality& quality, const FittedLine& line,
-                        const Measured& linearity);
+std::optional<WhyUnmeasured> why_no_gain(const CameraEvidence& gathered, const LineQuality& quality,
+                                         const FittedLine& line, const Measured& linearity);
 
 /// What a reader should know about how the images were taken.
 std::vector<CameraNote> condition_notes(const CameraEvidence& gathered, const LineQuality& quality,

@@ -1,7 +1,5 @@
 #include "core/characterize/photon_transfer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -51,7 +49,7 @@ class Measurer {
     } else {
       for (Measured* missing : {&result_.read_noise_e, &result_.full_well_e, &result_.saturation_capacity_e,
                                 &result_.dark_signal_e_s, &result_.dsnu_e, &result_.prnu}) {
-        missing->why = "it requires the gain, which is not known";
+        missing->why = unmeasured::NoGain{};
       }
     }
     result_.notes =
@@ -60,6 +58,8 @@ class Measurer {
   }
 
  private:
+  using By = HowMeasured::By;
+
   const FlatFieldStack& dark() const { return evidence_.darks.front(); }
 
   /// A line that the levels do not follow within their noise is less certain than the jackknife says: its curvature is
@@ -73,14 +73,12 @@ class Measurer {
   void offset() {
     Measured& offset = result_.offset_dn;
     if (gathered_.dark_clipped) {
-      offset.why = fmt::format(
-          "{:.3g} % of the dark samples are at code 0: the dark level is cut; raise the camera's black level",
-          100.0 * dark().all.at_zero);
+      offset.why = unmeasured::DarkLevelCut{dark().all.at_zero};
       return;
     }
     offset.value = numbers_.offset_dn;
     offset.sd = std::hypot(sd_.offset_dn, shared_.offset_dn);
-    if (std::isfinite(numbers_.dark_slope_dn_s)) offset.how = "extrapolated to zero exposure";
+    if (std::isfinite(numbers_.dark_slope_dn_s)) offset.how = HowMeasured{By::zero_exposure};
   }
 
   void gain() {
@@ -90,7 +88,7 @@ class Measurer {
         gathered_, quality_,
         {numbers_.gain, sd, numbers_.intercept_dn2, std::sqrt(square(sd_.intercept_dn2) + shared_.intercept_variance)},
         result_.linearity_error);
-    if (!gain.why.empty()) return;
+    if (gain.why) return;
     gain.value = numbers_.gain;
     gain.sd = sd;
   }
@@ -119,37 +117,32 @@ class Measurer {
     if (variance > kLeastSignificance * sd) {
       read.value = std::sqrt(variance);
       read.sd = sd / (2.0 * *read.value);
-      read.how = evidence_.read_noise_from_dark
-                     ? "from the dark frames"
-                     : "from the line extrapolated to the dark level; the dark frames show none above the quantisation";
+      read.how = HowMeasured{evidence_.read_noise_from_dark ? By::dark_frames : By::line_at_dark};
       return;
     }
     const double limit = std::sqrt(std::max(0.0, variance) + kLeastSignificance * sd);
     const double most = gathered_.dark_clipped ? limit : std::min(kHiddenNoise_dn / numbers_.gain, dark_spread_e());
     read.limit = std::min(limit, most);
-    read.why = fmt::format("hidden by the quantisation: less than {:.3g} e-", *read.limit);
+    read.why = unmeasured::BelowQuantisation{};
   }
 
   void saturation_capacity() {
     Measured& capacity = result_.saturation_capacity_e;
     if (!evidence_.saturation.peak) {
-      capacity.why = "no level is brighter than that of the largest variance";
+      capacity.why = unmeasured::NoLargestVariance{};
       return;
     }
     capacity.value = numbers_.saturation_capacity_e;
     // The largest variance may lie anywhere between the neighbours of the observed maximum.
     capacity.sd = std::hypot(with_gain_error(*capacity.value, sd_.saturation_capacity_e, 1.0),
                              evidence_.saturation.peak->step_dn / std::sqrt(12.0) / numbers_.gain);
-    capacity.how = "the level of largest variance, known to within the steps between levels";
+    capacity.how = HowMeasured{By::largest_variance};
   }
 
   void full_well() {
     Measured& well = result_.full_well_e;
     if (quality_.knee) {
-      well.why = result_.saturation_capacity_e.why = fmt::format(
-          "between 75 and 90 % of saturation the variance is {:.0f} % of the line's: the output is compressed there (a "
-          "knee or a tone curve), or the light is uneven on a scale of a few pixels",
-          100.0 * *quality_.knee);
+      well.why = result_.saturation_capacity_e.why = unmeasured::Knee{*quality_.knee};
       result_.saturation_capacity_e.value.reset();
       return;
     }
@@ -160,9 +153,7 @@ class Measurer {
       well.value = numbers_.full_well_e;
       well.sd = std::hypot(with_gain_error(*well.value, sd_.full_well_e, 1.0),
                            std::hypot(rounding, shared_.offset_dn) / numbers_.gain);
-      well.how = evidence_.saturation.converter_clips
-                     ? "the converter reaches its largest code; the pixel may hold more, which the codes cannot show"
-                     : "from the level at which the output stops rising";
+      well.how = HowMeasured{evidence_.saturation.converter_clips ? By::largest_code : By::plateau};
       return;
     }
     if (result_.saturation_capacity_e.value) {
@@ -172,13 +163,13 @@ class Measurer {
     double most = 0.0;
     for (const TransferPoint& point : result_.curve) most = std::max(most, point.mean_dn);
     well.limit = most / numbers_.gain;
-    well.why = fmt::format("no level reaches saturation: more than {:.4g} e-, the brightest level", *well.limit);
+    well.why = unmeasured::NotSaturated{};
   }
 
   void dark_signal() {
     Measured& signal = result_.dark_signal_e_s;
     if (!std::isfinite(numbers_.dark_signal_e_s)) {
-      signal.why = "it requires dark frames at two or more exposures (folders dark-…, exposures_s)";
+      signal.why = unmeasured::NoDarkExposures{};
       return;
     }
     if (gathered_.dark_clipped) {
@@ -188,26 +179,25 @@ class Measurer {
     signal.value = numbers_.dark_signal_e_s;
     signal.sd =
         std::hypot(with_gain_error(*signal.value, sd_.dark_signal_e_s, 1.0), shared_.dark_slope_dn_s / numbers_.gain);
-    if (*signal.value < kLeastSignificance * signal.sd) signal.how = "not significant";
+    if (*signal.value < kLeastSignificance * signal.sd) signal.how = HowMeasured{By::insignificant};
   }
 
   /// A pattern's standard deviation from its variance; a limit if it does not exceed its error significantly. `most` is
   /// an upper limit known by other means.
-  static void set_pattern(Measured& result, double variance, double sd, double most, const std::string& unit) {
+  static void set_pattern(Measured& result, double variance, double sd, double most, bool electrons) {
     if (variance > kLeastSignificance * sd) {
       result.value = std::sqrt(variance);
       result.sd = sd / (2.0 * *result.value);
       return;
     }
     result.limit = std::min(most, std::sqrt(std::max(variance, 0.0) + kLeastSignificance * sd));
-    result.why = fmt::format("not seen above noise and quantisation: less than {:.2g}{}", *result.limit, unit);
+    result.why = unmeasured::PatternNotSeen{electrons};
   }
 
   void patterns() {
     const bool regression = !evidence_.dark_pattern_shown;
     if (regression && evidence_.pattern_levels.size() < 3) {
-      result_.prnu.why = result_.dsnu_e.why =
-          "the dark frames show no pattern above the quantisation, and fewer than 3 levels show one";
+      result_.prnu.why = result_.dsnu_e.why = unmeasured::NoPattern{};
       return;
     }
     // Rounding leaves an error in each dark pixel's mean that looks like a pattern.
@@ -215,14 +205,13 @@ class Measurer {
     const double rounding_dn2 = regression ? 0.0 : square(rounding_of_mean(dark_dn2));
     const double light_dn = level_point(evidence_, *gathered_.middle_level, std::nullopt).mean_dn;
     set_pattern(result_.prnu, numbers_.prnu_squared, std::hypot(sd_.prnu_squared, rounding_dn2 / square(light_dn)), 1.0,
-                "");
+                false);
     set_pattern(result_.dsnu_e, numbers_.dsnu_squared_e2,
                 std::hypot(with_gain_error(numbers_.dsnu_squared_e2, sd_.dsnu_squared_e2, 2.0),
                            rounding_dn2 / square(numbers_.gain)),
-                dark_spread_e(), " e-");
-    const std::string how =
-        regression ? "regression over the levels; the dark frames show no pattern above the quantisation"
-                   : fmt::format("at {:.0f} % of saturation", 100.0 * light_dn / evidence_.saturation.level_dn);
+                dark_spread_e(), true);
+    const HowMeasured how =
+        regression ? HowMeasured{By::all_levels} : HowMeasured{By::one_level, light_dn / evidence_.saturation.level_dn};
     if (result_.prnu.value) result_.prnu.how = how;
     if (result_.dsnu_e.value && regression) result_.dsnu_e.how = how;
   }

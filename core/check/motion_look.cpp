@@ -1,7 +1,5 @@
 #include "core/check/motion_look.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -28,7 +26,7 @@ constexpr double kHarmonic = 0.8;                         // of the variance of 
 constexpr double kSmoothPart = 1e-7;                      // of the range of x
 constexpr double kAboveGravity = 1.05;                    // of g: a fall has 1
 constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;    // of g, on an incline of less than 60 degrees
-constexpr double kFoot_m = 0.3048, kSameGravity = 0.1;    // of g
+constexpr double kSameGravity = 0.1;                      // of g
 constexpr double kMostBend = 0.08;                        // a wide lens bends a straight path by half of that
 constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0;  // on an incline of less than 60 degrees, and of more
 constexpr double kSlowFrames_s = 1.0;                     // from one to the next
@@ -185,77 +183,46 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   return look;
 }
 
+namespace {
+
+/// Accelerations that no incline has, with the units of x that would explain them.
+found::BeyondGravity beyond_gravity(double a, double gravity_m_s2) {
+  found::BeyondGravity found{a, gravity_m_s2, {}, false};
+  for (const LengthUnit unit : {LengthUnit::feet, LengthUnit::centimetres, LengthUnit::millimetres}) {
+    if (std::abs(a / per_metre(unit) / gravity_m_s2 - 1.0) < kSameGravity) {
+      found.units = {unit};
+      found.fall = true;
+      return found;
+    }
+  }
+  if (a < 100.0 * gravity_m_s2) found.units.push_back(LengthUnit::centimetres);
+  if (a > 20.0 * gravity_m_s2 && a < 1000.0 * gravity_m_s2) found.units.push_back(LengthUnit::millimetres);
+  return found;
+}
+
+}  // namespace
+
 std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2) {
   std::vector<Finding> findings;
-  FindingBook book(findings, setup.name);
+  FindingBook book(findings, {Subject::Part::clips, {setup.name}});
   const double a = look.acceleration_m_s2.value_or(0.0);
   if (look.oscillates) {
-    book.add(
-        Severity::unusable,
-        fmt::format(
-            "the motion turns {} times, and its acceleration depends on position: this is an oscillation, not a "
-            "run along an incline",
-            look.turns),
-        "the law contains no spring; if one stretch between turns is a free run, select it with start_s and end_s");
+    book.add(Severity::unusable, found::Oscillation{look.turns});
   } else if (a > kAboveGravity * gravity_m_s2) {
-    std::string units;
-    const auto is_gravity_in = [&](double metres) { return std::abs(a * metres / gravity_m_s2 - 1.0) < kSameGravity; };
-    if (a < 100.0 * gravity_m_s2) units = "centimetres";
-    if (a > 20.0 * gravity_m_s2 && a < 1000.0 * gravity_m_s2)
-      units += units.empty() ? "millimetres" : " or millimetres";
-    if (units.empty()) units = "another unit";
-    if (is_gravity_in(kFoot_m)) units = "feet (this would be a free fall)";
-    if (is_gravity_in(0.01)) units = "centimetres (this would be a free fall)";
-    if (is_gravity_in(0.001)) units = "millimetres (this would be a free fall)";
-    book.add(
-        Severity::unusable,
-        fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline can produce that", a,
-                    a / gravity_m_s2),
-        fmt::format("x may be in {} instead of metres, or an angle, or the times in another unit: convert the file, "
-                    "or state the scale",
-                    units),
-        Topic::length);
+    book.add(Severity::unusable, beyond_gravity(a, gravity_m_s2), Topic::length);
   } else if (a > kFreeFall * gravity_m_s2 && std::abs(setup.incline_rad) < kShallow_rad) {
-    book.add(
-        Severity::unusable,
-        fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
-                    a / gravity_m_s2, setup.incline_rad * base::kDegreesPerRad),
-        "state incline_deg = 90 for a fall; otherwise check the unit of x", Topic::incline);
+    book.add(Severity::unusable, found::FreeFall{a / gravity_m_s2, setup.incline_rad * base::kDegreesPerRad},
+             Topic::incline);
   } else if (look.distance_m > (std::abs(setup.incline_rad) < kShallow_rad ? kLongRange_m : kLongFall_m)) {
-    book.add(Severity::change, fmt::format("x covers {:.3g} m", look.distance_m),
-             "check the unit of x: it may be centimetres, millimetres, or an angle", Topic::length);
+    book.add(Severity::change, found::LongRun{look.distance_m}, Topic::length);
   }
-  if (look.frame_s > kSlowFrames_s) {
-    book.add(Severity::change, fmt::format("its positions are {:.3g} s apart", look.frame_s),
-             "check the unit of the times: they may be milliseconds, or numbers of frames");
-  }
-  if (look.lost) {
-    book.add(Severity::change,
-             fmt::format("from {:.6g} s on {} positions are all {:.6g} m, {:.3g} m from the one before: the object was "
-                         "lost there",
-                         look.lost->from_s, look.lost->count, look.lost->x_m, look.lost->off_m),
-             "delete these rows from the file, or state end_s");
-  }
+  if (look.frame_s > kSlowFrames_s) book.add(Severity::change, found::SlowFrames{look.frame_s});
+  if (look.lost) book.add(Severity::change, *look.lost);
   if (look.unseen > kMostUnseen && look.frame_s <= kSlowFrames_s) {
-    book.add(Severity::change,
-             fmt::format("{} of its time lies in gaps of up to {:.3g} s between positions", percent_text(look.unseen),
-                         look.longest_gap_s),
-             "record at an even rate, and track every frame: no acceleration is measured across a gap");
+    book.add(Severity::change, found::Gaps{look.unseen, look.longest_gap_s});
   }
-  if (look.bend > kMostBend) {
-    book.add(Severity::unusable,
-             fmt::format("the path in the image is curved (sagitta {} of its length): the track is not straight",
-                         percent_text(look.bend)),
-             "the law of motion holds along a straight line: film a straight track, not a free flight or a swing");
-  }
-  if (look.smooth) {
-    book.add(
-        Severity::change,
-        fmt::format("the positions follow a smooth curve to {:.0e} of the distance covered: they were smoothed or "
-                    "integrated before export",
-                    kSmoothPart),
-        "export the positions as measured: their noise is estimated from them, and every uncertainty depends on it");
-  }
+  if (look.bend > kMostBend) book.add(Severity::unusable, found::CurvedPath{look.bend});
+  if (look.smooth) book.add(Severity::change, found::Smoothed{kSmoothPart});
   return findings;
 }
 

@@ -1,50 +1,18 @@
-/// The result of a check of a recording as plain data (check_recording.h makes it), the wording that its findings
-/// share, and their collector.
+/// The result of a check of a recording as plain data (check_recording.h makes it).
 ///
 /// Lengths of the set-up are in metres, those of the image in pixels; brightness is a share of the largest code.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "core/check/finding.h"
 #include "core/result/analysis_note.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
-
-enum class Severity {
-  note,     ///< good to know
-  change,   ///< the analysis works and would improve
-  unusable  ///< no analysis, or an untrustworthy one
-};
-
-/// What a finding is about, as far as one wrong statement explains several (root_causes.h).
-enum class Topic {
-  other,
-  length,   ///< a distance, a speed or an acceleration
-  size,     ///< of the marker against its stated diameter
-  incline,  ///< the stated inclination against the motion
-  time,     ///< frame times
-  mass,
-  failure  ///< a clip that could not be tracked
-};
-
-/// One finding, and what to do about it.
-struct Finding {
-  Severity severity = Severity::note;
-  std::string about;   ///< "pattern", "masses", "plumb line", or clips' names
-  std::string found;   ///< "the marker is 4.1 px wide"; empty if a note says it
-  std::string advice;  ///< "move closer or use a bigger one"; empty if nothing is to be done
-  Topic topic = Topic::other;
-  std::optional<Note> note = {};     ///< the same finding as a note, if the analysis notes it too
-  std::vector<Finding> follow = {};  ///< findings that follow from this one, which is their root cause
-};
 
 struct PixelPlace {
   double u_px = 0.0;
@@ -67,13 +35,6 @@ struct PatternCheck {
   std::string failure;  ///< why there is no calibration; empty if there is one
   int width_px = 0, height_px = 0;
   double covered = 0.0;  ///< share of the image's 8 x 6 equal parts that hold a corner
-};
-
-/// Positions that stand at one value far from those before: a tracker that has lost its object writes such rows.
-struct LostPositions {
-  double from_s = 0.0, x_m = 0.0;
-  double off_m = 0.0;  ///< from the position before
-  std::size_t count = 0;
 };
 
 /// From the positions alone (motion_look.h).
@@ -155,34 +116,6 @@ struct RecordingCheck {
   std::string plumb_failure;      ///< why the plumb line gives no angle; empty if it does, or if there is none
   std::vector<Finding> findings;  ///< the most severe first
   bool usable = true;             ///< no finding is Severity::unusable
-};
-
-inline std::string percent_text(double share) {
-  return fmt::format("{:.3g} %", 100.0 * share);
-}
-
-/// At most six names, and how many more there are.
-inline std::string first_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 6;
-  const std::size_t shown = std::min(kMost, names.size());
-  std::string text =
-      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
-  return text;
-}
-
-/// Collects the findings about one subject; `findings` outlive it.
-class FindingBook {
- public:
-  FindingBook(std::vector<Finding>& findings, std::string about) : findings_(findings), about_(std::move(about)) {}
-  void add(Severity severity, std::string found, std::string advice = {}, Topic topic = Topic::other) {
-    findings_.push_back({severity, about_, std::move(found), std::move(advice), topic});
-  }
-  void add(Note note) { findings_.push_back({Severity::note, about_, {}, {}, Topic::other, std::move(note)}); }
-
- private:
-  std::vector<Finding>& findings_;
-  std::string about_;
 };
 
 }  // namespace glidelab::core

@@ -1,7 +1,5 @@
 #include "core/check/root_causes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -24,16 +22,11 @@ constexpr double kLongestRun_m = 20.0, kUsualRun_m = 1.0;
 constexpr double kMostOverGravity = 1.05;
 constexpr double kSameAngle_deg = 0.5, kSameAngleShare = 0.15;
 
-struct Unit {
-  const char *name, *one;
-  double per_m;
-};
-
 /// Whichever of centimetres and millimetres brings the value closest to the usual one.
-Unit likely_unit(double value, double usual_m) {
-  const auto off = [&](const Unit& unit) { return std::abs(std::log(value / unit.per_m / usual_m)); };
-  const Unit centimetres{"centimetres", "centimetre", 100.0}, millimetres{"millimetres", "millimetre", 1000.0};
-  return off(centimetres) < off(millimetres) ? centimetres : millimetres;
+LengthUnit likely_unit(double value, double usual_m) {
+  const auto off = [&](LengthUnit unit) { return std::abs(std::log(value / per_metre(unit) / usual_m)); };
+  return off(LengthUnit::centimetres) < off(LengthUnit::millimetres) ? LengthUnit::centimetres
+                                                                     : LengthUnit::millimetres;
 }
 
 /// One root cause and what it explains.
@@ -46,12 +39,9 @@ struct Root {
 const std::vector<Topic> kByLength = {Topic::length, Topic::incline, Topic::failure};
 
 std::optional<Root> long_length(const char* key, double value, double largest_m, double usual_m,
-                                std::vector<Topic> explains, const char* about) {
+                                std::vector<Topic> explains, Subject::Part about) {
   if (value <= largest_m) return std::nullopt;
-  const Unit unit = likely_unit(value, usual_m);
-  return Root{{Severity::unusable, about,
-               fmt::format("{} = {:.6g} looks like {} ({:.6g} m)", key, value, unit.name, value / unit.per_m),
-               fmt::format("state it in metres: {} = {:.6g}", key, value / unit.per_m)},
+  return Root{{Severity::unusable, {about}, found::LengthInUnit{key, value, likely_unit(value, usual_m)}},
               std::move(explains)};
 }
 
@@ -71,38 +61,32 @@ std::optional<Root> heavy(const Experiment& experiment, double longest_m) {
   }
   // If others are in kilograms, mass_kg contradicts itself, which is a finding of its own.
   if (names.empty() || least_kg < kLargestMass_kg) return std::nullopt;
-  return Root{{Severity::change, first_names(names),
-               fmt::format("mass_kg = {:.6g} looks like grams ({:.6g} kg)", mass_kg, mass_kg / 1000.0),
-               fmt::format("state masses in kilograms: {:.6g}", mass_kg / 1000.0)},
-              {Topic::mass}};
+  return Root{{Severity::change, {Subject::Part::clips, std::move(names)}, found::MassInGrams{mass_kg}}, {Topic::mass}};
 }
 
 std::vector<Root> stated_roots(const Experiment& experiment, double longest_m) {
   std::vector<Root> roots;
   if (experiment.calibration) {
     add(long_length("square_m", experiment.calibration->square_m, kLargestSquare_m, kUsualSquare_m, kByLength,
-                    "pattern"),
+                    Subject::Part::pattern),
         roots);
   }
   if (experiment.scale && experiment.scale->px_per_m < kLeastScale_px_m) {
     const double value = experiment.scale->px_per_m;
-    const Unit unit = likely_unit(1.0 / value, 1.0 / kUsualScale_px_m);
-    roots.push_back({{Severity::unusable, "scale",
-                      fmt::format("px_per_m = {:.6g} looks like pixels per {} ({:.6g} per metre)", value, unit.one,
-                                  value * unit.per_m),
-                      fmt::format("state it per metre: px_per_m = {:.6g}", value * unit.per_m)},
-                     kByLength});
+    const LengthUnit unit = likely_unit(1.0 / value, 1.0 / kUsualScale_px_m);
+    roots.push_back({{Severity::unusable, {Subject::Part::scale}, found::ScaleInUnit{value, unit}}, kByLength});
   }
   if (experiment.marker) {
     add(long_length("diameter_m", experiment.marker->diameter_m, kLargestMarker_m, kUsualMarker_m,
-                    {Topic::size, Topic::failure}, "marker"),
+                    {Topic::size, Topic::failure}, Subject::Part::marker),
         roots);
     add(long_length("height_m", std::abs(experiment.marker->height_m), kLargestMarker_m, kUsualMarker_m, kByLength,
-                    "marker"),
+                    Subject::Part::marker),
         roots);
   }
   if (experiment.track.length_m) {
-    add(long_length("length_m", *experiment.track.length_m, kLongestTrack_m, kUsualTrack_m, {}, "track"), roots);
+    add(long_length("length_m", *experiment.track.length_m, kLongestTrack_m, kUsualTrack_m, {}, Subject::Part::track),
+        roots);
   }
   add(heavy(experiment, longest_m), roots);
   return roots;
@@ -119,12 +103,10 @@ std::optional<Root> long_tracks(const Experiment& experiment, const RecordingChe
     distance_m = std::max(distance_m, clip.distance_m);
   }
   if (names.empty()) return std::nullopt;
-  const Unit unit = likely_unit(distance_m, kUsualRun_m);
-  return Root{
-      {Severity::unusable, first_names(names),
-       fmt::format("x covers {:.4g}, which looks like {} ({:.3g} m)", distance_m, unit.name, distance_m / unit.per_m),
-       fmt::format("give x in metres: divide the column by {:.0f}, or name its unit in the header", unit.per_m)},
-      kByLength};
+  return Root{{Severity::unusable,
+               {Subject::Part::clips, std::move(names)},
+               found::TrackInUnit{distance_m, likely_unit(distance_m, kUsualRun_m)}},
+              kByLength};
 }
 
 bool same_angle(double one_deg, double other_deg) {
@@ -133,17 +115,16 @@ bool same_angle(double one_deg, double other_deg) {
 
 std::optional<Root> wrong_angle_or_rate(const Experiment& experiment, const RecordingCheck& check) {
   if (std::any_of(experiment.clips.begin(), experiment.clips.end(), incline_is_assumed)) return std::nullopt;
-  for (const ConfigurationResult& found : check.configurations) {
-    if (!found.alpha_deg.estimate) continue;
-    const auto off = incline_contradiction(found, experiment.gravity_m_s2, stated_incline(found));
+  for (const ConfigurationResult& configuration : check.configurations) {
+    if (!configuration.alpha_deg.estimate) continue;
+    const auto off = incline_contradiction(configuration, experiment.gravity_m_s2, stated_incline(configuration));
     if (!off || !off->gross) continue;
-    const double stated = found.incline_deg, alpha = found.alpha_deg.estimate->value;
+    const double stated = configuration.incline_deg, alpha = configuration.alpha_deg.estimate->value;
     const double as_radians = stated * base::kDegreesPerRad;
     if (std::abs(as_radians) > 1.0 && same_angle(as_radians, alpha)) {
-      return Root{{Severity::unusable, first_names(found.clips),
-                   fmt::format("incline_deg = {:.4g} looks like radians ({:.3g}°, and the motion says {:.3g}°)", stated,
-                               as_radians, alpha),
-                   fmt::format("state it in degrees: incline_deg = {:.3g}", as_radians)},
+      return Root{{Severity::unusable,
+                   {Subject::Part::clips, configuration.clips},
+                   found::InclineInRadians{stated, as_radians, alpha}},
                   {Topic::incline}};
     }
     for (const ClipCheck& clip : check.clips) {
@@ -153,13 +134,10 @@ std::optional<Root> wrong_angle_or_rate(const Experiment& experiment, const Reco
       if (std::abs(ratio - 1.0) < 0.01 || std::abs(sine) >= 1.0) continue;
       const double at_rate = std::asin(sine) * base::kDegreesPerRad;
       if (!same_angle(at_rate, stated)) continue;
-      return Root{
-          {Severity::unusable, first_names(found.clips),
-           fmt::format("frame_rate_hz = {:.6g} does not fit the motion: with the file's {:.6g} the inclination is "
-                       "{:.3g}°, as stated",
-                       clip.frame_rate_hz, *clip.container_rate_hz, at_rate),
-           fmt::format("state the rate at which it was filmed: frame_rate_hz = {:.6g}", *clip.container_rate_hz)},
-          {Topic::incline, Topic::time, Topic::length}};
+      return Root{{Severity::unusable,
+                   {Subject::Part::clips, configuration.clips},
+                   found::WrongFrameRate{clip.frame_rate_hz, *clip.container_rate_hz, at_rate}},
+                  {Topic::incline, Topic::time, Topic::length}};
     }
   }
   return std::nullopt;

@@ -1,10 +1,9 @@
 #include "core/check/statement_findings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "core/check/recording_check.h"
 #include "core/pictures/camera/restitution.h"
@@ -27,32 +26,22 @@ double size_off(const ClipCheck& clip) {
              : 0.0;
 }
 
-/// The keys that turn pixels, or a file's numbers, into metres.
-std::string lengths_of(const Experiment& experiment) {
-  std::vector<std::string> keys;
-  if (experiment.calibration) keys.emplace_back("square_m");
-  if (experiment.scale) keys.emplace_back("[scale]");
+LengthSources lengths_of(const Experiment& experiment) {
   const auto is_track = [](const ClipSetup& clip) { return clip.file.empty(); };
-  if (std::any_of(experiment.clips.begin(), experiment.clips.end(), is_track)) {
-    keys.emplace_back("the unit of x in the tracks (metres)");
-  }
-  return fmt::format("{}", fmt::join(keys, ", "));
+  return {experiment.calibration.has_value(), experiment.scale.has_value(),
+          std::any_of(experiment.clips.begin(), experiment.clips.end(), is_track)};
 }
 
 /// Gliders of one track do not differ that much; grams and kilograms do.
 void judge_masses(const Experiment& experiment, std::vector<Finding>& findings) {
   const auto lighter = [](const ClipSetup& a, const ClipSetup& b) { return a.mass_kg < b.mass_kg; };
   const auto least = std::min_element(experiment.clips.begin(), experiment.clips.end(), lighter);
-  std::vector<std::string> heavy;
+  found::MassesApart apart{{}, {least->name, least->mass_kg}, kMassRatio};
   for (const ClipSetup& clip : experiment.clips) {
-    if (clip.mass_kg >= kMassRatio * least->mass_kg)
-      heavy.push_back(fmt::format("{} ({:.6g})", clip.name, clip.mass_kg));
+    if (clip.mass_kg >= kMassRatio * least->mass_kg) apart.heavy.push_back({clip.name, clip.mass_kg});
   }
-  if (heavy.empty()) return;
-  findings.push_back({Severity::unusable, "masses",
-                      fmt::format("mass_kg of {} is {:g} or more times that of {} ({:.6g})", first_names(heavy),
-                                  kMassRatio, least->name, least->mass_kg),
-                      "state every mass in kilograms: one of them looks like grams", Topic::mass});
+  if (apart.heavy.empty()) return;
+  findings.push_back({Severity::unusable, {Subject::Part::masses}, std::move(apart), Topic::mass});
 }
 
 /// One finding for all clips: they share the marker and the scale.
@@ -68,16 +57,11 @@ void judge_size(const Experiment& experiment, const std::vector<ClipCheck>& clip
                                   likely_blur_px(clip) <= kMostSmearForSize * clip.marker_px);
   }
   if (worst == nullptr) return;
-  const std::string length = experiment.scale ? "[scale]" : "square_m";
-  findings.push_back(
-      {contradicts ? Severity::unusable : Severity::change, first_names(names),
-       fmt::format("the marker is {:.3g} px wide; diameter_m and {} predict {:.3g} px: {:.0f} % off", worst->marker_px,
-                   length, worst->marker_expected_px, 100.0 * std::expm1(size_off(*worst))),
-       fmt::format(
-           "measure diameter_m and {} again: one of these lengths is wrong; if it is not diameter_m, all speeds and "
-           "accelerations are wrong too",
-           length),
-       Topic::size});
+  findings.push_back({contradicts ? Severity::unusable : Severity::change,
+                      {Subject::Part::clips, std::move(names)},
+                      found::MarkerSizeOff{worst->marker_px, worst->marker_expected_px, std::expm1(size_off(*worst)),
+                                           experiment.scale.has_value()},
+                      Topic::size});
 }
 
 /// A marker cannot run farther than the track is long.
@@ -91,10 +75,10 @@ void judge_distance(const Experiment& experiment, const std::vector<ClipCheck>& 
     distance_m = std::max(distance_m, clip.distance_m);
   }
   if (names.empty()) return;
-  findings.push_back({Severity::unusable, first_names(names),
-                      fmt::format("the glider runs {:.3g} m, but length_m in [track] is {:.3g} m", distance_m,
-                                  *experiment.track.length_m),
-                      fmt::format("measure the track again, and check {}", lengths_of(experiment)), Topic::length});
+  findings.push_back({Severity::unusable,
+                      {Subject::Part::clips, std::move(names)},
+                      found::BeyondTrack{distance_m, *experiment.track.length_m, lengths_of(experiment)},
+                      Topic::length});
 }
 
 /// The configuration of a group that contradicts the stated inclination most.
@@ -133,13 +117,9 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
     for (const auto& [group, worst] : *worst_of) {
       if (worst_of == &by_plumb && by_key.contains(group)) continue;  // reported above
       findings.push_back({worst.contradiction.gross ? Severity::unusable : Severity::change,
-                          first_names(worst.configuration->clips),
-                          {},
-                          fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}",
-                                      worst_of == &by_key ? "incline_deg" : "the plumb line", lengths_of(experiment),
-                                      experiment.camera ? ", frame_rate_hz (its square enters)" : ""),
-                          Topic::incline,
-                          worst.contradiction});
+                          {Subject::Part::clips, worst.configuration->clips},
+                          found::InclineOff{worst.contradiction, lengths_of(experiment), experiment.camera.has_value()},
+                          Topic::incline});
     }
   }
 }
@@ -150,54 +130,36 @@ bool moves_against_launch(const ClipCheck& clip) {
   return !clip.against_launch->until_s || clip.against_launch->at_a_turn;
 }
 
-/// The two keys of one clip that state the direction of the launch.
-struct StatedLaunch {
-  bool own_downhill = false;  ///< of its [group], not of [track]
-  std::string sentence;       ///< "launched = "up" and downhill = "+X""
-};
-
-StatedLaunch stated_launch(const Experiment& experiment, const ClipSetup& clip) {
+/// Where the downhill stands that a clip goes by: in its own [group], or in [track].
+bool is_own_downhill(const Experiment& experiment, const ClipSetup& clip) {
   const GroupSetup* group = group_of(experiment, clip.group);
-  StatedLaunch stated{group != nullptr && group->downhill.has_value(), {}};
-  const std::optional<Downhill> downhill = downhill_of(experiment, clip.group);
-  stated.sentence = fmt::format("launched = \"{}\" and {}", name_of(clip.launched),
-                                downhill ? fmt::format("downhill = \"{}\"", name_of(*downhill)) : "no stated downhill");
-  return stated;
+  return group != nullptr && group->downhill.has_value();
 }
 
 /// One finding for all clips, with the worst of them: one wrong key in [track] turns them all.
 void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& clips, std::vector<Finding>& findings) {
   std::vector<std::string> names;
-  const ClipCheck* worst = nullptr;
-  StatedLaunch of_worst;
-  bool own = false, shared = false;  // where the downhill stands that these clips go by
+  found::AgainstStatedLaunch worst;
+  bool own = false, shared = false;
   for (const ClipCheck& clip : clips) {
     const auto setup = std::find_if(experiment.clips.begin(), experiment.clips.end(),
                                     [&](const ClipSetup& of) { return of.name == clip.name; });
     if (setup == experiment.clips.end() || !moves_against_launch(clip)) continue;
-    StatedLaunch stated = stated_launch(experiment, *setup);
+    (is_own_downhill(experiment, *setup) ? own : shared) = true;
     names.push_back(clip.name);
-    (stated.own_downhill ? own : shared) = true;
-    if (worst != nullptr && clip.against_launch->share <= worst->against_launch->share) continue;
-    worst = &clip;
-    of_worst = std::move(stated);
+    if (names.size() > 1 && clip.against_launch->share <= worst.motion.share) continue;
+    worst.motion = *clip.against_launch;
+    worst.clip = clip.name;
+    worst.launched = name_of(setup->launched);
+    const std::optional<Downhill> downhill = downhill_of(experiment, setup->group);
+    worst.downhill = downhill ? std::optional(name_of(*downhill)) : std::nullopt;
   }
-  if (worst == nullptr) return;
-  const bool many = names.size() > 1;
-  const std::string whose =
-      many ? fmt::format("in {} of {} clips the glider moves opposite to the stated launch, most clearly in {}: ",
-                         names.size(), clips.size(), worst->name)
-           : "";
-  findings.push_back(
-      {Severity::unusable, first_names(names),
-       fmt::format("{}{}, as {} say; that is {} of its free motion", whose, sentence(*worst->against_launch),
-                   of_worst.sentence, percent_text(worst->against_launch->share)),
-       fmt::format("check which of the two is wrong: launched of {}, or downhill in {}; if neither is, "
-                   "state in start_s when the hand lets go",
-                   many ? "these clips" : "this clip",
-                   own && shared ? "[track] or [group]"
-                   : own         ? "[group]"
-                                 : "[track]")});
+  if (names.empty()) return;
+  worst.against = names.size();
+  worst.clips = clips.size();
+  using Stated = found::AgainstStatedLaunch::Stated;
+  worst.stated = own && shared ? Stated::in_either : own ? Stated::in_group : Stated::in_track;
+  findings.push_back({Severity::unusable, {Subject::Part::clips, std::move(names)}, std::move(worst)});
 }
 
 }  // namespace

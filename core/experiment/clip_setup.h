@@ -53,8 +53,9 @@ struct ClipSetup {
                             ///< empty: found automatically
   double mass_kg = 0.0;
   double mass_sd_kg = 0.0;
-  bool mass_assumed = false;  ///< for a file on its own: mass_kg is assumed, not stated
-  double incline_rad = 0.0;   ///< as stated
+  bool mass_assumed = false;     ///< for a file on its own: mass_kg is assumed, not stated
+  double incline_rad = 0.0;      ///< as stated
+  bool incline_assumed = false;  ///< for a file on its own: incline_rad is assumed, not stated
   std::optional<double> incline_sd_rad;
   Launched launched = Launched::released;
   std::optional<double> start_s;

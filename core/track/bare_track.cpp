@@ -108,6 +108,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   clip.mass_kg = options.mass_kg.value_or(1.0);
   clip.mass_assumed = !options.mass_kg && options.masses_kg.empty();
   clip.incline_rad = options.incline_deg.value_or(0.0) * base::kRadPerDegree;
+  clip.incline_assumed = !options.incline_deg;
   clip.launched = Launched::unknown;
   clip.group = "all";
   if (options.runs.empty()) {

@@ -1,13 +1,10 @@
 #include "diagnose/pictures/picture_evidence.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "base/text/number_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/pictures/picture_recording.h"
@@ -67,12 +64,9 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
         std::sqrt(std::pow(fit.exposure_sd_s, 2) + std::pow(kToneOfShape * *camera.exposure_s, 2) + least_s * least_s);
     blur.log_evidence =
         log_deviation_evidence((fit.exposure_s - *camera.exposure_s) / sd, 1.0 / camera.frame_rate_hz / sd);
-    blur.words = fmt::format("The marker is smeared as by an exposure of {} ms; {:.3g} ms is stated.",
-                             base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * sd), 1e3 * *camera.exposure_s);
+    blur.fact = picture::Smear{fit.exposure_s, sd, camera.exposure_s};
   } else {
-    blur.words =
-        fmt::format("The marker is smeared as by an exposure of {} ms; none is stated.",
-                    base::value_and_sd_text(1e3 * fit.exposure_s, 1e3 * std::hypot(fit.exposure_sd_s, least_s)));
+    blur.fact = picture::Smear{fit.exposure_s, std::hypot(fit.exposure_sd_s, least_s), {}};
   }
   add_clearest(std::move(blur), evidence);
 
@@ -85,9 +79,7 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   shutter.parameters = {{"line_s", fit.line_s, sd}};
   shutter.log_evidence =
       log_deviation_evidence(std::abs(fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
-  shutter.words = fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
-                              base::value_and_sd_text(1e6 * fit.line_s, 1e6 * sd), 1e6 * stated,
-                              stated == 0.0 ? "(a global shutter) is stated" : "is stated");
+  shutter.fact = picture::Shear{fit.line_s, sd, stated};
   if (add_clearest(std::move(shutter), evidence)) evidence.stated_line_s = stated;
 }
 

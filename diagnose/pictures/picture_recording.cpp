@@ -1,12 +1,11 @@
 #include "diagnose/pictures/picture_recording.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
@@ -54,17 +53,10 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
       std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks, changes ? blocks : memory_log_evidence(clips));
   finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
   if (!lossy_codec.empty()) finding.parameters.push_back({"codec", 0.0, 0.0, lossy_codec});
-  const std::string steps =
-      relative > 2.0 ? fmt::format("{:.2g} times as large", 1.0 + relative)
-                     : fmt::format("{:.1f} % {}", 100.0 * std::abs(relative), relative < 0.0 ? "smaller" : "larger");
-  finding.words = fmt::format("{}; steps between pixels are {} at the edges of 8 × 8 blocks {} elsewhere.",
-                              lossy > 0      ? fmt::format("The file is compressed with loss ({})", lossy_codec)
-                              : lossless > 0 ? fmt::format("The file is compressed without loss ({})", codec)
-                                             : std::string("The file's compression is not known"),
-                              steps, relative > 2.0 ? "as" : "than");
-  if (memory > kUsualMemory)
-    finding.words +=
-        fmt::format(" Noise lasts over frames (changes over two frames are {:.2f} times those over one).", memory);
+  picture::Compression compression{{}, lossy > 0 ? lossy_codec : codec, relative, {}};
+  if (lossy + lossless > 0) compression.lossy = lossy > 0;
+  if (memory > kUsualMemory) compression.noise_memory = memory;
+  finding.fact = std::move(compression);
   evidence.findings.push_back(std::move(finding));
 }
 
@@ -85,8 +77,7 @@ void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   const double count = static_cast<double>(missing + repeated);
   finding.parameters = {
       {"fraction", count / static_cast<double>(frames), std::sqrt(count) / static_cast<double>(frames)}};
-  finding.words =
-      fmt::format("{} frames repeat the image before, and the time stamps leave a gap for {}.", repeated, missing);
+  finding.fact = picture::FrameTimes{repeated, missing};
   evidence.findings.push_back(std::move(finding));
 }
 

@@ -1,14 +1,13 @@
 #include "diagnose/pictures/picture_scene.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
-#include "base/text/number_text.h"
 #include "core/math/quantile.h"
 #include "core/pictures/scene/camera_traces.h"
 #include "diagnose/effects/effect_library.h"
@@ -93,20 +92,16 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   }
   finding.log_evidence = wave.amplitude < least ? std::min(wave.log_evidence, -2.0) : wave.log_evidence;
   finding.parameters = {{"depth", wave.amplitude / passed, wave.sd / passed}, {"f_hz", f_hz, wave.sd_hz}};
-  finding.words =
-      finding.log_evidence > kSeenInPictures
-          ? fmt::format("The brightness of the fixed scene varies by ±{:.2g} % at {:.4g} Hz{}.", 100.0 * wave.amplitude,
-                        wave.f_hz,
-                        f_hz != wave.f_hz ? fmt::format(" ({:.0f} Hz looks like this at this frame rate)", f_hz) : "")
-          : fmt::format("The light does not flicker: no wave above {:.2g} % in the fixed scene.",
-                        100.0 * std::max(wave.amplitude, 3.0 * wave.sd));
+  const bool flickers = finding.log_evidence > kSeenInPictures;
+  finding.fact =
+      picture::Flicker{flickers, flickers ? wave.amplitude : std::max(wave.amplitude, 3.0 * wave.sd), wave.f_hz, f_hz};
   evidence.findings.push_back(std::move(finding));
 }
 
 namespace {
 
 /// The effect of light from one side on the centroid of the marker's light, if it exceeds the noise.
-std::string words_of_pull(const std::vector<FilmedClip>& clips) {
+std::optional<picture::LightAlong::Pull> pull_of_light(const std::vector<FilmedClip>& clips) {
   constexpr double kLeastPull_px = 0.1, kTailQuantile = 0.05;
   std::vector<double> pulls, along;
   for (const FilmedClip& clip : clips) {
@@ -116,12 +111,9 @@ std::string words_of_pull(const std::vector<FilmedClip>& clips) {
     }
   }
   const double pull = core::quantile(pulls, 0.5);
-  if (pull < kLeastPull_px) return "";
+  if (pull < kLeastPull_px) return std::nullopt;
   const double change = 0.5 * (core::quantile(along, 1.0 - kTailQuantile) - core::quantile(along, kTailQuantile));
-  return fmt::format(
-      " The centroid of the marker's light lies {:.2g} px from the centre of its outline, which is what is "
-      "fitted; this offset changes by ±{:.2g} px along the path.",
-      pull, change);
+  return picture::LightAlong::Pull{pull, change};
 }
 
 }  // namespace
@@ -165,10 +157,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   const double usual = std::hypot(sd, kUsualGradient_1_m);
   finding.log_evidence = log_deviation_evidence(std::abs(gradient) / usual, 10.0 / usual);
   finding.parameters = {{"gradient", gradient, sd}};
-  finding.words = fmt::format("The light on the marker changes by {} % a metre {}; {:.0f} % is usual in a room.",
-                              base::value_and_sd_text(100.0 * gradient, 100.0 * sd),
-                              clips.front().down ? "down the image" : "to the right", 100.0 * kUsualGradient_1_m);
-  finding.words += words_of_pull(clips);
+  finding.fact = picture::LightAlong{gradient, sd, kUsualGradient_1_m, clips.front().down, pull_of_light(clips)};
   evidence.findings.push_back(std::move(finding));
 }
 
@@ -252,18 +241,15 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   if (shakes) {
     finding.log_evidence = std::max(wave.log_evidence, of_drift);
     finding.parameters = {{"amplitude_px", wave.amplitude, wave.sd}, {"f_hz", wave.f_hz, wave.sd_hz}};
-    finding.words = fmt::format("The fixed scene sways in the image by ±{:.2g} px at {:.3g} Hz: the camera shakes.",
-                                wave.amplitude, wave.f_hz);
+    finding.fact = picture::Sway{picture::Sway::How::shakes, wave.amplitude, wave.f_hz};
   } else if (of_drift > kSeenInPictures) {
     finding.log_evidence = of_drift;
     finding.parameters = {{"amplitude_px", 0.5 * drift.size, 0.5 * drift_sd}};
-    finding.words =
-        fmt::format("The fixed scene drifts in the image by {:.2g} px within a clip: the camera moves.", drift.size);
+    finding.fact = picture::Sway{picture::Sway::How::drifts, drift.size, 0.0};
   } else {
     finding.log_evidence = std::min({of_drift, wave.log_evidence, -2.0});
     finding.parameters = {{"amplitude_px", 0.0, std::max(least_px, wave.amplitude)}};
-    finding.words = fmt::format("The camera is at rest: the fixed scene stays within {:.2g} px in the image.",
-                                std::max(least_px, std::max(wave.amplitude, drift.size)));
+    finding.fact = picture::Sway{picture::Sway::How::rests, std::max({least_px, wave.amplitude, drift.size}), 0.0};
   }
   evidence.findings.push_back(std::move(finding));
 }

@@ -13,6 +13,7 @@
 #include "diagnose/result/line_comparison.h"
 #include "diagnose/result/next_step.h"
 #include "diagnose/result/note.h"
+#include "diagnose/result/picture_fact.h"
 
 namespace glidelab::diagnose {
 
@@ -171,7 +172,7 @@ struct PictureFinding {
   double log_evidence = 0.0;  ///< for its presence against its absence, from the images alone
   bool stated = false;        ///< the file itself says so: named only for its effect on the positions
   std::vector<DiagnosedParameter> parameters;
-  std::string words;  ///< a sentence
+  PictureFact fact;
 };
 
 /// A measurement in the images for the plots: `lengthening` (px², of the marker's image over px/s), `brightness`

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <utility>
+#include <variant>
 
 #include "base/errors.h"
 #include "core/check/motion_look.h"
@@ -22,11 +23,13 @@ void require_usable_motions(const core::AnalysisResults& results, const std::vec
       x_m.push_back(*point.measured_m);
     }
     const core::MotionLook look = core::look_at_motion(t_s, x_m, clip.sightings, clip.forced);
-    for (core::Finding& finding : core::motion_findings(look, setups[c], results.gravity_m_s2)) {
-      if (finding.severity != core::Severity::unusable) continue;
+    for (const core::Finding& finding : core::motion_findings(look, setups[c], results.gravity_m_s2)) {
+      const auto* const fault = std::get_if<core::found::MotionFault>(&finding.found);
+      if (fault == nullptr) continue;
+      core::found::FaultWords words = core::found::fault_words(*fault);
       issues.push_back({(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
-                        fmt::format("clip \"{}\"", clip.name), std::move(finding.found),
-                        fmt::format("the motion of a body along a straight incline ({})", finding.advice)});
+                        fmt::format("clip \"{}\"", clip.name), std::move(words.found),
+                        fmt::format("the motion of a body along a straight incline ({})", words.advice)});
     }
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));

@@ -8,6 +8,7 @@
 
 #include "base/text/number_text.h"
 #include "report/characterize/camera_note_words.h"
+#include "report/characterize/measured_words.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
@@ -31,14 +32,14 @@ CameraRow row(const char* key, const char* name, const char* unit, const core::M
 void put_measured(Json& object, const std::string& key, const core::Measured& measured) {
   if (!measured.value) {
     object[key] = nullptr;
-    object["why"][key] = measured.why;
+    object["why"][key] = why_words(measured);
     if (measured.limit) put(object["limit"], key, *measured.limit);
     return;
   }
   Json inner;
   inner["value"] = *measured.value;
   put(inner, "sd", measured.sd);
-  if (!measured.how.empty()) inner["how"] = measured.how;
+  if (measured.how) inner["how"] = how_words(measured);
   object[key] = std::move(inner);
 }
 
@@ -87,7 +88,7 @@ std::string camera_json(const core::CameraMeasurement& camera) {
   document["sensor"] = std::move(sensor);
   document["pixels"] = {{"hot", camera.hot_pixels}, {"dead", camera.dead_pixels}, {"outlying", camera.outlying_pixels}};
   put(document, "saturation_dn", camera.saturation_dn);
-  put(document, "line_intercept_dn2", camera.intercept_dn2, "there is no line: " + camera.gain_dn_per_e.why);
+  put(document, "line_intercept_dn2", camera.intercept_dn2, "there is no line: " + why_words(camera.gain_dn_per_e));
   document["photon_transfer"] = curve_json(camera);
   document["notes"] = notes_words(camera.notes);
   return json_text(document);
@@ -98,8 +99,8 @@ std::string camera_text(const core::CameraMeasurement& camera) {
   std::string below;
   for (const CameraRow& row : camera_rows(camera)) {
     rows.push_back({row.name, row.value, row.sd, row.unit});
-    if (!row.measured->value) below += fmt::format("{}: {}\n", row.name, row.measured->why);
-    if (!row.measured->how.empty()) below += fmt::format("{}: {}\n", row.name, row.measured->how);
+    if (!row.measured->value) below += fmt::format("{}: {}\n", row.name, why_words(*row.measured));
+    if (row.measured->how) below += fmt::format("{}: {}\n", row.name, how_words(*row.measured));
   }
   std::string text = fmt::format("{}, {} bits, {} x {} pixels, {} frames\n\n", camera.folder.name,
                                  camera.folder.bit_depth, camera.width_px, camera.height_px, camera.frames);
@@ -179,7 +180,7 @@ std::string numbers_table(const core::CameraMeasurement& camera) {
   std::string remarks;
   for (const CameraRow& row : camera_rows(camera)) {
     table.row({escape(row.name), escape(row.value), escape(row.sd), escape(row.unit)});
-    const std::string& remark = row.measured->value ? row.measured->how : row.measured->why;
+    const std::string remark = row.measured->value ? how_words(*row.measured) : why_words(*row.measured);
     if (!remark.empty()) remarks += fmt::format("<li>{}: {}</li>", escape(row.name), escape(remark));
   }
   return table.str() + (remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/characterize/camera_note_words.h"
+#include "report/characterize/measured_words.h"
 
 namespace glidelab::report {
 namespace {
@@ -36,17 +37,17 @@ std::string line(const std::string& key, const std::string& value, const std::st
 std::string entry(const std::string& key, const core::Measured& measured) {
   if (measured.value) {
     std::string comment = fmt::format("measured, sd {:.2g}", measured.sd);
-    if (!measured.how.empty()) comment += "; " + measured.how;
+    if (measured.how) comment += "; " + how_words(measured);
     return line(key, number(*measured.value, measured.sd), comment);
   }
   if (measured.limit) {
-    return line(key, number(*measured.limit, 0.0), "NOT measured, this is the limit: " + measured.why);
+    return line(key, number(*measured.limit, 0.0), "NOT measured, this is the limit: " + why_words(measured));
   }
-  return line(key, "nan", "NOT measured: " + measured.why);
+  return line(key, "nan", "NOT measured: " + why_words(measured));
 }
 
 std::string dark_signal(const core::Measured& measured) {
-  if (!measured.value) return fmt::format("# dark_signal_e_s: not measured: {}\n", in_comment(measured.why));
+  if (!measured.value) return fmt::format("# dark_signal_e_s: not measured: {}\n", in_comment(why_words(measured)));
   if (*measured.value > 0.0) return entry("dark_signal_e_s", measured);
   return line("dark_signal_e_s", "0.0",
               fmt::format("measured as {:.2g}, sd {:.2g}: not significant", *measured.value, measured.sd));

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 #include <utility>
-#include <variant>
 
 #include "base/text/number_text.h"
 #include "report/analysis/note_words.h"
+#include "report/check/finding_words.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
@@ -107,50 +106,6 @@ std::string name_of(core::Severity severity) {
   return "";
 }
 
-namespace {
-
-/// The finding, with its note and its consequences as text.
-struct WordedFinding {
-  core::Severity severity = core::Severity::note;
-  std::string about, found, advice;
-  std::vector<std::string> follow = {};
-};
-
-std::string found_words(const core::Finding& finding) {
-  if (!finding.note) return finding.found;
-  const auto* const incline = std::get_if<core::InclineContradiction>(&*finding.note);
-  return incline != nullptr ? contradiction_words(*incline) : note_words(*finding.note);
-}
-
-/// The findings in words; notes with the same text are merged, with all their subjects.
-std::vector<WordedFinding> worded(const std::vector<core::Finding>& findings) {
-  std::vector<WordedFinding> all;
-  std::vector<std::vector<std::string>> about;  // subjects of each note
-  for (const core::Finding& finding : findings) {
-    WordedFinding words{finding.severity, finding.about, found_words(finding), finding.advice};
-    const auto same = std::find_if(all.begin(), all.end(), [&](const WordedFinding& before) {
-      return finding.note && std::tie(before.severity, before.found, before.advice) ==
-                                 std::tie(words.severity, words.found, words.advice);
-    });
-    if (same != all.end()) {
-      about[static_cast<std::size_t>(same - all.begin())].push_back(finding.about);
-      continue;
-    }
-    for (const core::Finding& one : finding.follow) words.follow.push_back(one.about + ": " + found_words(one));
-    if (const std::size_t many = words.follow.size(); many > 0) {
-      words.found += fmt::format(": {} finding{} follow{}", many, many == 1 ? "" : "s", many == 1 ? "s" : "");
-    }
-    about.push_back({finding.about});
-    all.push_back(std::move(words));
-  }
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (about[i].size() > 1) all[i].about = core::first_names(about[i]);
-  }
-  return all;
-}
-
-}  // namespace
-
 std::string check_json(const core::RecordingCheck& check) {
   Json json;
   json["format"] = 1;
@@ -160,7 +115,7 @@ std::string check_json(const core::RecordingCheck& check) {
   for (const WordedFinding& finding : worded(check.findings)) {
     json["findings"].push_back({{"severity", name_of(finding.severity)},
                                 {"about", finding.about},
-                                {"found", finding.found},
+                                {"found", finding.headline()},
                                 {"advice", finding.advice},
                                 {"follow", finding.follow}});
   }
@@ -209,10 +164,10 @@ std::string word_of(core::Severity severity) {
 
 /// The finding, with its consequences folded. HTML.
 std::string found_html(const WordedFinding& finding) {
-  if (finding.follow.empty()) return escape(finding.found);
+  if (finding.follow.empty()) return escape(finding.headline());
   std::string list;
   for (const std::string& one : finding.follow) list += "<li>" + escape(one) + "</li>";
-  return fmt::format("<details><summary>{}</summary><ul>{}</ul></details>", escape(finding.found), list);
+  return fmt::format("<details><summary>{}</summary><ul>{}</ul></details>", escape(finding.headline()), list);
 }
 
 std::string findings_section(const core::RecordingCheck& check) {
@@ -413,7 +368,7 @@ Page check_report(const core::RecordingCheck& check, const std::vector<core::Pre
 std::string check_text(const core::RecordingCheck& check) {
   std::string text = verdict_of(check) + ".\n";
   for (const WordedFinding& finding : worded(check.findings)) {
-    text += fmt::format("{}: {}: {}{}{}.\n", word_of(finding.severity), finding.about, finding.found,
+    text += fmt::format("{}: {}: {}{}{}.\n", word_of(finding.severity), finding.about, finding.headline(),
                         finding.advice.empty() ? "" : "; ", finding.advice);
   }
   std::vector<std::vector<std::string>> rows = {{"clip", "seen", "speed m/s", "blur px", "marker px", "noise mm"}};

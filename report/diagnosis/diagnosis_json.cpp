@@ -10,6 +10,7 @@
 #include "report/analysis/camera_plots.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/line_report.h"
+#include "report/diagnosis/picture_words.h"
 #include "report/diagnosis/verdict_words.h"
 #include "report/text/found_json.h"
 #include "report/text/json_numbers.h"
@@ -266,7 +267,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
     one["seen"] = finding.seen;
     put(one, "log_evidence", finding.log_evidence);
     one["parameters"] = parameters_json(finding.parameters);
-    one["words"] = finding.words;
+    one["words"] = picture_words(finding.fact);
     document["pictures"].push_back(std::move(one));
   }
   document["pixel_noise"] = Json::array();

@@ -13,6 +13,7 @@
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/gap_plots.h"
 #include "report/diagnosis/line_report.h"
+#include "report/diagnosis/picture_words.h"
 #include "report/diagnosis/verdict_words.h"
 #include "report/html/folded.h"
 #include "report/html/html.h"
@@ -172,7 +173,8 @@ std::string picture_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"looked for", "seen", "what the images show"}, 3);
   for (const bool seen : {true, false}) {
     for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
-      if (finding.seen == seen) table.row({effect_html(finding.id), seen ? "yes" : "no", escape(finding.words)});
+      if (finding.seen == seen)
+        table.row({effect_html(finding.id), seen ? "yes" : "no", escape(picture_words(finding.fact))});
     }
   }
   return table.str();
@@ -356,7 +358,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     }
   }
   for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
-    if (finding.seen) text += "images: " + wrapped(finding.words);
+    if (finding.seen) text += "images: " + wrapped(picture_words(finding.fact));
   }
   if (diagnosis.gap) {
     text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor {:.3g})\n",

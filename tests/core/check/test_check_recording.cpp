@@ -1,17 +1,21 @@
 #include "core/check/check_recording.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <variant>
 
 #include "base/files/file_io.h"
 #include "core/check/check_clip.h"
 #include "core/check/recording_findings.h"
 #include "tests/catch.h"
+#include "tests/core/findings.h"
 #include "tests/core/simulated_track.h"
 #include "tests/core/small_clip.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
+using tests::found_as;
 
 namespace {
 
@@ -123,10 +127,15 @@ TEST_CASE("a marker that is not seen at a clip's start or end is a finding, wors
   const auto late = findings(seen_in(52, 212));
   REQUIRE(late.size() == 1);
   CHECK(late[0].severity == core::Severity::change);
-  CHECK(late[0].found == "the marker is first seen in frame 53 of 264");
+  const auto& first = found_as<core::found::UnseenAtEnd>(late[0]);
+  CHECK(first.at_start);
+  CHECK(first.frame == 53);
+  CHECK(first.frames == 264);
   const auto lost = findings(seen_in(0, 200));
   REQUIRE(lost.size() == 1);
-  CHECK(lost[0].found == "the marker is last seen in frame 200 of 264");
+  const auto& last = found_as<core::found::UnseenAtEnd>(lost[0]);
+  CHECK_FALSE(last.at_start);
+  CHECK(last.frame == 200);
   CHECK(findings(seen_in(100, 164)).at(0).severity == core::Severity::unusable);
   core::ClipCheck entered = seen_in(52, 212);
   entered.entered = true;
@@ -145,10 +154,9 @@ TEST_CASE("a marker that is not found for its size is looked for in others, and 
     const core::RecordingCheck check = core::check_recording(experiment, 2);
     CHECK_FALSE(check.usable);
     REQUIRE_FALSE(check.findings.empty());
-    INFO(check.findings[0].found);
     CHECK(check.findings[0].severity == core::Severity::unusable);
-    CHECK(check.findings[0].about == "clip 0, clip 1");
-    CHECK(check.findings[0].found.find("diameter_m") != std::string::npos);
+    CHECK(check.findings[0].about.clips == std::vector<std::string>{"clip 0", "clip 1"});
+    found_as<core::found::MarkerSizeOff>(check.findings[0]);
     // A disc of 12 px, found by another size to a pixel.
     for (const core::ClipCheck& clip : check.clips) CHECK(std::abs(clip.marker_px - 12.0) < 1.0);
   }
@@ -160,17 +168,15 @@ TEST_CASE("what is found is said once, and in the words of the folder that it is
   clip.repeated = 20;
   clip.marker_px = 16.0;
   clip.notes = {core::RepeatedFrames{20, 264}, core::MarkerOfOtherSize{1.33}, core::AboutFile{"something else"}};
-  std::size_t notes = 0, once = 0, scale = 0, square = 0;
-  for (const core::Finding& finding : findings(clip)) {
-    notes += finding.severity == core::Severity::note;
-    once += finding.found.find("jumps once by") != std::string::npos;
-    scale += finding.advice.find("[scale]") != std::string::npos;
-    square += finding.advice.find("square_m") != std::string::npos;
-  }
-  CHECK(notes == 1);
-  CHECK(once == 1);
-  CHECK(scale == 1);
-  CHECK(square == 0);
+  const std::vector<core::Finding> all = findings(clip);
+  CHECK(std::count_if(all.begin(), all.end(),
+                      [](const core::Finding& finding) { return finding.severity == core::Severity::note; }) == 1);
+  const auto* const jumps = tests::found_in<core::found::Jumps>(all);
+  REQUIRE(jumps != nullptr);
+  CHECK(jumps->jumps == 1);
+  const auto* const size = tests::found_in<core::found::MarkerSizeOff>(all);
+  REQUIRE(size != nullptr);
+  CHECK(size->by_scale);
 }
 
 namespace {
@@ -195,7 +201,8 @@ std::vector<core::Finding> of_setups(const std::vector<core::ClipSetup>& setups,
   }
   std::vector<core::Finding> findings = core::check_recording(experiment, 1).findings;
   std::erase_if(findings, [](const core::Finding& finding) {
-    return finding.about != "masses" && finding.found.find("launched = ") == std::string::npos;
+    return !std::holds_alternative<core::found::MassesApart>(finding.found) &&
+           !std::holds_alternative<core::found::AgainstStatedLaunch>(finding.found);
   });
   return findings;
 }
@@ -213,17 +220,19 @@ TEST_CASE("free motion against the stated launch is a finding that names the cli
   const auto turned = of_setups({clip(Launched::up)}, {up}, core::Downhill::minus_x);
   REQUIRE(turned.size() == 1);
   CHECK(turned[0].severity == core::Severity::unusable);
-  CHECK(turned[0].about == "up-0");
+  CHECK(turned[0].about.clips == std::vector<std::string>{"up-0"});
   // It turns at v = 0, in closed form; the first smoothing knows that to some frames of 5 ms.
   const double turn_s = std::log1p(0.6 * kSlope.k_1_s / kSlope.a0(-1)) / kSlope.k_1_s;
-  const std::string before = "motion towards +x before ";
-  REQUIRE(turned[0].found.rfind(before, 0) == 0);
-  CHECK(std::abs(std::stod(turned[0].found.substr(before.size())) - turn_s) < 0.02);
-  CHECK_THAT(turned[0].found, Catch::Matchers::Contains("launched = \"up\" and downhill = \"-X\""));
+  const auto& against = found_as<core::found::AgainstStatedLaunch>(turned[0]);
+  CHECK(against.motion.direction == 1);
+  REQUIRE(against.motion.until_s);
+  CHECK(std::abs(*against.motion.until_s - turn_s) < 0.02);
+  CHECK(against.launched == "up");
+  CHECK(against.downhill == "-X");
   for (const Launched wrong : {Launched::down, Launched::released}) {
     const auto findings = of_setups({clip(wrong)}, {up});
     REQUIRE(findings.size() == 1);
-    CHECK_THAT(findings[0].found, Catch::Matchers::Contains("downhill = \"+X\""));
+    CHECK(found_as<core::found::AgainstStatedLaunch>(findings[0]).downhill == "+X");
   }
   core::ClipSetup cut = clip(Launched::down);
   cut.start_s = 0.0;  // the user's word
@@ -237,11 +246,14 @@ TEST_CASE("a downhill that turns every launch is said once, with the number of c
   const auto clip = [](Launched launched) { return tests::clip_setup(launched, 4.3); };
   const auto turned = of_setups({clip(Launched::up), clip(Launched::down)}, {up, down}, core::Downhill::minus_x);
   REQUIRE(turned.size() == 1);
-  CHECK(turned[0].about == "up-0, down-1");
-  CHECK_THAT(turned[0].found, Catch::Matchers::StartsWith(
-                                  "in 2 of 2 clips the glider moves opposite to the stated launch, most clearly in "
-                                  "down-1: it moves towards -x only"));
-  CHECK_THAT(turned[0].advice, Catch::Matchers::Contains("launched of these clips, or downhill in [track]"));
+  CHECK(turned[0].about.clips == std::vector<std::string>{"up-0", "down-1"});
+  const auto& against = found_as<core::found::AgainstStatedLaunch>(turned[0]);
+  CHECK(against.against == 2);
+  CHECK(against.clips == 2);
+  CHECK(against.clip == "down-1");
+  CHECK(against.motion.direction == -1);
+  CHECK_FALSE(against.motion.until_s);
+  CHECK(against.stated == core::found::AgainstStatedLaunch::Stated::in_track);
 }
 
 TEST_CASE("a hand that carries the glider up and rests there is no finding") {
@@ -258,7 +270,11 @@ TEST_CASE("masses a hundred times apart are a finding that names the heavy clips
   const auto grams = of_setups({clip(0.318), clip(221.0), clip(0.415)}, {track, track, track});
   REQUIRE(grams.size() == 1);
   CHECK(grams[0].severity == core::Severity::unusable);
-  CHECK_THAT(grams[0].found, Catch::Matchers::Contains("down-1 (221)") && Catch::Matchers::Contains("down-0 (0.318)"));
+  const auto& apart = found_as<core::found::MassesApart>(grams[0]);
+  REQUIRE(apart.heavy.size() == 1);
+  CHECK(apart.heavy[0].clip == "down-1");
+  CHECK(apart.heavy[0].mass_kg == 221.0);
+  CHECK(apart.lightest.clip == "down-0");
   CHECK(of_setups({clip(0.01), clip(0.9)}, {track, track}).empty());
 }
 

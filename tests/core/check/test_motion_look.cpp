@@ -7,8 +7,11 @@
 #include <vector>
 
 #include "tests/catch.h"
+#include "tests/core/findings.h"
 
 using namespace glidelab;
+using core::LengthUnit;
+using core::found::BeyondGravity;
 
 namespace {
 
@@ -38,9 +41,18 @@ std::vector<core::Finding> findings(const Positions& of, double incline_deg = 4.
   return core::motion_findings(core::look_at_motion(of.t_s, of.x_m, sightings, false), setup, kGravity_m_s2);
 }
 
-bool unusable(const std::vector<core::Finding>& found, const std::string& words) {
+/// Whether one fault of this kind is all that is found, and makes the motion unusable.
+template <class Fault>
+bool only(const std::vector<core::Finding>& found) {
   return found.size() == 1 && found[0].severity == core::Severity::unusable &&
-         (found[0].found + found[0].advice).find(words) != std::string::npos;
+         tests::fault_as<Fault>(found[0]) != nullptr;
+}
+
+/// Whether accelerations that no incline has, in this unit of x, are all that is found; and whether they are a fall's.
+bool only_in(const std::vector<core::Finding>& found, core::LengthUnit unit, bool fall = false) {
+  if (!only<BeyondGravity>(found)) return false;
+  const auto& beyond = *tests::fault_as<BeyondGravity>(found[0]);
+  return std::count(beyond.units.begin(), beyond.units.end(), unit) == 1 && beyond.fall == fall;
 }
 
 /// Up an incline and down again at 0.7 m/s².
@@ -56,12 +68,12 @@ TEST_CASE("a run along an incline and a fall are plausible") {
 }
 
 TEST_CASE("x in centimetres or millimetres makes accelerations that no incline has") {
-  CHECK(unusable(findings(positions([](double t) { return 100.0 * run(t); }, 0.01)), "centimetres"));
-  CHECK(unusable(findings(positions([](double t) { return 1000.0 * run(t); }, 0.1)), "millimetres"));
+  CHECK(only_in(findings(positions([](double t) { return 100.0 * run(t); }, 0.01)), LengthUnit::centimetres));
+  CHECK(only_in(findings(positions([](double t) { return 1000.0 * run(t); }, 0.1)), LengthUnit::millimetres));
 }
 
 TEST_CASE("where short stretches hide the acceleration in their noise the whole motion tells the unit") {
-  CHECK(unusable(findings(positions([](double t) { return 100.0 * run(t); }, 0.3)), "centimetres"));
+  CHECK(only_in(findings(positions([](double t) { return 100.0 * run(t); }, 0.3)), LengthUnit::centimetres));
   CHECK(findings(positions(run, 3e-3)).empty());
 }
 
@@ -85,16 +97,16 @@ TEST_CASE("positions seconds apart have their times in another unit") {
   const std::vector<core::Finding> found = findings(of);
   REQUIRE(found.size() == 1);
   CHECK(found[0].severity == core::Severity::change);
-  CHECK(found[0].found.find("10 s apart") != std::string::npos);
+  CHECK(tests::found_as<core::found::SlowFrames>(found[0]).apart_s == Approx(10.0).epsilon(1e-9));  // 1000 times 10 ms
 }
 
 TEST_CASE("a free fall on a stated slope of 4 degrees is none") {
-  CHECK(unusable(findings(positions([](double t) { return 0.5 * kGravity_m_s2 * t * t; })), "incline_deg = 90"));
+  CHECK(only<core::found::FreeFall>(findings(positions([](double t) { return 0.5 * kGravity_m_s2 * t * t; }))));
 }
 
 TEST_CASE("a swing over many periods is an oscillation, and bounces of a cart are none") {
-  CHECK(unusable(findings(positions([](double t) { return 0.2 * std::sin(2.0 * std::acos(-1.0) * 3.0 * t); })),
-                 "an oscillation"));
+  CHECK(only<core::found::Oscillation>(
+      findings(positions([](double t) { return 0.2 * std::sin(2.0 * std::acos(-1.0) * 3.0 * t); }))));
   // Flights of 0.25 s under 0.7 m/s², without loss: ten turns.
   CHECK(findings(positions(
                      [](double t) {
@@ -118,7 +130,7 @@ TEST_CASE("a curved path in the image is not a straight track") {
   };
   // From 0.14 to 0.6 m: s from -0.26 to 0.2, half of the unit length, and half of its sagitta over length.
   CHECK(findings(of, 4.0, path(0.05)).empty());
-  CHECK(unusable(findings(of, 4.0, path(0.5)), "curved"));
+  CHECK(only<core::found::CurvedPath>(findings(of, 4.0, path(0.5))));
 }
 
 TEST_CASE("positions without any noise are smoothed or integrated, and such as were rounded are not") {
@@ -127,7 +139,7 @@ TEST_CASE("positions without any noise are smoothed or integrated, and such as w
       findings(positions([](double t) { return run(t) + 0.01 * std::exp(-t); }, 0.0));
   REQUIRE(exact.size() == 1);
   CHECK(exact[0].severity == core::Severity::change);
-  CHECK(exact[0].found.find("before export") != std::string::npos);
+  CHECK(tests::found_in<core::found::Smoothed>(exact) != nullptr);
   CHECK(findings(positions([](double t) { return 0.001 * std::round(1000.0 * run(t)); }, 0.0)).empty());
 }
 
@@ -139,22 +151,22 @@ TEST_CASE("of a motion that a recorded force drives the size of the acceleration
 }
 
 TEST_CASE("gravity in feet is told as feet") {
-  CHECK(unusable(findings(positions([](double t) { return 0.5 * kGravity_m_s2 / 0.3048 * t * t; }, 1e-3)), "in feet"));
+  CHECK(only_in(findings(positions([](double t) { return 0.5 * kGravity_m_s2 / 0.3048 * t * t; }, 1e-3)),
+                LengthUnit::feet, true));
 }
 
 TEST_CASE("positions that stand at one value far from the others are those of a lost object") {
   Positions made = positions(run);
   for (std::size_t i = 150; i < made.x_m.size(); ++i) made.x_m[i] = 0.0;
   const auto found = findings(made);
-  REQUIRE_FALSE(found.empty());
-  CHECK(std::any_of(found.begin(), found.end(), [](const core::Finding& finding) {
-    return finding.severity == core::Severity::change &&
-           finding.found.find("from 1.5 s on 50 positions are all 0 m") != std::string::npos;
-  }));
+  const auto* const lost = tests::found_in<core::LostPositions>(found);
+  REQUIRE(lost != nullptr);
+  CHECK(lost->from_s == 1.5);
+  CHECK(lost->count == 50);
+  CHECK(lost->x_m == 0.0);
   // A glider that comes to rest stands still as well, and where it was.
   const auto rest = findings(positions([](double t) { return t < 1.0 ? run(t) : run(1.0); }, 0.0));
-  CHECK(std::none_of(rest.begin(), rest.end(),
-                     [](const core::Finding& finding) { return finding.found.find("lost") != std::string::npos; }));
+  CHECK(tests::found_in<core::LostPositions>(rest) == nullptr);
 }
 
 TEST_CASE("gaps that hold much of the time are told") {
@@ -165,8 +177,8 @@ TEST_CASE("gaps that hold much of the time are told") {
     clusters.x_m.push_back(made.x_m[i]);
   }
   const auto found = findings(clusters);
-  CHECK(std::any_of(found.begin(), found.end(), [](const core::Finding& finding) {
-    return finding.found.find("gaps of up to 0.33 s") != std::string::npos;
-  }));
+  const auto* const gaps = tests::found_in<core::found::Gaps>(found);
+  REQUIRE(gaps != nullptr);
+  CHECK(gaps->longest_s == Approx(0.33).epsilon(1e-9));
   CHECK(findings(made).empty());
 }

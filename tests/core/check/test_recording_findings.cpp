@@ -2,9 +2,10 @@
 
 #include "core/check/recording_findings.h"
 #include "tests/catch.h"
+#include "tests/core/findings.h"
 
 using namespace glidelab;
-using Catch::Matchers::Contains;
+using tests::found_as;
 
 namespace {
 
@@ -78,21 +79,45 @@ TEST_CASE("light is named where the marker's contrast or the place of its bright
   auto findings = of_clip(clip);
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].severity == core::Severity::change);
-  CHECK_THAT(findings[0].found,
-             Contains("light from one side") && Contains("1.5 px (3 mm)") && Contains("±0.4 px (0.8 mm)"));
+  const auto& lit = found_as<core::found::LitFromOneSide>(findings[0]);
+  CHECK(lit.changes);
+  CHECK(lit.pull_px == 1.5);
+  CHECK(lit.change_px == 0.4);
+  CHECK(lit.px_per_m == 500.0);
   clip.light = core::MarkerLighting{0.9, 1.5, 0.1};  // the same everywhere: no position errs by more than another
   findings = of_clip(clip);
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].severity == core::Severity::note);
+  CHECK_FALSE(found_as<core::found::LitFromOneSide>(findings[0]).changes);
   clip.light = core::MarkerLighting{0.3, 0.02, 0.01};
   findings = of_clip(clip);
   REQUIRE(findings.size() == 1);
-  CHECK_THAT(findings[0].found, Contains("falls to 30 % of its largest"));
+  CHECK(found_as<core::found::ContrastFalls>(findings[0]).least == 0.3);
 }
 
 TEST_CASE("a camera is judged by the views that it rests on, not by those in which the pattern was found") {
   CHECK(of_pattern(pattern_of(9, 8)).empty());
   const auto findings = of_pattern(pattern_of(9, 7));
   REQUIRE(findings.size() == 1);
-  CHECK_THAT(findings[0].found, Contains("uses 7 views"));
+  CHECK(found_as<core::found::FewViews>(findings[0]).views == 7);
+}
+
+TEST_CASE("of a file on its own a check notes what is assumed, and nothing where mass and inclination are stated") {
+  core::Experiment file = experiment();
+  file.clips[0].launched = core::Launched::unknown;
+  const auto noted = [&] { return core::findings_of(file, {}); };
+  CHECK(noted().empty());
+  file.clips[0].mass_assumed = true;
+  REQUIRE(noted().size() == 1);
+  const auto mass_alone = found_as<core::found::AssumedForFile>(noted()[0]);
+  CHECK(mass_alone.mass_kg == 0.3);
+  CHECK_FALSE(mass_alone.incline_deg);
+  file.clips[0].incline_assumed = true;
+  REQUIRE(noted().size() == 1);
+  const auto both = found_as<core::found::AssumedForFile>(noted()[0]);
+  CHECK(both.mass_kg == 0.3);
+  CHECK(both.incline_deg == 0.0);
+  file.clips[0].mass_assumed = false;
+  REQUIRE(noted().size() == 1);
+  CHECK_FALSE(found_as<core::found::AssumedForFile>(noted()[0]).mass_kg);
 }

@@ -5,16 +5,21 @@
 #include "base/files/file_io.h"
 #include "core/check/check_recording.h"
 #include "tests/catch.h"
+#include "tests/core/findings.h"
 #include "tests/core/simulated_track.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
-using Catch::Matchers::Contains;
 using core::Finding;
+using core::LengthUnit;
 using core::Severity;
+using core::Subject;
 using core::Topic;
+using tests::found_as;
 
 namespace {
+
+const Subject kOne{Subject::Part::clips, {"m1"}};
 
 core::Experiment of_one_clip(double mass_kg = 0.3) {
   core::Experiment experiment;
@@ -58,31 +63,36 @@ TEST_CASE("lengths and masses of a laboratory pass, those a hundred or a thousan
   CHECK(core::unit_findings(experiment, 1.2).empty());
   struct Row {
     double square_m;
-    const char* says;
+    LengthUnit unit;
   };
-  for (const Row& row : {Row{40.0, "square_m = 40 looks like millimetres (0.04 m)"},
-                         Row{4.0, "square_m = 4 looks like centimetres (0.04 m)"},
-                         Row{25.0, "square_m = 25 looks like millimetres (0.025 m)"}}) {
+  for (const Row& row :
+       {Row{40.0, LengthUnit::millimetres}, Row{4.0, LengthUnit::centimetres}, Row{25.0, LengthUnit::millimetres}}) {
     experiment.calibration->square_m = row.square_m;
     const std::vector<Finding> found = core::unit_findings(experiment, 1.2);
     REQUIRE(found.size() == 1);
-    CHECK(found[0].found == row.says);
+    const auto& length = found_as<core::found::LengthInUnit>(found[0]);
+    CHECK(length.key == "square_m");
+    CHECK(length.value == row.square_m);
+    CHECK(length.unit == row.unit);
+    CHECK(found[0].about.part == Subject::Part::pattern);
     CHECK(found[0].severity == Severity::unusable);
   }
   experiment.calibration->square_m = 0.04;
   experiment.track.length_m = 150.0;
-  CHECK_THAT(core::unit_findings(experiment, 1.2).at(0).found,
-             Contains("length_m = 150 looks like centimetres (1.5 m)"));
+  const std::vector<Finding> track = core::unit_findings(experiment, 1.2);
+  CHECK(found_as<core::found::LengthInUnit>(track.at(0)).key == "length_m");
+  CHECK(found_as<core::found::LengthInUnit>(track.at(0)).unit == LengthUnit::centimetres);
   experiment.track.length_m = {};
   experiment.scale = core::ScaleSetup{0.6, 0.0};
-  CHECK_THAT(core::unit_findings(experiment, 1.2).at(0).advice, Contains("px_per_m = 600"));
+  const std::vector<Finding> scale = core::unit_findings(experiment, 1.2);
+  CHECK(found_as<core::found::ScaleInUnit>(scale.at(0)).unit == LengthUnit::millimetres);  // 600 px per metre
 }
 
 TEST_CASE("335 kg look like grams on a track, and not on a slide of forty metres") {
   const core::Experiment experiment = of_one_clip(335.0);
   const std::vector<Finding> found = core::unit_findings(experiment, 1.2);
   REQUIRE(found.size() == 1);
-  CHECK(found[0].found == "mass_kg = 335 looks like grams (0.335 kg)");
+  CHECK(found_as<core::found::MassInGrams>(found[0]).mass_kg == 335.0);
   CHECK(core::unit_findings(experiment, 40.0).empty());
 }
 
@@ -91,34 +101,36 @@ TEST_CASE("what follows from squares in millimetres stands below them, and nothi
   experiment.calibration.emplace().square_m = 40.0;
   const std::vector<Finding> findings = core::with_root_causes(
       experiment, {},
-      {{Severity::unusable, "m1", "the glider runs 900 m", "", Topic::length},
-       {Severity::unusable, "m1", "its accelerations are 300 m/s²", "", Topic::length},
-       {Severity::unusable, "m1", "the acceleration makes the inclination 80°", "", Topic::incline},
-       {Severity::change, "m1", "the marker is saturated", "", Topic::other}});
+      {{Severity::unusable, kOne, core::found::BeyondTrack{900.0, 1.5, {}}, Topic::length},
+       {Severity::unusable, kOne, core::found::MotionFault{core::found::BeyondGravity{300.0, 9.8, {}}}, Topic::length},
+       {Severity::unusable, kOne, core::found::InclineOff{}, Topic::incline},
+       {Severity::change, kOne, core::found::MarkerSaturated{}}});
   REQUIRE(findings.size() == 2);
-  CHECK(findings[0].found == "square_m = 40 looks like millimetres (0.04 m)");
-  CHECK(findings[0].follow.size() == 3);
-  CHECK(findings[0].follow[0].about == "m1");
-  CHECK(findings[0].follow[0].found == "the glider runs 900 m");
-  CHECK(findings[1].found == "the marker is saturated");
+  CHECK(found_as<core::found::LengthInUnit>(findings[0]).key == "square_m");
+  REQUIRE(findings[0].follow.size() == 3);
+  CHECK(findings[0].follow[0].about.clips == kOne.clips);
+  CHECK(found_as<core::found::BeyondTrack>(findings[0].follow[0]).distance_m == 900.0);
+  found_as<core::found::MarkerSaturated>(findings[1]);
 }
 
 TEST_CASE("x in centimetres is named with its size in metres, and the inclination that it spoils follows") {
   const core::RecordingCheck check = checked(100.0, 4.3);
   REQUIRE_FALSE(check.findings.empty());
   CHECK_FALSE(check.usable);
-  CHECK_THAT(check.findings[0].found, Contains("looks like centimetres"));
+  CHECK(found_as<core::found::TrackInUnit>(check.findings[0]).unit == LengthUnit::centimetres);
   CHECK_FALSE(check.findings[0].follow.empty());
   CHECK_FALSE(any_about(check.findings, Topic::incline));
   CHECK_FALSE(any_about(check.findings, Topic::length));
-  CHECK_THAT(checked(1000.0, 4.3).findings[0].found, Contains("looks like millimetres"));
+  CHECK(found_as<core::found::TrackInUnit>(checked(1000.0, 4.3).findings[0]).unit == LengthUnit::millimetres);
   CHECK(checked(1.0, 4.3).findings.empty());
 }
 
 TEST_CASE("an inclination in radians is named, one that is only wrong is not") {
   const core::RecordingCheck radians = checked(1.0, 0.07505);  // 4.3 degrees
   REQUIRE_FALSE(radians.findings.empty());
-  CHECK_THAT(radians.findings[0].found, Contains("incline_deg = 0.07505 looks like radians (4.3°"));
+  const auto& angle = found_as<core::found::InclineInRadians>(radians.findings[0]);
+  CHECK(angle.stated_deg == Approx(0.07505));
+  CHECK(angle.as_radians_deg == Approx(4.3).epsilon(1e-4));
   CHECK_FALSE(any_about(radians.findings, Topic::incline));
   const core::RecordingCheck wrong = checked(1.0, 2.0);
   CHECK(any_about(wrong.findings, Topic::incline));
@@ -139,9 +151,10 @@ TEST_CASE("a frame rate that makes the inclination right is the cause, and the i
   found.alpha_deg = {core::Estimate{17.45, 0.01, 17.43, 17.47}, ""};
   check.configurations = {found};
   const std::vector<Finding> findings = core::with_root_causes(
-      experiment, check,
-      {{Severity::unusable, "m1", "the acceleration makes the inclination 17°", "", Topic::incline}});
+      experiment, check, {{Severity::unusable, kOne, core::found::InclineOff{}, Topic::incline}});
   REQUIRE(findings.size() == 1);
-  CHECK_THAT(findings[0].found, Contains("frame_rate_hz = 120") && Contains("with the file's 60"));
+  const auto& rate = found_as<core::found::WrongFrameRate>(findings[0]);
+  CHECK(rate.stated_hz == 120.0);
+  CHECK(rate.file_hz == 60.0);
   CHECK(findings[0].follow.size() == 1);
 }

@@ -10,12 +10,13 @@
 #include "core/check/check_recording.h"
 #include "core/result/estimate.h"
 #include "tests/catch.h"
+#include "tests/core/findings.h"
 #include "tests/core/simulated_track.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
-using Catch::Matchers::Contains;
 using core::Launched;
+using tests::found_as;
 
 namespace {
 
@@ -50,9 +51,7 @@ struct Recorded {
 const std::vector<Launched> kBoth = {Launched::up, Launched::down};
 
 const core::InclineContradiction& contradiction_of(const core::Finding& finding) {
-  REQUIRE(finding.note);
-  REQUIRE(std::holds_alternative<core::InclineContradiction>(*finding.note));
-  return std::get<core::InclineContradiction>(*finding.note);
+  return found_as<core::found::InclineOff>(finding).contradiction;
 }
 
 /// The inclination that the motion makes.
@@ -98,21 +97,22 @@ TEST_CASE("lengths or a gravity 60 % off make the recording unusable, said once 
   CHECK(std::abs(found_deg(long_metres[0]) - angle_deg(1.6 * sine)) < 0.05);
   CHECK(contradiction_of(long_metres[0]).stated.by == "incline_deg");
   CHECK(contradiction_of(long_metres[0]).stated.deg == Approx(4.3));
-  CHECK_THAT(long_metres[0].advice, Contains("the unit of x in the tracks"));
+  CHECK(found_as<core::found::InclineOff>(long_metres[0]).lengths.tracks);
   Recorded heavy(kBoth);
   heavy.experiment.gravity_m_s2 *= 1.6;
   const auto gravity = heavy.findings();
   REQUIRE(gravity.size() == 1);
   CHECK(gravity[0].severity == core::Severity::unusable);
   CHECK(std::abs(found_deg(gravity[0]) - angle_deg(sine / 1.6)) < 0.05);
-  CHECK_THAT(gravity[0].advice, Contains("gravity_m_s2"));
+  CHECK(contradiction_of(gravity[0]).gravity_m_s2 == Approx(1.6 * tests::kGravity));
 }
 
 TEST_CASE("an acceleration that no inclination has is told as that, and a track in millimetres has one") {
   const auto findings = Recorded(kBoth, 4.3, 1000.0).findings();
   REQUIRE_FALSE(findings.empty());
   CHECK(findings[0].severity == core::Severity::unusable);
-  CHECK_THAT(findings[0].found, Contains("looks like millimetres (0.92 m)"));
+  CHECK(found_as<core::found::TrackInUnit>(findings[0]).unit == core::LengthUnit::millimetres);
+  CHECK(found_as<core::found::TrackInUnit>(findings[0]).distance_m == Approx(920.0).margin(5.0));
   CHECK(std::any_of(findings[0].follow.begin(), findings[0].follow.end(), [](const core::Finding& finding) {
     return finding.topic == core::Topic::incline && contradiction_of(finding).beyond_gravity > tests::kGravity;
   }));
@@ -155,7 +155,7 @@ TEST_CASE("a glider that runs farther than the track is long is a finding") {
   const auto findings = recorded.findings();
   REQUIRE(findings.size() == 1);
   CHECK(findings[0].severity == core::Severity::unusable);
-  CHECK_THAT(findings[0].found, Contains("length_m in [track] is 0.5 m"));
+  CHECK(found_as<core::found::BeyondTrack>(findings[0]).length_m == 0.5);
 }
 
 TEST_CASE("a marker of another size than stated is one finding for all clips, and unusable above 30 %") {
@@ -163,12 +163,14 @@ TEST_CASE("a marker of another size than stated is one finding for all clips, an
   const auto some = of_sizes({sized("a", 10.0, 12.0), sized("b", 10.0, 12.0)});
   REQUIRE(some.size() == 1);
   CHECK(some[0].severity == core::Severity::change);
-  CHECK(some[0].about == "a, b");
+  CHECK(some[0].about.clips == std::vector<std::string>{"a", "b"});
   const auto much = of_sizes({sized("a", 10.0, 16.0), sized("b", 10.0, 15.9), sized("c", 10.0, 10.0)});
   REQUIRE(much.size() == 1);
   CHECK(much[0].severity == core::Severity::unusable);
-  CHECK(much[0].about == "a, b");
-  CHECK_THAT(much[0].found, Contains("60 % off") && Contains("square_m"));
+  CHECK(much[0].about.clips == std::vector<std::string>{"a", "b"});
+  const auto& size = found_as<core::found::MarkerSizeOff>(much[0]);
+  CHECK(size.off == Approx(0.6));
+  CHECK_FALSE(size.by_scale);
   core::ClipCheck smeared = sized("a", 16.0, 10.0);
   smeared.blur_px = 12.0;  // its outline is the smear's
   CHECK(of_sizes({smeared})[0].severity == core::Severity::change);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <variant>
 
 #include "diagnose/pictures/picture_recording.h"
 #include "diagnose/pictures/picture_scene.h"
@@ -242,11 +243,15 @@ std::vector<diagnose::FilmedClip> with_gradient(std::vector<diagnose::FilmedClip
   return clips;
 }
 
+diagnose::picture::LightAlong light_of(const diagnose::PictureEvidence& evidence) {
+  return std::get<diagnose::picture::LightAlong>(finding(evidence, "light_gradient").fact);
+}
+
 }  // namespace
 
 TEST_CASE("light from one side is told with how far it draws the centroid of the marker's light", "[pictures]") {
   const auto even = with_gradient(filmed({0.006, 0.0, 0.0, 0.0}, 0.006, 4), 1.5);
-  CHECK(finding(diagnose::picture_evidence(even), "light_gradient").words.find("centroid") == std::string::npos);
+  CHECK_FALSE(light_of(diagnose::picture_evidence(even)).pull);
   auto drawn = even;
   for (diagnose::FilmedClip& clip : drawn) {
     auto record = std::make_shared<core::PictureRecord>(*clip.record);
@@ -255,9 +260,10 @@ TEST_CASE("light from one side is told with how far it draws the centroid of the
     for (core::MarkerLook& look : record->marker) look.light_u_px = -0.4 - 0.1 * static_cast<double>(k++ % 5);
     clip.record = record;
   }
-  const std::string words = finding(diagnose::picture_evidence(drawn), "light_gradient").words;
-  CHECK(words.find("lies 0.6 px from the centre of its outline") != std::string::npos);
-  CHECK(words.find("changes by ±0.2 px") != std::string::npos);
+  const auto pull = light_of(diagnose::picture_evidence(drawn)).pull;
+  REQUIRE(pull);
+  CHECK(pull->size_px == Approx(0.6));
+  CHECK(pull->change_px == Approx(0.2));
 }
 
 TEST_CASE("a motion down the image tells exposure and light as the same motion across it does", "[pictures]") {
@@ -271,7 +277,7 @@ TEST_CASE("a motion down the image tells exposure and light as the same motion a
   const auto light_across = finding(diagnose::picture_evidence(across), "light_gradient");
   const auto light_down = finding(diagnose::picture_evidence(down), "light_gradient");
   CHECK(light_down.parameters[0].value == Approx(light_across.parameters[0].value).epsilon(1e-6));
-  CHECK(light_down.words.find("a metre down the image") != std::string::npos);
-  CHECK(light_across.words.find("a metre to the right") != std::string::npos);
+  CHECK(std::get<diagnose::picture::LightAlong>(light_down.fact).down);
+  CHECK_FALSE(std::get<diagnose::picture::LightAlong>(light_across.fact).down);
   CHECK(light_down.seen == light_across.seen);
 }

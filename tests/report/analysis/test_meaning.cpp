@@ -189,9 +189,9 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   CHECK(tells(page(), "Usable as it is.</b> Nothing needs to be recorded again"));
   CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
   CHECK(tells(page(), "position noise: at most 0.0036\u00a0mm (one standard deviation)"));
-  check.findings = {{core::Severity::change, "m1", "dark", "more light"}};
+  check.findings = {{core::Severity::change, {}, core::found::Dark{0.2}}};
   CHECK(tells(page(), "if you record again"));
-  check.findings = {{core::Severity::unusable, "m1", "black", "more light"}};
+  check.findings = {{core::Severity::unusable, {}, core::found::Dark{0.0}}};
   check.usable = false;
   CHECK(tells(page(), "fix what “must change”"));
 }

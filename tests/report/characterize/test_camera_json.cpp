@@ -1,6 +1,8 @@
 #include "report/characterize/camera_report.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "tests/catch.h"
 
@@ -8,12 +10,12 @@ using namespace glidelab;
 
 namespace {
 
-core::Measured measured(double value, double sd, std::string how = {}) {
-  return {value, sd, std::move(how), {}, {}};
+core::Measured measured(double value, double sd, std::optional<core::HowMeasured> how = {}) {
+  return {value, sd, how, {}, {}};
 }
 
-core::Measured missing(std::string why, std::optional<double> limit = {}) {
-  return {{}, 0.0, {}, std::move(why), limit};
+core::Measured missing(core::WhyUnmeasured why, std::optional<double> limit = {}) {
+  return {{}, 0.0, {}, why, limit};
 }
 
 core::CameraMeasurement made_camera() {
@@ -24,12 +26,12 @@ core::CameraMeasurement made_camera() {
   camera.height_px = 480;
   camera.frames = 44;
   camera.gain_dn_per_e = measured(0.40123, 0.0017);
-  camera.read_noise_e = missing("below what the quantisation shows: less than 3.2 e-", 3.2);
+  camera.read_noise_e = missing(core::unmeasured::BelowQuantisation{}, 3.2);
   camera.offset_dn = measured(64.02, 0.01);
-  camera.full_well_e = missing("no level reaches saturation: more than 5400 e-", 5400.0);
-  camera.saturation_capacity_e = missing("no light is brighter");
-  camera.dark_signal_e_s = missing("it needs dark frames");
-  camera.prnu = measured(0.0101, 0.0002, "at 49 % of saturation");
+  camera.full_well_e = missing(core::unmeasured::NotSaturated{}, 5400.0);
+  camera.saturation_capacity_e = missing(core::unmeasured::NoLargestVariance{});
+  camera.dark_signal_e_s = missing(core::unmeasured::NoDarkExposures{});
+  camera.prnu = measured(0.0101, 0.0002, core::HowMeasured{core::HowMeasured::By::one_level, 0.49});
   camera.dsnu_e = measured(3.01, 0.04);
   camera.linearity_error = measured(0.0004, 0.0001);
   camera.curve = {{"flat-00", 0.001, 300.0, 300.0, 125.0, 0.5, 0.0, true},
@@ -57,7 +59,7 @@ TEST_CASE("characterize.json holds values with their sd, and null with reason an
   CHECK(sensor.at("read_noise_e").is_null());
   CHECK(sensor.at("limit").at("read_noise_e") == 3.2);
   CHECK(contains(sensor.at("why").at("full_well_e"), "no level reaches saturation"));
-  CHECK(sensor.at("why").at("dark_signal_e_s") == "it needs dark frames");
+  CHECK(contains(sensor.at("why").at("dark_signal_e_s"), "it requires dark frames at two or more exposures"));
   CHECK(json.at("photon_transfer").size() == 4);
   CHECK(json.at("photon_transfer")[3].at("used") == false);
   CHECK(json.at("line_intercept_dn2") == 5.0);
@@ -85,7 +87,7 @@ TEST_CASE("the camera's page holds both plots and escapes names") {
 
 TEST_CASE("a camera without a gain still has a page, which says why") {
   core::CameraMeasurement camera = made_camera();
-  camera.gain_dn_per_e = missing("the noise of neighbouring pixels is correlated");
+  camera.gain_dn_per_e = missing(core::unmeasured::PixelsTogether{0.3});
   camera.intercept_dn2.reset();
   for (core::TransferPoint& point : camera.curve) {
     point.used = false;

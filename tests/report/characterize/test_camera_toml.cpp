@@ -18,12 +18,12 @@ core::CameraMeasurement made_camera() {
   camera.folder.pixel_pitch_m = 3.45e-6;
   camera.folder.price_class = "300 EUR";
   camera.gain_dn_per_e = {0.0812345, 0.0004, {}, {}, {}};
-  camera.read_noise_e = {4.123456, 0.05, "from the dark frames", {}, {}};
+  camera.read_noise_e = {4.123456, 0.05, core::HowMeasured{core::HowMeasured::By::dark_frames}, {}, {}};
   camera.offset_dn = {64.0, 0.01, {}, {}, {}};
   camera.full_well_e = {12000.0, 60.0, {}, {}, {}};
   camera.dark_signal_e_s = {3.0, 0.5, {}, {}, {}};
   camera.prnu = {0.0101, 0.0002, {}, {}, {}};
-  camera.dsnu_e = {{}, 0.0, {}, "not seen: less than 0.5 e-", 0.5};
+  camera.dsnu_e = {{}, 0.0, {}, core::unmeasured::PatternNotSeen{true}, 0.5};
   return camera;
 }
 
@@ -52,10 +52,10 @@ TEST_CASE("a camera file is strict TOML with the keys of a scenario's sensor") {
 
 TEST_CASE("a number that was not measured is nan, which a strict reader refuses by name") {
   core::CameraMeasurement camera = made_camera();
-  camera.gain_dn_per_e = {{}, 0.0, {}, "the codes are not linear", {}};
-  camera.dark_signal_e_s = {{}, 0.0, {}, "it needs dark frames", {}};
+  camera.gain_dn_per_e = {{}, 0.0, {}, core::unmeasured::NotLinear{}, {}};
+  camera.dark_signal_e_s = {{}, 0.0, {}, core::unmeasured::NoDarkExposures{}, {}};
   const std::string text = report::camera_toml(camera);
-  CHECK(text.find("# dark_signal_e_s: not measured: it needs dark frames") != std::string::npos);
+  CHECK(text.find("# dark_signal_e_s: not measured: it requires dark frames") != std::string::npos);
   const base::TomlFile file = base::TomlFile::parse(text, "camera.toml");
   const base::TomlTable sensor = file.root().table("sensor");
   for (const char* key : {"bit_depth", "full_well_e", "read_noise_e", "offset_dn", "prnu", "dsnu_e"})

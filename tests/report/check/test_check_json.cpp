@@ -6,6 +6,7 @@
 #include "tests/catch.h"
 
 using namespace glidelab;
+using Part = core::Subject::Part;
 
 TEST_CASE("check.json says how far the glider goes in each clip, of pictures and of a track alike") {
   core::RecordingCheck check;
@@ -21,12 +22,14 @@ TEST_CASE("check.json says how far the glider goes in each clip, of pictures and
 TEST_CASE("findings that are notes are in words, those that read the same are one, and what follows stands below") {
   core::RecordingCheck check;
   const auto note = [](const char* about, core::Note of) {
-    return core::Finding{core::Severity::note, about, {}, {}, core::Topic::other, std::move(of)};
+    return core::Finding{core::Severity::note, {Part::clips, {about}}, std::move(of)};
   };
-  core::Finding root{core::Severity::unusable, "pattern", "square_m = 40 looks like millimetres (0.04 m)", "state it"};
-  core::Finding angle{core::Severity::change, "up", {}, "one of these is wrong", core::Topic::incline};
-  angle.note = core::InclineContradiction{{4.3, 0.3, "incline_deg"}, 0.42, 0.13};
-  root.follow = {angle, {core::Severity::change, "down", "the glider runs 900 m", "measure again"}};
+  core::Finding root{core::Severity::unusable,
+                     {Part::pattern},
+                     core::found::LengthInUnit{"square_m", 40.0, core::LengthUnit::millimetres}};
+  const core::InclineContradiction angle{{4.3, 0.3, "incline_deg"}, 0.42, 0.13};
+  root.follow = {{core::Severity::change, {Part::clips, {"up"}}, core::found::InclineOff{angle, {}, false}},
+                 {core::Severity::change, {Part::clips, {"down"}}, core::found::BeyondTrack{900.0, 1.5, {}}}};
   // 33.1 and 33.2 % read the same, 40 % does not.
   check.findings = {root, note("up", core::MarkerOfOtherSize{1.331}), note("down", core::MarkerOfOtherSize{1.332}),
                     note("late", core::MarkerOfOtherSize{1.40})};
@@ -35,7 +38,7 @@ TEST_CASE("findings that are notes are in words, those that read the same are on
   CHECK(findings[0]["found"] == "square_m = 40 looks like millimetres (0.04 m): 2 findings follow");
   CHECK(findings[0]["follow"] ==
         nlohmann::json({"up: the acceleration makes the inclination 0.42 ± 0.13°, incline_deg says 4.3 ± 0.3°",
-                        "down: the glider runs 900 m"}));
+                        "down: the glider runs 900 m, but length_m in [track] is 1.5 m"}));
   CHECK(findings[1]["about"] == "up, down");
   CHECK(findings[1]["found"] == "the marker looks 33 % larger than its diameter predicts");
   CHECK(findings[1]["severity"] == "note");

@@ -1,6 +1,8 @@
 /// Names, titles, notes and reasons that come from files are text on every page, whatever is written in them.
 #include <algorithm>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "base/files/file_io.h"
 #include "report/analysis/analysis_report.h"
@@ -106,7 +108,13 @@ diagnose::Diagnosis evil_diagnosis() {
               diagnose::OppositeLaunch{kEvil, true},
               diagnose::ContradictedReading{0.3, {}},
               of.limits.contradicted.front()};
-  of.pictures = {{kEvil, diagnose::Stage::optics, true, 3.0, false, {{kEvil, 1.0, 0.1, "", ""}}, kEvil}};
+  of.pictures = {{kEvil,
+                  diagnose::Stage::optics,
+                  true,
+                  3.0,
+                  false,
+                  {{kEvil, 1.0, 0.1, "", ""}},
+                  diagnose::picture::Compression{true, kEvil, 0.1, {}}}};
   of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
   of.residuals = {{kEvil,
                    {0.0, 1.0, 2.0},
@@ -149,10 +157,18 @@ TEST_CASE("the page of a check has every name from a file as text") {
   core::RecordingCheck check;
   check.name = kEvil;
   check.usable = false;
-  check.findings = {{core::Severity::unusable, kEvil, kEvil, kEvil}};
-  for (const core::Note& note : evil_notes()) {
-    check.findings.push_back({core::Severity::note, kEvil, {}, {}, core::Topic::other, note});
+  const core::Subject evil{core::Subject::Part::clips, {kEvil}};
+  core::found::AgainstStatedLaunch launch;
+  launch.launched = launch.clip = kEvil;
+  launch.downhill = kEvil;
+  launch.against = 2;
+  for (core::Found found :
+       std::vector<core::Found>{core::found::NoCamera{kEvil, 1, 2}, core::found::NoPatternIn{{kEvil}},
+                                core::found::NotTracked{kEvil}, core::found::NoPlumbAngle{kEvil},
+                                core::found::MassesApart{{{kEvil, 300.0}}, {kEvil, 0.3}, 100.0}, std::move(launch)}) {
+    check.findings.push_back({core::Severity::unusable, evil, std::move(found)});
   }
+  for (const core::Note& note : evil_notes()) check.findings.push_back({core::Severity::note, evil, note});
   check.findings[0].follow = check.findings;
   core::PatternCheck pattern;
   pattern.views = {{kEvil, true, 0.1, 3.0, {{100.0, 100.0}}}};
@@ -301,11 +317,6 @@ TEST_CASE("the page of a measured camera has every name from a file as text") {
   camera.folder.name = camera.folder.price_class = kEvil;
   camera.width_px = 640;
   camera.height_px = 480;
-  for (core::Measured* of : {&camera.gain_dn_per_e, &camera.offset_dn, &camera.full_well_e}) {
-    *of = {1.0, 0.1, kEvil, "", {}};
-  }
-  camera.read_noise_e = {{}, 0.0, "", kEvil, 3.0};
-  camera.prnu = {{}, 0.0, "", kEvil, {}};
   camera.curve = {{kEvil, 0.001, 300.0, 300.0, 125.0, 0.5, 0.0, true},
                   {kEvil, 0.002, 600.0, 600.0, 245.0, 1.0, 0.0, false}};
   camera.saturation_dn = 3600.0;

@@ -1,0 +1,60 @@
+#include "core/check/finding.h"
+
+#include <fmt/format.h>
+
+namespace glidelab::core {
+
+Found::Found(const Found&) = default;
+Found::Found(Found&&) noexcept = default;
+Found& Found::operator=(const Found&) = default;
+Found& Found::operator=(Found&&) noexcept = default;
+Found::~Found() = default;
+
+namespace found {
+namespace {
+
+std::string units_text(const BeyondGravity& of) {
+  std::string units;
+  for (const LengthUnit unit : of.units) {
+    units += units.empty() ? "" : " or ";
+    units += unit == LengthUnit::feet ? "feet" : unit == LengthUnit::centimetres ? "centimetres" : "millimetres";
+  }
+  if (units.empty()) units = "another unit";
+  return of.fall ? units + " (this would be a free fall)" : units;
+}
+
+struct FaultSentence {
+  FaultWords operator()(const Oscillation& of) const {
+    return {fmt::format("the motion turns {} times, and its acceleration depends on position: this is an oscillation, "
+                        "not a run along an incline",
+                        of.turns),
+            "the law contains no spring; if one stretch between turns is a free run, select it with start_s and end_s"};
+  }
+  FaultWords operator()(const BeyondGravity& of) const {
+    return {fmt::format("its accelerations are about {:.3g} m/s², {:.2g} times gravity: no incline can produce that",
+                        of.acceleration_m_s2, of.acceleration_m_s2 / of.gravity_m_s2),
+            fmt::format("x may be in {} instead of metres, or an angle, or the times in another unit: convert the "
+                        "file, or state the scale",
+                        units_text(of))};
+  }
+  FaultWords operator()(const FreeFall& of) const {
+    return {
+        fmt::format("its accelerations are about {:.2g} times gravity: this is free fall, but incline_deg is {:.3g}",
+                    of.over_gravity, of.incline_deg),
+        "state incline_deg = 90 for a fall; otherwise check the unit of x"};
+  }
+  FaultWords operator()(const CurvedPath& of) const {
+    return {fmt::format("the path in the image is curved (sagitta {:.3g} % of its length): the track is not straight",
+                        100.0 * of.bend),
+            "the law of motion holds along a straight line: film a straight track, not a free flight or a swing"};
+  }
+};
+
+}  // namespace
+
+FaultWords fault_words(const MotionFault& fault) {
+  return std::visit(FaultSentence{}, fault);
+}
+
+}  // namespace found
+}  // namespace glidelab::core

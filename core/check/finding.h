@@ -1,0 +1,383 @@
+/// What a check of a recording finds, as data: one struct for each kind of finding, with its details.
+/// report/check/finding_words.h puts it into words.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/result/analysis_note.h"
+
+namespace glidelab::core {
+
+enum class Severity {
+  note,     ///< good to know
+  change,   ///< the analysis works and would improve
+  unusable  ///< no analysis, or an untrustworthy one
+};
+
+/// What a finding is about, as far as one wrong statement explains several (root_causes.h).
+enum class Topic {
+  other,
+  length,   ///< a distance, a speed or an acceleration
+  size,     ///< of the marker against its stated diameter
+  incline,  ///< the stated inclination against the motion
+  time,     ///< frame times
+  mass,
+  failure  ///< a clip that could not be tracked
+};
+
+/// What a finding concerns: clips, by their names, or one of the other parts of a recording.
+struct Subject {
+  enum class Part { clips, pattern, marker, scale, track, masses, plumb_line } part = Part::clips;
+  std::vector<std::string> clips = {};  ///< of Part::clips
+};
+
+enum class LengthUnit { feet, centimetres, millimetres };
+
+/// How many of a unit make a metre.
+constexpr double per_metre(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::feet:
+      return 1.0 / 0.3048;
+    case LengthUnit::centimetres:
+      return 100.0;
+    case LengthUnit::millimetres:
+      return 1000.0;
+  }
+  return 1.0;
+}
+
+/// The keys that turn pixels, or a file's numbers, into metres.
+struct LengthSources {
+  bool square = false, scale = false;  ///< square_m, [scale]
+  bool tracks = false;                 ///< the unit of x in tracks
+};
+
+/// Positions that stand at one value far from those before: a tracker that has lost its object writes such rows.
+struct LostPositions {
+  double from_s = 0.0, x_m = 0.0;
+  double off_m = 0.0;  ///< from the position before
+  std::size_t count = 0;
+};
+
+namespace found {
+
+// The pattern and its camera.
+
+/// No camera follows from the images of the pattern.
+struct NoCamera {
+  std::string failure;
+  std::size_t with_pattern = 0, images = 0;
+};
+
+struct NoPatternIn {
+  std::vector<std::string> files;
+};
+
+/// The calibration uses few views.
+struct FewViews {
+  std::size_t views = 0;
+};
+
+/// Corners lie off the places that the fitted camera gives them.
+struct CornersOff {
+  double rms_px = 0.0;
+};
+
+/// The views cover a small share of the image.
+struct LittleCovered {
+  double share = 0.0;
+};
+
+struct LittleTilt {
+  double most_deg = 0.0;
+};
+
+struct PlaneViewsOff {
+  double rms_px = 0.0, expected_px = 0.0;
+};
+
+// How a clip was tracked.
+
+struct NotTracked {
+  std::string failure;
+  bool pictures = true;  ///< false for a track from a file
+};
+
+/// A track from a file is short.
+struct FewPositions {
+  std::size_t positions = 0;
+};
+
+/// The marker is seen in few frames.
+struct FewSightings {
+  std::size_t frames = 0;
+};
+
+/// It is missing between its first and its last sighting.
+struct SightingsMissing {
+  std::size_t seen = 0, spanned = 0;
+};
+
+/// It is missing before its first sighting, or after its last one.
+struct UnseenAtEnd {
+  bool at_start = false;
+  std::size_t frame = 0, frames = 0;  ///< that of this sighting, counted from 1
+  bool at_edge = false;               ///< of the image
+};
+
+struct SmallMarker {
+  double width_px = 0.0;
+};
+
+/// The marker lengthens with its speed, as with a longer exposure than stated.
+struct LongExposure {
+  double exposure_s = 0.0;
+  bool stated = false;  ///< an exposure is stated
+};
+
+struct Smeared {
+  double speed_m_s = 0.0, blur_px = 0.0, marker_px = 0.0;
+  bool known = false;  ///< from a stated or measured exposure; otherwise from one as long as the frame time
+};
+
+/// A share of the marker's path lies outside the region in which the pattern was seen.
+struct OutsidePattern {
+  double share = 0.0;
+};
+
+// Its light.
+
+struct MarkerSaturated {};
+
+struct PixelsSaturated {
+  double share = 0.0;
+};
+
+struct Dark {
+  double brightest = 0.0;  ///< share of the camera's range
+};
+
+struct LittleContrast {
+  double contrast = 0.0;
+};
+
+struct NoisyContrast {
+  double over_noise = 0.0;
+};
+
+struct LitFromOneSide {
+  double pull_px = 0.0, change_px = 0.0;  ///< as in MarkerLighting
+  std::optional<double> px_per_m;
+  bool changes = false;  ///< along the path, by more than noise explains
+};
+
+/// The contrast along the path falls to this share of its largest.
+struct ContrastFalls {
+  double least = 1.0;
+};
+
+// Its times.
+
+struct OtherRateInFile {
+  double file_hz = 0.0, stated_hz = 0.0;
+  bool by_rate = true;  ///< the stated rate gives the times; otherwise the file's time stamps do
+};
+
+struct UnevenStamps {
+  double drift_frames = 0.0;
+  std::size_t irregular_steps = 0;
+  bool by_rate = true;
+};
+
+/// The marker jumps by the distance of whole frames.
+struct Jumps {
+  std::size_t jumps = 0;
+};
+
+struct FramesRepeated {
+  std::size_t repeated = 0, frames = 0;
+  std::size_t stalls = 0;  ///< of the marker, for a single frame
+};
+
+/// What a file on its own does not state.
+struct AssumedForFile {
+  std::optional<double> mass_kg, incline_deg;  ///< empty if stated
+};
+
+struct NoPlumbAngle {
+  std::string failure;
+};
+
+// Statements against one another, and against the recording.
+
+struct MassesApart {
+  struct Named {
+    std::string clip;
+    double mass_kg = 0.0;
+  };
+  std::vector<Named> heavy;
+  Named lightest;
+  double ratio = 1.0;  ///< or more
+};
+
+struct MarkerSizeOff {
+  double seen_px = 0.0, expected_px = 0.0;
+  double off = 0.0;       ///< by this share
+  bool by_scale = false;  ///< the scale comes from [scale], otherwise from the pattern's squares
+};
+
+struct BeyondTrack {
+  double distance_m = 0.0, length_m = 0.0;
+  LengthSources lengths;
+};
+
+/// The angle that is stated, or that of the plumb line, against the motion.
+struct InclineOff {
+  InclineContradiction contradiction;
+  LengthSources lengths;
+  bool filmed = false;  ///< the frame rate enters
+};
+
+struct AgainstStatedLaunch {
+  AgainstLaunch motion;                 ///< of the clip that shows it best
+  std::string launched;                 ///< its keys
+  std::optional<std::string> downhill;  ///< empty if not stated
+  std::string clip;
+  std::size_t against = 1, clips = 1;  ///< so many of so many clips
+  enum class Stated { in_track, in_group, in_either } stated = Stated::in_track;
+};
+
+// Units.
+
+/// A length that is not in metres.
+struct LengthInUnit {
+  std::string_view key;
+  double value = 0.0;
+  LengthUnit unit = LengthUnit::millimetres;
+};
+
+/// px_per_m counts the pixels of another unit.
+struct ScaleInUnit {
+  double px_per_m = 0.0;
+  LengthUnit unit = LengthUnit::millimetres;
+};
+
+struct MassInGrams {
+  double mass_kg = 0.0;
+};
+
+struct TrackInUnit {
+  double distance_m = 0.0;
+  LengthUnit unit = LengthUnit::millimetres;
+};
+
+struct InclineInRadians {
+  double stated_deg = 0.0, as_radians_deg = 0.0, motion_deg = 0.0;
+};
+
+/// With the file's frame rate the motion has the stated inclination.
+struct WrongFrameRate {
+  double stated_hz = 0.0, file_hz = 0.0, incline_deg = 0.0;
+};
+
+// Motions that no body on an incline has: a diagnosis refuses them.
+
+struct Oscillation {
+  std::size_t turns = 0;
+};
+
+struct BeyondGravity {
+  double acceleration_m_s2 = 0.0, gravity_m_s2 = 0.0;
+  std::vector<LengthUnit> units;  ///< of x, perhaps
+  bool fall = false;              ///< in this unit it would be a free fall
+};
+
+struct FreeFall {
+  double over_gravity = 1.0, incline_deg = 0.0;
+};
+
+struct CurvedPath {
+  double bend = 0.0;  ///< sagitta over length
+};
+
+using MotionFault = std::variant<Oscillation, BeyondGravity, FreeFall, CurvedPath>;
+
+/// "this is an oscillation, …", and what to do. Worded here because a diagnosis refuses such a motion with these
+/// sentences.
+struct FaultWords {
+  std::string found, advice;
+};
+FaultWords fault_words(const MotionFault& fault);
+
+// Other remarks on a motion.
+
+struct LongRun {
+  double distance_m = 0.0;
+};
+
+/// Positions are far apart in time.
+struct SlowFrames {
+  double apart_s = 0.0;
+};
+
+struct Gaps {
+  double share = 0.0;  ///< of the time
+  double longest_s = 0.0;
+};
+
+struct Smoothed {
+  double share = 0.0;  ///< of the distance: the scatter is smaller
+};
+
+}  // namespace found
+
+using AnyFound = std::variant<
+    Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
+    found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
+    found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
+    found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark, found::LittleContrast,
+    found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls, found::OtherRateInFile, found::UnevenStamps,
+    found::Jumps, found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart,
+    found::MarkerSizeOff, found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit,
+    found::ScaleInUnit, found::MassInGrams, found::TrackInUnit, found::InclineInRadians, found::WrongFrameRate,
+    found::MotionFault, found::LongRun, found::SlowFrames, LostPositions, found::Gaps, found::Smoothed>;
+
+/// What was found; a Note if the analysis notes the same. What copies, moves and destroys it is compiled once
+/// (finding.cpp), as of Note.
+struct Found : AnyFound {
+  using AnyFound::AnyFound;
+  Found(const Found&);
+  Found(Found&&) noexcept;
+  Found& operator=(const Found&);
+  Found& operator=(Found&&) noexcept;
+  ~Found();
+};
+
+struct Finding {
+  Severity severity = Severity::note;
+  Subject about;
+  Found found;
+  Topic topic = Topic::other;
+  std::vector<Finding> follow = {};  ///< findings that follow from this one, which is their root cause
+};
+
+/// Collects the findings about one subject; `findings` outlive it.
+class FindingBook {
+ public:
+  FindingBook(std::vector<Finding>& findings, Subject about) : findings_(findings), about_(std::move(about)) {}
+  void add(Severity severity, Found found, Topic topic = Topic::other) {
+    findings_.push_back({severity, about_, std::move(found), topic});
+  }
+
+ private:
+  std::vector<Finding>& findings_;
+  Subject about_;
+};
+
+}  // namespace glidelab::core

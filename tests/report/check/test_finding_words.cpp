@@ -1,0 +1,164 @@
+#include "report/check/finding_words.h"
+
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "tests/catch.h"
+
+using namespace glidelab;
+using Catch::Matchers::Contains;
+using core::LengthUnit;
+namespace found = core::found;
+
+namespace {
+
+struct Row {
+  core::Found found;
+  std::string says, advises;  ///< parts of the words
+};
+
+found::AgainstStatedLaunch against_launch() {
+  found::AgainstStatedLaunch of;
+  of.motion = {-1, {}, 0.75};
+  of.launched = "up";
+  of.clip = "down-1";
+  return of;
+}
+
+}  // namespace
+
+TEST_CASE("every kind of finding of a check has words, with its data in the units that people read") {
+  found::AgainstStatedLaunch turned = against_launch(), own = against_launch();
+  turned.downhill = "-X";
+  turned.against = turned.clips = 2;
+  own.stated = found::AgainstStatedLaunch::Stated::in_group;
+  const core::InclineContradiction plumb{{4.3, 0.3, "the plumb line"}, 0.42, 0.13};
+  const std::vector<Row> rows = {
+      {core::Note{core::MarkerAtRest{}}, "does not move in this clip", ""},
+      {found::NoCamera{"no corners", 2, 9}, "no corners", "found in 2 of 9 images; retake them"},
+      {found::NoPatternIn{{"a.png", "b.png"}}, "no pattern is found in a.png, b.png", "or remove them"},
+      {found::FewViews{7}, "uses 7 views", "take a dozen"},
+      {found::CornersOff{0.42}, "corners lie 0.42 px (rms) from", "glue the board"},
+      {found::LittleCovered{0.375}, "cover 37.5 % of the image", "near the edges"},
+      {found::LittleTilt{12.0}, "tilted by at most 12 degrees", "tilt it by 30"},
+      {found::PlaneViewsOff{0.5, 0.02}, "lie 0.5 px (rms) from where the camera places them; their noise explains 0.02",
+       "retake the plane view"},
+      {found::NotTracked{"no marker", true}, "no marker", "check that the file plays"},
+      {found::NotTracked{"no column", false}, "no column", "repair the file"},
+      {found::FewPositions{17}, "the track has 17 points", "higher rate"},
+      {found::FewSightings{17}, "seen in only 17 frames", "higher rate"},
+      {found::SightingsMissing{80, 100}, "seen in 80 of the 100 frames", "nothing hides it"},
+      {found::UnseenAtEnd{true, 53, 264, false}, "first seen in frame 53 of 264", "not at the edge"},
+      {found::UnseenAtEnd{false, 200, 264, true}, "last seen in frame 200 of 264", ""},
+      {found::SmallMarker{4.1}, "the marker is 4.1 px wide", "move closer"},
+      {found::LongExposure{0.004, true}, "exposure of 4 ms; exposure_s is less than half", "read the exposure"},
+      {found::LongExposure{0.004, false}, "exposure of 4 ms", "read the exposure"},
+      {found::Smeared{1.25, 9.0, 12.0, true}, "at its top speed, 1.25 m/s, the marker is smeared by 9 px; it is 12 px",
+       "shorten the exposure"},
+      {found::Smeared{1.25, 9.0, 12.0, false}, "smeared by up to 9 px", "state exposure_s"},
+      {found::OutsidePattern{0.25}, "25 % of the marker's path", "take views"},
+      {found::MarkerSaturated{}, "the marker is saturated", "until it is grey"},
+      {found::PixelsSaturated{0.1}, "10 % of the pixels are saturated", "shorten the exposure"},
+      {found::Dark{0.2}, "reach only 20 % of", "use more light"},
+      {found::LittleContrast{0.12}, "by only 12 % of", "behind it"},
+      {found::NoisyContrast{4.5}, "is 4.5 times the noise", "less gain"},
+      {found::LitFromOneSide{1.5, 0.4, 500.0, true},
+       "1.5 px (3 mm) from its outline's centre, and that changes by "
+       "±0.4 px (0.8 mm)",
+       "light the track evenly"},
+      {found::LitFromOneSide{1.5, 0.1, {}, false},
+       "centred 1.5 px from its outline's centre, the same along the path "
+       "to within ±0.1 px",
+       ""},
+      {found::ContrastFalls{0.3}, "falls to 30 % of its largest", "move lamps"},
+      {found::OtherRateInFile{30.0, 240.0, true}, "states 30 frames per second, experiment.toml 240",
+       "filmed at 240 frames per second: a wrong rate scales every speed; a slow-motion file"},
+      {found::UnevenStamps{1.5, 7, true}, "by 1.5 frames; 7 steps are irregular", "time = \"container\""},
+      {found::UnevenStamps{1.5, 7, false}, "by 1.5 frames", ""},
+      {found::Jumps{1}, "jumps once by", "faster disk"},
+      {found::Jumps{3}, "jumps 3 times by", "faster disk"},
+      {found::FramesRepeated{20, 264, 0}, "20 of 264 frames are identical", "adds no frames"},
+      {found::FramesRepeated{20, 264, 1}, "stands still for a frame once in mid-motion, and 20 of 264",
+       "adds no frames"},
+      {found::AssumedForFile{1.0, 0.0}, "its mass is taken as 1 kg and its inclination as 0°",
+       "--mass and --incline state others"},
+      {found::AssumedForFile{1.0, {}}, "its mass is taken as 1 kg", "--mass states another"},
+      {found::AssumedForFile{{}, 0.0}, "its inclination is taken as 0°", "--incline states another"},
+      {found::NoPlumbAngle{"no line"}, "no line", ""},
+      {found::MassesApart{{{"b", 221.0}}, {"a", 0.318}, 100.0},
+       "mass_kg of b (221) is 100 or more times that of a "
+       "(0.318)",
+       "in kilograms"},
+      {found::MarkerSizeOff{16.0, 10.0, 0.6, false}, "16 px wide; diameter_m and square_m predict 10 px: 60 % off",
+       "measure diameter_m and square_m again"},
+      {found::MarkerSizeOff{16.0, 10.0, 0.6, true}, "diameter_m and [scale] predict", "diameter_m and [scale] again"},
+      {found::BeyondTrack{0.9, 0.5, {true, false, true}}, "runs 0.9 m, but length_m in [track] is 0.5 m",
+       "check square_m, the unit of x in the tracks (metres)"},
+      {found::InclineOff{plumb, {false, true, false}, true}, "the inclination 0.42 ± 0.13°, the plumb line says 4.3 ±",
+       "the plumb line, gravity_m_s2, [scale], frame_rate_hz (its square enters)"},
+      {turned,
+       "in 2 of 2 clips the glider moves opposite to the stated launch, most clearly in down-1: it moves "
+       "towards -x only: the launch was towards +x, as launched = \"up\" and downhill = \"-X\" say; that is 75 % of",
+       "launched of these clips, or downhill in [track]"},
+      {own, "launched = \"up\" and no stated downhill", "launched of this clip, or downhill in [group]"},
+      {found::LengthInUnit{"square_m", 40.0, LengthUnit::millimetres}, "square_m = 40 looks like millimetres (0.04 m)",
+       "state it in metres: square_m = 0.04"},
+      {found::LengthInUnit{"length_m", 150.0, LengthUnit::centimetres}, "looks like centimetres (1.5 m)",
+       "length_m = 1.5"},
+      {found::ScaleInUnit{0.6, LengthUnit::millimetres}, "0.6 looks like pixels per millimetre (600 per metre)",
+       "px_per_m = 600"},
+      {found::MassInGrams{335.0}, "mass_kg = 335 looks like grams (0.335 kg)", "0.335"},
+      {found::TrackInUnit{92.0, LengthUnit::centimetres}, "x covers 92, which looks like centimetres (0.92 m)",
+       "divide the column by 100"},
+      {found::InclineInRadians{0.07505, 4.3, 4.31},
+       "incline_deg = 0.07505 looks like radians (4.3°, and the motion says "
+       "4.31°)",
+       "incline_deg = 4.3"},
+      {found::WrongFrameRate{120.0, 60.0, 4.3},
+       "frame_rate_hz = 120 does not fit the motion: with the file's 60 the "
+       "inclination is 4.3°",
+       "frame_rate_hz = 60"},
+      {found::Oscillation{12}, "turns 12 times", "no spring"},
+      {found::BeyondGravity{98.0, 9.8, {LengthUnit::centimetres}, false}, "about 98 m/s², 10 times gravity",
+       "x may be in centimetres instead"},
+      {found::BeyondGravity{490.0, 9.8, {LengthUnit::centimetres, LengthUnit::millimetres}, false}, "50 times gravity",
+       "in centimetres or millimetres instead"},
+      {found::BeyondGravity{32.2, 9.8, {LengthUnit::feet}, true}, "3.3 times gravity",
+       "in feet (this would be a free fall)"},
+      {found::BeyondGravity{19600.0, 9.8, {}, false}, "times gravity", "in another unit instead"},
+      {found::FreeFall{1.0, 4.0}, "this is free fall, but incline_deg is 4", "incline_deg = 90"},
+      {found::CurvedPath{0.12}, "curved (sagitta 12 % of its length)", "film a straight track"},
+      {found::LongRun{9.0}, "x covers 9 m", "check the unit of x"},
+      {found::SlowFrames{10.0}, "are 10 s apart", "milliseconds"},
+      {core::LostPositions{1.5, 0.0, 0.4, 50}, "from 1.5 s on 50 positions are all 0 m, 0.4 m from the one before",
+       "delete these rows"},
+      {found::Gaps{0.4, 0.33}, "40 % of its time lies in gaps of up to 0.33 s", "even rate"},
+      {found::Smoothed{1e-7}, "to 1e-07 of the distance", "as measured"},
+  };
+  std::set<std::size_t> kinds;
+  for (const Row& row : rows) {
+    const report::FindingWords words = report::finding_words(row.found);
+    CHECK_THAT(words.found, Contains(row.says));
+    CHECK_THAT(words.advice, Contains(row.advises));
+    CHECK(words.advice.empty() == row.advises.empty());
+    kinds.insert(row.found.index());
+  }
+  CHECK(kinds.size() == std::variant_size_v<core::AnyFound>);
+}
+
+TEST_CASE("findings that read the same are one about all their clips, of which at most six are named") {
+  std::vector<core::Finding> findings;
+  for (int i = 1; i <= 8; ++i) {
+    findings.push_back({core::Severity::change,
+                        {core::Subject::Part::clips, {"m" + std::to_string(i)}},
+                        core::found::SmallMarker{4.1 + 1e-4 * i}});
+  }
+  findings.push_back({core::Severity::change, {core::Subject::Part::clips, {"m9"}}, core::found::SmallMarker{5.2}});
+  const std::vector<report::WordedFinding> worded = report::worded(findings);
+  REQUIRE(worded.size() == 2);
+  CHECK(worded[0].about == "m1, m2, m3, m4, m5, m6 and 2 more");
+  CHECK(worded[1].about == "m9");
+}
