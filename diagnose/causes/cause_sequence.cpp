@@ -151,7 +151,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   const auto best_of = [&](bool laws_only) {
     std::optional<std::pair<std::size_t, Step>> best;
     for (std::size_t k = 0; k < left.size(); ++k) {
-      if (laws_only && differs_between_clips(left[k])) continue;
+      if (laws_only && follows_each_clip(left[k])) continue;
       std::vector<std::size_t> effects = here.fit.effects;
       if (left[k] != dropped) effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);
@@ -170,7 +170,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       const double share = cause_of(left[best->first], first, here, best->second, is_one_clip(set)).share;
       if (share > (steps.empty() ? kLeastShare : least_named)) break;
       best.reset();
-      if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
+      if (std::none_of(left.begin(), left.end(), follows_each_clip)) break;
     }
     if (!best) break;
     const std::size_t which = best->first;

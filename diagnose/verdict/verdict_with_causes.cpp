@@ -267,6 +267,12 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     // parameter either: unless it is all but certain, it is a trace.
     if (!weighed && !sequence.is_gap && !below_noise && !named.empty()) {
       if (names && shows_in_gap(best)) allow_for_remainders(set, without, jobs, first);
+      const double before = sequence.gap_before * sequence.gap_before - 1.0;
+      const bool claimed =
+          names && shows_in_gap(best) && !in_images && verdict_by(first.none, first.unknown) == Verdict::effect;
+      if (claimed && leaves_most(before, held_out_excess(set, fit))) {
+        set_unknown(std::max(first.unknown, kJustUnknown), first);
+      }
       if (scatter && probability_of_scatter(first) < kSureScatter) move_to_none(is_scatter_alone, first);
       if ((scatter || shows_in_gap(best)) && verdict_by(first.none, first.unknown) == Verdict::none) {
         for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
