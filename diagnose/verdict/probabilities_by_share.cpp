@@ -54,10 +54,6 @@ bool may_displace(const CauseSequence& likelier, const CauseSequence& named) {
   return likelier.named_share >= kHalfOfGap || named.named_share < kHalfOfGap;
 }
 
-bool leaves_most(double excess_before, double excess_after) {
-  return excess_before >= kMeasuredExcess && excess_after > (1.0 - kHalfOfGap) * excess_before;
-}
-
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
   for (Hypothesis& one : comparison.all) {
     if (one.unnamed || one.effects.empty() || !of(one)) continue;

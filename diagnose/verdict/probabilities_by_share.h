@@ -18,7 +18,6 @@ inline constexpr double kHalfOfGap = 0.5;           ///< of the excess: what a v
 inline constexpr double kJustUnknown = 0.5 + 1e-9;  ///< the least probability of an unknown cause with such a verdict
 inline constexpr double kMostOfGap = 0.75;  ///< of the excess: what a law takes that has its name by its share alone
 inline constexpr double kByShare = 0.8;     ///< the probability of such a name
-inline constexpr double kMeasuredExcess = 0.1;  ///< of a gap that is not clear: a share of less is chance
 
 /// Whether some of an explanation's effects takes part of the gap.
 bool shows_in_gap(const Hypothesis& explanation);
@@ -26,9 +25,6 @@ bool shows_in_gap(const Hypothesis& explanation);
 /// Whether a likelier cause alone may take the place of the named ones: it takes half of the gap itself, or they take
 /// less as well. A name that explains the gap does not go for one that would make the cause unknown.
 bool may_displace(const CauseSequence& likelier, const CauseSequence& named);
-
-/// Whether causes leave more than half of an excess that can be measured, clear or not.
-bool leaves_most(double excess_before, double excess_after);
 
 /// What these explanations would explain needs no cause.
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison);

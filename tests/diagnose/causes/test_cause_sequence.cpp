@@ -58,11 +58,17 @@ TEST_CASE("a law that all clips have in common comes before a hand's pushes, whi
   };
   const diagnose::MotionFit with_hand = with(nominal, hand);
   REQUIRE(diagnose::held_out_excess(set, with_hand) < diagnose::held_out_excess(set, with(nominal, drag)));
+  const diagnose::MotionFit with_both = with(with_hand, drag);
   const diagnose::CauseSequence sequence =
-      diagnose::sequence_of(set, nominal, set, with(with_hand, drag), {}, diagnose::kLeastShare);
+      diagnose::sequence_of(set, nominal, set, with_both, {}, {.least_named = diagnose::kLeastShare});
   REQUIRE(sequence.causes.size() >= 2);
   CHECK(sequence.causes[0].id == diagnose::ids::quadratic_drag);
   CHECK(sequence.causes[1].id == diagnose::ids::late_release);
+  // Where the law is doubtful the hand, which takes more, stays first.
+  const diagnose::CauseSequence doubtful = diagnose::sequence_of(
+      set, nominal, set, with_both, {}, {.least_named = diagnose::kLeastShare, .pushes_last = false});
+  REQUIRE_FALSE(doubtful.causes.empty());
+  CHECK(doubtful.causes[0].id == diagnose::ids::late_release);
 }
 
 TEST_CASE("the floor is 1 unless a gap lies clearly below it") {

@@ -162,11 +162,3 @@ TEST_CASE("the probability that one of several acts counts each explanation once
   CHECK(std::abs(diagnose::probability_of_any(comparison, {kDrag, kPlace}) - 0.6) < 1e-12);
   CHECK(diagnose::probability_of_any(comparison, {}) == 0.0);
 }
-
-TEST_CASE("a name that leaves more than half of an excess has none, unless the excess is too small to be measured") {
-  CHECK(diagnose::leaves_most(0.24, 0.13));
-  CHECK_FALSE(diagnose::leaves_most(0.24, 0.11));
-  CHECK(diagnose::leaves_most(1.0, 1.0));
-  CHECK_FALSE(diagnose::leaves_most(0.09, 0.09));
-  CHECK_FALSE(diagnose::leaves_most(0.2, -0.1));  // below the floor
-}
