@@ -30,6 +30,29 @@ constexpr std::array<Unit, 10> kLengths{{{"m", 1.0},
 constexpr std::array<Unit, 7> kTimes{
     {{"s", 1.0}, {"sec", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"\xC2\xB5s", 1e-6}, {"\xCE\xBCs", 1e-6}, {"min", 60.0}}};
 
+// English, German, French, Spanish and Portuguese, Italian; in lower case.
+constexpr std::array<Unit, 12> kLengthWords{{{"meter", 1.0},
+                                             {"meters", 1.0},
+                                             {"metre", 1.0},
+                                             {"metres", 1.0},
+                                             {"m\xC3\xA8tres", 1.0},
+                                             {"metros", 1.0},
+                                             {"metri", 1.0},
+                                             {"centimeters", 1e-2},
+                                             {"centimetres", 1e-2},
+                                             {"millimeters", 1e-3},
+                                             {"millimetres", 1e-3},
+                                             {"feet", 0.3048}}};
+constexpr std::array<Unit, 9> kTimeWords{{{"second", 1.0},
+                                          {"seconds", 1.0},
+                                          {"sekunden", 1.0},
+                                          {"secondes", 1.0},
+                                          {"segundos", 1.0},
+                                          {"secondi", 1.0},
+                                          {"milliseconds", 1e-3},
+                                          {"minute", 60.0},
+                                          {"minutes", 60.0}}};
+
 template <std::size_t N>
 std::optional<double> factor(const std::array<Unit, N>& units, std::string_view unit) {
   const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& of) { return of.first == unit; });
@@ -135,8 +158,9 @@ TableColumn column_of(const std::string& text) {
 }  // namespace
 
 bool is_time_name(std::string_view name) {
-  static constexpr std::array<std::string_view, 12> kNames{
-      "t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "czas", "elapsed time", "seconds", "times", "timestamp"};
+  static constexpr std::array<std::string_view, 13> kNames{"t",       "time",  "zeit",     "temps", "tiempo",
+                                                           "tempo",   "tijd",  "czas",     "tid",   "elapsed time",
+                                                           "seconds", "times", "timestamp"};
   return std::find(kNames.begin(), kNames.end(), lower(name)) != kNames.end();
 }
 
@@ -150,23 +174,31 @@ bool is_place_column(const TableColumn& column) {
       // German, Spanish, French, Italian, Portuguese
       "weg", "ort", "abstand", "strecke", "entfernung", "posici\xC3\xB3n", "posici\xC3\x93n", "posicion", "distancia",
       "desplazamiento", "d\xC3\xA9placement", "distance x", "x position", "pos x", "x pos", "pos_x", "x_pos",
-      "posizione", "spostamento", "distanza", "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento"};
+      "posizione", "spostamento", "distanza", "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento",
+      // Norwegian, Danish, Swedish, Dutch
+      "posisjon", "strekning", "avstand", "afstand", "str\xC3\xA6kning",
+      "str\xC3\xA4"
+      "cka",
+      "avst\xC3\xA5nd", "positie"};
   return !is_time_column(column) && std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
 }
 
 bool is_height_column(const TableColumn& column) {
   static const std::vector<std::string> kHeights{
-      "y",           "position y", "y-position", "y position", "position (y)",      "height",
-      "h\xC3\xB6he", "hauteur",    "altura",     "altezza",    "vertical position", "z"};
+      "y",           "position y",        "y-position", "y position", "position (y)", "height",       "h",
+      "h\xC3\xB6he", "hauteur",           "altura",     "altezza",    "h\xC3\xB8yde", "h\xC3\xB8jde", "h\xC3\xB6jd",
+      "hoogte",      "vertical position", "z"};
   return !is_time_column(column) && std::find(kHeights.begin(), kHeights.end(), lower(column.name)) != kHeights.end();
 }
 
 std::optional<double> metres_per(std::string_view unit) {
-  return factor(kLengths, unit);
+  const std::optional<double> symbol = factor(kLengths, unit);
+  return symbol ? symbol : factor(kLengthWords, lower(unit));
 }
 
 std::optional<double> seconds_per(std::string_view unit) {
-  return factor(kTimes, unit);
+  const std::optional<double> symbol = factor(kTimes, unit);
+  return symbol ? symbol : factor(kTimeWords, lower(unit));
 }
 
 namespace {
@@ -321,11 +353,17 @@ struct Lines {
   std::vector<Line> comments;  ///< the text after the '#'
 };
 
+/// A table pasted into the first column of a spreadsheet is saved with each of its lines in quotes.
+std::string_view without_line_quotes(std::string_view line) {
+  const bool quoted = line.size() > 2 && line.front() == '"' && line.find('"', 1) == line.size() - 1;
+  return quoted && line.find_first_of("\t;") != std::string_view::npos ? line.substr(1, line.size() - 2) : line;
+}
+
 Lines lines_of(std::string_view text) {
   Lines lines;
   for (int at = 1; !text.empty(); ++at) {
     const auto newline = text.find('\n');
-    const std::string_view line = trim(text.substr(0, newline));
+    const std::string_view line = without_line_quotes(trim(text.substr(0, newline)));
     text.remove_prefix(newline == std::string_view::npos ? text.size() : newline + 1);
     if (line.find_first_not_of("\t;, ") == std::string_view::npos) continue;
     if (line.front() == '#') {
@@ -367,6 +405,16 @@ std::optional<Format> format_of(const std::vector<Line>& lines) {
     }
   }
   return best;
+}
+
+/// A delimiter at the end of each line makes a column without a name and without values.
+void drop_empty_columns_at_end(ColumnTable& table) {
+  const auto is_empty = [&](const TableColumn& column) {
+    return column.text == fmt::format("column {}", table.columns.size()) &&
+           std::none_of(column.values.begin(), column.values.end(),
+                        [](const auto& value) { return value.has_value(); });
+  };
+  while (!table.columns.empty() && is_empty(table.columns.back())) table.columns.pop_back();
 }
 
 }  // namespace
@@ -431,6 +479,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
     }
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
+  drop_empty_columns_at_end(table);
   return table;
 }
 

@@ -84,8 +84,20 @@ double range_of(const std::vector<double>& values) {
   return quantile(values, 0.98) - quantile(values, 0.02);
 }
 
+/// Sagitta of the parabola through `across` over `along`, whose range is 1; 0 if it explains little of `across`.
+double parabola_sagitta(const Eigen::VectorXd& along, const Eigen::VectorXd& across) {
+  Eigen::MatrixXd design(along.size(), 3);
+  design << Eigen::VectorXd::Ones(along.size()), along, along.cwiseAbs2();
+  const Eigen::VectorXd fit = base::least_squares(design, across);
+  const Eigen::VectorXd left = across - base::product(design, fit);
+  const Eigen::VectorXd about_mean = across.array() - across.mean();
+  if (!(left.squaredNorm() < (1.0 - kCurveExplains) * about_mean.squaredNorm())) return 0.0;
+  return 0.25 * std::abs(fit[2]);
+}
+
 /// Sagitta over length of a parabola through the path, across the line from its first position to the one farthest from
-/// it; 0 if the parabola explains little of the deviation across the line.
+/// it, over the place along that line or over the way covered (a flight that comes down again turns back along the
+/// line); 0 if neither parabola explains the deviation across the line.
 double sagitta_of(const Path& path) {
   double along_x = 0.0, along_y = 0.0;
   for (std::size_t i = 0; i < path.x_m.size(); ++i) {
@@ -94,20 +106,15 @@ double sagitta_of(const Path& path) {
   }
   const double length = std::hypot(along_x, along_y);
   if (!(length > 0.0)) return 0.0;
-  Eigen::MatrixXd design(static_cast<Eigen::Index>(path.x_m.size()), 3);
-  Eigen::VectorXd across(design.rows());
-  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+  Eigen::VectorXd place(static_cast<Eigen::Index>(path.x_m.size())), way(place.size()), across(place.size());
+  for (Eigen::Index i = 0; i < place.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double dx = path.x_m[k] - path.x_m[0], dy = path.y_m[k] - path.y_m[0];
-    const double s = (dx * along_x + dy * along_y) / (length * length);
-    design.row(i) << 1.0, s, s * s;
+    place[i] = (dx * along_x + dy * along_y) / (length * length);
     across[i] = (dy * along_x - dx * along_y) / (length * length);
+    way[i] = i == 0 ? 0.0 : way[i - 1] + std::hypot(path.x_m[k] - path.x_m[k - 1], path.y_m[k] - path.y_m[k - 1]);
   }
-  const Eigen::VectorXd fit = base::least_squares(design, across);
-  const Eigen::VectorXd left = across - base::product(design, fit);
-  const Eigen::VectorXd about_mean = across.array() - across.mean();
-  if (!(left.squaredNorm() < (1.0 - kCurveExplains) * about_mean.squaredNorm())) return 0.0;
-  return 0.25 * std::abs(fit[2]);
+  return std::max(parabola_sagitta(place, across), parabola_sagitta(way / way[way.size() - 1], across));
 }
 
 /// The angle between the x axis and the line that fits the path best, 0 to 90 degrees.
@@ -178,6 +185,9 @@ std::size_t place_column(const ColumnTable& table, std::vector<Note>& notes) {
     return plane ? along_path(table, found.front(), heights.front(), notes) : found.front();
   }
   if (found.empty()) refuse_accelerations(table);
+  const std::vector<std::size_t> lengths =
+      columns_that(table, [](const TableColumn& column) { return metres_per(column.unit).has_value(); });
+  if (found.empty() && heights.empty() && lengths.size() == 1) return lengths.front();  // "s (m)", "d / cm"
   throw wrong_column(
       table, columns_text(table),
       fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "

@@ -11,7 +11,15 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kOffLine = 2.0;  // times the noise: more than a wrong noise estimate explains
+constexpr double kOffLine = 2.0;                         // times the noise: more than a wrong noise estimate explains
+constexpr double kAboveGravity = 1.05, kAboveSds = 3.0;  // a twentieth: lengths and local gravity are known that well
+
+/// Downhill friction brakes: without drag no slope gives more than g, and a line that begins above it is too steep.
+/// Where gravity is 0 nobody stated it.
+bool begins_above_gravity(const core::LineFit& line, double gravity_m_s2) {
+  if (line.direction < 0 || !(gravity_m_s2 > 0.0)) return false;
+  return line.a0_m_s2.value - kAboveSds * line.a0_m_s2.sd > kAboveGravity * gravity_m_s2;
+}
 
 }  // namespace
 
@@ -30,6 +38,14 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
     };
     doubt(core::Measurand::k_over_m, "no drag can cause");
     doubt(core::Measurand::mu, "no friction can cause");
+    for (const core::LineFit& line : c.lines) {
+      if (!begins_above_gravity(line, results.gravity_m_s2)) continue;
+      doubts.push_back(
+          fmt::format("{}: the line begins with {} m/s² at v = 0, more than gravity: K/m is too large, because the "
+                      "drag grows faster "
+                      "than the speed, or the motion does not begin freely.",
+                      configuration_name(results, c), base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd)));
+    }
   }
   const core::ClipResult* farthest = nullptr;
   const core::LineFit* line = nullptr;

@@ -235,3 +235,58 @@ TEST_CASE("times without a unit that would be 16.7 s apart are not taken as seco
   text.replace(text.find("(ms)"), 4, "(s)");
   CHECK(Made(text).read().t_s[1] == Approx(616.683));
 }
+
+TEST_CASE("a delimiter at the end of each line is no column, and a table that a spreadsheet put in quotes is a table") {
+  check_motion(Made(rows("  {0}.0e-001\t  {1}.0e-002\t\r\n")).read());
+  check_motion(Made(rows("0,{0};{1}E-2;\n")).read());
+  check_motion(Made("\"mass A\"\n\"t\tx\ty\"\n" + rows("\"0.{0}00E0\t{1}E-2\t0.5\"\n")).read());
+}
+
+TEST_CASE("units are also words, in several languages") {
+  const auto with = [](const std::string& header) {
+    const core::TrackData track = Made(header + "\n" + rows("0.{0},{1}E-2\n")).read();
+    CHECK_FALSE(has_note(track, "no unit"));
+    return track;
+  };
+  check_motion(with("Time (seconds),Distance (meters)"));
+  check_motion(with("Tiempo (segundos),X_metros"));
+  check_motion(with("Zeit (Sekunden),Ort (Meter)"));
+  CHECK(with("Time (seconds),Position (centimeters)").x_m[3] == Approx(0.0009));
+}
+
+TEST_CASE("Scandinavian and Dutch names of times and places, and h for a height") {
+  check_motion(Made("tid (s),posisjon (m)\n" + rows("0.{0},{1}E-2\n")).read());
+  check_motion(Made("tijd,afstand\n" + rows("0.{0},{1}E-2\n")).read());
+  const core::TrackData fall = Made("t,h,h_err\n" + rows("0.{0},{1}E-2,0.001\n")).read();
+  check_motion(fall);
+  CHECK(has_note(fall, "a height"));
+}
+
+TEST_CASE("of columns without a known name the only one with a unit of length is x") {
+  const core::TrackData track = Made("t (s),s (m),v (m/s)\n" + rows("0.{0},{1}E-2,7\n")).read();
+  check_motion(track);
+  CHECK(has_note(track, "x is \"s (m)\""));
+  CHECK_THROWS_WITH(Made("t (s),a (m),b (m)\n" + rows("0.{0},{1}E-2,7\n")).read(), Contains("called x"));
+}
+
+TEST_CASE("a flight that comes down again is a curved path, and a straight way up and down an incline is none") {
+  const auto read = [](auto place) {
+    std::string text = "t,x,y\n";
+    for (int i = 0; i < 40; ++i) {
+      const auto [x, y] = place(0.04 * i);
+      text += fmt::format("{:.2f},{:.4f},{:.4f}\n", 0.04 * i, x, y);
+    }
+    const Made made(text);
+    return core::read_track_csv(made.file, std::nullopt);
+  };
+  // Thrown steeply, with a drag in proportion to the speed: it rises 5 m and falls back by 2 m.
+  CHECK_THROWS_WITH(read([](double t) {
+                      return std::pair(5.2 * (1.0 - std::exp(-1.6 * t)), 8.42 * (1.0 - std::exp(-3.0 * t)) - 3.27 * t);
+                    }),
+                    Contains("a curved path"));
+  // Up and down a plane of 30°.
+  CHECK_NOTHROW(read([](double t) {
+    const double s = 2.0 * t - 1.3 * t * t;
+    return std::pair(0.866 * s, 0.5 * s);
+  }));
+}

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "core/result/estimate.h"
 #include "report/blind/blind_report.h"
 #include "report/characterize/camera_report.h"
 #include "report/check/check_report.h"
@@ -56,6 +57,26 @@ TEST_CASE("a drag or a friction below zero by more than chance is doubted, by le
   CHECK(report::doubts_about(results).empty());
   results.configurations[0].mu = tests::known(-0.010, 0.002);
   CHECK(any_has(report::doubts_about(results), "µ = -0.0100 ± 0.0020 is below zero"));
+}
+
+TEST_CASE("a downhill line that begins above gravity is doubted: no slope and no friction can cause it") {
+  core::AnalysisResults results = one_clip();
+  results.gravity_m_s2 = 9.80665;
+  // A coffee filter near its terminal velocity v, where its drag grows with v²: a = 2 g (1 - v'/v), twice gravity.
+  core::LineFit line;
+  line.direction = 1;
+  line.a0_m_s2 = core::estimate(19.6, 0.5, 10.0);
+  results.configurations[0].lines = {line};
+  CHECK(any_has(report::doubts_about(results), "the line begins with 19.60 ± 0.50 m/s² at v = 0, more than gravity"));
+  CHECK(any_has(report::doubts_about(results), "glidelab diagnose"));
+  const auto quiet = [&](double a0_m_s2, double sd_m_s2, int direction) {
+    results.configurations[0].lines[0].direction = direction;
+    results.configurations[0].lines[0].a0_m_s2 = core::estimate(a0_m_s2, sd_m_s2, 10.0);
+    return report::doubts_about(results).empty();
+  };
+  CHECK(quiet(9.83, 0.001, 1));  // local gravity, a length that is 0.3 % off
+  CHECK(quiet(12.0, 1.0, 1));    // within its uncertainty
+  CHECK(quiet(19.6, 0.5, -1));   // uphill friction adds to the slope
 }
 
 TEST_CASE("points far off their line are told with the clip and the next step, on the page and in the terminal") {
