@@ -47,11 +47,18 @@ class FrameCounter {
   std::atomic<double> done_ = 0.0;
 };
 
+/// How far the search for the marker goes.
+enum class MarkerSearch {
+  thorough,  ///< as a disc, as a sphere that is lit from one side, by its own look
+  disc       ///< the first of these alone: a tenth of the time where there is no marker
+};
+
 /// Reads the clip once or twice: a marker without a stated colour is searched for as a bright disc and, if a bright one
 /// is hardly seen but a dark one well, as a dark disc. With `look_at_scene` there is a PictureRecord. InputError for
 /// images that cannot be used, NoMarker (marker_track.h) if there is no marker.
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter);
+                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
+                  MarkerSearch search = MarkerSearch::thorough);
 
 struct SeenPattern;
 
@@ -68,11 +75,12 @@ struct PictureResults {
 
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it onto the line of
 /// motion, x positive downhill. Clips that are tracks are read with read_track. Frames stream; `jobs` clips at a time.
-/// With `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is already known about the pattern
+/// A marker whose outlines are those of a disc in the plane of motion is restituted as one, else as a sphere. With
+/// `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is already known about the pattern
 /// (restitution.h); null: its images are read. InputError for images that cannot be used (no pattern, no marker,
 /// truncated, of another size, …).
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
                          const FrameOpener& open = open_frames, bool look_at_scene = false,
-                         const SeenPattern* seen_pattern = nullptr);
+                         const SeenPattern* seen_pattern = nullptr, MarkerSearch search = MarkerSearch::thorough);
 
 }  // namespace glidelab::core

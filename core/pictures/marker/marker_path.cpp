@@ -139,6 +139,20 @@ std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& 
   return cv::Point2d(found(0, 0), found(0, 1));
 }
 
+std::vector<double> off_course(const std::vector<PlaceInFrame>& places) {
+  std::vector<double> off(places.size(), 0.0), known;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto expected = place_by_neighbours(places, places[i].frame, true);
+    if (!expected) continue;
+    off[i] = cv::norm(*expected - places[i].at);
+    known.push_back(off[i]);
+  }
+  if (known.empty()) return off;
+  const double usual = std::max(median_of(std::move(known)), 1e-9);
+  for (double& distance : off) distance /= usual;
+  return off;
+}
+
 namespace {
 
 /// Standard deviation of a coordinate of the weighted sums over consecutive frames.
@@ -175,6 +189,8 @@ namespace {
 
 constexpr std::size_t kFewestMoving = 8;    // sightings of a path that counts as a marker (fewer in a shorter clip)
 constexpr std::size_t kFewestResting = 10;  // sightings of something that counts as part of the scene
+constexpr double kOddSize = 5.0;            // times the usual deviation of its size, and
+constexpr double kOddResidual = 1.5;        // times the usual residuals: a look that is not the usual one
 constexpr double kStartFrames = 5.0;        // around the one that start_px belongs to, in which it is looked at
 
 /// They are seen in the same frames, half of the shorter path's or more, and look and move alike.
@@ -340,7 +356,7 @@ bool Choice::is_place_of_another(const MarkerPath& path, const MarkerSeen& sight
 }
 
 /// Without the frames in which something like it rests at its place, or in which it is half hidden: measured wrong,
-/// smaller or with larger residuals than in the frames around.
+/// smaller or with larger residuals than in the frames around, or off their course and not as usual in either.
 TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
   TrackedMarker tracked;
   std::vector<double> sizes, residuals;
@@ -351,8 +367,12 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
   const double usual_size = median_of(sizes);
   std::vector<double> deviations;
   for (const double size : sizes) deviations.push_back(std::abs(size / usual_size - 1.0));
-  const double size_limit = 0.1 + 6.0 * median_of(deviations);
-  const double residual_limit = 0.03 + 4.0 * median_of(residuals);
+  const double usual_deviation = median_of(deviations), usual_residual = median_of(residuals);
+  const double size_limit = 0.1 + 6.0 * usual_deviation;
+  const double residual_limit = 0.03 + 4.0 * usual_residual;
+  std::vector<PlaceInFrame> places;
+  for (const MarkerSeen& sighting : path.seen) places.push_back({sighting.frame, sighting.fit.centre});
+  const std::vector<double> off = off_course(places);
   std::size_t dropped = 0;
   std::size_t hidden = 0;
   for (std::size_t i = 0; i < path.seen.size(); ++i) {
@@ -361,7 +381,10 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
       ++hidden;
       continue;
     }
-    if (std::abs(sizes[i] / usual_size - 1.0) > size_limit || residuals[i] > residual_limit) {
+    const double deviation = std::abs(sizes[i] / usual_size - 1.0);
+    // Something thin before the marker changes its look little, but moves it.
+    const bool is_odd = deviation > kOddSize * usual_deviation || residuals[i] > kOddResidual * usual_residual;
+    if (deviation > size_limit || residuals[i] > residual_limit || (off[i] > kOffCourse && is_odd)) {
       ++dropped;
       continue;
     }

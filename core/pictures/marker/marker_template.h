@@ -9,9 +9,9 @@
 /// not fit (what is in front of the marker). The look is sharpened until it gives the pixels back; the first guesses of
 /// the centres may be off by a few pixels.
 ///
-/// The centre is that of the guesses on average, so it may be off the marker's own by an amount that is the same in all
-/// frames. Assumes that the marker does not turn and that its look changes slowly. Pixels; the centre of the first
-/// pixel is (0, 0).
+/// A look that is the same after half a turn has a centre of its own. Elsewhere the centre is that of the guesses on
+/// average, so it may be off the marker's own by an amount that is the same in all frames. Assumes that the marker does
+/// not turn and that its look changes slowly. Pixels; the centre of the first pixel is (0, 0).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -55,6 +55,9 @@ class MarkerTemplate {
   /// Of what changes over the look (the square of its gradient), how much lies between 0.8 and 1.2 radii: a marker of
   /// the stated size has an edge there, whatever is within.
   double share_at_outline() const;
+
+  /// The place about which the look is the same after half a turn, in q; nothing where there is none near 0.
+  std::optional<cv::Point2d> centre_of_symmetry() const;
 
  private:
   struct Value {

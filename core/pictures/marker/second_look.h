@@ -16,13 +16,11 @@
 #include <optional>
 
 #include "core/pictures/frames/frame_source.h"
+#include "core/pictures/marker/marker_body.h"
 #include "core/pictures/marker/marker_path.h"
 #include "core/pictures/marker/still_background.h"
 
 namespace glidelab::core {
-
-/// What the marker is: a sphere, or a disc that lies in the plane of motion.
-enum class MarkerBody { sphere, disc };
 
 /// The elements uu, uv, vv of M (1/px): the outline of the marker that is seen at a pixel is |M d| = 1.
 using ShapeAt = std::function<std::optional<cv::Vec3d>(cv::Point2d, MarkerBody)>;
