@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "base/errors.h"
@@ -16,263 +14,10 @@
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
 #include "core/pictures/camera/restitution.h"
-#include "core/pictures/marker/second_look.h"
-#include "core/pictures/marker/still_background.h"
-#include "core/pictures/marker/template_look.h"
-#include "core/pictures/scene/scene_watch.h"
-#include "core/track/even_times.h"
+#include "core/pictures/marker/marker_body.h"
 #include "core/track/read_track.h"
 
 namespace glidelab::core {
-namespace {
-
-// For a marker of unstated brightness: the fraction of frames, from its first to its last, in which a good marker is
-// seen; and the factor by which a dark one must be seen more often than a bright one.
-constexpr double kLeastSeenPart = 0.9, kLeastSeenRatio = 1.2;
-constexpr double kBlurRadii = 0.5;     // standard deviation of a blur that fills the hole of a ring
-constexpr double kLeastTravel = 1.5;   // radii from its first position
-constexpr double kSomeRadiusPx = 5.0;  // if the camera has no ray for any requested pixel: small, but visible
-
-bool moves(const TrackedMarker& marker) {
-  return std::any_of(marker.sightings.begin(), marker.sightings.end(), [&](const MarkerSighting& sighting) {
-    const MarkerSighting& first = marker.sightings.front();
-    return std::hypot(sighting.u_px - first.u_px, sighting.v_px - first.v_px) > kLeastTravel * first.radius_px;
-  });
-}
-
-/// Whether it is seen in most frames from the first sighting to the last, and moves.
-bool well_seen(const TrackedMarker& marker) {
-  if (!moves(marker)) return false;
-  const std::size_t span = marker.sightings.back().frame - marker.sightings.front().frame + 1;
-  return static_cast<double>(marker.sightings.size()) > kLeastSeenPart * static_cast<double>(span);
-}
-
-/// The marker's image in each frame, from the fits that found it.
-std::vector<MarkerLook> looks_of(const TrackedMarker& marker, const std::vector<double>& frame_t_s) {
-  std::vector<MarkerLook> looks;
-  for (std::size_t i = 0; i < marker.fits.size(); ++i) {
-    const MarkerFit& fit = marker.fits[i];
-    const cv::Vec3d& m = fit.shape;
-    const double determinant = m[0] * m[2] - m[1] * m[1];
-    if (!(determinant > 0.0)) continue;  // a centroid has no outline
-    // An ellipse |M d| = 1 has the moments M^-2 / 4.
-    const double a = m[2] / determinant, b = -m[1] / determinant, c = m[0] / determinant;
-    const std::size_t frame = marker.sightings[i].frame;
-    looks.push_back({frame, frame_t_s[frame], fit.centre.x, fit.centre.y, fit.moments[0] - fit.moments[2],
-                     0.25 * b * (a + c), 0.25 * (b * b + c * c), fit.blur_px, fit.amplitude, fit.background,
-                     fit.slope_u, fit.slope_v, fit.light_px.x, fit.light_px.y});
-  }
-  return looks;
-}
-
-/// Replaces rounded time stamps by the camera's uniform times.
-void put_even(SeenClip& seen) {
-  std::optional<EvenTimes> even = even_times(seen.frame_t_s);
-  if (!even) return;
-  seen.notes.emplace_back(EvenStamps{even->tick_s, even->step_s, even->half_width_s});
-  seen.frame_t_s = std::move(even->t_s);
-}
-
-/// Completes the record of a clip that was read to the end.
-void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
-  PictureRecord& record = *seen.pictures;
-  record.width_px = seen.size.width;
-  record.height_px = seen.size.height;
-  record.codec = facts.codec;
-  record.lossy = facts.lossy;
-  record.stamps_missing = facts.stamps_missing;
-  record.marker = looks_of(seen.marker, seen.frame_t_s);
-  scene.finish(record);
-}
-
-/// What to look for if a disc is not found well: any object of the marker's size, whatever the shape of its lit part.
-struct AnyShape {
-  cv::Mat still;         ///< in the difference from this background, if it is not empty; otherwise in the grey value,
-  bool dark = false;     ///< or in its inverse
-  double blur_px = 0.0;  ///< standard deviation of a blur that makes one spot of a ring, or of quadrants
-
-  Frame seen_in(const Frame& frame) const {
-    Frame changed;
-    changed.index = frame.index;
-    changed.t_s = frame.t_s;
-    if (!still.empty()) {
-      cv::absdiff(frame.grey, still, changed.grey);
-    } else if (dark) {
-      cv::bitwise_not(frame.grey, changed.grey);
-    } else {
-      changed.grey = frame.grey;
-    }
-    if (blur_px > 0.0) cv::GaussianBlur(changed.grey, changed.grey, {}, blur_px);
-    return changed;
-  }
-};
-
-SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
-                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
-                  const AnyShape* any = nullptr) {
-  const bool with_color = signal_kind(marker) == SignalKind::colored;
-  const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
-  const Restitution& restitution = setting.restitutions.at(clip.group);
-  // If a pixel has no ray (far outside the calibrated field), the marker has the size found at the first request.
-  std::optional<double> usual_px;
-  const auto radius_at = [&](cv::Point2d pixel) {
-    const auto radius_px = restitution.marker_radius_px(pixel);
-    if (!usual_px) usual_px = radius_px;
-    return radius_px.value_or(usual_px.value_or(kSomeRadiusPx));
-  };
-  MarkerTracker tracker = any != nullptr ? MarkerTracker::of_any_shape(clip.file, marker, radius_at, clip.start_s)
-                                         : MarkerTracker(clip.file, marker, radius_at, clip.start_s);
-  SeenClip seen;
-  const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
-  constexpr std::size_t kTellEvery = 10;
-  std::optional<SceneWatch> scene;
-  if (look_at_scene) {
-    scene.emplace(source->facts().lossy.value_or(false));
-    seen.pictures = std::make_shared<PictureRecord>();
-  }
-  while (const auto frame = look_at_scene || any != nullptr ? source->next() : source->next_in_parts()) {
-    seen.size = frame->grey.size();
-    seen.frame_t_s.push_back(frame->t_s);
-    tracker.add(any != nullptr ? any->seen_in(*frame) : *frame);
-    if (scene) {
-      scene->add(frame->grey, frame->t_s);
-      seen.pictures->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
-    }
-    if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
-  }
-  seen.marker = tracker.finish();
-  seen.notes = source->notes();
-  seen.predicted = source->facts().predicts;
-  if (experiment.camera->time == TimeSource::container) put_even(seen);
-  if (scene) finish_record(source->facts(), *scene, seen);
-  return seen;
-}
-
-}  // namespace
-
-void FrameCounter::add(double share) {
-  double now = done_.load();
-  while (!done_.compare_exchange_weak(now, now + share)) {
-  }
-  progress_("frames", std::min(1.0, (now + share) / static_cast<double>(clips_)));
-}
-
-namespace {
-
-/// As a disc, bright or dark.
-SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
-  const auto look = [&](const MarkerSetup& marker) {
-    return look_for(marker, experiment, clip, setting, open, look_at_scene, counter);
-  };
-  if (experiment.marker->color_bgr) return look(*experiment.marker);
-  std::optional<SeenClip> bright;
-  std::optional<NoMarker> no_bright;
-  try {
-    bright = look(*experiment.marker);
-    if (well_seen(bright->marker)) return *std::move(bright);
-  } catch (const NoMarker& nothing) {
-    no_bright = nothing;
-  }
-  MarkerSetup dark = *experiment.marker;
-  dark.color_bgr = {0, 0, 0};
-  try {
-    SeenClip seen = look(dark);
-    const double others = bright && moves(bright->marker) ? static_cast<double>(bright->marker.sightings.size()) : 0.0;
-    if (well_seen(seen.marker) && static_cast<double>(seen.marker.sightings.size()) > kLeastSeenRatio * others) {
-      seen.dark_marker = true;
-      return seen;
-    }
-  } catch (const base::InputError&) {
-    // There is no single dark marker either, so the bright one counts.
-  }
-  if (no_bright) throw NoMarker(*no_bright);
-  return *std::move(bright);
-}
-
-/// Empty if no such object is found either.
-std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSetup& clip,
-                                      const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene,
-                                      FrameCounter& counter, const AnyShape& any) {
-  try {
-    return look_for(*experiment.marker, experiment, clip, setting, open, look_at_scene, counter, &any);
-  } catch (const base::InputError&) {
-    return std::nullopt;  // the error of the first search counts
-  }
-}
-
-}  // namespace
-
-SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
-  const auto disc = [&] { return see_disc(experiment, clip, setting, open, look_at_scene, counter); };
-  const bool by_hue = signal_kind(*experiment.marker) == SignalKind::colored;
-  if (by_hue) return disc();
-  ClipAgain again;
-  again.open = [&] { return open(clip.file, *experiment.camera, false, setting.size); };
-  std::optional<SeenClip> seen;
-  std::optional<NoMarker> none;
-  try {
-    seen = disc();
-    again.frames = seen->frame_t_s.size();
-    if (!is_worth_a_second_look(seen->marker, again.frames)) return *std::move(seen);
-  } catch (const NoMarker& nothing) {
-    none = nothing;
-    const auto source = again.open();
-    while (source->next()) ++again.frames;
-  }
-  const StillBackground background = background_of(again);
-  const Restitution& restitution = setting.restitutions.at(clip.group);
-  const ShapeAt shape_at = [&](cv::Point2d pixel, MarkerBody body) {
-    return body == MarkerBody::sphere ? restitution.marker_shape(pixel) : restitution.disc_shape(pixel);
-  };
-  const auto better = [&](SeenClip& first) {
-    auto marker = look_again(first.marker, again, background, shape_at);
-    if (!marker) return false;
-    first.marker = *std::move(marker);
-    if (first.pictures) first.pictures->marker = looks_of(first.marker, first.frame_t_s);
-    return true;
-  };
-  if (seen && better(*seen)) return *std::move(seen);
-  if (seen && well_seen(seen->marker)) return *std::move(seen);
-  const double seen_before = seen ? static_cast<double>(seen->marker.sightings.size()) : 0.0;
-  const auto in_more_frames = [&](const SeenClip& found) {
-    return static_cast<double>(found.marker.sightings.size()) > kLeastSeenRatio * seen_before;
-  };
-  std::vector<SeenClip> rough;
-  for (const AnyShape& any : {AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}}) {
-    auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, any);
-    if (!found) continue;
-    rough.push_back(*found);
-    if (better(*found) && in_more_frames(*found)) return *std::move(found);
-  }
-  // Neither a disc nor a sphere: by its own look, unless it is as large as half the image.
-  const cv::Point2d middle(0.5 * background.median().cols, 0.5 * background.median().rows);
-  const double radius_px = restitution.marker_radius_px(middle).value_or(kSomeRadiusPx);
-  if (radius_px < 0.5 * std::min(middle.x, middle.y)) {
-    for (const bool dark : {false, true}) {
-      const AnyShape blurred{{}, dark, kBlurRadii * radius_px};
-      auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, blurred);
-      if (found) rough.push_back(*std::move(found));
-    }
-    for (SeenClip& found : rough) {
-      auto marker = look_by_template(found.marker, again, shape_at);
-      if (!marker || !well_seen(*marker)) continue;
-      found.marker = *std::move(marker);
-      if (found.pictures) found.pictures->marker = looks_of(found.marker, found.frame_t_s);
-      if (in_more_frames(found)) return std::move(found);
-    }
-  }
-  if (none) throw NoMarker(*none);
-  if (!is_steady(seen->marker)) {
-    throw NoMarker(
-        base::Issue{clip.file.string(), 0, "marker",
-                    fmt::format("no marker that can be followed: what is found in {} of {} frames jumps about",
-                                seen->marker.sightings.size(), again.frames),
-                    "one thing of the stated diameter that stands out from its surroundings in every frame"});
-  }
-  return *std::move(seen);
-}
 
 namespace {
 
@@ -303,6 +48,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   track.notes = seen.notes;
   track.notes.insert(track.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
   if (seen.dark_marker) track.notes.emplace_back(DarkMarker{});
+  if (restitution.is_disc()) track.notes.emplace_back(DiscMarker{});
   track.pictures = seen.pictures;
   track.dark_marker = seen.dark_marker;
   for (const PlanePoint& point : points) {
@@ -453,10 +199,34 @@ void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenCli
   results.modes += drag->error_m.size();
 }
 
+/// What the marker of all clips is: by its outlines where the fits left them free, else as which it was fitted.
+std::optional<MarkerBody> body_of(const Experiment& experiment, const CameraAndPlanes& setting,
+                                  const std::vector<SeenClip>& seen) {
+  std::vector<OutlineSeen> outlines;
+  std::size_t discs = 0, spheres = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const TrackedMarker& marker = seen[i].marker;
+    if (marker.body) (marker.body == MarkerBody::disc ? discs : spheres) += marker.sightings.size();
+    if (experiment.clips[i].file.empty() || marker.body) continue;
+    const Restitution& restitution = setting.restitutions.at(experiment.clips[i].group);
+    for (std::size_t k = 1; k < marker.fits.size(); ++k) {
+      const cv::Point2d at = marker.fits[k].centre;
+      const auto sphere = restitution.marker_shape(at), disc = restitution.disc_shape(at);
+      const auto frames = static_cast<double>(marker.sightings[k].frame - marker.sightings[k - 1].frame);
+      if (!sphere || !disc || !(marker.fits[k].blur_px > 0.0)) continue;  // a centroid has no outline
+      outlines.push_back({marker.fits[k].shape, *sphere, *disc, (at - marker.fits[k - 1].centre) / frames});
+    }
+  }
+  if (const auto body = body_by_outline(outlines)) return body;
+  if (discs == spheres) return std::nullopt;
+  return discs > spheres ? MarkerBody::disc : MarkerBody::sphere;
+}
+
 }  // namespace
 
 PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress,
-                         const FrameOpener& open, bool look_at_scene, const SeenPattern* seen_pattern) {
+                         const FrameOpener& open, bool look_at_scene, const SeenPattern* seen_pattern,
+                         MarkerSearch search) {
   PictureResults results;
   results.tracks.resize(experiment.clips.size());
   results.fits.resize(experiment.clips.size());
@@ -479,13 +249,18 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
   if (pictures.empty()) return results;
 
   progress("calibration", 0.0);
-  const CameraAndPlanes setting = camera_and_planes_of(experiment, jobs, seen_pattern, progress);
+  CameraAndPlanes setting = camera_and_planes_of(experiment, jobs, seen_pattern, progress);
   progress("calibration", 1.0);
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, pictures.size());
   base::for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
-    seen[pictures[k]] = see_clip(experiment, experiment.clips[pictures[k]], setting, open, look_at_scene, counter);
+    seen[pictures[k]] =
+        see_clip(experiment, experiment.clips[pictures[k]], setting, open, look_at_scene, counter, search);
   });
+  const bool is_disc = body_of(experiment, setting, seen) == MarkerBody::disc;
+  for (auto& [name, restitution] : setting.restitutions) {
+    if (is_disc) restitution.take_for_disc();
+  }
 
   for (const auto& [name, restitution] : setting.restitutions) {
     GroupTracks(experiment, setting, name, seen).add_to(results);

@@ -118,8 +118,8 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
                                      ClipWatches& watches, const SeenPattern* seen_pattern, RecordingCheck& check) {
   std::vector<ClipAttempt> attempts(experiment.clips.size());
   // Tracks what `part` has, the first of whose clips is the experiment's clip `first`.
-  const auto attempt = [&](const Experiment& part, std::size_t first) {
-    PictureResults seen = tracks_of(part, jobs, progress, watches.opener(), false, seen_pattern);
+  const auto attempt = [&](const Experiment& part, std::size_t first, MarkerSearch search) {
+    PictureResults seen = tracks_of(part, jobs, progress, watches.opener(), false, seen_pattern, search);
     if (check.pattern) check.pattern->calibration = seen.calibration;
     check.plumbs.insert(check.plumbs.end(), seen.plumbs.begin(), seen.plumbs.end());
     for (std::size_t i = 0; i < seen.tracks.size(); ++i) {
@@ -128,14 +128,14 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
     }
   };
   try {
-    attempt(experiment, 0);
+    attempt(experiment, 0, MarkerSearch::thorough);
     return attempts;
   } catch (const base::InputError& error) {
     check.plumb_failure = error.what();  // unless a clip fails by itself
   }
   for (std::size_t i = 0; i < attempts.size(); ++i) {
     try {
-      attempt(alone(experiment, i), i);
+      attempt(alone(experiment, i), i, MarkerSearch::thorough);
     } catch (const base::InputError& error) {
       attempts[i].failure = error.what();
       check.plumb_failure.clear();
@@ -149,7 +149,7 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
       Experiment other = alone(experiment, i);
       other.marker->diameter_m *= factor;
       try {
-        attempt(other, i);
+        attempt(other, i, MarkerSearch::disc);
         return true;
       } catch (const base::InputError&) {
         return false;

@@ -93,7 +93,7 @@ struct MarkerConcealed {
 
 /// How a marker that is not a plain disc is measured.
 struct MarkerMeasuredBy {
-  enum class What { centroid, shading, own_look } what = What::centroid;
+  enum class What { centroid, shading, own_look, own_centre } what = What::centroid;
 };
 
 /// The size of its image over that predicted from its diameter.
@@ -115,6 +115,9 @@ struct PixelsAnswerLeft {
 };
 
 struct DarkMarker {};
+
+/// Its outlines are those of a disc in the plane of motion; otherwise it is taken for a sphere.
+struct DiscMarker {};
 
 /// A marker of the stated diameter is not found; one of another size is.
 struct NotOfStatedSize {
@@ -229,10 +232,10 @@ using AnyNote =
     std::variant<AboutFile, RepeatedFrames, EvenStamps, AssumedStatements, AssumedMass, OutlyingView, NoPatternInSight,
                  UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyeFitsBetter, PlaneViewsDisagree,
                  MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain,
-                 PixelsAnswerLeft, DarkMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
-                 FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
-                 GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, RobustFit,
-                 FitScatters>;
+                 PixelsAnswerLeft, DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale,
+                 CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,
+                 NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams,
+                 InclineContradiction, RobustFit, FitScatters>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

@@ -71,8 +71,9 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::FisheyeFitsBetter& of) const {
     return fmt::format(
-        "the lens is modelled as a fisheye (equidistant): corners fit to {:.2g} px, to {:.2g} px with Brown-Conrady",
-        of.rms_px, of.brown_conrady_rms_px);
+        "the lens is modelled as a fisheye (equidistant): corners fit to {:.2g} px, to {:.2g} px with Brown-Conrady{}",
+        of.rms_px, of.brown_conrady_rms_px,
+        of.rms_px > 0.9 * of.brown_conrady_rms_px ? ", which needs more terms for that" : "");
   }
   std::string operator()(const core::PlaneViewsDisagree& of) const {
     const bool one = of.views == 1;
@@ -96,6 +97,9 @@ struct AnalysisSentence {
         return "the marker is not a disc; the centroid of its colour is used";
       case What::shading:
         return "the marker is lit from one side; its shading is fitted";
+      case What::own_centre:
+        return "the marker is neither a disc nor a sphere; it is followed by what it looks like in the other frames, "
+               "which is the same after half a turn about its centre";
       case What::own_look:
         break;
     }
@@ -121,6 +125,9 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::DarkMarker&) const {
     return "the marker is darker than its surroundings; set color = \"#101010\" in [marker] to look for a dark one";
+  }
+  std::string operator()(const core::DiscMarker&) const {
+    return "the marker's outline is that of a disc in the plane of motion, and its centre is found as a disc's";
   }
   std::string operator()(const core::NotOfStatedSize& of) const {
     return "a marker of the stated diameter_m is not found: " + of.failure;

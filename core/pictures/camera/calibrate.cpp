@@ -5,6 +5,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/errors.h"
@@ -38,8 +39,9 @@ TermUncertainty uncertainty_of_terms(const std::vector<ViewDerivatives>& views) 
 
 namespace {
 
-constexpr double kSignificantOne = 9.0;        // chi^2 of one degree of freedom at 0.27 %: three standard deviations
-constexpr double kSignificantPair = 11.829;    // the same of two: -2 log(0.0027)
+constexpr double kSignificantOne = 9.0;      // chi^2 of one degree of freedom at 0.27 %: three standard deviations
+constexpr double kSignificantPair = 11.829;  // the same of two: -2 log(0.0027)
+constexpr const char* kTangential = "p1, p2";
 constexpr double kMostRelativeFocalSd = 0.02;  // of the focal length: a standard deviation that is worth a note
 
 struct OpenCvCalibration {
@@ -147,7 +149,7 @@ struct SupportedFit {
 /// The terms that the views determine, from all five backwards (see the header).
 SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv::Size size, double square_m) {
   const std::vector<Term> terms = {{"k3", {8}, cv::CALIB_FIX_K3, 3, 0.1},
-                                   {"p1, p2", {6, 7}, cv::CALIB_ZERO_TANGENT_DIST, 0, 0.0},
+                                   {kTangential, {6, 7}, cv::CALIB_ZERO_TANGENT_DIST, 0, 0.0},
                                    {"k2", {5}, cv::CALIB_FIX_K2, 2, 0.2},
                                    {"k1", {4}, cv::CALIB_FIX_K1, 1, 0.3}};
   int flags = 0;
@@ -249,8 +251,9 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m) {
 
 namespace {
 
-constexpr double kSignificant = 3.0;  // standard deviations
-constexpr int kTerms = 8;             // fx fy cx cy k1 k2 k3 k4
+constexpr int kTerms = 8;  // fx fy cx cy k1 k2 k3 k4
+/// Standard deviations of the relative displacement of an image's corner by k1 to k4, over all fisheyes.
+constexpr std::array<double, 4> kUsualFisheye{0.1, 0.07, 0.05, 0.03};
 
 struct Fit {
   CameraModel camera;
@@ -294,6 +297,13 @@ std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Si
   fit.camera.cy = matrix(1, 2);
   for (int i = 0; i < 4; ++i) fit.camera.distortion[static_cast<std::size_t>(i)] = distortion[i];
   return fit;
+}
+
+/// As believed() above, of the fisheye's k1 (1) to k4.
+double believed(int term, double variance, const CameraModel& camera) {
+  const double angle = std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy);
+  const double at_corner = std::pow(angle, 2 * term), usual = kUsualFisheye[static_cast<std::size_t>(term - 1)];
+  return usual * usual / (usual * usual + variance * at_corner * at_corner);
 }
 
 /// Pixels of the pattern's corners, u and v of each.
@@ -383,6 +393,7 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
   if (!all) return std::nullopt;
   KeptViews kept = without_outliers(views, view_errors_px(*all, views, square_m));
   views = std::move(kept.views);
+  Eigen::Matrix<double, 9, 9> left_out = Eigen::Matrix<double, 9, 9>::Zero();
   for (int fixed = 0;; ++fixed) {
     const std::optional<Fit> found = run_opencv(views, boards.image_size, square_m, fixed, &guess);
     if (!found) return std::nullopt;
@@ -396,14 +407,26 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     }
     const TermUncertainty uncertainty = uncertainty_of_terms(derivatives);
     const int last = free_terms - 1;
-    const double sd = std::sqrt(uncertainty.covariance(last, last));
-    if (last >= 4 && std::abs(fit.camera.distortion[static_cast<std::size_t>(last - 4)]) < kSignificant * sd) continue;
+    if (last >= 4) {
+      const double value = fit.camera.distortion[static_cast<std::size_t>(last - 4)];
+      const double variance = uncertainty.covariance(last, last);
+      const double part = believed(last - 3, variance, fit.camera), statistic = part * value * value / variance;
+      if (statistic < kSignificantOne) {
+        const Eigen::VectorXd moved = part * value / variance * uncertainty.covariance.col(last);
+        const double real = std::max(0.0, 1.0 - 1.0 / std::max(statistic, 1e-300));
+        left_out.topLeftCorner(free_terms, free_terms) +=
+            part / variance * uncertainty.covariance.col(last) * uncertainty.covariance.col(last).transpose() +
+            real * moved * moved.transpose();
+        continue;
+      }
+    }
     Calibration calibration;
     calibration.camera = fit.camera;
     calibration.rms_px = fit.rms_px;
     calibration.noise = uncertainty.noise;
     calibration.rests = corner_map(boards.image_size, rests);
-    calibration.covariance.topLeftCorner(free_terms, free_terms) = uncertainty.covariance;
+    calibration.covariance = left_out;
+    calibration.covariance.topLeftCorner(free_terms, free_terms) += uncertainty.covariance;
     calibration.views_used = views.size();
     calibration.notes = std::move(kept.notes);
     for (Note& note : notes_on_views(boards, views, calibration)) calibration.notes.push_back(std::move(note));
@@ -413,16 +436,30 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
   }
 }
 
+namespace {
+
+int distortion_terms(const Calibration& calibration) {
+  int terms = 0;
+  for (const std::string& kept : calibration.lens.kept) terms += kept == kTangential ? 2 : 1;
+  return terms;
+}
+
+}  // namespace
+
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m) {
   Calibration found = calibrate_camera(boards, square_m);
   const CameraModel& camera = found.camera;
-  constexpr double kWide = 0.8;  // focal lengths
+  constexpr double kWide = 0.8;   // focal lengths
+  constexpr int kFewerTerms = 2;  // of the distortion
   const bool wide = std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy) > kWide;
   if (!wide && !follows_badly(found.noise)) return found;
   std::optional<Calibration> fisheye = calibrate_fisheye(boards, square_m);
   if (!fisheye || fisheye->views_used < found.views_used) return found;
   const double coordinates = 2.0 * static_cast<double>(found.views_used * boards.views.front().corners.points.size());
-  if (coordinates * 2.0 * std::log(found.rms_px / fisheye->rms_px) < kDecisive) return found;
+  const double gain = coordinates * 2.0 * std::log(found.rms_px / fisheye->rms_px);
+  const int fewer = distortion_terms(found) - distortion_terms(*fisheye);
+  const bool simpler = wide && fewer >= kFewerTerms && gain > -kSignificantOne * fewer;
+  if (gain < kDecisive && !simpler) return found;
   fisheye->notes.emplace_back(FisheyeFitsBetter{fisheye->rms_px, found.rms_px});
   return std::move(*fisheye);
 }

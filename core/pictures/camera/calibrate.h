@@ -82,9 +82,10 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m);
 
 /// The camera with a fisheye lens (camera_model.h): cv::fisheye::calibrate, with uncertainties as in
 /// calibrate_camera(). Parameters: fx, fy, cx, cy always; k1 to k4 only if they are determined: from k4 down, a term
-/// below three of its standard deviations is fixed to zero and the rest fitted again, until the first that is
-/// significant. The rows of the covariance are fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing if OpenCV
-/// finds no such camera.
+/// is tested as the radial ones there, and fixed to zero and the rest fitted again, until the first that is
+/// significant; what is left out counts in the covariance as it does there. Fisheyes move the image's corner by a part
+/// of N(0, 0.1²) with k1, N(0, 0.07²), N(0, 0.05²), N(0, 0.03²) with the next: an assumption. The rows of the
+/// covariance are fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing if OpenCV finds no such camera.
 std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
 
 /// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.
@@ -92,8 +93,9 @@ inline constexpr double kDecisive = 100.0;
 
 /// Brown-Conrady, or a fisheye if that explains the corners decisively better: n log(rms² / rms²) > kDecisive over n
 /// coordinates (twice the logarithm of the likelihood ratio; both models have as many terms, and some ten neighbouring
-/// corners share their errors). A fisheye is tried if the image's corner is more than 0.8 focal lengths off the axis,
-/// or if neighbouring corners show that Brown-Conrady does not describe the lens.
+/// corners share their errors), or explains them as well with at least two terms of the distortion less: a polynomial
+/// that mimics a fisheye where the pattern was seen goes wrong beyond. A fisheye is tried if the image's corner is more
+/// than 0.8 focal lengths off the axis, or if neighbouring corners show that Brown-Conrady does not describe the lens.
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m);
 
 }  // namespace glidelab::core

@@ -77,7 +77,7 @@ cv::Point2d Restitution::project(cv::Vec3d point_in_p) const {
 }
 
 /// Points of the outline about the projection of the sphere's centre, in pixels; none for a point.
-std::vector<cv::Point2d> Restitution::outline(cv::Point2d plane) const {
+std::vector<cv::Point2d> Restitution::sphere_outline(cv::Point2d plane) const {
   const cv::Vec3d centre = plane_->pose.rotation * cv::Vec3d(plane.x, plane.y, -height_m_) + plane_->pose.shift;
   const double distance = cv::norm(centre);
   if (!(distance > radius_m_)) return {};
@@ -98,9 +98,19 @@ std::vector<cv::Point2d> Restitution::outline(cv::Point2d plane) const {
   return outline;
 }
 
-/// Centre of the outline (the area's centroid) minus the projection of the sphere's centre, in pixels.
+std::vector<cv::Point2d> Restitution::disc_outline(cv::Point2d plane) const {
+  const cv::Point2d reference = project({plane.x, plane.y, -height_m_});
+  std::vector<cv::Point2d> outline;
+  for (const cv::Point2d& around : kAround) {
+    const cv::Point2d at = plane + radius_m_ * around;
+    outline.push_back(project({at.x, at.y, -height_m_}) - reference);
+  }
+  return outline;
+}
+
+/// Centre of the outline (the area's centroid) minus the projection of the marker's centre, in pixels.
 cv::Point2d Restitution::outline_offset(cv::Point2d plane) const {
-  const std::vector<cv::Point2d> points = outline(plane);
+  const std::vector<cv::Point2d> points = disc_ ? disc_outline(plane) : sphere_outline(plane);
   if (points.empty()) return {0.0, 0.0};
   double area = 0.0;
   cv::Point2d moment;
@@ -179,7 +189,7 @@ std::optional<cv::Vec3d> Restitution::marker_shape(cv::Point2d pixel) const {
   if (scale_) return cv::Vec3d(1.0, 0.0, 1.0) / (radius_m_ * scale_->px_per_m);
   const auto plane = intersect(pixel);
   if (!plane) return std::nullopt;
-  const std::vector<cv::Point2d> points = outline(*plane);
+  const std::vector<cv::Point2d> points = sphere_outline(*plane);
   if (points.empty()) return std::nullopt;
   return ellipse_through(points);
 }
@@ -189,12 +199,7 @@ std::optional<cv::Vec3d> Restitution::disc_shape(cv::Point2d pixel) const {
   if (!(radius_m_ > 0.0)) return std::nullopt;
   const auto plane = intersect(pixel);
   if (!plane) return std::nullopt;
-  std::vector<cv::Point2d> points;
-  for (const cv::Point2d& around : kAround) {
-    const cv::Point2d at = *plane + radius_m_ * around;
-    points.push_back(project({at.x, at.y, -height_m_}));
-  }
-  return ellipse_through(points);
+  return ellipse_through(disc_outline(*plane));
 }
 
 cv::Point2d Restitution::centre_pixel(cv::Point2d plane) const {

@@ -4,7 +4,8 @@
 /// pattern's frame P, that is the plane in which the marker's centre moves. P's pose comes from the plane views by
 /// least squares with the calibrated camera; several of them share one plane and differ by a motion in it. The outline
 /// of a sphere is not centred on the projection of its centre (its image is nearly an ellipse, shifted away from the
-/// axis); that is corrected from the marker's diameter. With one scale: X = u / px_per_m, Y = v / px_per_m.
+/// axis), nor is that of a disc where the plane is tilted or the lens bends; that is corrected from the marker's
+/// diameter. With one scale: X = u / px_per_m, Y = v / px_per_m.
 ///
 /// Uncertainty: the camera's covariance and, with the camera held, that of the plane's pose are each split into
 /// independent modes (the columns of a square root of the covariance). A mode is the camera and the pose as an error of
@@ -46,6 +47,10 @@ class Restitution {
                                   double square_m, double marker_height_m, double marker_diameter_m);
   static Restitution from_scale(const ScaleSetup& scale, double marker_diameter_m);
 
+  /// The marker is a disc in the plane of motion; otherwise it is a sphere.
+  void take_for_disc() { disc_ = true; }
+  bool is_disc() const { return disc_; }
+
   /// The position, metres in P, of the centre of a marker that is seen centred on this pixel. Nothing if no ray belongs
   /// to the pixel or it does not meet the plane in front of the camera.
   std::optional<cv::Point2d> to_plane(cv::Point2d pixel) const;
@@ -83,7 +88,8 @@ class Restitution {
   Restitution() = default;
   std::optional<cv::Point2d> intersect(cv::Point2d pixel) const;
   cv::Point2d project(cv::Vec3d point_in_p) const;
-  std::vector<cv::Point2d> outline(cv::Point2d plane) const;
+  std::vector<cv::Point2d> sphere_outline(cv::Point2d plane) const;
+  std::vector<cv::Point2d> disc_outline(cv::Point2d plane) const;
   cv::Point2d outline_offset(cv::Point2d plane) const;
 
   std::optional<ScaleSetup> scale_;
@@ -93,6 +99,7 @@ class Restitution {
   std::optional<PlaneFit> plane_;
   double height_m_ = 0.0;
   double radius_m_ = 0.0;
+  bool disc_ = false;
 };
 
 /// The pattern's corners, as found in pattern_files(), and the camera calibrated from them.

@@ -139,6 +139,20 @@ std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& 
   return cv::Point2d(found(0, 0), found(0, 1));
 }
 
+std::vector<double> off_course(const std::vector<PlaceInFrame>& places) {
+  std::vector<double> off(places.size(), 0.0), known;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto expected = place_by_neighbours(places, places[i].frame, true);
+    if (!expected) continue;
+    off[i] = cv::norm(*expected - places[i].at);
+    known.push_back(off[i]);
+  }
+  if (known.empty()) return off;
+  const double usual = std::max(median_of(std::move(known)), 1e-9);
+  for (double& distance : off) distance /= usual;
+  return off;
+}
+
 namespace {
 
 /// The standard deviation, per coordinate, of weighted sums over consecutive frames.
@@ -175,6 +189,8 @@ namespace {
 
 constexpr std::size_t kFewestMoving = 8;    // sightings of a path that can be the marker (fewer in a short clip)
 constexpr std::size_t kFewestResting = 10;  // sightings of an object that counts as part of the scene
+constexpr double kOddSize = 5.0;            // times the usual deviation of the size, and
+constexpr double kOddResidual = 1.5;        // times the usual residuals: a look that is not the usual one
 constexpr double kStartFrames = 5.0;        // frames around that of start_px in which a path is accepted
 
 /// Whether two paths look and move alike and share half or more of the frames of the shorter one.
@@ -339,8 +355,9 @@ bool Choice::is_place_of_another(const MarkerPath& path, const MarkerSeen& sight
   });
 }
 
-/// The path without the frames in which a similar object rests at its place, or in which the marker is half hidden: its
-/// size then differs from that in other frames, or its residuals are larger.
+/// The path without the frames in which a similar object rests at its place, or in which the marker is half hidden or
+/// disturbed: its size differs from that in other frames, its residuals are larger, or it is off its neighbours' course
+/// and unusual in either.
 TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
   TrackedMarker tracked;
   std::vector<double> sizes, residuals;
@@ -351,8 +368,12 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
   const double usual_size = median_of(sizes);
   std::vector<double> deviations;
   for (const double size : sizes) deviations.push_back(std::abs(size / usual_size - 1.0));
-  const double size_limit = 0.1 + 6.0 * median_of(deviations);
-  const double residual_limit = 0.03 + 4.0 * median_of(residuals);
+  const double usual_deviation = median_of(deviations), usual_residual = median_of(residuals);
+  const double size_limit = 0.1 + 6.0 * usual_deviation;
+  const double residual_limit = 0.03 + 4.0 * usual_residual;
+  std::vector<PlaceInFrame> places;
+  for (const MarkerSeen& sighting : path.seen) places.push_back({sighting.frame, sighting.fit.centre});
+  const std::vector<double> off = off_course(places);
   std::size_t dropped = 0;
   std::size_t hidden = 0;
   for (std::size_t i = 0; i < path.seen.size(); ++i) {
@@ -361,7 +382,10 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
       ++hidden;
       continue;
     }
-    if (std::abs(sizes[i] / usual_size - 1.0) > size_limit || residuals[i] > residual_limit) {
+    const double deviation = std::abs(sizes[i] / usual_size - 1.0);
+    // Something thin before the marker changes its look little, but moves it.
+    const bool is_odd = deviation > kOddSize * usual_deviation || residuals[i] > kOddResidual * usual_residual;
+    if (deviation > size_limit || residuals[i] > residual_limit || (off[i] > kOffCourse && is_odd)) {
       ++dropped;
       continue;
     }

@@ -15,6 +15,7 @@
 #include "base/errors.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_body.h"
 #include "core/pictures/marker/marker_search.h"
 #include "core/result/analysis_note.h"
 #include "core/result/results.h"
@@ -87,6 +88,11 @@ struct PlaceInFrame {
 std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& places, std::size_t frame,
                                                bool without_itself);
 
+/// How far each place lies from where its neighbours expect it, in units of the median of these distances. Beyond
+/// kOffCourse something disturbs it, or the object is pushed. 0 where the neighbours say nothing.
+std::vector<double> off_course(const std::vector<PlaceInFrame>& places);
+inline constexpr double kOffCourse = 6.0;
+
 /// The standard deviation, per coordinate, of the second differences of positions in consecutive frames, in pixels.
 /// Empty for fewer than four differences.
 std::optional<double> jitter_of(const Places& places);
@@ -105,6 +111,7 @@ struct TrackedMarker {
   std::vector<MarkerFit> fits;            ///< of each sighting
   std::vector<Note> notes;
   MarkerMethod method = MarkerMethod::undecided;  ///< by which the marker was measured
+  std::optional<MarkerBody> body;                 ///< as which it was fitted, where that is of either kind
 };
 
 /// The objects that were followed through a clip.

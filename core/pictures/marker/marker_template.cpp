@@ -24,7 +24,11 @@ constexpr double kLeastResidual = 0.29;   // codes, 1 / sqrt(12)
 constexpr double kSettled_px = 2e-4;
 constexpr int kMostSteps = 25;
 constexpr double kLeastLightGain = 0.3, kMostLightGain = 3.0;
-constexpr double kLeastPixels = 0.6;  // relative to the number in a whole window
+constexpr double kLeastPixels = 0.6;     // relative to the number in a whole window
+constexpr double kTurnedReach = 1.15;    // radii around its centre in which a look is compared with itself turned
+constexpr double kFarthestCentre = 0.2;  // radii from the mean of the guesses
+constexpr double kSettledCentre = 1e-5;  // radii
+constexpr double kMostTurnedDifference = 0.15;  // of the contrast, root mean square
 
 /// Weights of four values at -1, 0, 1, 2 in the Catmull-Rom cubic between 0 and 1, and in its derivative.
 struct Cubic {
@@ -182,6 +186,41 @@ std::optional<MarkerTemplate> MarkerTemplate::of(const std::vector<TemplateWindo
     }
   }
   return made;
+}
+
+std::optional<cv::Point2d> MarkerTemplate::centre_of_symmetry() const {
+  const int steps = static_cast<int>(std::floor(kTurnedReach * nodes_per_radius_));
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  for (int round = 0; round < kMostSteps; ++round) {
+    Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+    double squares = 0.0, weights = 0.0;
+    for (int j = -steps; j <= steps; ++j) {
+      for (int i = -steps; i <= steps; ++i) {
+        const double x = i * step(), y = j * step();
+        if (x * x + y * y > kTurnedReach * kTurnedReach) continue;
+        const double weight =
+            std::min(weight_at(centre[0] + x, centre[1] + y), weight_at(centre[0] - x, centre[1] - y));
+        if (weight <= 0.0) continue;
+        const Value here = at(centre[0] + x, centre[1] + y), turned = at(centre[0] - x, centre[1] - y);
+        const double off = here.value - turned.value;
+        const Eigen::Vector2d slope(here.x - turned.x, here.y - turned.y);
+        information += weight * slope * slope.transpose();
+        gradient += weight * off * slope;
+        squares += weight * off * off;
+        weights += weight;
+      }
+    }
+    const Eigen::Vector2d change = -base::solve_positive(information, gradient);
+    if (!change.allFinite()) return std::nullopt;
+    centre += change;
+    if (centre.norm() > kFarthestCentre) return std::nullopt;
+    if (change.norm() > kSettledCentre) continue;
+    // Half of the difference is what is not the same after half a turn.
+    if (0.5 * std::sqrt(squares / weights) > kMostTurnedDifference * contrast_) return std::nullopt;
+    return cv::Point2d(centre[0], centre[1]);
+  }
+  return std::nullopt;
 }
 
 std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) const {

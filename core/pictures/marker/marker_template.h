@@ -9,9 +9,9 @@
 /// frame that do not fit (an object in front of the marker). The look is sharpened in four steps, after which it
 /// reproduces the pixels to a hundredth of its contrast. The first guesses of the centres may be off by a few pixels.
 ///
-/// On average the centre is that of the guesses, so it may differ from the marker's own by an offset that is the same
-/// in all frames. Assumes that the marker does not turn and that its look changes slowly. Lengths are in pixels, and
-/// the centre of the first pixel is (0, 0).
+/// A look that is the same after half a turn has a centre of its own. Otherwise the centre is, on average, that of the
+/// guesses, so it may differ from the marker's own by an offset that is the same in all frames. Assumes that the marker
+/// does not turn and that its look changes slowly. Lengths are in pixels, and the centre of the first pixel is (0, 0).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -56,6 +56,9 @@ class MarkerTemplate {
   /// The part of the look's squared gradient that lies between 0.8 and 1.2 radii. A marker of the stated size has an
   /// edge there, whatever is inside.
   double share_at_outline() const;
+
+  /// The place about which the look is the same after half a turn, in q; nothing where there is none near 0.
+  std::optional<cv::Point2d> centre_of_symmetry() const;
 
  private:
   struct Value {

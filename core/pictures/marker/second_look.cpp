@@ -32,6 +32,7 @@ constexpr double kOddStray_px = 0.05,
                  kOddStrays = 4.0;  // distance from the neighbours' path: offset, and times the usual one
 constexpr double kStray_px = 0.3, kStrays = 8.0;
 constexpr double kLeastGain = 0.8;  // ratio of the residuals to those of the first look
+constexpr double kUnusual = 1.5;    // times the usual residuals
 
 /// The window of a frame, and its fit.
 struct Look {
@@ -85,6 +86,7 @@ class SecondLook {
   bool is_good(const SphereFit& fit) const { return fit.rms < kFarOff * shared_.usual_rms; }
   void fit_lost();
   void drop_strays(double least_px, double times);
+  void drop_disturbed();
   std::vector<PlaceInFrame> fitted_places() const;
   bool is_better() const;
   bool is_distinct() const;
@@ -239,6 +241,7 @@ void SecondLook::fit_all() {
   drop_strays(kOddStray_px, kOddStrays);  // to be fitted again from their neighbours
   fit_lost();
   drop_strays(kStray_px, kStrays);
+  drop_disturbed();
 }
 
 /// Fits the lost frames outwards from their fitted neighbours.
@@ -286,6 +289,16 @@ void SecondLook::drop_strays(double least_px, double times) {
   const double limit = least_px + times * median_of(distances);
   for (const auto& [look, distance] : off) {
     if (distance > limit) look->fit.reset();
+  }
+}
+
+/// Without fits that lie off the course of their neighbours and whose residuals are not the usual ones: something thin
+/// before the marker.
+void SecondLook::drop_disturbed() {
+  const std::vector<double> off = off_course(fitted_places());
+  std::size_t k = 0;
+  for (Look& look : looks_) {
+    if (look.fit && off[k++] > kOffCourse && look.fit->rms > kUnusual * shared_.usual_rms) look.fit.reset();
   }
 }
 
@@ -382,6 +395,7 @@ TrackedMarker SecondLook::tracked() const {
     tracked.sightings.push_back({look.frame, fit.centre.x, fit.centre.y, marker.sd_px, marker.radius_px});
     tracked.fits.push_back(marker);
   }
+  tracked.body = shared_.body;
   tracked.notes.emplace_back(MarkerFittedAgain{shared_.body == MarkerBody::sphere, shared_.behind == Behind::still,
                                                tracked.sightings.size(), first_.sightings.size()});
   return tracked;

@@ -16,13 +16,11 @@
 #include <optional>
 
 #include "core/pictures/frames/frame_source.h"
+#include "core/pictures/marker/marker_body.h"
 #include "core/pictures/marker/marker_path.h"
 #include "core/pictures/marker/still_background.h"
 
 namespace glidelab::core {
-
-/// The shape of the marker: a sphere, or a disc that lies in the plane of motion.
-enum class MarkerBody { sphere, disc };
 
 /// The elements uu, uv, vv of M (1/px): |M d| = 1 is the outline of a marker that is seen at a pixel. Empty if the
 /// camera cannot see one there.

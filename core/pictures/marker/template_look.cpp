@@ -23,6 +23,12 @@ constexpr double kLeastAtOutline = 0.2;   // of the look's edges: less is an obj
 constexpr double kSlackRadii = 1.0, kLostSlackRadii = 3.0;  // margin of a window, if the marker was seen or lost
 constexpr double kSlack_px = 6.0;
 
+/// M^-1 q.
+cv::Point2d pixels_of(const cv::Vec3d& shape, cv::Point2d q) {
+  const double determinant = shape[0] * shape[2] - shape[1] * shape[1];
+  return cv::Point2d(shape[2] * q.x - shape[1] * q.y, shape[0] * q.y - shape[1] * q.x) / determinant;
+}
+
 class TemplateLook {
  public:
   TemplateLook(const TrackedMarker& rough, const ClipAgain& clip, const ShapeAt& shape_at)
@@ -37,12 +43,14 @@ class TemplateLook {
     fit_lost();
     drop_strays();
     if (seen() < std::max(kFewestSeen, rough_.sightings.size())) return std::nullopt;
+    if (!put_at_own_centre()) return std::nullopt;
     return tracked();
   }
 
  private:
   void read_windows();
   bool take_turn();
+  bool put_at_own_centre();
   void fit_lost();
   void drop_strays();
   std::vector<PlaceInFrame> places() const;
@@ -66,6 +74,7 @@ class TemplateLook {
   std::vector<std::optional<TemplateFit>> fits_;
   std::optional<MarkerTemplate> look_;
   double usual_rms_ = 0.0;
+  bool has_own_centre_ = false;
 };
 
 void TemplateLook::read_windows() {
@@ -116,6 +125,23 @@ bool TemplateLook::take_turn() {
   fit_lost();
   drop_strays();
   return seen() >= kFewestSeen;
+}
+
+/// Moves all places to the centre of a look that has one. The look is then taken anew, for one whose centre lies
+/// between its nodes is not quite what it is after half a turn, and errs by a part of that distance.
+bool TemplateLook::put_at_own_centre() {
+  constexpr int kCentreRounds = 4;
+  for (int round = 0; round < kCentreRounds; ++round) {
+    look_ = MarkerTemplate::of(windows_, fits_);
+    if (!look_) return false;
+    const std::optional<cv::Point2d> centre = look_->centre_of_symmetry();
+    has_own_centre_ = centre.has_value();
+    if (!centre) return true;
+    for (std::size_t k = 0; k < fits_.size(); ++k) {
+      if (fits_[k]) fits_[k]->centre += pixels_of(windows_[k].shape, *centre);
+    }
+  }
+  return true;
 }
 
 std::vector<PlaceInFrame> TemplateLook::places() const {
@@ -180,7 +206,9 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
     tracked.sightings.push_back({frames_[k], marker.centre.x, marker.centre.y, marker.sd_px, marker.radius_px});
     tracked.fits.push_back(marker);
   }
-  tracked.notes.emplace_back(MarkerMeasuredBy{MarkerMeasuredBy::What::own_look});
+  if (has_own_centre_) tracked.body = MarkerBody::disc;  // a pattern; the shading of a sphere has no such centre
+  using What = MarkerMeasuredBy::What;
+  tracked.notes.emplace_back(MarkerMeasuredBy{has_own_centre_ ? What::own_centre : What::own_look});
   return tracked;
 }
 

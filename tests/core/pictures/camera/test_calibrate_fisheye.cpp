@@ -108,3 +108,35 @@ TEST_CASE("a fisheye is found out from its pictures, and a Brown-Conrady lens is
   const core::BoardViews narrow = tests::known_views(tests::KnownCamera{}, 0.02, random);
   CHECK(core::calibrate_any_lens(narrow, 0.04).camera.lens == core::LensKind::brown_conrady);
 }
+
+TEST_CASE("a fisheye seen in the middle of the image alone holds at its edge, for its few terms are preferred") {
+  const core::CameraModel camera{400.0, 400.0, 319.5, 239.5, {}, {640, 480}, core::LensKind::fisheye};
+  cv::RNG random(11);
+  core::BoardViews boards;
+  boards.image_size = camera.size;
+  for (int k = 0; k < 10; ++k) {
+    const cv::Vec3d middle(0.06 * (k % 5 - 2), 0.05 * (k % 3 - 1), 0.75 + 0.02 * (k % 4));
+    const tests::KnownPlane plane =
+        tests::known_plane(middle, 0.35 * std::sin(2.0 * k), 0.4 * std::cos(3.0 * k), 0.3 * k, 0.16, 0.10);
+    core::BoardCorners corners;
+    corners.grid = {9, 6};
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 9; ++i) {
+        const cv::Vec3d at = plane.at(i * 0.04, j * 0.04);
+        const double r = std::hypot(at[0], at[1]), angle = std::atan2(r, at[2]);  // equidistant
+        corners.points.emplace_back(319.5 + 400.0 * angle * at[0] / r + random.gaussian(0.01),
+                                    239.5 + 400.0 * angle * at[1] / r + random.gaussian(0.01));
+        corners.sd_px.push_back(0.01);
+      }
+    }
+    boards.views.push_back({"view-" + std::to_string(k) + ".png", corners});
+  }
+  const core::Calibration found = core::calibrate_any_lens(boards, 0.04);
+  CHECK(found.camera.lens == core::LensKind::fisheye);
+  const double angle = 35.0 * CV_PI / 180.0;  // the pattern was seen up to some 25 degrees
+  const cv::Point2d edge = found.camera.to_pixel({std::tan(angle), 0.0});
+  const double known = std::sqrt(found.covariance(0, 0) * angle * angle + found.covariance(2, 2));
+  CHECK(std::abs(edge.x - (319.5 + 400.0 * angle)) < 4.0 * known);
+  CHECK(known < 0.15);
+  CHECK(found.covariance(4, 4) > 0.0);  // of a term that was left out
+}

@@ -121,6 +121,19 @@ TEST_CASE("A ring, a bull's eye and quadrants are followed by their own look") {
   }
 }
 
+TEST_CASE("A look that is the same after half a turn is placed at its own centre") {
+  for (const Look look : {ring, bulls_eye, quadrants}) {
+    const auto found = by_template(film_look(look, false), rough_path(1.0));  // which is (0.4, -0.3) px off on average
+    REQUIRE(found);
+    cv::Point2d off;
+    for (const core::MarkerSighting& sighting : found->sightings) {
+      off += (cv::Point2d(sighting.u_px, sighting.v_px) - place(sighting.frame)) /
+             static_cast<double>(found->sightings.size());
+    }
+    CHECK(cv::norm(off) < 0.02);
+  }
+}
+
 TEST_CASE("A post in front of the marker hardly shifts its position by the look, or hides it") {
   const auto found = by_template(film_look(quadrants, true), rough_path(1.0));
   REQUIRE(found);

@@ -115,6 +115,21 @@ TEST_CASE("clutter brighter than the marker, and an object at rest that looks ju
   CHECK(error_px(tracked) < kNoiseLimitPx);
 }
 
+TEST_CASE("a wire before the path leaves no frame in which the marker is found beside its place") {
+  for (const double bright : {60.0, 110.0, 160.0, 250.0}) {
+    CAPTURE(bright);
+    const auto tracked = track(clip([&](cv::Mat& p, std::size_t k) {
+      tests::put_disc(p, place(k), kRadius, 210.0);
+      tests::put_box(p, {111, 0, 1, kSize.height}, bright);
+    }));
+    CHECK(tracked.sightings.size() >= kFrames - 6);  // the wire is before the marker in four frames
+    for (const core::MarkerSighting& sighting : tracked.sightings) {
+      CAPTURE(sighting.frame, sighting.u_px - place(sighting.frame).x);
+      CHECK(std::abs(sighting.u_px - place(sighting.frame).x) < 0.08);
+    }
+  }
+}
+
 TEST_CASE("a larger and brighter object that moves with the marker is not taken for it") {
   const auto tracked = track(clip([](cv::Mat& p, std::size_t k) {
     tests::put_disc(p, place(k) + cv::Point2d(-2.0, 30.0), 1.9 * kRadius, 250.0);
