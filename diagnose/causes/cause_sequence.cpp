@@ -132,7 +132,7 @@ double held_out_excess(const TrackSet& set, const MotionFit& fit) {
 }
 
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
-                          const std::set<std::size_t>& without, const NamingRules& rules) {
+                          const std::set<std::size_t>& without, double least_named) {
   CauseSequence sequence;
   const Step first = step_of(set, nominal);
   sequence.gap_before = sequence.gap_after = first.gap;
@@ -148,12 +148,11 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       effect_index(ids::dropped_frames);  // missing frames are in a fit's times, not among its effects
   std::vector<std::size_t> left = named.effects;
   if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
-  const auto comes_last = rules.pushes_last ? follows_each_clip : differs_between_clips;
   // The best of `left` beside the causes so far, and its index.
   const auto best_of = [&](bool laws_only) {
     std::optional<std::pair<std::size_t, Step>> best;
     for (std::size_t k = 0; k < left.size(); ++k) {
-      if (laws_only && comes_last(left[k])) continue;
+      if (laws_only && differs_between_clips(left[k])) continue;
       std::vector<std::size_t> effects = here.fit.effects;
       if (left[k] != dropped) effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);
@@ -170,9 +169,9 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       best = best_of(laws_only);
       if (!best) continue;
       const double share = cause_of(left[best->first], first, here, best->second, is_one_clip(set)).share;
-      if (share > (steps.empty() ? kLeastShare : rules.least_named)) break;
+      if (share > (steps.empty() ? kLeastShare : least_named)) break;
       best.reset();
-      if (std::none_of(left.begin(), left.end(), comes_last)) break;
+      if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
     }
     if (!best) break;
     const std::size_t which = best->first;

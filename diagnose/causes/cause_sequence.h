@@ -31,18 +31,11 @@ struct CauseSequence {
   bool is_gap = false;  ///< has_gap()
 };
 
-/// Which causes are among the named, and in which order.
-struct NamingRules {
-  double least_named = 0.0;  ///< of the excess: a cause that takes less beside those before it is not named
-  /// A hand's pushes come after the laws, as sizes of each clip do; not where a law is doubtful, since it would take up
-  /// what the pushes explain.
-  bool pushes_last = true;
-};
-
 /// `set` has the position noise alone, and `nominal` is the nominal fit to it. `with` counts a remainder as noise (or
-/// is the same set), and `named` is a fit to `with` with the causes that a verdict would name, or the nominal fit.
+/// is the same set), and `named` is a fit to `with` with the causes that a verdict would name, or the nominal fit. A
+/// cause that takes less than `least_named` of the excess beside those before it is not among the named ones.
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
-                          const std::set<std::size_t>& without, const NamingRules& rules);
+                          const std::set<std::size_t>& without, double least_named);
 
 /// Whether a fit's gap is above its floor by more than kClearGap standard errors.
 bool has_gap(const TrackSet& set, const MotionFit& fit);

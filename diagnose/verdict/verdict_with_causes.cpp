@@ -104,14 +104,6 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
   });
 }
 
-/// Whether each law of an explanation that all clips share is likelier than not, together with what the data cannot
-/// tell from it.
-bool laws_are_likely(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
-  return std::all_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
-    return follows_each_clip(e) || probability_of(comparison, best, e, set.pictures) >= kLikelierThanNot;
-  });
-}
-
 /// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the
 /// one that takes most in place of both. Returns the explanation with that cause alone; null if the sequence names it
 /// already, or if no fit has it alone.
@@ -229,12 +221,9 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
     return names ? by.fits[static_cast<std::size_t>(one.fit)] : nominal;
   };
   const double least_named = weighed ? kLeastNamed : kLeastShare;
-  const auto sequence_with = [&](const Hypothesis& one) {
-    return sequence_of(set, nominal, with, fit_of(one), without, {least_named, laws_are_likely(with, by, one)});
-  };
-  CauseSequence sequence = sequence_with(best);
+  CauseSequence sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
   if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.pictures, best, sequence) : nullptr) {
-    CauseSequence likelier = sequence_with(*alone);
+    CauseSequence likelier = sequence_of(set, nominal, with, fit_of(*alone), without, least_named);
     if (may_displace(likelier, sequence)) {
       best = *alone;
       sequence = std::move(likelier);

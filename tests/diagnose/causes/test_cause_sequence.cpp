@@ -3,11 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/motion_fit.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
-#include "diagnose/scan/effect_scan.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -36,39 +33,6 @@ TEST_CASE("a gap below the estimated noise is the floor, and all shares together
   CHECK(sum == Approx(1.0).epsilon(1e-9));
   REQUIRE(diagnosis.gap->shrink);
   CHECK(*diagnosis.gap->shrink == Approx(1.0).epsilon(1e-9));
-}
-
-TEST_CASE("a law that all clips have in common comes before a hand's pushes, which would take up what it explains") {
-  // A drag that grows with the square of the speed, fastest when the hand still pushes, and pushes of 60 ms.
-  constexpr double kSquare_kg_m = 0.1, kPush_n = 0.4, kPush_s = 0.06;
-  tests::MadeEffect both;
-  both.force = [](double, double, double v, double t) {
-    return -kSquare_kg_m * v * std::abs(v) + (t < kPush_s ? std::copysign(kPush_n, v) : 0.0);
-  };
-  std::vector<tests::MadeLaunch> launches;
-  for (const double v : {-1.3, -1.0, 0.9, 1.2}) launches.push_back({0.4, 4.0, v < 0.0 ? 0.3 : -0.6, v});
-  const tests::MadeExperiment made = tests::made_experiment(launches, both, 5, 2e-4, 80, 50.0);
-  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
-  const std::size_t hand = diagnose::effect_index(diagnose::ids::late_release),
-                    drag = diagnose::effect_index(diagnose::ids::quadratic_drag);
-  const auto with = [&](const diagnose::MotionFit& fit, std::size_t effect) {
-    const diagnose::EffectScan scan = diagnose::scan_effect(diagnose::ScoreSpace(set, fit), effect);
-    return diagnose::fit_with_effect(set, fit, effect, diagnose::with_effect(set, fit, effect, scan.values, scan.own));
-  };
-  const diagnose::MotionFit with_hand = with(nominal, hand);
-  REQUIRE(diagnose::held_out_excess(set, with_hand) < diagnose::held_out_excess(set, with(nominal, drag)));
-  const diagnose::MotionFit with_both = with(with_hand, drag);
-  const diagnose::CauseSequence sequence =
-      diagnose::sequence_of(set, nominal, set, with_both, {}, {.least_named = diagnose::kLeastShare});
-  REQUIRE(sequence.causes.size() >= 2);
-  CHECK(sequence.causes[0].id == diagnose::ids::quadratic_drag);
-  CHECK(sequence.causes[1].id == diagnose::ids::late_release);
-  // Where the law is doubtful the hand, which takes more, stays first.
-  const diagnose::CauseSequence doubtful = diagnose::sequence_of(
-      set, nominal, set, with_both, {}, {.least_named = diagnose::kLeastShare, .pushes_last = false});
-  REQUIRE_FALSE(doubtful.causes.empty());
-  CHECK(doubtful.causes[0].id == diagnose::ids::late_release);
 }
 
 TEST_CASE("the floor is 1 unless a gap lies clearly below it") {
