@@ -11,7 +11,7 @@
 #include "base/long_work.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/second_look.h"
-#include "core/pictures/marker/still_background.h"
+#include "core/pictures/marker/sphere/still_background.h"
 #include "core/pictures/marker/template_look.h"
 #include "core/pictures/scene/scene_watch.h"
 #include "core/track/even_times.h"

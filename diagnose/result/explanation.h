@@ -8,7 +8,7 @@ namespace glidelab::diagnose {
 
 enum class Verdict { none, effect, unknown };
 
-/// Its ids and words are made in report/diagnosis/diagnosis_words.h.
+/// Its ids and words are made in report/diagnosis/words/diagnosis_words.h.
 struct Explanation {
   std::vector<std::string> effects = {};  ///< ids, each once
   bool unnamed = false;                   ///< something without a name acts, alone or beside them

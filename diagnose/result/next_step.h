@@ -1,4 +1,4 @@
-/// What to record or measure next, as data; report/diagnosis/diagnosis_words.h puts it into words. SI units.
+/// What to record or measure next, as data; report/diagnosis/words/diagnosis_words.h puts it into words. SI units.
 #pragma once
 
 #include <cstddef>

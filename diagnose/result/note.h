@@ -1,5 +1,5 @@
-/// What a reader of a diagnosis should know besides the verdict, as data; report/diagnosis/diagnosis_words.h puts it
-/// into words.
+/// What a reader of a diagnosis should know besides the verdict, as data; report/diagnosis/words/diagnosis_words.h puts
+/// it into words.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 /// What images show of an effect, as data: one struct for each effect that they are searched for.
-/// report/diagnosis/picture_words.h puts it into words.
+/// report/diagnosis/words/picture_words.h puts it into words.
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "report/diagnosis/cause_words.h"
+#include "report/diagnosis/words/cause_words.h"
 #include "report/html/gnuplot.h"
 #include "report/text/display_text.h"
 

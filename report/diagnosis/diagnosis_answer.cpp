@@ -7,9 +7,9 @@
 
 #include "base/text/number_text.h"
 #include "report/diagnosis/cause_waterfall.h"
-#include "report/diagnosis/cause_words.h"
 #include "report/diagnosis/diagnosis_plots.h"
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/cause_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {

@@ -8,10 +8,10 @@
 
 #include "base/math/normal95.h"
 #include "report/analysis/camera_plots.h"
-#include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis/line_report.h"
-#include "report/diagnosis/picture_words.h"
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
+#include "report/diagnosis/words/picture_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 #include "report/text/found_json.h"
 #include "report/text/json_numbers.h"
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "report/analysis/camera_plots.h"
-#include "report/diagnosis/diagnosis_words.h"
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"

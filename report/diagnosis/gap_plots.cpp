@@ -9,7 +9,7 @@
 
 #include "base/math/normal95.h"
 #include "report/diagnosis/diagnosis_plots.h"
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 #include "report/html/plot.h"
 
 namespace glidelab::report {

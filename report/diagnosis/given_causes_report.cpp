@@ -9,7 +9,7 @@
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
 #include "report/analysis/doubts.h"
-#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
 #include "report/text/found_json.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/text/number_text.h"
 #include "report/diagnosis/diagnosis_plots.h"
-#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"

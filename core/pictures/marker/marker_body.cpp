@@ -6,7 +6,7 @@
 
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
-#include "core/pictures/marker/sphere_window.h"
+#include "core/pictures/marker/sphere/sphere_window.h"
 
 namespace glidelab::core {
 namespace {

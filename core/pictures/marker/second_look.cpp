@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/math/quantile.h"
-#include "core/pictures/marker/lit_sphere.h"
-#include "core/pictures/marker/sphere_window.h"
+#include "core/pictures/marker/sphere/lit_sphere.h"
+#include "core/pictures/marker/sphere/sphere_window.h"
 
 namespace glidelab::core {
 namespace {

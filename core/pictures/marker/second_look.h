@@ -18,7 +18,7 @@
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker_body.h"
 #include "core/pictures/marker/marker_path.h"
-#include "core/pictures/marker/still_background.h"
+#include "core/pictures/marker/sphere/still_background.h"
 
 namespace glidelab::core {
 

@@ -7,7 +7,7 @@
 
 #include "core/math/quantile.h"
 #include "core/pictures/marker/marker_template.h"
-#include "core/pictures/marker/sphere_window.h"
+#include "core/pictures/marker/sphere/sphere_window.h"
 
 namespace glidelab::core {
 namespace {

@@ -9,7 +9,7 @@
 #include "report/check/check_report.h"
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 #include "report/validation/validation_report.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"

@@ -1,4 +1,4 @@
-#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
 
 #include "tests/catch.h"
 

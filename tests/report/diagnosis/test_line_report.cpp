@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "report/diagnosis/diagnosis_plots.h"
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

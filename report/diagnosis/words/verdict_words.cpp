@@ -1,4 +1,4 @@
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include "base/text/number_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/effects/effect_list.h"
-#include "report/diagnosis/cause_words.h"
-#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/words/cause_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 

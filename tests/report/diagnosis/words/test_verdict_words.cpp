@@ -1,8 +1,8 @@
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 
 #include <numbers>
 
-#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

@@ -1,4 +1,4 @@
-#include "report/diagnosis/cause_words.h"
+#include "report/diagnosis/words/cause_words.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 
 #include "base/text/number_text.h"
-#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {

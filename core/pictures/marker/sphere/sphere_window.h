@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "core/pictures/marker/lit_sphere.h"
-#include "core/pictures/marker/still_background.h"
+#include "core/pictures/marker/sphere/lit_sphere.h"
+#include "core/pictures/marker/sphere/still_background.h"
 
 namespace glidelab::core {
 

@@ -1,4 +1,4 @@
-#include "report/diagnosis/picture_words.h"
+#include "report/diagnosis/words/picture_words.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
-#include "report/diagnosis/cause_words.h"
+#include "report/diagnosis/words/cause_words.h"
 
 #include "report/diagnosis/diagnosis_report.h"
-#include "report/diagnosis/verdict_words.h"
+#include "report/diagnosis/words/verdict_words.h"
 #include "tests/catch.h"
 #include "tests/report/made_diagnoses.h"
 

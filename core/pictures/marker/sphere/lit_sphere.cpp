@@ -1,4 +1,4 @@
-#include "core/pictures/marker/lit_sphere.h"
+#include "core/pictures/marker/sphere/lit_sphere.h"
 
 #include <Eigen/Core>
 

@@ -1,4 +1,4 @@
-#include "core/pictures/marker/sphere_window.h"
+#include "core/pictures/marker/sphere/sphere_window.h"
 
 #include <Eigen/Core>
 

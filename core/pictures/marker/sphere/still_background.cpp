@@ -1,4 +1,4 @@
-#include "core/pictures/marker/still_background.h"
+#include "core/pictures/marker/sphere/still_background.h"
 
 #include <algorithm>
 #include <cmath>

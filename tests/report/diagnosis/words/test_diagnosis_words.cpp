@@ -1,5 +1,5 @@
 /// Notes and next steps of a diagnosis as sentences.
-#include "report/diagnosis/diagnosis_words.h"
+#include "report/diagnosis/words/diagnosis_words.h"
 
 #include <vector>
 
