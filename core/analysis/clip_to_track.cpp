@@ -217,7 +217,9 @@ std::optional<MarkerBody> body_of(const Experiment& experiment, const CameraAndP
       outlines.push_back({marker.fits[k].shape, *sphere, *disc, (at - marker.fits[k - 1].centre) / frames});
     }
   }
-  if (const auto body = body_by_outline(outlines)) return body;
+  // With a scale alone both bodies have the same outline, and a rolling shutter shears it (marker_body.h).
+  const bool tells = setting.calibration && !(experiment.camera->line_readout_s > 0.0);
+  if (const auto body = tells ? body_by_outline(outlines) : std::nullopt) return body;
   if (discs == spheres) return std::nullopt;
   return discs > spheres ? MarkerBody::disc : MarkerBody::sphere;
 }

@@ -196,11 +196,25 @@ std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSe
 
 }  // namespace
 
+namespace {
+
+/// NoMarker for sightings that jump about.
+SeenClip steady(SeenClip seen, const ClipSetup& clip) {
+  if (is_steady(seen.marker)) return seen;
+  throw NoMarker(base::Issue{clip.file.string(), 0, "marker",
+                             fmt::format("no marker that can be followed: what is found in {} of {} frames jumps about",
+                                         seen.marker.sightings.size(), seen.frame_t_s.size()),
+                             "one thing of the stated diameter that stands out from its surroundings in every frame"});
+}
+
+}  // namespace
+
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter, MarkerSearch search) {
   const auto disc = [&] { return see_disc(experiment, clip, setting, open, look_at_scene, counter); };
   const bool by_hue = signal_kind(*experiment.marker) == SignalKind::colored;
-  if (by_hue || search == MarkerSearch::disc) return disc();
+  if (by_hue) return disc();
+  if (search == MarkerSearch::disc) return steady(disc(), clip);
   ClipAgain again;
   again.open = [&] { return open(clip.file, *experiment.camera, false, setting.size); };
   std::optional<SeenClip> seen;
@@ -257,14 +271,7 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
     }
   }
   if (none) throw NoMarker(*none);
-  if (!is_steady(seen->marker)) {
-    throw NoMarker(
-        base::Issue{clip.file.string(), 0, "marker",
-                    fmt::format("no marker that can be followed: what is found in {} of {} frames jumps about",
-                                seen->marker.sightings.size(), again.frames),
-                    "one thing of the stated diameter that stands out from its surroundings in every frame"});
-  }
-  return *std::move(seen);
+  return steady(*std::move(seen), clip);
 }
 
 }  // namespace glidelab::core

@@ -114,7 +114,9 @@ bool same_angle(double one_deg, double other_deg) {
 }
 
 std::optional<Root> wrong_angle_or_rate(const Experiment& experiment, const RecordingCheck& check) {
-  if (std::any_of(experiment.clips.begin(), experiment.clips.end(), incline_is_assumed)) return std::nullopt;
+  if (std::any_of(experiment.clips.begin(), experiment.clips.end(),
+                  [](const ClipSetup& clip) { return clip.incline_assumed; }))
+    return std::nullopt;
   for (const ConfigurationResult& configuration : check.configurations) {
     if (!configuration.alpha_deg.estimate) continue;
     const auto off = incline_contradiction(configuration, experiment.gravity_m_s2, stated_incline(configuration));

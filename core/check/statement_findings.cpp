@@ -101,7 +101,8 @@ void keep_worse(const ConfigurationResult& configuration, const std::optional<In
 /// One finding for a group: its clips share the inclination.
 void judge_incline(const Experiment& experiment, const RecordingCheck& check, std::vector<Finding>& findings) {
   std::map<std::string, Worst> by_key, by_plumb;
-  const bool any_assumed = std::any_of(experiment.clips.begin(), experiment.clips.end(), incline_is_assumed);
+  const bool any_assumed = std::any_of(experiment.clips.begin(), experiment.clips.end(),
+                                       [](const ClipSetup& clip) { return clip.incline_assumed; });
   for (const ConfigurationResult& configuration : check.configurations) {
     const auto against = [&](const StatedIncline& stated) {
       return incline_contradiction(configuration, experiment.gravity_m_s2, stated);

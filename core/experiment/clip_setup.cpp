@@ -103,8 +103,4 @@ void check_readings(const std::vector<ClipSetup>& clips, const std::vector<base:
   }
 }
 
-bool incline_is_assumed(const ClipSetup& clip) {
-  return clip.launched == Launched::unknown && clip.incline_rad == 0.0;
-}
-
 }  // namespace glidelab::core

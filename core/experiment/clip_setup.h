@@ -55,7 +55,8 @@ struct ClipSetup {
   double mass_sd_kg = 0.0;
   bool mass_assumed = false;     ///< for a file on its own: mass_kg is assumed, not stated
   double incline_rad = 0.0;      ///< as stated
-  bool incline_assumed = false;  ///< for a file on its own: incline_rad is assumed, not stated
+  bool incline_assumed = false;  ///< for a file on its own: incline_rad is assumed, not stated, and no
+                                 ///< motion contradicts it
   std::optional<double> incline_sd_rad;
   Launched launched = Launched::released;
   std::optional<double> start_s;
@@ -88,9 +89,5 @@ void check_names(const std::vector<ClipSetup>& clips, const std::vector<base::To
 
 /// Rejects an inclination that another clip of the group contradicts(): a group has one inclination.
 void check_readings(const std::vector<ClipSetup>& clips, const std::vector<base::TomlTable>& clip_tables);
-
-/// Whether the inclination of a clip is the assumed 0 of a file on its own, which states neither inclination nor
-/// launch: no motion contradicts it.
-bool incline_is_assumed(const ClipSetup& clip);
 
 }  // namespace glidelab::core

@@ -321,7 +321,7 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   }
   note_statements(results, gravity_m_s2, [&](const ConfigurationResult& result) {
     return std::none_of(setups.begin(), setups.end(), [&](const ClipSetup& setup) {
-      return incline_is_assumed(setup) && setup.name == result.clips.front();
+      return setup.incline_assumed && setup.name == result.clips.front();
     });
   });
   return results;

@@ -68,9 +68,10 @@ struct UncertainFocalLength {
   double focal_px = 0.0, sd_px = 0.0;
 };
 
-/// An equidistant fisheye fits the corners better than the Brown-Conrady model.
-struct FisheyeFitsBetter {
+/// An equidistant fisheye fits the corners better than the Brown-Conrady model, or as well with fewer terms.
+struct FisheyePreferred {
   double rms_px = 0.0, brown_conrady_rms_px = 0.0;
+  int fewer_terms = 0;  ///< if these decided; 0: it fits better
 };
 
 /// The corners of a group's plane views do not lie where the camera model puts them, or the views disagree with each
@@ -230,7 +231,7 @@ struct FitScatters {
 
 using AnyNote =
     std::variant<AboutFile, RepeatedFrames, EvenStamps, AssumedStatements, AssumedMass, OutlyingView, NoPatternInSight,
-                 UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyeFitsBetter, PlaneViewsDisagree,
+                 UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree,
                  MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain,
                  PixelsAnswerLeft, DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale,
                  CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,

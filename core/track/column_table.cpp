@@ -453,6 +453,11 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   }
   if (header.empty()) header = commented_header(read.comments, lines[first_data].number, width, *format);
   table.has_header = !header.empty();
+  const auto ends_empty = [&](const auto& row) { return row.size() < width || is_missing(row[width - 1]); };
+  while (table.has_header && width > header.back().size() &&
+         std::all_of(rows.begin() + static_cast<long>(first_data), rows.end(), ends_empty)) {
+    --width;  // data rows that end in a delimiter
+  }
   table.columns = columns_of_header(header, width);
 
   std::vector<base::Issue> issues;

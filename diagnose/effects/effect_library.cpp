@@ -46,6 +46,12 @@ const EffectInfo& effect_of(std::string_view id) {
   return all_effects()[effect_index(id)];
 }
 
+const EffectInfo* find_effect(std::string_view id) {
+  const auto& all = all_effects();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const EffectInfo& info) { return info.id == id; });
+  return found == all.end() ? nullptr : &*found;
+}
+
 std::vector<std::string> effect_words() {
   return {kEffectIds.begin(), kEffectIds.end()};
 }

@@ -21,6 +21,8 @@ const std::vector<EffectInfo>& all_effects();
 
 /// What is known about one effect. std::out_of_range for a word that is no effect's id.
 const EffectInfo& effect_of(std::string_view id);
+/// The same; null for such a word.
+const EffectInfo* find_effect(std::string_view id);
 
 /// The ids of all effects: the words by which one can be left out of a diagnosis.
 std::vector<std::string> effect_words();

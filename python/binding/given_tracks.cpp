@@ -63,6 +63,7 @@ core::ClipSetup setup_of(const GivenTrack& track, std::vector<base::Issue>& issu
     setup.launched = launched;
     known = true;
   }
+  setup.incline_assumed = setup.launched == core::Launched::unknown && setup.incline_rad == 0.0;
   require(known, track, "launched", fmt::format("\"{}\"", track.launched), "up, down, released or unknown", issues);
   return setup;
 }

@@ -69,11 +69,11 @@ struct AnalysisSentence {
     return fmt::format("the views hardly determine the focal length ({:.5g} px, sd {:.3g} px): tilt the pattern more",
                        of.focal_px, of.sd_px);
   }
-  std::string operator()(const core::FisheyeFitsBetter& of) const {
+  std::string operator()(const core::FisheyePreferred& of) const {
     return fmt::format(
         "the lens is modelled as a fisheye (equidistant): corners fit to {:.2g} px, to {:.2g} px with Brown-Conrady{}",
         of.rms_px, of.brown_conrady_rms_px,
-        of.rms_px > 0.9 * of.brown_conrady_rms_px ? ", which needs more terms for that" : "");
+        of.fewer_terms > 0 ? fmt::format(", which needs {} more terms for that", of.fewer_terms) : "");
   }
   std::string operator()(const core::PlaneViewsDisagree& of) const {
     const bool one = of.views == 1;

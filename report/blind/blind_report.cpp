@@ -67,8 +67,9 @@ std::vector<BlindTarget> blind_targets(const validate::BlindScore& score) {
            0.97,
            false},
           {"nothing wrong: a verdict other than none", score.false_alarm, 0.05, true},
-          {"not in the list, strong: unknown", share_of(score.recognised, "strong"), 0.85, false},
-          {"not in the list, all: unknown", all_of(score.recognised), 0.85, false},
+          {"not in the list, strong: unknown, or what the list has for it", share_of(score.recognised, "strong"), 0.85,
+           false},
+          {"not in the list, all: unknown, or what the list has for it", all_of(score.recognised), 0.85, false},
           {"not in the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
           {"two effects: both named", score.methods.front().pair, 0.75, false},
           {"gap shrinks by 0.95 or more of what a fit of the true effect reaches", score.shrunk, 0.95, false}};
@@ -93,7 +94,8 @@ std::string blind_meaning(const validate::BlindScore& score) {
   add(share_of(single, "moderate"), "One moderate effect", "its name comes first");
   add(score.methods.front().pair, "Two effects at once", "both are named");
   add(score.false_alarm, "Nothing wrong", "the verdict is other than none");
-  add(all_of(score.recognised), "A cause that is not in the list", "it is called unknown");
+  add(all_of(score.recognised), "A cause that is not in the list",
+      "it is called unknown, or by what the list has for it");
   add(score.wrong_name, "A cause that is not in the list", "some name gets a probability over 0.8");
   text = meaning_section("<p>How far a verdict on an experiment like these can be trusted:</p>\n<ul>\n" + text +
                          "</ul>\n");

@@ -189,8 +189,8 @@ Html twin_section(const diagnose::Diagnosis& diagnosis, const std::vector<valida
     text += fmt::format("<p class=\"note\">Not in the twin: {} ({}).</p>\n", escape(lack.what), escape(lack.why));
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-    const diagnose::EffectInfo& info = diagnose::effect_of(effect.id);
-    if (!info.in_images || !diagnose::takes_part_of_gap(info.search)) continue;
+    const diagnose::EffectInfo* const info = diagnose::find_effect(effect.id);
+    if (info == nullptr || !info->in_images || !diagnose::takes_part_of_gap(info->search)) continue;
     text += fmt::format(
         "<p class=\"note\">{} acts only in the twin's images, so the comparison here differs by its effect.</p>\n",
         effect_html(effect.id));

@@ -119,9 +119,7 @@ std::vector<std::string> effect_names(const std::vector<std::string>& ids) {
 }
 
 std::string effect_meaning(std::string_view id) {
-  for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
-    if (effect.id == id) return std::string(effect.meaning);
-  }
+  if (const diagnose::EffectInfo* const effect = diagnose::find_effect(id)) return std::string(effect->meaning);
   return {};
 }
 

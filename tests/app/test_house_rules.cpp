@@ -225,7 +225,7 @@ TEST_CASE("a test lies in the folder that mirrors its source's") {
 }
 
 TEST_CASE("no test's name holds a semicolon, at which CMake would cut it in two that match nothing") {
-  static const std::regex kName(R"re(TEST_CASE\("([^"]*)")re");
+  static const std::regex kName(R"re(TEST_CASE\(\s*"([^"]*)")re");
   std::size_t names = 0;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(tests::kSourceDir) / "tests")) {
     if (entry.path().extension() != ".cpp") continue;

@@ -19,6 +19,18 @@
 namespace glidelab::validate {
 namespace {
 
+/// What the list calls a cause that is drawn as one outside it, since the list has become longer; empty: nothing.
+std::string_view fair_name(const std::string& outside) {
+  if (outside == "drag_of_each_run" || outside == "friction_of_each_run") return diagnose::ids::clip_scatter;
+  if (outside == "drag_by_load") return diagnose::ids::configuration_drag;
+  return {};
+}
+
+/// Whether a first name, or a verdict without one, is right about a cause outside the list.
+bool recognises(const BlindOutcome& outcome, const std::string& said) {
+  return said == "unknown" || said == fair_name(outcome.causes.front().id);
+}
+
 using Json = nlohmann::json;
 
 std::vector<std::string> split(const std::string& id) {
@@ -175,7 +187,7 @@ void count_saying(const BlindOutcome& outcome, const Saying& saying, BlindMethod
     case BlindKind::pair:
       return count(method.pair, found == truth.size());
     case BlindKind::outside:
-      return count(method.outside, saying.word == "unknown");
+      return count(method.outside, recognises(outcome, saying.names.empty() ? saying.word : saying.names.front()));
   }
 }
 
@@ -216,16 +228,9 @@ std::pair<std::string, double> likeliest(const BlindVerdict& verdict, bool filme
   return {best->first, std::min(1.0, best->second)};
 }
 
-/// What the list calls a cause that is drawn as one outside it, since the list has become longer; empty: nothing.
-std::string_view fair_name(const std::string& outside) {
-  if (outside == "drag_of_each_run" || outside == "friction_of_each_run") return diagnose::ids::clip_scatter;
-  if (outside == "drag_by_load") return diagnose::ids::configuration_drag;
-  return {};
-}
-
 bool is_right(const BlindOutcome& outcome, const std::string& said) {
   if (outcome.kind == BlindKind::none) return said == "none";
-  if (outcome.kind == BlindKind::outside) return said == "unknown" || said == fair_name(outcome.causes.front().id);
+  if (outcome.kind == BlindKind::outside) return recognises(outcome, said);
   return classes_of(outcome).contains(said);
 }
 
@@ -290,7 +295,7 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
   if (outcome.kind == BlindKind::outside) {
     const std::string_view fair = fair_name(outcome.causes.front().id);
     count(score.recognised[strength],
-          verdict.verdict == "unknown" || (!verdict.effects.empty() && verdict.effects.front().id == fair));
+          recognises(outcome, verdict.effects.empty() ? verdict.verdict : verdict.effects.front().id));
     count(score.wrong_name, std::any_of(verdict.effects.begin(), verdict.effects.end(), [&](const BlindNamed& effect) {
             return effect.probability > kSureName && effect.id != fair;
           }));

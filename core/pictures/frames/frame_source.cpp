@@ -142,8 +142,9 @@ std::optional<bool> is_lossy(const std::string& letters) {
   static const std::set<std::string> kLossy{"mjpg", "h264", "avc1", "x264", "hevc", "hvc1", "hev1", "vp80",
                                             "vp90", "vp09", "av01", "mp4v", "fmp4", "xvid", "divx", "mpg1",
                                             "mpg2", "apcn", "apch", "apcs", "ap4h", "wmv3", "dvsd"};
-  static const std::set<std::string> kLossless{"ffv1", "m8g0", "i420", "yv12", "y800", "grey", "hfyu", "ffvh", "ulrg",
-                                               "uly0", "uly2", "dib ", "raw ", "bgr0", "rgb0", "bgra", "yuy2"};
+  static const std::set<std::string> kLossless{"ffv1", "m8g0", "m8rg", "m8ra", "m8y0", "m8y2", "m8y4", "m8ya",
+                                               "i420", "yv12", "y800", "grey", "hfyu", "ffvh", "ulrg", "uly0",
+                                               "uly2", "dib ", "raw ", "bgr0", "rgb0", "bgra", "yuy2"};
   if (kLossy.contains(codec)) return true;
   if (kLossless.contains(codec)) return false;
   return std::nullopt;

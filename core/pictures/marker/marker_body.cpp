@@ -15,10 +15,11 @@ constexpr std::size_t kFewestOutlines = 16;
 constexpr int kBodyRounds = 5;
 constexpr double kUsualTimes = 3.0;      // the usual residual, beyond which an outline counts less
 constexpr double kFarFromOther = 5.0;    // standard deviations
-constexpr double kNearThisOne = 0.3;     // of the way to the other
+constexpr double kNearThisOne = 0.3;     // of the distance to the other
 constexpr double kMostCorrelated = 0.9;  // from frame to frame
+constexpr double kMostOfRidge = 0.01;    // part of what is known of b that may come from the ridge, not the outlines
 
-using Terms = Eigen::Vector4d;  // b, k, e
+using Terms = Eigen::Vector4d;  // b, k, and the two components of e
 
 /// ln(long / short) (cos 2a, sin 2a).
 Eigen::Vector2d deviator(const cv::Vec3d& shape) {
@@ -42,6 +43,8 @@ std::optional<MarkerBody> body_by_outline(const std::vector<OutlineSeen>& outlin
   Eigen::Matrix4d inverse = Eigen::Matrix4d::Zero();
   std::vector<Eigen::Vector2d> residuals(outlines.size(), Eigen::Vector2d::Zero());
   double usual = 0.0;  // residual; 0: not known yet
+  // A motion that leaves no smear, or a path along which no outline changes, determines nothing.
+  const double ridge = 1e-9 * static_cast<double>(outlines.size());
   for (int round = 0; round < kBodyRounds; ++round) {
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
     Terms gradient = Terms::Zero();
@@ -55,9 +58,7 @@ std::optional<MarkerBody> body_by_outline(const std::vector<OutlineSeen>& outlin
       information += weight * slope.transpose() * slope;
       gradient += weight * slope.transpose() * (deviator(outlines[i].seen) - disc);
     }
-    // A motion that leaves no smear, or a path along which no outline changes, determines nothing.
-    const Eigen::Vector4d ridge = 1e-9 * static_cast<double>(outlines.size()) * Eigen::Vector4d::Ones();
-    information += ridge.asDiagonal();
+    information += ridge * Eigen::Matrix4d::Identity();
     terms = base::solve_positive(information, gradient);
     inverse = base::inverse_positive(information);
     if (!terms.allFinite()) return std::nullopt;
@@ -71,6 +72,7 @@ std::optional<MarkerBody> body_by_outline(const std::vector<OutlineSeen>& outlin
     }
     usual = median_of(std::move(sizes));
   }
+  if (ridge * inverse(0, 0) > kMostOfRidge) return std::nullopt;
   // Errors of neighbouring frames are alike where the marker is slow.
   double squares = 0.0, products = 0.0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {

@@ -7,7 +7,8 @@
 ///     E = E_disc + b (E_sphere - E_disc) + k |v|^2 / r^2 (cos 2a_v, sin 2a_v) + e
 ///
 /// v is the motion from frame to frame, whose smear makes an outline long (k); e is the same in all frames (a disc that
-/// is cut or tilted so); b is 0 for a disc and 1 for a sphere.
+/// is cut or tilted so); b is 0 for a disc and 1 for a sphere. Assumes a global shutter: a rolling one shears outlines
+/// in proportion to v, by as much as the two bodies differ.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -22,11 +23,11 @@ enum class MarkerBody { sphere, disc };
 /// M as its elements uu, uv, vv (1/px).
 struct OutlineSeen {
   cv::Vec3d seen;          ///< as it was fitted
-  cv::Vec3d sphere, disc;  ///< that the camera shows of either there
+  cv::Vec3d sphere, disc;  ///< as the camera would show either there
   cv::Point2d motion_px;   ///< from frame to frame
 };
 
-/// The body, where the outlines say it beyond doubt: five standard deviations from the other one, and near this one.
+/// The body, if the outlines determine it: b is five standard deviations from the other body, and near this one.
 std::optional<MarkerBody> body_by_outline(const std::vector<OutlineSeen>& outlines);
 
 }  // namespace glidelab::core

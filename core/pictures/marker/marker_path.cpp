@@ -140,8 +140,9 @@ std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& 
 }
 
 std::vector<double> off_course(const std::vector<PlaceInFrame>& places) {
+  constexpr std::size_t kFewestBeside = 2;  // on either side: at an end the course is only extrapolated
   std::vector<double> off(places.size(), 0.0), known;
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  for (std::size_t i = kFewestBeside; i + kFewestBeside < places.size(); ++i) {
     const auto expected = place_by_neighbours(places, places[i].frame, true);
     if (!expected) continue;
     off[i] = cv::norm(*expected - places[i].at);
@@ -385,6 +386,7 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
     const double deviation = std::abs(sizes[i] / usual_size - 1.0);
     // Something thin before the marker changes its look little, but moves it.
     const bool is_odd = deviation > kOddSize * usual_deviation || residuals[i] > kOddResidual * usual_residual;
+    if (off[i] > kOffCourse && is_odd) fprintf(stderr, "DBG i %zu of %zu frame %zu off %g size %g usual %g res %g usual %g\n", i, path.seen.size(), path.seen[i].frame, off[i], deviation, usual_deviation, residuals[i], usual_residual);
     if (deviation > size_limit || residuals[i] > residual_limit || (off[i] > kOffCourse && is_odd)) {
       ++dropped;
       continue;

@@ -135,8 +135,8 @@ bool TemplateLook::put_at_own_centre() {
     look_ = MarkerTemplate::of(windows_, fits_);
     if (!look_) return false;
     const std::optional<cv::Point2d> centre = look_->centre_of_symmetry();
-    has_own_centre_ = centre.has_value();
     if (!centre) return true;
+    has_own_centre_ = true;
     for (std::size_t k = 0; k < fits_.size(); ++k) {
       if (fits_[k]) fits_[k]->centre += pixels_of(windows_[k].shape, *centre);
     }

@@ -95,7 +95,8 @@ std::string alike_words(const diagnose::Diagnosis& diagnosis) {
   std::string text;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const std::string& id : effect.equivalent_to) {
-      if (!diagnose::effect_of(id).lines.same_as.empty()) text += (text.empty() ? "" : " or ") + id;
+      const diagnose::EffectInfo* const info = diagnose::find_effect(id);
+      if (info != nullptr && !info->lines.same_as.empty()) text += (text.empty() ? "" : " or ") + id;
     }
   }
   if (text.empty()) return text;

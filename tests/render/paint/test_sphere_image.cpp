@@ -35,7 +35,7 @@ TEST_CASE("A sphere that reaches the camera's plane has no ellipse") {
 }
 
 TEST_CASE(
-    "Without a lens the picture of an ellipse has its area and centre; with one, those of a fine grid of points") {
+    "Without a lens the picture of an ellipse has its area and centre, and with one those of a fine grid of points") {
   Camera camera;
   camera.width_px = 800;
   camera.height_px = 600;
