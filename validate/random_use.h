@@ -2,8 +2,11 @@
 /// seed.
 ///
 /// Every engine is std::mt19937_64. It is seeded by a seed sequence of the seed's two halves and, if present, a number
-/// (of the track or case) and the use's word. The draws for a given seed therefore stay the same as long as these stay
-/// the same. Each use names the file that draws so.
+/// (of the track or case) and the use's word; without a seed, by the word itself. The draws for a given seed therefore
+/// stay the same as long as these stay the same. Each use names the file that draws so.
+///
+/// A seed sequence of by_number has as many words as that of a use without a number. So numbers of tracks and cases
+/// stay below the least of the uses' words, 0xB007 = 45063: then no two sequences are equal.
 #pragma once
 
 #include <array>

@@ -23,8 +23,6 @@
 
 namespace glidelab::core {
 
-struct SeenPattern;
-
 /// What the images of a folder show besides the motion.
 struct PictureResults {
   std::vector<TrackData> tracks;             ///< one for each clip, in the experiment's order

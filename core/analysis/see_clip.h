@@ -46,7 +46,7 @@ class FrameCounter {
 /// How far the search for the marker goes.
 enum class MarkerSearch {
   thorough,  ///< as a disc, as a sphere that is lit from one side, by its own look
-  disc       ///< the first of these alone: a tenth of the time where there is no marker
+  disc       ///< the first of these alone, which takes less time where there is no marker
 };
 
 /// Reads the clip once or twice: a marker without a stated colour is searched for as a bright disc and, if a bright one

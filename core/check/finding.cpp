@@ -17,7 +17,7 @@ std::string units_text(const BeyondGravity& of) {
   std::string units;
   for (const LengthUnit unit : of.units) {
     units += units.empty() ? "" : " or ";
-    units += unit == LengthUnit::feet ? "feet" : unit == LengthUnit::centimetres ? "centimetres" : "millimetres";
+    units += name_of(unit).many;
   }
   if (units.empty()) units = "another unit";
   return of.fall ? units + " (this would be a free fall)" : units;

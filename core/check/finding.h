@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -50,6 +49,22 @@ constexpr double per_metre(LengthUnit unit) {
       return 1000.0;
   }
   return 1.0;
+}
+
+struct UnitName {
+  const char *many, *one;
+};
+
+constexpr UnitName name_of(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::feet:
+      return {"feet", "foot"};
+    case LengthUnit::centimetres:
+      return {"centimetres", "centimetre"};
+    case LengthUnit::millimetres:
+      break;
+  }
+  return {"millimetres", "millimetre"};
 }
 
 /// The keys that turn pixels, or a file's numbers, into metres.
@@ -257,7 +272,7 @@ struct AgainstStatedLaunch {
 
 /// A length that is not in metres.
 struct LengthInUnit {
-  std::string_view key;
+  std::string key;
   double value = 0.0;
   LengthUnit unit = LengthUnit::millimetres;
 };

@@ -117,7 +117,7 @@ struct PixelsAnswerLeft {
 
 struct DarkMarker {};
 
-/// Its outlines are those of a disc in the plane of motion; otherwise it is taken for a sphere.
+/// It is treated as a disc in the plane of motion; otherwise as a sphere.
 struct DiscMarker {};
 
 /// A marker of the stated diameter is not found; one of another size is.

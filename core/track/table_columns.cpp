@@ -96,8 +96,8 @@ double parabola_sagitta(const Eigen::VectorXd& along, const Eigen::VectorXd& acr
 }
 
 /// Sagitta over length of a parabola through the path, across the line from its first position to the one farthest from
-/// it, over the place along that line or over the way covered (a flight that comes down again turns back along the
-/// line); 0 if neither parabola explains the deviation across the line.
+/// it, over the place along that line or over the distance travelled (a flight that comes down again turns back along
+/// the line); 0 if neither parabola explains the deviation across the line.
 double sagitta_of(const Path& path) {
   double along_x = 0.0, along_y = 0.0;
   for (std::size_t i = 0; i < path.x_m.size(); ++i) {
@@ -106,15 +106,17 @@ double sagitta_of(const Path& path) {
   }
   const double length = std::hypot(along_x, along_y);
   if (!(length > 0.0)) return 0.0;
-  Eigen::VectorXd place(static_cast<Eigen::Index>(path.x_m.size())), way(place.size()), across(place.size());
+  Eigen::VectorXd place(static_cast<Eigen::Index>(path.x_m.size())), travelled(place.size()), across(place.size());
   for (Eigen::Index i = 0; i < place.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double dx = path.x_m[k] - path.x_m[0], dy = path.y_m[k] - path.y_m[0];
     place[i] = (dx * along_x + dy * along_y) / (length * length);
     across[i] = (dy * along_x - dx * along_y) / (length * length);
-    way[i] = i == 0 ? 0.0 : way[i - 1] + std::hypot(path.x_m[k] - path.x_m[k - 1], path.y_m[k] - path.y_m[k - 1]);
+    travelled[i] =
+        i == 0 ? 0.0 : travelled[i - 1] + std::hypot(path.x_m[k] - path.x_m[k - 1], path.y_m[k] - path.y_m[k - 1]);
   }
-  return std::max(parabola_sagitta(place, across), parabola_sagitta(way / way[way.size() - 1], across));
+  return std::max(parabola_sagitta(place, across),
+                  parabola_sagitta(travelled / travelled[travelled.size() - 1], across));
 }
 
 /// The angle between the x axis and the line that fits the path best, 0 to 90 degrees.

@@ -162,9 +162,14 @@ std::vector<DiagnosedParameter> own_sizes(const TrackSet& set, const MotionFit& 
         shown.insert(shown.end(), values.begin(), values.end());
         break;
       }
-      case ShownAs::along_track:
-        return friction_along(set, fit, effect);
-      default:
+      case ShownAs::along_track: {  // of all parameters together
+        const std::vector<DiagnosedParameter> values = friction_along(set, fit, effect);
+        shown.insert(shown.end(), values.begin(), values.end());
+        return shown;
+      }
+      case ShownAs::itself:
+      case ShownAs::one_more:
+      case ShownAs::inverse_root:
         break;
     }
   }

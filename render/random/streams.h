@@ -19,7 +19,7 @@ enum class RandomPurpose : std::uint32_t {
   fixed_pattern = 2,      ///< differences among a sensor's pixels: {pixel, 0, 0}
   frame_clock = 3,        ///< jitter, dropped and repeated frames: {slot, 0, stream}
   pattern_poses = 4,      ///< poses of the calibration's boards: {view, number, 0}
-  // Of a sweep (validate/study/sweep/design/sweep.h), all {index low, index high, axis}:
+  // Of a sweep's design, all {index low, index high, axis}:
   sweep_seed = 0x5eed,     ///< the seed of a run
   sweep_draw = 0xd4a3,     ///< the value of a random axis
   sweep_stratum = 0x57a7,  ///< the place within a stratum

@@ -15,7 +15,7 @@ constexpr double kOffLine = 2.0;                         // times the noise: mor
 constexpr double kAboveGravity = 1.05, kAboveSds = 3.0;  // a twentieth: lengths and local gravity are known that well
 
 /// Downhill friction brakes: without drag no slope gives more than g, and a line that begins above it is too steep.
-/// Where gravity is 0 nobody stated it.
+/// gravity_m_s2 is 0 if it is not stated.
 bool begins_above_gravity(const core::LineFit& line, double gravity_m_s2) {
   if (line.direction < 0 || !(gravity_m_s2 > 0.0)) return false;
   return line.a0_m_s2.value - kAboveSds * line.a0_m_s2.sd > kAboveGravity * gravity_m_s2;
@@ -41,9 +41,8 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
     for (const core::LineFit& line : c.lines) {
       if (!begins_above_gravity(line, results.gravity_m_s2)) continue;
       doubts.push_back(
-          fmt::format("{}: the line begins with {} m/s² at v = 0, more than gravity: K/m is too large, because the "
-                      "drag grows faster "
-                      "than the speed, or the motion does not begin freely.",
+          fmt::format("{}: the line's intercept at v = 0 is {} m/s², more than gravity: K/m is too large. Either the "
+                      "drag grows faster than in proportion to the speed, or the motion is not free at its start.",
                       configuration_name(results, c), base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd)));
     }
   }

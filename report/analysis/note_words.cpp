@@ -98,8 +98,8 @@ struct AnalysisSentence {
       case What::shading:
         return "the marker is lit from one side; its shading is fitted";
       case What::own_centre:
-        return "the marker is neither a disc nor a sphere; it is followed by what it looks like in the other frames, "
-               "which is the same after half a turn about its centre";
+        return "the marker is neither a disc nor a sphere; its mean image over the clip is matched to each frame, and "
+               "its centre is the point about which that image is unchanged by half a turn";
       case What::own_look:
         break;
     }
@@ -111,7 +111,7 @@ struct AnalysisSentence {
                        of.ratio > 1.0 ? "larger" : "smaller");
   }
   std::string operator()(const core::MarkerFittedAgain& of) const {
-    return fmt::format("the marker is fitted as a {} in front of {}: it is found in {} frames, in {} without this",
+    return fmt::format("the marker is fitted as a {} in front of {}: it is found in {} frames, in {} before",
                        of.sphere ? "sphere that is lit from one side" : "disc",
                        of.still_background ? "the background that other frames show" : "what moves with it", of.seen,
                        of.seen_before);
@@ -127,7 +127,7 @@ struct AnalysisSentence {
     return "the marker is darker than its surroundings; set color = \"#101010\" in [marker] to look for a dark one";
   }
   std::string operator()(const core::DiscMarker&) const {
-    return "the marker's outline is that of a disc in the plane of motion, and its centre is found as a disc's";
+    return "the marker is treated as a disc in the plane of motion, not as a sphere";
   }
   std::string operator()(const core::NotOfStatedSize& of) const {
     return "a marker of the stated diameter_m is not found: " + of.failure;

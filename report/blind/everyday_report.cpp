@@ -84,7 +84,7 @@ TextRows detail_rows(const EverydayScore& score) {
   const std::string& first = score.methods.front().name;
   add_rows("main cause helps most, claimed or not", score.main_helps, first, rows);
   add_rows("the verdict is unknown", score.unknown, first, rows);
-  rows.push_back({"claims that name most of the imperfections rightly", "small imperfections alone", "", first,
+  rows.push_back({"claims that name most of the imperfections correctly", "small imperfections alone", "", first,
                   share_and_interval(score.fair_claim)});
   return rows;
 }

@@ -138,7 +138,7 @@ std::string twin_words(const Certificate& certificate) {
   for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
   text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
   if (certificate.explanations.size() > 1)
-    text += " The twins follow each of the likely explanations as often as it is probable.";
+    text += " Each likely explanation is used for a share of the twins equal to its probability.";
   if (!certificate.filmed)
     text += " What an explanation leaves of each clip is in the twins as well, drawn anew for each.";
   text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",

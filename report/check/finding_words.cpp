@@ -43,22 +43,6 @@ std::string lengths_text(const core::LengthSources& lengths) {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
-struct UnitName {
-  const char *many, *one;
-};
-
-UnitName unit_name(core::LengthUnit unit) {
-  switch (unit) {
-    case core::LengthUnit::feet:
-      return {"feet", "foot"};
-    case core::LengthUnit::centimetres:
-      return {"centimetres", "centimetre"};
-    case core::LengthUnit::millimetres:
-      break;
-  }
-  return {"millimetres", "millimetre"};
-}
-
 /// Words for every kind; a kind without them does not compile.
 struct FindingSentence {
   FindingWords operator()(const core::Note& of) const { return {note_words(of), ""}; }
@@ -268,13 +252,13 @@ struct FindingSentence {
 
   FindingWords operator()(const found::LengthInUnit& of) const {
     const double metres = of.value / core::per_metre(of.unit);
-    return {fmt::format("{} = {:.6g} looks like {} ({:.6g} m)", of.key, of.value, unit_name(of.unit).many, metres),
+    return {fmt::format("{} = {:.6g} looks like {} ({:.6g} m)", of.key, of.value, core::name_of(of.unit).many, metres),
             fmt::format("state it in metres: {} = {:.6g}", of.key, metres)};
   }
   FindingWords operator()(const found::ScaleInUnit& of) const {
     const double per_metre = of.px_per_m * core::per_metre(of.unit);
     return {fmt::format("px_per_m = {:.6g} looks like pixels per {} ({:.6g} per metre)", of.px_per_m,
-                        unit_name(of.unit).one, per_metre),
+                        core::name_of(of.unit).one, per_metre),
             fmt::format("state it per metre: px_per_m = {:.6g}", per_metre)};
   }
   FindingWords operator()(const found::MassInGrams& of) const {
@@ -283,7 +267,7 @@ struct FindingSentence {
   }
   FindingWords operator()(const found::TrackInUnit& of) const {
     const double per_metre = core::per_metre(of.unit);
-    return {fmt::format("x covers {:.4g}, which looks like {} ({:.3g} m)", of.distance_m, unit_name(of.unit).many,
+    return {fmt::format("x covers {:.4g}, which looks like {} ({:.3g} m)", of.distance_m, core::name_of(of.unit).many,
                         of.distance_m / per_metre),
             fmt::format("give x in metres: divide the column by {:.0f}, or name its unit in the header", per_metre)};
   }

@@ -301,7 +301,7 @@ std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Si
 }
 
 /// As believed() above, of the fisheye's k1 (1) to k4.
-double believed(int term, double variance, const CameraModel& camera) {
+double believed_fisheye(int term, double variance, const CameraModel& camera) {
   const double angle = std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy);
   const double at_corner = std::pow(angle, 2 * term), usual = kUsualFisheye[static_cast<std::size_t>(term - 1)];
   return usual * usual / (usual * usual + variance * at_corner * at_corner);
@@ -411,7 +411,7 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
     if (last >= 4) {
       const double value = fit.camera.distortion[static_cast<std::size_t>(last - 4)];
       const double variance = uncertainty.covariance(last, last);
-      const double part = believed(last - 3, variance, fit.camera), statistic = part * value * value / variance;
+      const double part = believed_fisheye(last - 3, variance, fit.camera), statistic = part * value * value / variance;
       if (statistic < kSignificantOne) {
         const Eigen::VectorXd moved = part * value / variance * uncertainty.covariance.col(last);
         const double real = std::max(0.0, 1.0 - 1.0 / std::max(statistic, 1e-300));

@@ -37,7 +37,8 @@ TermUncertainty uncertainty_of_terms(const std::vector<ViewDerivatives>& views);
 
 struct Calibration {
   CameraModel camera;
-  /// Of fx, fy, cx, cy, k1, k2, p1, p2, k3 (the views' poses are fitted with them); rows of fixed terms are 0.
+  /// Of fx, fy, cx, cy, k1, k2, p1, p2, k3 (the views' poses are fitted with them); rows of terms that were left out
+  /// hold only what these might be.
   Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
   CornerNoise noise;  ///< of the corners, as the covariance assumes
   CornerMap rests;    ///< residuals of the fit over the image
@@ -91,11 +92,16 @@ std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double sq
 /// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.
 inline constexpr double kDecisive = 100.0;
 
-/// Brown-Conrady, or a fisheye if that explains the corners decisively better: n log(rms² / rms²) > kDecisive over n
-/// coordinates (twice the logarithm of the likelihood ratio; both models have as many terms, and some ten neighbouring
-/// corners share their errors), or explains them as well with at least two terms of the distortion less: a polynomial
-/// that mimics a fisheye where the pattern was seen goes wrong beyond. A fisheye is tried if the image's corner is more
-/// than 0.8 focal lengths off the axis, or if neighbouring corners show that Brown-Conrady does not describe the lens.
+/// Brown-Conrady, or a fisheye, which is tried if the image's corner is more than 0.8 focal lengths off the axis, or if
+/// neighbouring corners show that Brown-Conrady does not describe the lens. With the gain g = n log(rms² / rms²) of the
+/// fisheye over n coordinates (twice the logarithm of the likelihood ratio), it is taken in either of two cases:
+///
+/// - It explains the corners decisively better, g > kDecisive. So much is asked because some ten neighbouring corners
+///   share their errors; how many terms either model has does not count.
+/// - It explains them as well with at least two fewer terms of the distortion, and the image's corner is more than 0.8
+///   focal lengths off the axis: a polynomial that mimics a fisheye where the pattern was seen goes wrong beyond. As
+///   well: g > -9 for each term saved, for a term that gains less than 9 would not be kept (calibrate_camera()). One
+///   term fewer does not count: whether a term near that threshold is kept is chance.
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m);
 
 }  // namespace glidelab::core

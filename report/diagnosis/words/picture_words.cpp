@@ -25,7 +25,7 @@ struct PictureSentence {
                        of.stated_s == 0.0 ? "(a global shutter) is stated" : "is stated");
   }
   std::string operator()(const picture::LightAlong& of) const {
-    std::string text = fmt::format("The light on the marker changes by {} % a metre {}; {:.0f} % is usual in a room.",
+    std::string text = fmt::format("The light on the marker changes by {} % per metre {}; {:.0f} % is usual in a room.",
                                    base::value_and_sd_text(100.0 * of.gradient_1_m, 100.0 * of.sd_1_m),
                                    of.down ? "down the image" : "to the right", 100.0 * of.usual_1_m);
     if (of.pull) {

@@ -67,7 +67,8 @@ TEST_CASE("a downhill line that begins above gravity is doubted: no slope and no
   line.direction = 1;
   line.a0_m_s2 = core::estimate(19.6, 0.5, 10.0);
   results.configurations[0].lines = {line};
-  CHECK(any_has(report::doubts_about(results), "the line begins with 19.60 ± 0.50 m/s² at v = 0, more than gravity"));
+  CHECK(
+      any_has(report::doubts_about(results), "the line's intercept at v = 0 is 19.60 ± 0.50 m/s², more than gravity"));
   CHECK(any_has(report::doubts_about(results), "glidelab diagnose"));
   const auto quiet = [&](double a0_m_s2, double sd_m_s2, int direction) {
     results.configurations[0].lines[0].direction = direction;

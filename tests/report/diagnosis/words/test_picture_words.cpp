@@ -20,7 +20,7 @@ TEST_CASE("whatever images show of an effect has words, with its data in the uni
       {picture::Shear{30e-6, 2e-6, 0.0}, "30.0 ± 2.0 µs from row to row; 0 µs (a global shutter) is stated."},
       {picture::Shear{30e-6, 2e-6, 12e-6}, "from row to row; 12 µs is stated."},
       {picture::LightAlong{0.5, 0.02, 0.2, true, {}},
-       "by 50.0 ± 2.0 % a metre down the image; 20 % is usual in a room."},
+       "by 50.0 ± 2.0 % per metre down the image; 20 % is usual in a room."},
       {picture::LightAlong{0.5, 0.02, 0.2, false, {{0.6, 0.2}}},
        "to the right; 20 % is usual in a room. The centroid of the marker's light lies 0.6 px from the centre of its "
        "outline, which is what is fitted; this offset changes by ±0.2 px along the path."},
