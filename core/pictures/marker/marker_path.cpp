@@ -386,7 +386,6 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
     const double deviation = std::abs(sizes[i] / usual_size - 1.0);
     // Something thin before the marker changes its look little, but moves it.
     const bool is_odd = deviation > kOddSize * usual_deviation || residuals[i] > kOddResidual * usual_residual;
-    if (off[i] > kOffCourse && is_odd) fprintf(stderr, "DBG i %zu of %zu frame %zu off %g size %g usual %g res %g usual %g\n", i, path.seen.size(), path.seen[i].frame, off[i], deviation, usual_deviation, residuals[i], usual_residual);
     if (deviation > size_limit || residuals[i] > residual_limit || (off[i] > kOffCourse && is_odd)) {
       ++dropped;
       continue;
