@@ -91,8 +91,10 @@ std::filesystem::path card_clip(const tests::TempDir& dir, double card,
   return dir / "clip.mkv";
 }
 
-core::TrackData only_track(const std::filesystem::path& clip) {
-  return core::tracks_of(experiment_of(clip, 0.0), 1).tracks.at(0);
+core::TrackData only_track(const std::filesystem::path& clip,
+                           core::MarkerSearch search = core::MarkerSearch::thorough) {
+  return core::tracks_of(experiment_of(clip, 0.0), 1, base::no_progress, core::open_frames, false, nullptr, search)
+      .tracks.at(0);
 }
 
 /// Largest distance of a sighting from a place on the card, in pixels.
@@ -132,7 +134,9 @@ TEST_CASE("spots that jump about are not taken for a marker") {
     frames.push_back(picture);
   }
   tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
-  CHECK_THROWS_WITH(only_track(dir / "clip.mkv"), Catch::Matchers::Contains("jumps about"));
+  for (const core::MarkerSearch search : {core::MarkerSearch::thorough, core::MarkerSearch::disc}) {
+    CHECK_THROWS_WITH(only_track(dir / "clip.mkv", search), Catch::Matchers::Contains("jumps about"));
+  }
 }
 
 TEST_CASE("of a bright and a dark disc the bright one is the marker, and of two bright ones neither") {

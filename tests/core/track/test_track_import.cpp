@@ -239,6 +239,7 @@ TEST_CASE("times without a unit that would be 16.7 s apart are not taken as seco
 TEST_CASE("a delimiter at the end of each line is no column, and a table that a spreadsheet put in quotes is a table") {
   check_motion(Made(rows("  {0}.0e-001\t  {1}.0e-002\t\r\n")).read());
   check_motion(Made(rows("0,{0};{1}E-2;\n")).read());
+  check_motion(Made("t,x\n" + rows("0.{0},{1}E-2,\n")).read());  // which the header has none of
   check_motion(Made("\"mass A\"\n\"t\tx\ty\"\n" + rows("\"0.{0}00E0\t{1}E-2\t0.5\"\n")).read());
 }
 

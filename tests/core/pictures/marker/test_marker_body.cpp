@@ -80,6 +80,16 @@ TEST_CASE("Outlines near the axis, or of a few frames, leave the body open") {
   CHECK_FALSE(core::body_by_outline(few));
 }
 
+TEST_CASE("Where both bodies have the same outline, no number of frames makes one of them") {
+  cv::RNG random(2);
+  std::vector<core::OutlineSeen> same(40000);
+  for (core::OutlineSeen& outline : same) {
+    const cv::Vec3d circle(0.1, 0.0, 0.1), noise(random.gaussian(1e-5), random.gaussian(1e-5), random.gaussian(1e-5));
+    outline = {circle + noise, circle, circle, {1.0, 0.0}};
+  }
+  CHECK_FALSE(core::body_by_outline(same));
+}
+
 TEST_CASE("The centre of a disc in a tilted plane is found from its image's centroid") {
   core::Restitution restitution = facing(0.5);
   restitution.take_for_disc();

@@ -84,6 +84,22 @@ constexpr double kWorstPx = 0.05;
 
 }  // namespace
 
+TEST_CASE("a place that is pushed off its neighbours' course is told, and the ends of a path are not") {
+  // A glider that slows down: the course beyond an end, a quadratic's, is not its own.
+  std::vector<core::PlaceInFrame> places;
+  for (std::size_t k = 0; k < 40; ++k) {
+    places.push_back(
+        {k,
+         {300.0 * (1.0 - std::exp(-0.03 * static_cast<double>(k))) + 0.002 * static_cast<double>((k * 7) % 5), 60.0}});
+  }
+  std::vector<double> off = core::off_course(places);
+  CHECK(off.front() == 0.0);
+  CHECK(off.back() == 0.0);
+  places[25].at.x += 0.3;
+  off = core::off_course(places);
+  CHECK(off[25] > core::kOffCourse);
+}
+
 TEST_CASE("a marker that comes into view later is followed from where it is first fully in view") {
   const auto tracked = track(kLate, {}, {});
   // The window of its fit (1.25 radii plus 2.5 px) is within the image from frame 29 on, until 231 px in frame 73.
