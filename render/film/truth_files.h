@@ -48,8 +48,8 @@ std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const
 /// the middle row's exposure; slot by slot of a clock without error, jitter, dropped and repeated frames). They have 8
 /// bits: the code is 0.75 · 255 times the radiance, rounded and limited to 255, so that white is 191.
 ///
-/// Writes `ideal-<clip>.mkv` (MagicYUV) and `ideal-<clip>.csv` (frame,t_s,u_px,v_px: the projection of the marker's centre,
-/// for the frames that contain it) of every clip into `truth_dir`, on up to `jobs` threads.
+/// Writes `ideal-<clip>.mkv` (MagicYUV) and `ideal-<clip>.csv` (frame,t_s,u_px,v_px: the projection of the marker's
+/// centre, for the frames that contain it) of every clip into `truth_dir`, on up to `jobs` threads.
 void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& truth_dir, int jobs);
 
 }  // namespace glidelab::render
