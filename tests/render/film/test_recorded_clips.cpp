@@ -250,8 +250,9 @@ TEST_CASE("A variable rate is written as real time stamps, which the frame sourc
     const char* codec;
     double tick_s;
   };
-  for (const Case& one : {Case{"name = \"h264\"\n", 1.0 / 90e3}, Case{"name = \"magicyuv\"\n", 1e-3}, Case{"name = \"ffv1\"\n", 1e-3},
-                          Case{"name = \"mjpeg\"\ncontainer = \"mp4\"\n", 1.0 / 90e3}}) {
+  for (const Case& one :
+       {Case{"name = \"h264\"\n", 1.0 / 90e3}, Case{"name = \"magicyuv\"\n", 1e-3}, Case{"name = \"ffv1\"\n", 1e-3},
+        Case{"name = \"mjpeg\"\ncontainer = \"mp4\"\n", 1.0 / 90e3}}) {
     CAPTURE(one.codec);
     const Recorded recorded(fmt::format(
         "[codec]\n{}[clock]\nvariable = true\njitter_s = 2e-4\nrate_error_ppm = 300.0\ndropped_fraction = 0.1\n",

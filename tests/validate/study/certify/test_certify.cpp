@@ -98,8 +98,8 @@ TEST_CASE("twins of a track predict the errors and the coverage of the scenario 
 TEST_CASE("half the noise halves the errors of a track, and the certificate says that this would help most") {
   const tests::TempDir temp;
   record(one_mass(), temp / "made");
-  // The next best change, twice the frame rate, gains 1 - 1/sqrt(2) = 0.29. Its deviates are others, so that it is known
-  // to 0.71 / sqrt(120) = 0.06 with 120 twins: 0.5 is more than three of those away.
+  // The next best change, twice the frame rate, gains 1 - 1/sqrt(2) = 0.29. Its deviates are others, so that it is
+  // known to 0.71 / sqrt(120) = 0.06 with 120 twins: 0.5 is more than three of those away.
   const Certificate certificate = certify({temp / "made"}, {.runs = 120, .seed = 4, .jobs = 2});
   REQUIRE_FALSE(certificate.changes.empty());
   const ChangedTwin& first = certificate.changes.front();
