@@ -140,7 +140,7 @@ std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& 
 }
 
 std::vector<double> off_course(const std::vector<PlaceInFrame>& places) {
-  constexpr std::size_t kFewestBeside = 2;  // on either side: at an end the course is only extrapolated
+  constexpr std::size_t kFewestBeside = 5;  // on either side: near an end the course is hardly more than extrapolated
   std::vector<double> off(places.size(), 0.0), known;
   for (std::size_t i = kFewestBeside; i + kFewestBeside < places.size(); ++i) {
     const auto expected = place_by_neighbours(places, places[i].frame, true);

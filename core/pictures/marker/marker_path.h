@@ -89,8 +89,8 @@ std::optional<cv::Point2d> place_by_neighbours(const std::vector<PlaceInFrame>& 
                                                bool without_itself);
 
 /// How far each place lies from where its neighbours expect it, in units of the median of these distances. Beyond
-/// kOffCourse something disturbs it, or the object is pushed. 0 at the two ends, where the course
-/// is only extrapolated, and where the neighbours say nothing.
+/// kOffCourse something disturbs it, or the object is pushed. 0 for the first and last five, where the course is hardly
+/// more than extrapolated, and where the neighbours say nothing.
 std::vector<double> off_course(const std::vector<PlaceInFrame>& places);
 inline constexpr double kOffCourse = 6.0;
 
