@@ -129,7 +129,7 @@ TEST_CASE("an inclination in radians is named, one that is only wrong is not") {
   const core::RecordingCheck radians = checked(1.0, 0.07505);  // 4.3 degrees
   REQUIRE_FALSE(radians.findings.empty());
   const auto& angle = found_as<core::found::InclineInRadians>(radians.findings[0]);
-  CHECK(angle.stated_deg == Approx(0.07505));
+  CHECK(angle.stated_deg == Approx(0.07505).epsilon(1e-9));
   CHECK(angle.as_radians_deg == Approx(4.3).epsilon(1e-4));
   CHECK_FALSE(any_about(radians.findings, Topic::incline));
   const core::RecordingCheck wrong = checked(1.0, 2.0);

@@ -96,7 +96,7 @@ TEST_CASE("lengths or a gravity 60 % off make the recording unusable, said once 
   CHECK(long_metres[0].severity == core::Severity::unusable);
   CHECK(std::abs(found_deg(long_metres[0]) - angle_deg(1.6 * sine)) < 0.05);
   CHECK(contradiction_of(long_metres[0]).stated.by == "incline_deg");
-  CHECK(contradiction_of(long_metres[0]).stated.deg == Approx(4.3));
+  CHECK(contradiction_of(long_metres[0]).stated.deg == Approx(4.3).epsilon(1e-9));
   CHECK(found_as<core::found::InclineOff>(long_metres[0]).lengths.tracks);
   Recorded heavy(kBoth);
   heavy.experiment.gravity_m_s2 *= 1.6;
@@ -104,7 +104,7 @@ TEST_CASE("lengths or a gravity 60 % off make the recording unusable, said once 
   REQUIRE(gravity.size() == 1);
   CHECK(gravity[0].severity == core::Severity::unusable);
   CHECK(std::abs(found_deg(gravity[0]) - angle_deg(sine / 1.6)) < 0.05);
-  CHECK(contradiction_of(gravity[0]).gravity_m_s2 == Approx(1.6 * tests::kGravity));
+  CHECK(contradiction_of(gravity[0]).gravity_m_s2 == Approx(1.6 * tests::kGravity).epsilon(1e-9));
 }
 
 TEST_CASE("an acceleration that no inclination has is told as that, and a track in millimetres has one") {
@@ -169,7 +169,7 @@ TEST_CASE("a marker of another size than stated is one finding for all clips, an
   CHECK(much[0].severity == core::Severity::unusable);
   CHECK(much[0].about.clips == std::vector<std::string>{"a", "b"});
   const auto& size = found_as<core::found::MarkerSizeOff>(much[0]);
-  CHECK(size.off == Approx(0.6));
+  CHECK(size.off == Approx(0.6).epsilon(1e-9));
   CHECK_FALSE(size.by_scale);
   core::ClipCheck smeared = sized("a", 16.0, 10.0);
   smeared.blur_px = 12.0;  // its outline is the smear's
