@@ -1,4 +1,4 @@
-/// Frames a second of the paper's scenario, where the time of a frame goes, and what a still picture takes.
+/// Frames a second of the paper's scenario, where the time of a frame goes, and what a still image takes.
 /// Each benchmark states frames (or pixels) a second and thread; with two threads Google Benchmark gives the rate of
 /// both.
 #include <benchmark/benchmark.h>
@@ -25,7 +25,7 @@ struct Stage {
   const sim::ConfigurationSetup& configuration = scenario.motion.configurations.back();
   RayTable rays = make_ray_table(scenario.camera);
   StaticScene scene = empty_track(scenario, configuration.body.incline_rad);
-  FloatPicture background_e;
+  FloatImage background_e;
   std::vector<FrameMotion> frames;
   PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
 
@@ -58,7 +58,7 @@ void frames_in_memory(benchmark::State& state) {
 }
 BENCHMARK(frames_in_memory)->Unit(benchmark::kMillisecond)->UseRealTime()->Threads(1)->Threads(2);
 
-/// What a tracker near the marker looks at: 64 x 64 pixels about it, where the whole of that is in the picture.
+/// What a tracker near the marker looks at: 64 x 64 pixels about it, where the whole of that is in the image.
 void region_in_memory(benchmark::State& state) {
   const Stage& made = stage();
   ClipRenderer renderer = made.clip_renderer();
@@ -66,7 +66,7 @@ void region_in_memory(benchmark::State& state) {
   std::vector<std::uint8_t> codes(kSide * kSide);
   std::vector<std::pair<const FrameMotion*, PixelRect>> seen;
   for (const FrameMotion& frame : made.frames) {
-    const auto marker = marker_in_picture(made.scenario, made.configuration.body, frame);
+    const auto marker = marker_in_image(made.scenario, made.configuration.body, frame);
     if (!marker) continue;
     const PixelRect rect{static_cast<int>(marker->center_px.x()) - kSide / 2,
                          static_cast<int>(marker->center_px.y()) - kSide / 2, kSide, kSide};
@@ -215,14 +215,14 @@ void readout_pixels(benchmark::State& state) {
 }
 BENCHMARK(readout_pixels)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
 
-void still_picture(benchmark::State& state) {
+void still_image(benchmark::State& state) {
   const Stage& made = stage();
   StaticPainter painter(made.scenario.camera, made.rays);
   StaticScene scene = made.scene;
   scene.board = plane_board(made.scenario, 0);
   for (auto _ : state) benchmark::DoNotOptimize(painter.paint(scene));
 }
-BENCHMARK(still_picture)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(still_image)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void ray_table_of_the_lens(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(make_ray_table(stage().scenario.camera));

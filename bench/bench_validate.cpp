@@ -26,7 +26,7 @@ namespace {
 
 using namespace glidelab;
 
-constexpr double kNoise = 3e-5;  // m, as the pictures of the scenarios give it
+constexpr double kNoise = 3e-5;  // m, as the images of the scenarios give it
 
 struct Made {
   validate::MadeTracks noisy;

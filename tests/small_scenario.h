@@ -1,4 +1,4 @@
-/// One glider filmed both ways in a small picture: enough for every step of the analysis, and rendered in seconds.
+/// One glider filmed both ways in a small image: enough for every step of the analysis, and rendered in seconds.
 #pragma once
 
 namespace glidelab::tests {

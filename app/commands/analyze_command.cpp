@@ -117,7 +117,7 @@ void analyze(const AnalyzeOptions& options) {
   read_bandwidth(options.bandwidth, how);
   how.lines = estimator.lines;
   how.smoother = options.smoother;
-  how.pictures = !options.with.empty();
+  how.images = !options.with.empty();
   const core::AnalysisResults results =
       estimator.estimate(core::analyze(folders, how, progress), {.robust = options.robust});
   const std::optional<diagnose::GivenCauses> given = with_causes(options, folders, results, progress);

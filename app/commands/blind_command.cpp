@@ -57,7 +57,7 @@ void blind(const BlindCommand& options) {
   wanted.jobs = options.common.jobs;
   report::BlindRun run;
   run.seed = wanted.seed;
-  run.pictures = wanted.pictures;
+  run.images = wanted.images;
   keep_on_interrupt(
       [&] { run.outcomes = validate::run_blind(wanted, out, diagnose_apart, display.callback(), render_apart); },
       [&] {
@@ -94,8 +94,8 @@ void add_blind(CLI::App& app, Command& chosen) {
       ->add_option("--only", options->blind.only,
                    "Give every case this effect; default: none, one, two, or one that is not on the list")
       ->type_name("EFFECT");
-  CLI::Option* pictures = command->add_flag(
-      "--pictures", options->blind.pictures,
+  CLI::Option* images = command->add_flag(
+      "--pictures", options->blind.images,
       "Film the experiments as rendered clips instead of tracks; their effects are those that images show");
   CLI::Option* leave_out =
       command->add_flag("--leave-out", options->blind.leave_out,
@@ -105,7 +105,7 @@ void add_blind(CLI::App& app, Command& chosen) {
           "--everyday", options->blind.everyday,
           "Tracks as students record them: one cause, two, none, or one that is not on the list, each with three "
           "to five small imperfections")
-      ->excludes(pictures)
+      ->excludes(images)
       ->excludes(leave_out);
   add_common_options(*command, options->common, "glidelab-out/blind-cases", "Seed of the cases; default: 1");
   command->callback([options, &chosen] { chosen = [options] { blind(*options); }; });

@@ -82,7 +82,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   std::size_t modes = 0;  // of the cameras so far: folders share no modes
   std::vector<const Experiment*> experiment_of;
   for (const Experiment& experiment : experiments) {
-    PictureResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.pictures);
+    ImageResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.images);
     for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));

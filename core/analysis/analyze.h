@@ -26,7 +26,7 @@ struct AnalysisOptions {
   std::string smoother = "local-polynomial";  ///< a name of core/motion/smoothing/smoother.h
   LineMethod lines = LineMethod::ordinary;
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
-  bool pictures = false;       ///< keep what the clips' images show besides the motion (ClipResult::pictures)
+  bool images = false;         ///< keep what the clips' images show besides the motion (ClipResult::images)
   TrackFileOptions bare = {};  ///< for inputs that are track files
 };
 

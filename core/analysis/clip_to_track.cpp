@@ -49,7 +49,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   track.notes.insert(track.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
   if (seen.dark_marker) track.notes.emplace_back(DarkMarker{});
   if (restitution.is_disc()) track.notes.emplace_back(DiscMarker{});
-  track.pictures = seen.pictures;
+  track.images = seen.images;
   track.dark_marker = seen.dark_marker;
   for (const PlanePoint& point : points) {
     track.frame.push_back(point.sighting.frame);
@@ -96,7 +96,7 @@ class GroupTracks {
         seen_(seen),
         points_(seen.size()) {}
 
-  void add_to(PictureResults& results) {
+  void add_to(ImageResults& results) {
     std::vector<cv::Point2d> all;
     for (const std::size_t i : clips()) {
       points_[i] = restituted(seen_[i], restitution_);
@@ -176,7 +176,7 @@ class GroupTracks {
 constexpr double kBeyondDoubt = 10.0;  // log evidence
 
 /// Subtracts the drag of a predictive codec (codec_drag.h) that is stated, or beyond doubt; the rest is a shared error.
-void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenClip>& seen, PictureResults& results) {
+void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenClip>& seen, ImageResults& results) {
   std::vector<DragTrack> tracks;
   std::vector<std::size_t> of_clip;
   bool predicts = false;
@@ -226,13 +226,12 @@ std::optional<MarkerBody> body_of(const Experiment& experiment, const CameraAndP
 
 }  // namespace
 
-PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress,
-                         const FrameOpener& open, bool look_at_scene, const SeenPattern* seen_pattern,
-                         MarkerSearch search) {
-  PictureResults results;
+ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress, const FrameOpener& open,
+                       bool look_at_scene, const SeenPattern* seen_pattern, MarkerSearch search) {
+  ImageResults results;
   results.tracks.resize(experiment.clips.size());
   results.fits.resize(experiment.clips.size());
-  std::vector<std::size_t> pictures;
+  std::vector<std::size_t> images;
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
     const ClipSetup& clip = experiment.clips[i];
     if (clip.file.empty()) {
@@ -245,19 +244,18 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
       // A fall is downwards, whether the distance is measured by a sensor above or below.
       if (!downhill && std::abs(clip.incline_rad) >= kSurelyAFall_rad) count_along_motion(results.tracks[i]);
     } else {
-      pictures.push_back(i);
+      images.push_back(i);
     }
   }
-  if (pictures.empty()) return results;
+  if (images.empty()) return results;
 
   progress("calibration", 0.0);
   CameraAndPlanes setting = camera_and_planes_of(experiment, jobs, seen_pattern, progress);
   progress("calibration", 1.0);
   std::vector<SeenClip> seen(experiment.clips.size());
-  FrameCounter counter(progress, pictures.size());
-  base::for_each_parallel(pictures.size(), jobs, [&](std::size_t k) {
-    seen[pictures[k]] =
-        see_clip(experiment, experiment.clips[pictures[k]], setting, open, look_at_scene, counter, search);
+  FrameCounter counter(progress, images.size());
+  base::for_each_parallel(images.size(), jobs, [&](std::size_t k) {
+    seen[images[k]] = see_clip(experiment, experiment.clips[images[k]], setting, open, look_at_scene, counter, search);
   });
   const bool is_disc = body_of(experiment, setting, seen) == MarkerBody::disc;
   for (auto& [name, restitution] : setting.restitutions) {
@@ -268,7 +266,7 @@ PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Pro
     GroupTracks(experiment, setting, name, seen).add_to(results);
   }
   take_off_codec_drag(experiment, seen, results);
-  for (const std::size_t i : pictures) results.fits[i] = std::move(seen[i].marker.fits);
+  for (const std::size_t i : images) results.fits[i] = std::move(seen[i].marker.fits);
   results.calibration = setting.calibration;
   return results;
 }

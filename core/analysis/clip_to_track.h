@@ -17,14 +17,14 @@
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker.h"
 #include "core/pictures/marker/marker_track.h"
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::core {
 
 /// What the images of a folder show besides the motion.
-struct PictureResults {
+struct ImageResults {
   std::vector<TrackData> tracks;             ///< one for each clip, in the experiment's order
   std::vector<std::vector<MarkerFit>> fits;  ///< one for each clip: the marker's image wherever it was seen, frames
                                              ///< rise
@@ -37,11 +37,11 @@ struct PictureResults {
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it onto the line of
 /// motion, x positive downhill. Clips that are tracks are read with read_track. Frames stream; `jobs` clips at a time.
 /// A marker whose outlines are those of a disc in the plane of motion is restituted as one, else as a sphere. With
-/// `look_at_scene` every track has its PictureRecord. `seen_pattern`: what is already known about the pattern
+/// `look_at_scene` every track has its ImageRecord. `seen_pattern`: what is already known about the pattern
 /// (restitution.h); null: its images are read. InputError for images that cannot be used (no pattern, no marker,
 /// truncated, of another size, …).
-PictureResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
-                         const FrameOpener& open = open_frames, bool look_at_scene = false,
-                         const SeenPattern* seen_pattern = nullptr, MarkerSearch search = MarkerSearch::thorough);
+ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
+                       const FrameOpener& open = open_frames, bool look_at_scene = false,
+                       const SeenPattern* seen_pattern = nullptr, MarkerSearch search = MarkerSearch::thorough);
 
 }  // namespace glidelab::core

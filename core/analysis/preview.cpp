@@ -38,10 +38,10 @@ class Shrinker {
     size_ = {even(size.width), even(size.height)};
   }
   cv::Mat operator()(const Frame& frame) const {
-    cv::Mat picture = frame.color.empty() ? frame.grey : frame.color;
-    if (picture.depth() == CV_16U) picture.convertTo(picture, CV_8U, 255.0 / ((1 << bit_depth_) - 1));
+    cv::Mat image = frame.color.empty() ? frame.grey : frame.color;
+    if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 255.0 / ((1 << bit_depth_) - 1));
     cv::Mat small;
-    cv::resize(picture, small, size_, 0.0, 0.0, cv::INTER_AREA);
+    cv::resize(image, small, size_, 0.0, 0.0, cv::INTER_AREA);
     if (small.channels() == 1) cv::cvtColor(small, small, cv::COLOR_GRAY2BGR);
     return small;
   }
@@ -59,22 +59,22 @@ class Shrinker {
   cv::Size size_;
 };
 
-void circle_marker(cv::Mat& picture, const MarkerSighting& sighting, const Shrinker& shrink) {
+void circle_marker(cv::Mat& image, const MarkerSighting& sighting, const Shrinker& shrink) {
   const double radius = std::max(sighting.radius_px * shrink.scale() + 2.5, 5.0);
-  cv::circle(picture, shrink.place(sighting.u_px, sighting.v_px), static_cast<int>(std::lround(radius * 16.0)),
+  cv::circle(image, shrink.place(sighting.u_px, sighting.v_px), static_cast<int>(std::lround(radius * 16.0)),
              kMarkerColor, 1, cv::LINE_AA, 4);
 }
 
-void dot_path(cv::Mat& picture, const std::vector<MarkerSighting>& sightings, const Shrinker& shrink) {
+void dot_path(cv::Mat& image, const std::vector<MarkerSighting>& sightings, const Shrinker& shrink) {
   const std::size_t step = std::max<std::size_t>(1, sightings.size() / kPathDots);
   for (std::size_t i = 0; i < sightings.size(); i += step) {
-    cv::circle(picture, shrink.place(sightings[i].u_px, sightings[i].v_px), 16, kPathColor, cv::FILLED, cv::LINE_AA, 4);
+    cv::circle(image, shrink.place(sightings[i].u_px, sightings[i].v_px), 16, kPathColor, cv::FILLED, cv::LINE_AA, 4);
   }
 }
 
-std::string jpeg_of(const cv::Mat& picture) {
+std::string jpeg_of(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 88});
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 88});
   return {bytes.begin(), bytes.end()};
 }
 
@@ -93,14 +93,14 @@ std::vector<std::size_t> frames_to_show(const std::vector<MarkerSighting>& sight
 /// Encodes the frames given to it; whether a browser-playable encoder exists shows at the first frame.
 class VideoFile {
  public:
-  void add(const cv::Mat& picture) {
+  void add(const cv::Mat& image) {
     if (failed_) return;
     if (!writer_.isOpened()) {
       const int h264 = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
-      failed_ = !writer_.open(file().string(), cv::CAP_FFMPEG, h264, kPlaybackHz, picture.size());
+      failed_ = !writer_.open(file().string(), cv::CAP_FFMPEG, h264, kPlaybackHz, image.size());
       if (failed_) return;
     }
-    writer_.write(picture);
+    writer_.write(image);
   }
   /// The file's bytes, or the reason why there are none.
   std::pair<std::string, std::string> finish() {
@@ -144,14 +144,14 @@ Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const
     const bool film = video && frame->index % step == 0;
     if (!show && !film) continue;
     if (!shrink) shrink.emplace(frame->grey.size(), options.width_px, experiment.camera->bit_depth);
-    cv::Mat picture = (*shrink)(*frame);
+    cv::Mat image = (*shrink)(*frame);
     if (const MarkerSighting* sighting = sighting_of(result.sightings, frame->index)) {
-      circle_marker(picture, *sighting, *shrink);
+      circle_marker(image, *sighting, *shrink);
     }
-    if (film) video->add(picture);
+    if (film) video->add(image);
     if (show) {
-      dot_path(picture, result.sightings, *shrink);
-      preview.frames.push_back({frame->index, frame->t_s, jpeg_of(picture)});
+      dot_path(image, result.sightings, *shrink);
+      preview.frames.push_back({frame->index, frame->t_s, jpeg_of(image)});
       ++next_shown;
     }
     if (!video && next_shown == shown.size()) break;

@@ -68,7 +68,7 @@ void put_even(SeenClip& seen) {
 
 /// Completes the record of a clip that was read to the end.
 void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
-  PictureRecord& record = *seen.pictures;
+  ImageRecord& record = *seen.images;
   record.width_px = seen.size.width;
   record.height_px = seen.size.height;
   record.codec = facts.codec;
@@ -121,7 +121,7 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
   std::optional<SceneWatch> scene;
   if (look_at_scene) {
     scene.emplace(source->facts().lossy.value_or(false));
-    seen.pictures = std::make_shared<PictureRecord>();
+    seen.images = std::make_shared<ImageRecord>();
   }
   while (const auto frame = look_at_scene || any != nullptr ? source->next() : source->next_in_parts()) {
     seen.size = frame->grey.size();
@@ -129,7 +129,7 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     tracker.add(any != nullptr ? any->seen_in(*frame) : *frame);
     if (scene) {
       scene->add(frame->grey, frame->t_s);
-      seen.pictures->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
+      seen.images->full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
     }
     if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
   }
@@ -237,7 +237,7 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
     auto marker = look_again(first.marker, again, background, shape_at);
     if (!marker) return false;
     first.marker = *std::move(marker);
-    if (first.pictures) first.pictures->marker = looks_of(first.marker, first.frame_t_s);
+    if (first.images) first.images->marker = looks_of(first.marker, first.frame_t_s);
     return true;
   };
   if (seen && better(*seen)) return *std::move(seen);
@@ -266,7 +266,7 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
       auto marker = look_by_template(found.marker, again, shape_at);
       if (!marker || !well_seen(*marker)) continue;
       found.marker = *std::move(marker);
-      if (found.pictures) found.pictures->marker = looks_of(found.marker, found.frame_t_s);
+      if (found.images) found.images->marker = looks_of(found.marker, found.frame_t_s);
       if (in_more_frames(found)) return std::move(found);
     }
   }

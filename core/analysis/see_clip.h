@@ -15,19 +15,19 @@
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker_track.h"
 #include "core/result/analysis_note.h"
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 
 namespace glidelab::core {
 
 /// What one clip's images show, in pixels: the marker in every frame, the frames' times, and anything else of note.
 struct SeenClip {
   TrackedMarker marker;
-  std::vector<double> frame_t_s;            ///< of all frames
-  cv::Size size;                            ///< of the images
-  std::vector<Note> notes;                  ///< about the file; the marker has its own notes
-  std::shared_ptr<PictureRecord> pictures;  ///< if requested
-  bool dark_marker = false;                 ///< seen as darker than its surroundings, with no stated colour
-  std::optional<bool> predicted;  ///< whether a lossy codec predicts images from earlier ones; empty if not known
+  std::vector<double> frame_t_s;        ///< of all frames
+  cv::Size size;                        ///< of the images
+  std::vector<Note> notes;              ///< about the file; the marker has its own notes
+  std::shared_ptr<ImageRecord> images;  ///< if requested
+  bool dark_marker = false;             ///< seen as darker than its surroundings, with no stated colour
+  std::optional<bool> predicted;        ///< whether a lossy codec predicts images from earlier ones; empty if not known
 };
 
 /// Counts frames over all clips for the progress; clips may be processed concurrently.
@@ -50,7 +50,7 @@ enum class MarkerSearch {
 };
 
 /// Reads the clip once or twice: a marker without a stated colour is searched for as a bright disc and, if a bright one
-/// is hardly seen but a dark one well, as a dark disc. With `look_at_scene` there is a PictureRecord. InputError for
+/// is hardly seen but a dark one well, as a dark disc. With `look_at_scene` there is a ImageRecord. InputError for
 /// images that cannot be used, NoMarker (marker_track.h) if there is no marker.
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter,

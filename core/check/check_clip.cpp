@@ -220,7 +220,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   const TrackData& track = attempt.track;
   ClipCheck clip;
   clip.name = setup.name;
-  clip.pictures = !setup.file.empty();
+  clip.images = !setup.file.empty();
   clip.failure = attempt.failure;
   if (!clip.failure.empty()) return clip;
   clip.notes = track.notes;
@@ -240,7 +240,7 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
   const Speeds speeds = speeds_of(track);
   clip.top_speed_m_s = speeds.m_s;
   clip.top_speed_px_s = speeds.px_s;
-  if (clip.pictures && !track.sightings.empty()) {
+  if (clip.images && !track.sightings.empty()) {
     check_images(experiment, attempt, watches.of(setup.file), speeds.px_per_m, clip);
   }
   return clip;

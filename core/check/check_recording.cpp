@@ -119,7 +119,7 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
   std::vector<ClipAttempt> attempts(experiment.clips.size());
   // Tracks what `part` has, the first of whose clips is the experiment's clip `first`.
   const auto attempt = [&](const Experiment& part, std::size_t first, MarkerSearch search) {
-    PictureResults seen = tracks_of(part, jobs, progress, watches.opener(), false, seen_pattern, search);
+    ImageResults seen = tracks_of(part, jobs, progress, watches.opener(), false, seen_pattern, search);
     if (check.pattern) check.pattern->calibration = seen.calibration;
     check.plumbs.insert(check.plumbs.end(), seen.plumbs.begin(), seen.plumbs.end());
     for (std::size_t i = 0; i < seen.tracks.size(); ++i) {
@@ -173,7 +173,7 @@ void analyze_motions(const Experiment& experiment, const std::vector<ClipAttempt
     setups.push_back(experiment.clips[i]);
     results.push_back(analyze_motion(setups.back(), attempts[i].track, {}));
     check.clips[i].against_launch = results.back().against_launch;
-    if (check.clips[i].pictures) check.clips[i].jumps = results.back().lost_frames.size();
+    if (check.clips[i].images) check.clips[i].jumps = results.back().lost_frames.size();
   }
   check.configurations = join_configurations(setups, results, experiment.gravity_m_s2);
 }

@@ -121,7 +121,7 @@ struct PlaneViewsOff {
 
 struct NotTracked {
   std::string failure;
-  bool pictures = true;  ///< false for a track from a file
+  bool images = true;  ///< false for a track from a file
 };
 
 /// A track from a file is short.

@@ -62,7 +62,7 @@ struct MarkerLighting {
 struct ClipCheck {
   std::string name;
   std::string failure;      ///< why nothing more is known; else empty
-  bool pictures = true;     ///< false for a track from a file
+  bool images = true;       ///< false for a track from a file
   std::size_t frames = 0;   ///< or rows of the file
   std::size_t seen = 0;     ///< frames with the marker
   std::size_t spanned = 0;  ///< frames from the first sighting to the last

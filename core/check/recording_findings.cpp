@@ -161,10 +161,10 @@ void judge_marker(const ClipCheck& clip, FindingBook& book) {
 
 void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook book) {
   if (!clip.failure.empty()) {
-    book.add(Severity::unusable, found::NotTracked{clip.failure, clip.pictures}, Topic::failure);
+    book.add(Severity::unusable, found::NotTracked{clip.failure, clip.images}, Topic::failure);
     return;
   }
-  if (clip.pictures) {
+  if (clip.images) {
     judge_marker(clip, book);
     judge_light(clip, book);
     judge_lighting(clip, book);

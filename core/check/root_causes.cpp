@@ -98,7 +98,7 @@ std::optional<Root> long_tracks(const Experiment& experiment, const RecordingChe
   double distance_m = 0.0;
   for (const ClipCheck& clip : check.clips) {
     const double a = clip.motion.acceleration_m_s2.value_or(0.0);
-    if (clip.pictures || clip.distance_m < kLongestRun_m || a < kMostOverGravity * experiment.gravity_m_s2) continue;
+    if (clip.images || clip.distance_m < kLongestRun_m || a < kMostOverGravity * experiment.gravity_m_s2) continue;
     names.push_back(clip.name);
     distance_m = std::max(distance_m, clip.distance_m);
   }

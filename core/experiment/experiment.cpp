@@ -202,10 +202,10 @@ void check_sections(const Experiment& experiment, const TomlTable& root) {
   if (experiment.calibration && experiment.scale) {
     root.reject("scale", "a table [scale] and a table [calibration]", "one of the two");
   }
-  const auto picture = std::find_if(experiment.clips.begin(), experiment.clips.end(),
-                                    [](const ClipSetup& clip) { return !clip.file.empty(); });
-  if (picture == experiment.clips.end()) return;
-  const std::string needed_by = fmt::format("for clip \"{}\"", picture->name);
+  const auto image = std::find_if(experiment.clips.begin(), experiment.clips.end(),
+                                  [](const ClipSetup& clip) { return !clip.file.empty(); });
+  if (image == experiment.clips.end()) return;
+  const std::string needed_by = fmt::format("for clip \"{}\"", image->name);
   if (!experiment.camera) root.reject("camera", "nothing", fmt::format("a table [camera], {}", needed_by));
   if (!experiment.marker) root.reject("marker", "nothing", fmt::format("a table [marker], {}", needed_by));
   if (!experiment.calibration && !experiment.scale) {

@@ -17,7 +17,7 @@ AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::
   std::atomic<std::size_t> done = 0;
   base::for_each_parallel(setups.size(), jobs, [&](std::size_t i) {
     results.clips[i] = analyze_motion(setups[i], tracks[i], options);
-    results.clips[i].pictures = tracks[i].pictures;
+    results.clips[i].images = tracks[i].images;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });
   results.gravity_m_s2 = gravity_m_s2;

@@ -23,7 +23,7 @@ constexpr const char* name_of(LineMethod method) {
   return method == LineMethod::ordinary ? "phase-diagram" : "phase-diagram-gls";
 }
 
-struct PictureRecord;
+struct ImageRecord;
 
 /// A number with its standard deviation and its 95 % interval.
 struct Estimate {
@@ -204,8 +204,8 @@ struct ClipResult {
   std::vector<MotionPoint> motion;
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of every frame of `motion`; 0 without a marker
   std::vector<MarkerSighting> sightings;      ///< empty for a track
-  /// What the images show besides the motion (picture_record.h); null for a track, and if not requested.
-  std::shared_ptr<const PictureRecord> pictures;
+  /// What the images show besides the motion (image_record.h); null for a track, and if not requested.
+  std::shared_ptr<const ImageRecord> images;
 };
 
 /// All clips of one mass, one stated inclination and one group.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/result/analysis_note.h"
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -34,9 +34,9 @@ struct TrackData {
   /// calibration's modes); one entry for every mode of the whole analysis, empty if the mode does not affect this
   /// track.
   std::vector<std::vector<double>> shared_m;
-  std::vector<MarkerSighting> sightings;          ///< empty for a track from a file
-  std::shared_ptr<const PictureRecord> pictures;  ///< if requested
-  bool dark_marker = false;                       ///< seen as darker than its surroundings, with no stated colour
+  std::vector<MarkerSighting> sightings;      ///< empty for a track from a file
+  std::shared_ptr<const ImageRecord> images;  ///< if requested
+  bool dark_marker = false;                   ///< seen as darker than its surroundings, with no stated colour
   std::vector<Note> notes;
 };
 

@@ -305,7 +305,7 @@ double unnamed_excess(const TrackSet& set, const Comparison& by_noise) {
 }  // namespace
 
 WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
-                           const PictureEvidence* pictures, const std::function<void(double)>& done) {
+                           const ImageEvidence* images, const std::function<void(double)>& done) {
   // The remainder of the best explanation so far.
   std::vector<int> tried{0};
   std::vector<Hypothesis> by_evidence = first.all;
@@ -341,8 +341,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     });
   } else {
     const std::vector<std::size_t> left_out(without.begin(), without.end());
-    comparison =
-        compare_hypotheses(weighed.set, left_out, jobs, pictures, [&](double part) { done(0.2 + 0.5 * part); });
+    comparison = compare_hypotheses(weighed.set, left_out, jobs, images, [&](double part) { done(0.2 + 0.5 * part); });
   }
   const std::set<int> also = add_likeliest_of(first, comparison);
 

@@ -43,7 +43,7 @@ struct WeighedCauses {
 /// `first` is the comparison by the noise alone. `set` has no remainder. `without` are indices of effects that are left
 /// out.
 WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
-                           const PictureEvidence* pictures, const std::function<void(double)>& done);
+                           const ImageEvidence* images, const std::function<void(double)>& done);
 
 /// Weighs the comparison by the noise alone again, with the likeliest remainder for each of its likeliest explanations:
 /// for data without a gap, in which small imperfections still show.

@@ -232,13 +232,13 @@ enum class Search {
   frames,     ///< missing frames, found one by one
   noise,      ///< shown by the scatter of single positions, not by the trajectory
   rows,       ///< one proportional parameter that acts by the image row: filmed tracks only
-  pictures,   ///< shown by the images, even if no position changes
+  images,     ///< shown by the images, even if no position changes
   lines,      ///< shown only by a table of lines
 };
 
 /// Whether such an effect shows in the motion as a whole, rather than in single frames or in the images alone.
 constexpr bool shows_in_motion(Search search) {
-  return search != Search::frames && search != Search::noise && search != Search::pictures;
+  return search != Search::frames && search != Search::noise && search != Search::images;
 }
 
 /// Whether such an effect shifts positions and so contributes to the gap. Lost frames do; the scatter of single

@@ -125,7 +125,7 @@ void ParameterLayout::add_common(const TrackSet& set) {
 
 void ParameterLayout::add_effect(const TrackSet& set, std::size_t effect) {
   for (const EffectParameter& parameter : effect_list()[effect].parameters) {
-    if (parameter.only_filmed && !set.pictures) continue;
+    if (parameter.only_filmed && !set.images) continue;
     Global global{Global::Kind::effect, 0, &parameter, effect, parameter.step, range_of(set, parameter)};
     switch (parameter.each) {
       case Each::experiment:

@@ -86,7 +86,7 @@ TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
     for (const double r : left.over_sd) size.push_back(std::abs(r));
     scatter.resize(over_sd.size(), scatter_of(std::move(size)));
   }
-  if (set.pictures) scatter = scatter_by_speed(over_sd, v);
+  if (set.images) scatter = scatter_by_speed(over_sd, v);
   TailResiduals residuals;
   std::size_t at = 0;
   for (const TrackedMotion& motion : set.motions) {
@@ -244,7 +244,7 @@ FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
   std::vector<double>& e = residuals.over_scatter;
   if (e.size() < kFewestScatter) return found;
   spare_small(set, e);
-  const Tails tails = find_tails(e, set.pictures);
+  const Tails tails = find_tails(e, set.images);
   found.gain = tails.gain;
   found.log_evidence = tails.log_evidence;
   found.value = tails.share;
@@ -258,7 +258,7 @@ FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
 std::size_t set_tails_aside(TrackSet& set, const MotionFit& fit) {
   const std::vector<double> e = tail_residuals(set, fit).over_scatter;
   if (e.size() < kFewestScatter) return 0;
-  const Tails tails = find_tails(e, set.pictures);
+  const Tails tails = find_tails(e, set.images);
   if (tails.log_evidence < kBeyondDoubt) return 0;
   std::size_t count = 0, at = 0;
   TrackSet marked = set;

@@ -210,7 +210,7 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
   // as well.
   const double unit = sd / scatter.top_m_s;
   const double least = 2.0 * std::pow(2.0 / (independent * n), 0.25) * unit;
-  const double least_s = set.pictures ? kLeastFilmedJitter_s : 0.0;
+  const double least_s = set.images ? kLeastFilmedJitter_s : 0.0;
   for (double tau = least; tau < 40.0 * scatter.widest * unit && tau < 0.5 * step; tau *= 1.3) {
     const double gain = log_likelihood(tau) - none;
     if (tau * std::sqrt(mean_square) < least_s) continue;

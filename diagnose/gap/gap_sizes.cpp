@@ -153,9 +153,9 @@ class RootMeanSquare {
   double sum_ = 0.0, count_ = 0.0;
 };
 
-double most_seen(const std::vector<PictureFinding>& pictures, const std::vector<DiagnosedEffect>& but) {
+double most_seen(const std::vector<ImageFinding>& images, const std::vector<DiagnosedEffect>& but) {
   double most = 1.0;
-  for (const PictureFinding& finding : pictures) {
+  for (const ImageFinding& finding : images) {
     const bool named =
         std::any_of(but.begin(), but.end(), [&](const DiagnosedEffect& effect) { return effect.id == finding.id; });
     if (!named && !finding.stated) most = std::max(most, std::sqrt(2.0 * std::max(0.0, finding.log_evidence)));
@@ -200,7 +200,7 @@ GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& 
   return gap;
 }
 
-std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<PictureFinding>& pictures,
+std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<ImageFinding>& images,
                                    const std::vector<DiagnosedEffect>& named) {
   std::vector<GapDomain> domains = {{GapDomainKind::positions, gap.before, gap.after}};
   RootMeanSquare a_before, a_after, q_before, q_after;
@@ -222,8 +222,7 @@ std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<Pictur
   if (q_before.value()) {
     domains.push_back({GapDomainKind::parameters, *q_before.value(), all_after ? q_after.value() : std::nullopt});
   }
-  if (!pictures.empty())
-    domains.push_back({GapDomainKind::images, most_seen(pictures, {}), most_seen(pictures, named)});
+  if (!images.empty()) domains.push_back({GapDomainKind::images, most_seen(images, {}), most_seen(images, named)});
   return domains;
 }
 

@@ -63,7 +63,7 @@ GapSizes gap_of(const TrackSet& set, const MotionFit& nominal, const MotionFit& 
 /// square of the differences over their standard deviations. Images: sqrt(2 log evidence) of the effect that shows
 /// most, and at least 1; after: of the most visible effect that is not named. What a file states about itself does not
 /// count.
-std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<PictureFinding>& pictures,
+std::vector<GapDomain> gap_domains(const GapSizes& gap, const std::vector<ImageFinding>& images,
                                    const std::vector<DiagnosedEffect>& named);
 
 /// About 250 residuals of every motion, of both fits to all clips, in metres.

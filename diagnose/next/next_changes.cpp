@@ -138,7 +138,7 @@ void add_settings(const TrackSet& set, const SoFar& so, std::vector<Change>& cha
         for (const double times : {2.0, 0.5}) {
           changes.push_back(clip_of(ChangeKind::frame_rate, set, so, {group, mass, v, times * so.rate_hz}));
         }
-        if (!set.pictures || !scatters) continue;
+        if (!set.images || !scatters) continue;
         changes.push_back(clip_of(ChangeKind::exposure, set, so, {group, mass, v, so.rate_hz, 0.5}));
       }
     }
@@ -267,7 +267,7 @@ TrackSet with_clip(const TrackSet& set, const Change& change) {
   one.masses = set.masses;
   one.x_mid_m = set.x_mid_m;
   one.modes = set.modes;
-  one.pictures = set.pictures;
+  one.images = set.images;
   one.clips = {{"next", clip.rate_hz, 0.0, 0, 0.0}};
   if (change.set_up) one.groups.push_back({"next", change.set_up->alpha_rad, {}, set.x_mid_m});
   one.masses.push_back({clip.mass_kg, 0.0});

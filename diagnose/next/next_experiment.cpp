@@ -259,7 +259,7 @@ SharpenParameter sharpen(const TrackSet& set, const Comparison& comparison, cons
 }
 
 /// The sentence of the first of these effects that only images or single frames show.
-std::string for_pictures(const std::vector<std::string>& ids) {
+std::string for_images(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
     const std::string_view words = effect_of(id).next;
     if (!words.empty()) return std::string(words);
@@ -279,13 +279,13 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
   std::vector<Contest> contests;
   for (const Hypothesis* rival : rivals_of(comparison, diagnosis, *first)) {
     const Contest contest(*first, *rival);
-    std::string pictures = for_pictures(only_in(*contest.right, *contest.other));
-    if (pictures.empty()) pictures = for_pictures(only_in(*contest.other, *contest.right));
-    if (!pictures.empty() && contests.empty()) {
-      return RecordForEffect{std::move(pictures), alternatives({contest}).front()};
+    std::string images = for_images(only_in(*contest.right, *contest.other));
+    if (images.empty()) images = for_images(only_in(*contest.other, *contest.right));
+    if (!images.empty() && contests.empty()) {
+      return RecordForEffect{std::move(images), alternatives({contest}).front()};
     }
     const bool fitted = fit_of(comparison, *contest.right) != nullptr && fit_of(comparison, *contest.other) != nullptr;
-    if (pictures.empty() && fitted) contests.push_back(contest);
+    if (images.empty() && fitted) contests.push_back(contest);
   }
   std::vector<Alternative> undecided;
   if (!contests.empty()) {
@@ -295,7 +295,7 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
   }
   std::vector<std::string> named;
   for (const DiagnosedEffect& effect : diagnosis.effects) named.push_back(effect.id);
-  if (std::string pictures = for_pictures(named); !pictures.empty()) return RecordForEffect{std::move(pictures), {}};
+  if (std::string images = for_images(named); !images.empty()) return RecordForEffect{std::move(images), {}};
   if (diagnosis.verdict == Verdict::effect && diagnosis.unknown >= kStillLikely && !diagnosis.regions.empty()) {
     return next_for_unnamed(set, comparison.fits.front(), diagnosis);
   }

@@ -294,7 +294,7 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
   std::vector<double> sds;
   double top_px_s = 0.0, step_s = 0.0;
   for (const TrackedMotion& motion : set.motions) {
-    if (set.pictures && motion.along_px.empty()) return false;
+    if (set.images && motion.along_px.empty()) return false;
     points += motion.t_s.size();
     sds.push_back(motion.sd_m / unit_m(motion));
     step_s = std::max(step_s, 1.0 / set.clips[motion.clip].frame_rate_hz);
@@ -308,13 +308,13 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
 
   const std::vector<double> sizes = {0.25, 0.5, 0.75, 1.1, 1.6, 2.4, 3.6, 5.4};
   std::vector<Dial> dials;
-  if (set.pictures) {
+  if (set.images) {
     dials = {{&NoiseShape::pixels, sizes, &NoiseShape::pixels_px, {0.25, 0.4, 0.7}},
              {&NoiseShape::phase, sizes, &NoiseShape::phase_px, {5.0, 20.0, 80.0}}};
   }
   std::vector<double> lengths = {1.0, 2.0, 4.0};
   if (set.handed_on) lengths.push_back(8.0);
-  const bool may_last = set.lossy || !set.pictures;
+  const bool may_last = set.lossy || !set.images;
   if (may_last) dials.push_back({&NoiseShape::lasting, sizes, &NoiseShape::lasting_frames, lengths});
   PositionNoise noise;
   Likelihood best = likelihood.of(noise.shape);
@@ -324,7 +324,7 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
   const auto short_lived = [&](const NoiseShape& shape) {
     return shape.lasting > 0.0 && shape.lasting_frames < lengths.back();
   };
-  if (!set.pictures && (!short_lived(noise.shape) || noise.lasting_log_evidence < kBeyondDoubt)) return false;
+  if (!set.images && (!short_lived(noise.shape) || noise.lasting_log_evidence < kBeyondDoubt)) return false;
 
   // Starts at the size that begins to show among this many points, in units of the jitter that makes s at top speed.
   const double unit = pilot_px / top_px_s;
@@ -350,7 +350,7 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
     noise.shape.jitter_s = chosen->jitter_s;
     best = chosen->likelihood;
   }
-  if (!set.pictures && !short_lived(noise.shape)) return false;
+  if (!set.images && !short_lived(noise.shape)) return false;
   set.position_noise = noise;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
     TrackedMotion& motion = set.motions[i];

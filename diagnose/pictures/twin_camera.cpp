@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/pictures/camera/restitution.h"
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 
 namespace glidelab::diagnose {
 
@@ -205,22 +205,22 @@ std::optional<Filming> filming_of(const core::AnalysisResults& results, const st
   for (const core::Experiment& folder : folders) {
     for (const core::ClipSetup& setup : folder.clips) {
       const core::ClipResult& clip = results.clips.at(i++);
-      if (!clip.pictures || !folder.camera || !folder.marker || clip.sightings.size() < kFewestPlaces) continue;
+      if (!clip.images || !folder.camera || !folder.marker || clip.sightings.size() < kFewestPlaces) continue;
       if (filming) {
         filming->others = filming->others || &folder != of;
         continue;
       }
       Filming found;
       found.settings = *folder.camera;
-      found.width_px = clip.pictures->width_px;
-      found.height_px = clip.pictures->height_px;
+      found.width_px = clip.images->width_px;
+      found.height_px = clip.images->height_px;
       found.marker_m = folder.marker->diameter_m;
       found.marker_height_m = folder.marker->height_m;
-      found.codec = clip.pictures->codec;
-      found.lossy = clip.pictures->lossy;
-      found.full_code = clip.pictures->full_code;
-      found.noise_code = clip.pictures->noise_code;
-      found.noise = noise_law(clip.pictures->noise_levels);
+      found.codec = clip.images->codec;
+      found.lossy = clip.images->lossy;
+      found.full_code = clip.images->full_code;
+      found.noise_code = clip.images->noise_code;
+      found.noise = noise_law(clip.images->noise_levels);
       if (folder.calibration) {
         found.inner_columns =
             std::max(folder.calibration->inner_corners.columns, folder.calibration->inner_corners.rows);

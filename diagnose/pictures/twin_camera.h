@@ -16,7 +16,7 @@
 
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/camera_model.h"
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 #include "core/result/results.h"
 
 namespace glidelab::diagnose {

@@ -10,10 +10,10 @@
 #include "core/result/results.h"
 #include "diagnose/result/explanation.h"
 #include "diagnose/result/gap_place.h"
+#include "diagnose/result/image_fact.h"
 #include "diagnose/result/line_comparison.h"
 #include "diagnose/result/next_step.h"
 #include "diagnose/result/note.h"
-#include "diagnose/result/picture_fact.h"
 
 namespace glidelab::diagnose {
 
@@ -165,20 +165,20 @@ struct Isolability {
 };
 
 /// What the images of filmed clips say about one effect, whether or not it moves the positions.
-struct PictureFinding {
+struct ImageFinding {
   std::string id;
   Stage stage = Stage::optics;
   bool seen = false;
   double log_evidence = 0.0;  ///< for its presence against its absence, from the images alone
   bool stated = false;        ///< the file itself says so: named only for its effect on the positions
   std::vector<DiagnosedParameter> parameters;
-  PictureFact fact;
+  ImageFact fact;
 };
 
 /// A measurement in the images for the plots: `lengthening` (px², of the marker's image over px/s), `brightness`
 /// (relative, over time), `drift across`, `drift down` (px, of the fixed scene over time), `noise` (codes², a pixel's
 /// variance over its level in codes).
-struct PictureCurve {
+struct ImageCurve {
   std::string what, clip;
   std::vector<double> at, value, sd;
   std::vector<double> expected, fitted;  ///< as stated, and as found; empty if there is none
@@ -284,8 +284,8 @@ struct Diagnosis {
   Isolability isolability;
   std::optional<LineComparison> lines;  ///< if the data are a table of published lines
   std::vector<ResidualCurve> residuals;
-  std::vector<PictureFinding> pictures;  ///< empty for tracks
-  std::vector<PictureCurve> picture_curves;
+  std::vector<ImageFinding> images;  ///< empty for tracks
+  std::vector<ImageCurve> image_curves;
   std::vector<CalibrationRests> calibrations;  ///< of each folder with a pattern
   std::vector<Note> notes;
   std::string twin;  ///< the fitted motions as a scenario file; empty for a table of lines

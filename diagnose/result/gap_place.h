@@ -44,7 +44,7 @@ std::string_view to_text(GapVariable variable);
 std::string_view to_text(GapKind kind);
 /// The words used in diagnosis.json and in tables: "plumb", "all clips".
 std::string_view to_text(Against against);
-/// The word used in diagnosis.json: "phase_plane"; "picture" for images.
+/// The word used in diagnosis.json: "phase_plane"; "image" for images.
 std::string_view to_text(GapDomainKind domain);
 
 }  // namespace glidelab::diagnose

@@ -18,7 +18,7 @@ double seen_square(const ScoreSpace& space, const ScoreColumn& column);
 /// Prior odds of an effect relative to another (EffectInfo::odds); 0 if this recording cannot show it.
 double prior_odds(const TrackSet& set, std::size_t effect);
 
-/// The scan of one effect. An effect that does not act through the trajectory (Search::frames, noise, pictures, lines)
+/// The scan of one effect. An effect that does not act through the trajectory (Search::frames, noise, images, lines)
 /// is not visible here.
 ///
 /// An amplitude is a score test. A second parameter is searched on a grid, and the evidence is averaged over that grid.

@@ -373,7 +373,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
     const double duration = clip.motion.empty() ? 0.0 : clip.motion.back().t_s - clip.motion.front().t_s;
     set.clips.push_back({clip.name, clip.frame_rate_hz, duration, clip.frames, clip.bandwidth_s, clip.lost_frames});
     for (core::LostFrames& gap : set.clips.back().lost) gap.after_s -= clip.motion.front().t_s;
-    set.pictures = set.pictures || !clip.sightings.empty();
+    set.images = set.images || !clip.sightings.empty();
     for (const core::MotionPoint& point : clip.motion) {
       set.disputed += point.left_out == core::LeftOut::hand || point.left_out == core::LeftOut::stop;
       set.moving += kind_of(point, true) == Kind::free;

@@ -109,7 +109,7 @@ struct TrackSet {
   double x_mid_m = 0.0;    ///< middle of the range of x of all set-ups
   std::size_t modes = 0;   ///< shared errors of camera and plane
   bool pieces = false;     ///< clips are pieces of a single one (cut_driven_motions())
-  bool pictures = false;   ///< at least one clip was filmed
+  bool images = false;     ///< at least one clip was filmed
   bool lossy = false;      ///< at least one clip has been through a lossy codec,
   bool handed_on = false;  ///< and one through a codec that predicts images from earlier ones:
   double held_m_s = 0.0;   ///< below this speed such a codec may hold the marker in place (0: none does)

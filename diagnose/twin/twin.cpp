@@ -11,7 +11,7 @@
 
 #include "base/math/angles.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 
 namespace glidelab::diagnose {
 namespace {

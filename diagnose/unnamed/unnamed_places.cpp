@@ -233,7 +233,7 @@ UnnamedFamily swing_family(const ScoreSpace& space, const Grid& x) {
   // Finer waves pass by more than one period from frame to frame, each motion in steps of its own. They still show as a
   // function of position: an example is the pixels, if a marker crosses several of them from frame to frame. For films
   // the pixels' errors are in the fit.
-  if (!set.pictures) {
+  if (!set.images) {
     FineSwings fine(space, f, step);
     double most = kLeastFineGain, best_f = 0.0;
     std::size_t best = 0;

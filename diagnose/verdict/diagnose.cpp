@@ -9,7 +9,7 @@
 #include "core/analysis/analyze.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_diagnosis.h"
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 #include "diagnose/pictures/twin_camera.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/settled_motions.h"
@@ -66,24 +66,24 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   const std::vector<std::size_t> without = indices(options.without);
   TrackSet set = whole_motions(results, setups);
   progress("weighing explanations", 0.1);
-  PictureEvidence pictures;
-  if (cameras.size() == results.clips.size()) pictures = picture_evidence(filmed_clips(results, setups, cameras));
-  if (options.twin) pictures.filming = filming_of(results, folders, options.jobs);
-  settle_noise(pictures, set);
+  ImageEvidence images;
+  if (cameras.size() == results.clips.size()) images = image_evidence(filmed_clips(results, setups, cameras));
+  if (options.twin) images.filming = filming_of(results, folders, options.jobs);
+  settle_noise(images, set);
   const auto weighed = [&](double from, double to) {
     return [&progress, from, to](double part) { progress("weighing explanations", from + part * (to - from)); };
   };
-  Comparison comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.1, 0.5));
+  Comparison comparison = compare_hypotheses(set, without, options.jobs, &images, weighed(0.1, 0.5));
   if (set.disputed > 0 && (comparison.all.front().unnamed || is_misfit(set, best_fit(comparison)))) {
     // No effect on the list explains the motion with its hand and stops, so these are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, set.disputed)) {
       set = std::move(*trimmed);
       progress("weighing explanations", 0.5);
-      settle_noise(pictures, set);
-      comparison = compare_hypotheses(set, without, options.jobs, &pictures, weighed(0.5, 0.9));
+      settle_noise(images, set);
+      comparison = compare_hypotheses(set, without, options.jobs, &images, weighed(0.5, 0.9));
     }
   }
-  Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(pictures), without, options.jobs, progress);
+  Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
   add_speeds(results, diagnosis.measured);
   for (const core::CalibrationResult& of : results.calibrations) {
     diagnosis.calibrations.push_back({of.experiment, of.rests});
@@ -97,7 +97,7 @@ core::AnalysisResults analyze_for_diagnosis(const std::vector<std::filesystem::p
                        {.bandwidth_s = {},
                         .jobs = options.jobs,
                         .lost_frames = core::LostFrameTimes::kept,
-                        .pictures = true,
+                        .images = true,
                         .bare = options.bare},
                        progress);
 }

@@ -15,7 +15,7 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/frames/missing_frames.h"
 #include "diagnose/gap/gap_sizes.h"
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 #include "diagnose/scan/effect_scan.h"
 #include "diagnose/verdict/settled_motions.h"
 #include "diagnose/verdict/verdict_details.h"
@@ -53,13 +53,13 @@ bool shows(const EffectScan& scan) {
     if (shows(scan)) possible.emplace_back(effect_list()[scan.effect].id);
   }
   for (const std::size_t e : beside.effects) with.emplace_back(effect_list()[e].id);
-  throw base::InputError(
-      base::Issue{"", 0, option,
-                  fmt::format("\"{}\", which these recordings{} cannot show at any size{}", effect_list()[effect].id,
-                              set.pictures ? "" : ", tracks without images,",
-                              with.empty() ? "" : fmt::format(" beside {}", fmt::join(with, ", "))),
-                  possible.empty() ? "another recording: this one can show no effect at all"
-                                   : fmt::format("one that they can show: {}", fmt::join(possible, ", "))});
+  throw base::InputError(base::Issue{"", 0, option,
+                                     fmt::format("\"{}\", which these recordings{} cannot show at any size{}",
+                                                 effect_list()[effect].id, set.images ? "" : ", tracks without images,",
+                                                 with.empty() ? "" : fmt::format(" beside {}", fmt::join(with, ", "))),
+                                     possible.empty()
+                                         ? "another recording: this one can show no effect at all"
+                                         : fmt::format("one that they can show: {}", fmt::join(possible, ", "))});
 }
 
 /// The nominal fit with the effects added one after another.
@@ -112,16 +112,16 @@ struct WithCauses {
   MotionFit nominal, fit;
 };
 
-WithCauses fits_of(TrackSet set, const PictureEvidence& pictures, const std::vector<std::size_t>& effects,
+WithCauses fits_of(TrackSet set, const ImageEvidence& images, const std::vector<std::size_t>& effects,
                    const std::string& option, const base::Progress& progress) {
-  settle_noise(pictures, set);
+  settle_noise(images, set);
   MotionFit nominal = nominal_of(set);
   MotionFit fit = best_fit(set, nominal, effects, option, progress);
   return {std::move(set), std::move(nominal), std::move(fit)};
 }
 
 /// The sizes of each cause in a fit that counts the remainder as noise.
-std::vector<GivenCause> sizes_of(const WithCauses& of, const RemainderSizes& remainder, const PictureEvidence& pictures,
+std::vector<GivenCause> sizes_of(const WithCauses& of, const RemainderSizes& remainder, const ImageEvidence& images,
                                  const std::vector<std::string>& ids) {
   TrackSet with = of.set;
   add_remainder(of.fit, remainder, with);
@@ -129,9 +129,9 @@ std::vector<GivenCause> sizes_of(const WithCauses& of, const RemainderSizes& rem
   const MotionFit& told = std::isfinite(fit.cost) ? fit : of.fit;
   std::vector<GivenCause> causes;
   for (const std::string& id : ids) {
-    GivenCause cause{id, fitted_parameters(with, told, effect_index(id), pictures.stated_line_s)};
+    GivenCause cause{id, fitted_parameters(with, told, effect_index(id), images.stated_line_s)};
     const std::vector<DiagnosedParameter> derived =
-        derived_parameters(with, told, effect_index(id), pictures, cause.parameters);
+        derived_parameters(with, told, effect_index(id), images, cause.parameters);
     cause.parameters.insert(cause.parameters.end(), derived.begin(), derived.end());
     causes.push_back(std::move(cause));
   }
@@ -176,18 +176,18 @@ GivenCauses fit_given_causes(core::AnalysisResults results, const std::vector<co
   for (core::ClipResult& clip : results.clips) clip.lost_frames.clear();  // the times are corrected already
   progress("fitting with the causes", 0.0);
   TrackSet whole = whole_motions(results, setups);
-  const PictureEvidence pictures = picture_evidence(filmed_clips(results, setups, cameras));
-  WithCauses of = fits_of(std::move(whole), pictures, effects, option, progress);
+  const ImageEvidence images = image_evidence(filmed_clips(results, setups, cameras));
+  WithCauses of = fits_of(std::move(whole), images, effects, option, progress);
   if (of.set.disputed > 0 && is_misfit(of.set, of.fit)) {
     // The causes do not explain the hand and the stops, so these are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, of.set.disputed)) {
-      of = fits_of(std::move(*trimmed), pictures, effects, option, progress);
+      of = fits_of(std::move(*trimmed), images, effects, option, progress);
     }
   }
   progress("measuring the gap", 0.9);
   const RemainderSizes remainder = RemainderSpace(of.set, of.fit).likeliest().sizes;
   GivenCauses given;
-  given.causes = sizes_of(of, remainder, pictures, ids);
+  given.causes = sizes_of(of, remainder, images, ids);
   given.recovered = recovered_of(of.set, {{&of.fit, remainder, 1.0}});
   for (RecoveredConfiguration& configuration : given.recovered) configuration.with = ids;
   std::vector<Note> notes = of.set.notes;

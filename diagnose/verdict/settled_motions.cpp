@@ -107,7 +107,7 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
 /// A note on lasting errors of imported tracks, whose images are not available.
 void note_lasting_noise(TrackSet& set) {
   const NoiseShape& shape = set.position_noise->shape;
-  if (set.pictures || !(shape.lasting > 0.0)) return;
+  if (set.images || !(shape.lasting > 0.0)) return;
   const double lasting = shape.lasting * shape.lasting;
   set.notes.emplace_back(LastingErrors{lasting / (1.0 + lasting) * std::exp(-1.0 / shape.lasting_frames),
                                        lasting / (1.0 + lasting) * std::exp(-4.0 / shape.lasting_frames)});
@@ -150,7 +150,7 @@ void settle(TrackSet& set) {
   if (!beyond.empty()) missing = find_missing_frames(set, fit_nominal(set));
   if (missing.count > 0) measure_noise(set.motions, missing.fit.late);
   const auto refit = [&] { missing.fit = fit_motions(set, missing.fit.effects, missing.fit.at, missing.fit.late); };
-  if (missing.count > 0 && set.pictures) refit();
+  if (missing.count > 0 && set.images) refit();
   // Neighbouring rounded positions show only the noise of rounding, which is known.
   if (noise_is_rounding(set)) {
     refit();
@@ -177,16 +177,16 @@ void settle(TrackSet& set) {
 constexpr double kHeldStep_px = 0.05;  // from one frame to the next
 
 /// Records whether the clips went through a lossy codec, as their files say or their images show.
-void note_loss(const PictureEvidence& pictures, TrackSet& set) {
-  set.lossy = std::any_of(pictures.findings.begin(), pictures.findings.end(), [](const PictureFinding& finding) {
+void note_loss(const ImageEvidence& images, TrackSet& set) {
+  set.lossy = std::any_of(images.findings.begin(), images.findings.end(), [](const ImageFinding& finding) {
     return finding.id == ids::compression && (finding.stated || finding.seen);
   });
-  set.handed_on = set.lossy && !std::all_of(pictures.clips.begin(), pictures.clips.end(), [](const FilmedClip& clip) {
+  set.handed_on = set.lossy && !std::all_of(images.clips.begin(), images.clips.end(), [](const FilmedClip& clip) {
                     return clip.record->codec == "MJPG";  // compresses each image by itself
                   });
   set.held_m_s = 0.0;
   if (!set.handed_on) return;
-  for (const FilmedClip& clip : pictures.clips) {
+  for (const FilmedClip& clip : images.clips) {
     if (clip.px_per_m > 0.0) {
       set.held_m_s = std::max(set.held_m_s, kHeldStep_px * clip.camera.frame_rate_hz / clip.px_per_m);
     }
@@ -220,8 +220,8 @@ bool is_misfit(const TrackSet& set, const MotionFit& fit) {
   return fit.cost / static_cast<double>(points_of(set)) > kMisfit;
 }
 
-void settle_noise(const PictureEvidence& pictures, TrackSet& set) {
-  note_loss(pictures, set);
+void settle_noise(const ImageEvidence& images, TrackSet& set) {
+  note_loss(images, set);
   settle(set);
 }
 

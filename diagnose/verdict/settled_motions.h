@@ -12,7 +12,7 @@
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
 #include "diagnose/fit/motion_fit.h"
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 #include "diagnose/tracks/tracked_motions.h"
 
 namespace glidelab::diagnose {
@@ -29,7 +29,7 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
 
 /// Finds the noise of every position from single frames and from what the images show of a codec, and sets outliers
 /// aside. Missing frames are corrected first: a jump is neither noise nor an outlier.
-void settle_noise(const PictureEvidence& pictures, TrackSet& set);
+void settle_noise(const ImageEvidence& images, TrackSet& set);
 
 /// Whether a fit leaves so much that the motion counts as not explained: chi² per position above 1.5.
 bool is_misfit(const TrackSet& set, const MotionFit& fit);

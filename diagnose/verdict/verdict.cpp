@@ -45,11 +45,11 @@ bool leaves_as_little(const Hypothesis& other, const Hypothesis& best) {
 }
 
 std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Comparison& comparison,
-                                              const PictureEvidence& pictures, const Hypothesis& hypothesis,
+                                              const ImageEvidence& images, const Hypothesis& hypothesis,
                                               std::size_t effect) {
   std::vector<DiagnosedParameter> parameters;
-  for (const PictureFinding& finding : pictures.findings) {
-    if (finding.id == effect_list()[effect].id && (finding.seen || effect_list()[effect].search == Search::pictures)) {
+  for (const ImageFinding& finding : images.findings) {
+    if (finding.id == effect_list()[effect].id && (finding.seen || effect_list()[effect].search == Search::images)) {
       parameters = finding.parameters;
     }
   }
@@ -67,7 +67,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
     const auto count = static_cast<double>(missing_in(set, fit));
     if (count > 0.0) parameters.push_back({"fraction", count / points, std::sqrt(count) / points});
   }
-  for (const DiagnosedParameter& tracked : fitted_parameters(set, fit, effect, pictures.stated_line_s)) {
+  for (const DiagnosedParameter& tracked : fitted_parameters(set, fit, effect, images.stated_line_s)) {
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.key == tracked.key; });
     if (known == parameters.end()) {
@@ -76,7 +76,7 @@ std::vector<DiagnosedParameter> parameters_of(const TrackSet& set, const Compari
       *known = tracked;
     }
   }
-  const std::vector<DiagnosedParameter> derived = derived_parameters(set, fit, effect, pictures, parameters);
+  const std::vector<DiagnosedParameter> derived = derived_parameters(set, fit, effect, images, parameters);
   parameters.insert(parameters.end(), derived.begin(), derived.end());
   return parameters;
 }
@@ -92,7 +92,7 @@ std::size_t parameters_added(const TrackSet& set, const Comparison& comparison, 
       ++count;
       if (hypothesis.fit >= 0) count += missing_in(set, comparison.fits[static_cast<std::size_t>(hypothesis.fit)]);
     }
-    if (info.search == Search::pictures) ++count;
+    if (info.search == Search::images) ++count;
     if (info.search == Search::noise) count += info.id == ids::heavy_tailed_noise ? 2 : 1;
   }
   return count;
@@ -226,7 +226,7 @@ std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison&
   return ranking;
 }
 
-Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures,
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvidence images,
                      const NoiseAlone* noise_alone) {
   Diagnosis diagnosis;
   diagnosis.notes = set.notes;
@@ -247,11 +247,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     for (const std::size_t e : named_effects(*best, noise_alone)) {
       const EffectInfo& info = effect_list()[e];
       std::vector<std::string> alike;
-      for (const std::size_t other : not_told_apart(comparison, *best, e, set.pictures))
+      for (const std::size_t other : not_told_apart(comparison, *best, e, set.images))
         alike.emplace_back(effect_list()[other].id);
       diagnosis.effects.push_back({std::string(info.id), info.stage, std::string(info.words),
                                    comparison.effect_probability[e], std::move(alike),
-                                   parameters_of(set, comparison, pictures, *best, e)});
+                                   parameters_of(set, comparison, images, *best, e)});
     }
     if (noise_alone == nullptr) {  // otherwise they are in order of their shares
       std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
@@ -280,7 +280,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
     }
     add_regions(set, nominal, families, diagnosis);
   }
-  add_picture_regions(pictures, diagnosis);
+  add_image_regions(images, diagnosis);
   const MotionFit* gap_fit = fit;
   MotionFit with;
   if (diagnosis.verdict == Verdict::unknown && !drives && set.clips.size() > 1 && noise_alone == nullptr) {
@@ -302,15 +302,15 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureE
   if (diagnosis.limits.set_aside) diagnosis.notes.emplace_back(*diagnosis.limits.set_aside);
   diagnosis.residuals = residuals_of(gap_set, gap_nominal, *gap_fit);
   diagnosis.isolability = isolability_of(set, nominal, comparison);
-  Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == Verdict::unknown, pictures.filming);
+  Twin twin = twin_of(set, *fit, diagnosis.effects, diagnosis.verdict == Verdict::unknown, images.filming);
   diagnosis.measured = measured_of(set, twin);
   diagnosis.twin = std::move(twin.toml);
   diagnosis.twin_lacks = std::move(twin.lacks);
   diagnosis.twin_from_m = twin.from_m;
   diagnosis.next = next_experiment(set, comparison, diagnosis);
-  diagnosis.pictures = std::move(pictures.findings);
-  diagnosis.picture_curves = std::move(pictures.curves);
-  diagnosis.gap->domains = gap_domains(*diagnosis.gap, diagnosis.pictures, diagnosis.effects);
+  diagnosis.images = std::move(images.findings);
+  diagnosis.image_curves = std::move(images.curves);
+  diagnosis.gap->domains = gap_domains(*diagnosis.gap, diagnosis.images, diagnosis.effects);
   return diagnosis;
 }
 

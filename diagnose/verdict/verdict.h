@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 #include "diagnose/result/diagnosis.h"
 #include "diagnose/weigh/hypothesis.h"
 
@@ -21,7 +21,7 @@ struct NoiseAlone {
 std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypothesis& best, std::size_t effect,
                                         bool filmed);
 
-Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, PictureEvidence pictures = {},
+Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvidence images = {},
                      const NoiseAlone* noise_alone = nullptr);
 
 /// Explanations that name something, by falling probability; those with next to none by falling evidence.

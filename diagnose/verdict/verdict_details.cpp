@@ -31,9 +31,9 @@ std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, doubl
 }
 
 /// Pixels per metre along the motion; 0 if the clips do not agree on it.
-double px_per_m(const PictureEvidence& pictures) {
+double px_per_m(const ImageEvidence& images) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
-  for (const FilmedClip& clip : pictures.clips) {
+  for (const FilmedClip& clip : images.clips) {
     least = std::min(least, clip.px_per_m);
     most = std::max(most, clip.px_per_m);
   }
@@ -60,7 +60,7 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
 }
 
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
-                                                   const PictureEvidence& pictures,
+                                                   const ImageEvidence& images,
                                                    const std::vector<DiagnosedParameter>& known) {
   if (std::vector<DiagnosedParameter> own = own_sizes(set, fit, effect); !own.empty()) return own;
   const auto& globals = fit.layout->globals();
@@ -76,7 +76,7 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
   }
   const auto in_metres = std::find_if(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_m"; });
   const bool in_pixels = std::any_of(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_px"; });
-  const double scale = px_per_m(pictures);
+  const double scale = px_per_m(images);
   if (in_metres == known.end() || in_pixels || scale == 0.0) return {};
   return {{"amplitude_px", in_metres->value * scale, in_metres->sd * scale}};
 }
@@ -276,21 +276,21 @@ bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
   return any;
 }
 
-void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis) {
+void add_image_regions(const ImageEvidence& images, Diagnosis& diagnosis) {
   for (const DiagnosedEffect& effect : diagnosis.effects) {
     const std::optional<InImages>& where = effect_of(effect.id).in_images;
-    for (const PictureFinding& finding : pictures.findings) {
+    for (const ImageFinding& finding : images.findings) {
       if (finding.id != effect.id || !finding.seen || !where || finding.parameters.empty()) continue;
       GapRegion region;
-      region.variable = where->along_track && pictures.clips.front().down ? GapVariable::row : where->over;
+      region.variable = where->along_track && images.clips.front().down ? GapVariable::row : where->over;
       region.what = where->what;
-      const core::PictureRecord& record = *pictures.clips.front().record;
+      const core::ImageRecord& record = *images.clips.front().record;
       region.to = region.variable == GapVariable::column ? record.width_px
                   : region.variable == GapVariable::row  ? record.height_px
                   : record.scene.empty()                 ? 0.0
                                                          : record.scene.back().t_s;
-      if (region.variable == GapVariable::speed && pictures.clips.front().px_per_m > 0.0) {
-        region.to = pictures.fastest_px_s / pictures.clips.front().px_per_m;
+      if (region.variable == GapVariable::speed && images.clips.front().px_per_m > 0.0) {
+        region.to = images.fastest_px_s / images.clips.front().px_per_m;
       }
       const DiagnosedParameter& size = finding.parameters.front();
       region.size = size.value;

@@ -7,7 +7,7 @@
 
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/frames/frame_effects.h"
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 #include "diagnose/result/diagnosis.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/unnamed/unnamed_family.h"
@@ -31,7 +31,7 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
 /// `known` are the parameters of the effect so far; a key that is among them is not stated again. Nothing is stated in
 /// pixels for tracks, whose camera nobody knows, nor if the scales of the clips differ by more than 5 %.
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
-                                                   const PictureEvidence& pictures,
+                                                   const ImageEvidence& images,
                                                    const std::vector<DiagnosedParameter>& known);
 
 /// Limits that a reader must know before the verdict, for the fit on which it rests: a negative drag or friction,
@@ -69,6 +69,6 @@ bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
                     const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis);
 
 /// Adds where a gap lies, for named effects that only images show.
-void add_picture_regions(const PictureEvidence& pictures, Diagnosis& diagnosis);
+void add_image_regions(const ImageEvidence& images, Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

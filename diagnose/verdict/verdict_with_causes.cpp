@@ -44,7 +44,7 @@ double probability_of_scatter(const Comparison& comparison) {
 
 bool shows_in_images(const Hypothesis& best) {
   return std::any_of(best.effects.begin(), best.effects.end(),
-                     [](std::size_t e) { return effect_list()[e].search == Search::pictures; });
+                     [](std::size_t e) { return effect_list()[e].search == Search::images; });
 }
 
 /// With an unknown cause, the causes that help and together take less than half of the excess. A cause that would take
@@ -100,7 +100,7 @@ double probability_of(const Comparison& comparison, const Hypothesis& best, std:
 /// than not. A name that is less likely is no answer.
 bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
   return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
-    return probability_of(comparison, best, e, set.pictures) >= kLikelierThanNot;
+    return probability_of(comparison, best, e, set.images) >= kLikelierThanNot;
   });
 }
 
@@ -191,13 +191,13 @@ bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
 
 }  // namespace
 
-Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pictures,
+Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence images,
                       const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress) {
   const std::set<std::size_t> without(left_out.begin(), left_out.end());
   const MotionFit& nominal = first.fits.front();
   std::optional<WeighedCauses> weighed;
   if (first.unknown > kLeastUnknown || leaves_a_gap(set, first)) {
-    weighed = weigh_causes(set, first, without, jobs, &pictures,
+    weighed = weigh_causes(set, first, without, jobs, &images,
                            [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
   }
   progress("measuring the gap", 0.9);
@@ -222,7 +222,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   };
   const double least_named = weighed ? kLeastNamed : kLeastShare;
   CauseSequence sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
-  if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.pictures, best, sequence) : nullptr) {
+  if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.images, best, sequence) : nullptr) {
     CauseSequence likelier = sequence_of(set, nominal, with, fit_of(*alone), without, least_named);
     if (may_displace(likelier, sequence)) {
       best = *alone;
@@ -244,7 +244,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
   }
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{set, nominal, sequence.named};
-    diagnosis = verdict_of(with, by, std::move(pictures), &noise_alone);
+    diagnosis = verdict_of(with, by, std::move(images), &noise_alone);
   } else {
     // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
     // anything claimed if the positions follow the model far better than the assumed noise allows.
@@ -275,7 +275,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pic
         for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
       }
     }
-    diagnosis = verdict_of(set, first, std::move(pictures));
+    diagnosis = verdict_of(set, first, std::move(images));
     if (weighed && sequence.is_gap && !in_images) {
       const NoiseAlone noise_alone{set, nominal, nominal};
       diagnosis.ranking = ranking_of(with, by, &noise_alone);

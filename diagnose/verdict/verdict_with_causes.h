@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "base/long_work.h"
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 #include "diagnose/result/diagnosis.h"
 #include "diagnose/weigh/hypotheses.h"
 
 namespace glidelab::diagnose {
 
 /// `first` is the comparison by the noise alone, without the effects in `left_out`.
-Diagnosis with_causes(const TrackSet& set, Comparison first, PictureEvidence pictures,
+Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence images,
                       const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress);
 
 }  // namespace glidelab::diagnose

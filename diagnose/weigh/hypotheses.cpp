@@ -99,8 +99,8 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
     const bool tracked =
-        list[e].search != Search::pictures && (!shows_in_motion(list[e].search) || comparison.scans[e].visible);
-    const bool shown = tracked || comparison.in_pictures.contains(e);
+        list[e].search != Search::images && (!shows_in_motion(list[e].search) || comparison.scans[e].visible);
+    const bool shown = tracked || comparison.in_images.contains(e);
     const bool candidate = !without.contains(e) && shown;
     seen += candidate ? 1.0 : 0.0;
   }
@@ -119,12 +119,12 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   double sum = 0.0;
   for (double& l : logs) sum += l = std::exp(l - most);
   for (std::size_t h = 0; h < logs.size(); ++h) comparison.all[h].probability = logs[h] / sum;
-  if (set.pictures) give_trifles_to_their_effects(comparison);
+  if (set.images) give_trifles_to_their_effects(comparison);
   set_probabilities(comparison);
 }
 
 Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t>& without, int jobs,
-                              const PictureEvidence* pictures, const std::function<void(double)>& done) {
+                              const ImageEvidence* images, const std::function<void(double)>& done) {
   const Work work{jobs, done};
   const std::set<std::size_t> left_out(without.begin(), without.end());
   Comparison comparison;
@@ -176,7 +176,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
     if (!left_out.contains(frame.effect)) comparison.frames.push_back(frame);
   }
   add_frame_effects(comparison);
-  if (pictures != nullptr) join_pictures(set, *pictures, left_out, comparison);
+  if (images != nullptr) join_images(set, *images, left_out, comparison);
   weigh(set, left_out, comparison);
   return comparison;
 }

@@ -19,14 +19,14 @@
 
 namespace glidelab::diagnose {
 
-struct PictureEvidence;
+struct ImageEvidence;
 
-/// `without` are effects that are not considered; `pictures` is what the images of filmed clips show (null for tracks).
+/// `without` are effects that are not considered; `images` is what the images of filmed clips show (null for tracks).
 /// `done` is called before each fit, from any thread, with the fraction that is done (0 to 1); an exception from it
 /// ends the comparison.
 Comparison compare_hypotheses(
     const TrackSet& set, const std::vector<std::size_t>& without = {}, int jobs = 1,
-    const PictureEvidence* pictures = nullptr, const std::function<void(double)>& done = [](double) {});
+    const ImageEvidence* images = nullptr, const std::function<void(double)>& done = [](double) {});
 
 /// Probabilities of all hypotheses from their evidence and the prior odds. Sorts them by decreasing probability.
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison);

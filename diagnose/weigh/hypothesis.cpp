@@ -107,7 +107,7 @@ std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<Eff
   const auto has_direction = [](const EffectScan& scan) { return scan.visible && scan.direction.rest.size() > 0; };
   std::vector<std::size_t> alike(effect_list().size());
   for (std::size_t e = 0; e < alike.size(); ++e) {
-    const std::size_t first = first_alike(e, space.set().pictures);  // it comes earlier in the list
+    const std::size_t first = first_alike(e, space.set().images);  // it comes earlier in the list
     alike[e] = first != e ? alike[first] : e;
     if (first != e || !has_direction(scans[e])) continue;
     const EffectScan& scan = scans[e];
@@ -160,7 +160,7 @@ const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) 
   std::map<std::size_t, double> of_cause;
   const auto causes = [&](const Hypothesis& hypothesis) {
     Causes same;
-    for (const std::size_t e : hypothesis.effects) same.insert(alike_of(comparison, e, set.pictures));
+    for (const std::size_t e : hypothesis.effects) same.insert(alike_of(comparison, e, set.images));
     return same;
   };
   const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };

@@ -37,7 +37,7 @@ struct Comparison {
   int left_fit = 0;                         ///< index of the best named explanation's fit
   std::vector<UnnamedFamily> unnamed_left;  ///< beside the named explanation that makes them likeliest
   int beside_fit = 0;                       ///< index of that explanation's fit
-  std::set<std::size_t> in_pictures;        ///< effects that the images support or contradict
+  std::set<std::size_t> in_images;          ///< effects that the images support or contradict
   double none = 0.0, unknown = 0.0;
   std::vector<double> effect_probability;  ///< of each of effect_list(), alone or with another
   /// For each of effect_list(), the first effect that these data cannot tell from it (alike_in()); empty:

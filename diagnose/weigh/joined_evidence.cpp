@@ -7,7 +7,7 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/gap/held_out.h"
-#include "diagnose/pictures/picture_scene.h"
+#include "diagnose/pictures/image_scene.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -23,7 +23,7 @@ bool same_effects(const Hypothesis& a, const Hypothesis& b) {
 }
 
 /// What the images say about a camera that sways as this fit has it.
-double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::size_t effect, double otherwise) {
+double sway_support(const ImageEvidence& images, const MotionFit& fit, std::size_t effect, double otherwise) {
   double amplitude_m = 0.0, f_hz = 0.0;
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
@@ -32,17 +32,17 @@ double sway_support(const PictureEvidence& pictures, const MotionFit& fit, std::
     if (globals[g].parameter->slot == slot_of(ids::camera_motion)) amplitude_m = value;
     if (globals[g].parameter->slot == slot_of(ids::camera_motion, 1)) f_hz = value;
   }
-  return f_hz > 0.0 ? camera_sway_support(pictures.clips, amplitude_m, f_hz) : otherwise;
+  return f_hz > 0.0 ? camera_sway_support(images.clips, amplitude_m, f_hz) : otherwise;
 }
 
 /// What the marker's shear says about the line time of this fit.
-double line_support(const PictureEvidence& pictures, const PictureFinding& finding, const MotionFit& fit,
+double line_support(const ImageEvidence& images, const ImageFinding& finding, const MotionFit& fit,
                     std::size_t effect) {
   const std::size_t g = fit.layout->first_of(effect);
   const auto at = static_cast<Eigen::Index>(g);
   const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(at, at)));
   const DiagnosedParameter& sheared = finding.parameters.front();
-  return agreement({sheared.value - pictures.stated_line_s, sheared.sd}, {fit.at.global[at], sd});
+  return agreement({sheared.value - images.stated_line_s, sheared.sd}, {fit.at.global[at], sd});
 }
 
 /// Log likelihood of one motion's residuals, of variance s²((1 - share) white + share exp(-lag/frames)).
@@ -65,10 +65,10 @@ double correlated_likelihood(const Eigen::VectorXd& r, const std::vector<char>& 
 
 }  // namespace
 
-double agreement(const Measured& in_pictures, const Measured& in_tracks) {
-  const double own = in_pictures.sd * in_pictures.sd, both = own + in_tracks.sd * in_tracks.sd;
-  const double off = in_pictures.value - in_tracks.value;
-  return 0.5 * (in_pictures.value * in_pictures.value / own - off * off / both - std::log(both / own));
+double agreement(const Measured& in_images, const Measured& in_tracks) {
+  const double own = in_images.sd * in_images.sd, both = own + in_tracks.sd * in_tracks.sd;
+  const double off = in_images.value - in_tracks.value;
+  return 0.5 * (in_images.value * in_images.value / own - off * off / both - std::log(both / own));
 }
 
 CorrelatedNoise scan_correlation(const TrackSet& set, const MotionFit& fit) {
@@ -104,7 +104,7 @@ namespace {
 /// under white noise, as the residuals of the best explanation of all show it.
 void temper(const TrackSet& set, Comparison& comparison) {
   const CorrelatedNoise left = scan_correlation(set, comparison.fits[static_cast<std::size_t>(comparison.left_fit)]);
-  if (left.log_evidence < kSeenInPictures) return;
+  if (left.log_evidence < kSeenInImages) return;
   for (Hypothesis& hypothesis : comparison.all) {
     if (hypothesis.log_evidence > 0.0) hypothesis.log_evidence /= std::max(1.0, left.inflation);
   }
@@ -112,13 +112,13 @@ void temper(const TrackSet& set, Comparison& comparison) {
 
 }  // namespace
 
-void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
-                   Comparison& comparison) {
+void join_images(const TrackSet& set, const ImageEvidence& images, const std::set<std::size_t>& without,
+                 Comparison& comparison) {
   const std::size_t codec = effect_index(ids::compression), sway = effect_index(ids::camera_motion),
                     jitter = effect_index(ids::timestamp_jitter), rows = effect_index(ids::rolling_shutter),
                     tails = effect_index(ids::heavy_tailed_noise);
-  std::vector<const PictureFinding*> findings;
-  for (const PictureFinding& finding : pictures.findings) {
+  std::vector<const ImageFinding*> findings;
+  for (const ImageFinding& finding : images.findings) {
     if (!without.contains(effect_index(finding.id))) findings.push_back(&finding);
   }
   std::sort(findings.begin(), findings.end(),
@@ -126,18 +126,18 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
   if (std::any_of(findings.begin(), findings.end(), [](const auto* finding) { return finding->stated; })) {
     temper(set, comparison);
   }
-  for (const PictureFinding* finding : findings) {
+  for (const ImageFinding* finding : findings) {
     const std::size_t effect = effect_index(finding->id);
-    comparison.in_pictures.insert(effect);
-    const double of_pictures = finding->stated ? 0.0 : finding->log_evidence;
+    comparison.in_images.insert(effect);
+    const double of_images = finding->stated ? 0.0 : finding->log_evidence;
     const std::vector<Hypothesis> so_far = comparison.all;
     for (Hypothesis& hypothesis : comparison.all) {
       if (!has(hypothesis, effect)) continue;
-      double support = of_pictures;
+      double support = of_images;
       if (hypothesis.fit >= 0) {
         const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];
-        if (effect == sway) support = sway_support(pictures, fit, sway, finding->log_evidence);
-        if (effect == rows) support = line_support(pictures, *finding, fit, rows);
+        if (effect == sway) support = sway_support(images, fit, sway, finding->log_evidence);
+        if (effect == rows) support = line_support(images, *finding, fit, rows);
       }
       hypothesis.log_evidence += support;
     }
@@ -168,15 +168,15 @@ void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const s
         }
         // The codec's errors grow with the changes in the image, and single ones are large where its blocks are
         // visible.
-        if (of_tracks > kSeenInPictures) {
+        if (of_tracks > kSeenInImages) {
           of_tracks += std::max(std::min(kMostByScatter, scatter), finding->seen ? outliers : 0.0);
         }
       }
       // A smeared marker is located less well the faster it moves: the part shown by the scatter is the blur's own.
       if (finding->id == ids::exposure_blur && finding->seen) of_tracks = scatter;
-      if (of_pictures + of_tracks < kWorthJoining) continue;
-      with.log_evidence += of_pictures + of_tracks;
-      with.gain += std::max(0.0, of_pictures);
+      if (of_images + of_tracks < kWorthJoining) continue;
+      with.log_evidence += of_images + of_tracks;
+      with.gain += std::max(0.0, of_images);
       comparison.all.push_back(std::move(with));
     }
   }

@@ -8,21 +8,21 @@
 
 #include <set>
 
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 #include "diagnose/weigh/hypothesis.h"
 
 namespace glidelab::diagnose {
 
 /// `without` are effects that are not considered.
-void join_pictures(const TrackSet& set, const PictureEvidence& pictures, const std::set<std::size_t>& without,
-                   Comparison& comparison);
+void join_images(const TrackSet& set, const ImageEvidence& images, const std::set<std::size_t>& without,
+                 Comparison& comparison);
 
 /// Log likelihood ratio of a size that images measured (0: absent): under the size that the tracks found, and under its
 /// absence, both sizes with their standard deviations: log N(p; t, sp² + st²) - log N(p; 0, sp²).
 struct Measured {
   double value = 0.0, sd = 0.0;
 };
-double agreement(const Measured& in_pictures, const Measured& in_tracks);
+double agreement(const Measured& in_images, const Measured& in_tracks);
 
 /// Log evidence that the noise of positions is correlated over up to 8 frames, as a codec makes it, against white
 /// noise. The model is an exponential correlation plus a white part, both of free size, with a Kalman filter over the

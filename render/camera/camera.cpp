@@ -269,7 +269,7 @@ std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector
   return pixel_of(camera, p_C.head<2>() / p_C.z());
 }
 
-bool in_picture(const Camera& camera, const Eigen::Vector2d& pixel, double margin_px) {
+bool in_image(const Camera& camera, const Eigen::Vector2d& pixel, double margin_px) {
   return pixel.x() >= margin_px && pixel.y() >= margin_px && pixel.x() <= camera.width_px - 1 - margin_px &&
          pixel.y() <= camera.height_px - 1 - margin_px;
 }
@@ -337,7 +337,7 @@ Eigen::Isometry3d mount_at(const Mount& mount, double t_s) {
   return moved;
 }
 
-double picture_shift_px(const Camera& camera, const Eigen::Isometry3d& moved) {
+double image_shift_px(const Camera& camera, const Eigen::Isometry3d& moved) {
   double largest = 0.0;
   const double right = camera.width_px - 1.0;
   const double bottom = camera.height_px - 1.0;

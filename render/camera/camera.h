@@ -87,7 +87,7 @@ std::optional<Eigen::Vector2d> pixel_of(const Camera& camera, const Eigen::Vecto
 std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_W);
 
 /// Whether a pixel position lies on the image, at least `margin_px` inside its outermost pixel centres.
-bool in_picture(const Camera& camera, const Eigen::Vector2d& pixel, double margin_px = 0.0);
+bool in_image(const Camera& camera, const Eigen::Vector2d& pixel, double margin_px = 0.0);
 
 /// X_WC of a camera at `position_W` that looks at `target_W` with the world's +y upward in the image, then rotated by
 /// `roll_rad` about its optical axis, clockwise as seen from behind the camera. The line of sight must not be vertical.
@@ -131,6 +131,6 @@ Eigen::Isometry3d mount_at(const Mount& mount, double t_s);
 
 /// The largest shift of the image's middle and corners when a camera is moved in this way; for objects 1 m away or
 /// farther.
-double picture_shift_px(const Camera& camera, const Eigen::Isometry3d& moved);
+double image_shift_px(const Camera& camera, const Eigen::Isometry3d& moved);
 
 }  // namespace glidelab::render

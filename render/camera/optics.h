@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/camera/camera.h"
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 
 namespace glidelab::render {
 

@@ -26,8 +26,8 @@ constexpr double kMostPoses = 64.0;
 }  // namespace
 
 ClipRenderer::ClipRenderer(const Scenario& scenario, const sim::ConfigurationSetup& configuration,
-                           const StaticScene& scene, const RayTable& rays, const FloatPicture& background_e,
-                           std::uint64_t seed, std::uint32_t stream, const FinePicture* fine)
+                           const StaticScene& scene, const RayTable& rays, const FloatImage& background_e,
+                           std::uint64_t seed, std::uint32_t stream, const FineImage* fine)
     : scenario_(scenario),
       configuration_(configuration),
       scene_(scene),
@@ -55,11 +55,11 @@ MotionDetail ClipRenderer::detail() const {
   return simple ? MotionDetail::parts : MotionDetail::path;
 }
 
-const FloatPicture& ClipRenderer::expected(const FrameMotion& frame) {
+const FloatImage& ClipRenderer::expected(const FrameMotion& frame) {
   return expected(frame, {0, 0, background_e_.width, background_e_.height});
 }
 
-const FloatPicture& ClipRenderer::expected(const FrameMotion& frame, const PixelRect& within) {
+const FloatImage& ClipRenderer::expected(const FrameMotion& frame, const PixelRect& within) {
   background_of(frame, within);
   add_reflections(frame, false, within);
   const MovingBody body = glider(scenario_, scene_, configuration_.body, frame.middle.x_m);
@@ -125,7 +125,7 @@ void ClipRenderer::add_views(const FrameMotion& frame) {
     Eigen::Isometry3d before = mount_at(scenario_.mount, frame.start_s);
     for (int i = 1; i <= kSteps; ++i) {
       const Eigen::Isometry3d after = mount_at(scenario_.mount, frame.start_s + open_s * i / kSteps);
-      path_px += picture_shift_px(camera, before.inverse() * after);
+      path_px += image_shift_px(camera, before.inverse() * after);
       before = after;
     }
     poses_ = static_cast<std::size_t>(std::clamp(std::ceil(path_px / kPoseStep), 1.0, kMostPoses));
@@ -213,9 +213,9 @@ void ClipRenderer::read(const FrameMotion& frame, const PixelRect& rect, std::sp
 
 namespace {
 
-FloatPicture scaled(FloatPicture picture, double factor) {
-  for (float& value : picture.values) value = static_cast<float>(static_cast<double>(value) * factor);
-  return picture;
+FloatImage scaled(FloatImage image, double factor) {
+  for (float& value : image.values) value = static_cast<float>(static_cast<double>(value) * factor);
+  return image;
 }
 
 /// The stills were taken before the focus changed, with the first configuration's track, by a camera at rest.
@@ -252,7 +252,7 @@ std::shared_ptr<const Stage> set_stage(const Scenario& before, int jobs, const s
       Stage::SetUp& set_up = *set_ups[i];
       set_up.background_e = scaled(painter.paint(set_up.scene), white_e);
       if (scenario.mount.moves()) {
-        set_up.fine = fine_picture(scenario.camera, scenario.mount, scenario.focus, set_up.scene, longest_s);
+        set_up.fine = fine_image(scenario.camera, scenario.mount, scenario.focus, set_up.scene, longest_s);
       }
       if (drawn) drawn();
     }

@@ -23,12 +23,12 @@ class ClipRenderer {
   /// `background_e` is the static scene, in electrons; it and `rays` are shared and must outlive this object. `stream`
   /// keys the noise (one number per clip). `fine` is needed for a moving camera, otherwise null.
   ClipRenderer(const Scenario& scenario, const sim::ConfigurationSetup& configuration, const StaticScene& scene,
-               const RayTable& rays, const FloatPicture& background_e, std::uint64_t seed, std::uint32_t stream,
-               const FinePicture* fine = nullptr);
+               const RayTable& rays, const FloatImage& background_e, std::uint64_t seed, std::uint32_t stream,
+               const FineImage* fine = nullptr);
 
   /// Expected electrons of a frame. Valid until the next call; outside `within` they are undefined.
-  const FloatPicture& expected(const FrameMotion& frame, const PixelRect& within);
-  const FloatPicture& expected(const FrameMotion& frame);
+  const FloatImage& expected(const FrameMotion& frame, const PixelRect& within);
+  const FloatImage& expected(const FrameMotion& frame);
 
   /// Codes of the frame's pixels within `rect`, without work for others: the same codes as in a whole frame.
   void read(const FrameMotion& frame, const PixelRect& rect, std::span<std::uint8_t> codes);
@@ -51,10 +51,10 @@ class ClipRenderer {
   const sim::ConfigurationSetup& configuration_;
   const StaticScene& scene_;
   const RayTable& rays_;
-  const FloatPicture& background_e_;
-  const FinePicture* fine_;
-  FloatPicture expected_e_;
-  FloatPicture lit_e_;  ///< with the flicker; empty without
+  const FloatImage& background_e_;
+  const FineImage* fine_;
+  FloatImage expected_e_;
+  FloatImage lit_e_;  ///< with the flicker; empty without
   PixelRect changed_;
   double white_e_ = 0.0;
   double longest_step_m_ = 0.0;
@@ -71,13 +71,13 @@ class ClipRenderer {
 struct Stage {
   struct SetUp {
     StaticScene scene;
-    FloatPicture background_e;        ///< in electrons
-    std::optional<FinePicture> fine;  ///< if the camera moves
+    FloatImage background_e;        ///< in electrons
+    std::optional<FineImage> fine;  ///< if the camera moves
   };
   RayTable rays;                         ///< of the camera as in the clips
   std::map<std::string, SetUp> set_ups;  ///< by group
   /// The background of the pattern in the stills, in electrons; with the first configuration's track.
-  FloatPicture behind_stills_e;
+  FloatImage behind_stills_e;
   std::optional<RayTable> still_rays;  ///< empty if the clips' camera also took the stills
 
   const RayTable& rays_of_stills() const { return still_rays ? *still_rays : rays; }

@@ -23,7 +23,7 @@ std::vector<ClipView> views_of(const Scenario& scenario) {
       const auto visit = [&](const FrameMotion& frame) {
         ++view.frames;
         moved.include(frame.middle.x_m);
-        if (marker_in_picture(seen_by, configuration.body, frame)) {
+        if (marker_in_image(seen_by, configuration.body, frame)) {
           seen.include(frame.middle.x_m);
         } else {
           ++view.outside;

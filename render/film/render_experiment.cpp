@@ -64,16 +64,16 @@ class ClipTruth {
         times_(folder / fmt::format("frames-{}.csv", clip), "frame,slot,t_s,stamp_s,duplicate") {}
 
   /// Adds a frame of the file that shows its own slot's exposure, or a repeated earlier one.
-  void add(const ClipStream::Next& frame, const std::optional<MarkerInPicture>& in_picture) {
+  void add(const ClipStream::Next& frame, const std::optional<MarkerInImage>& in_image) {
     const sim::State& state = frame.shown->middle;
     trajectory_.row().number(state.t_s).number(state.x_m).number(state.v_m_s).number(state.a_m_s2);
     trajectory_.row().text(sim::name_of(state.mode));
     trajectory_.end_row();
     const auto number = static_cast<double>(frames_++);
-    if (in_picture) {
-      marker_.row().number(number).number(in_picture->t_s);
-      marker_.row().number(in_picture->center_px.x()).number(in_picture->center_px.y());
-      marker_.row().number(in_picture->centroid_px.x()).number(in_picture->centroid_px.y());
+    if (in_image) {
+      marker_.row().number(number).number(in_image->t_s);
+      marker_.row().number(in_image->center_px.x()).number(in_image->center_px.y());
+      marker_.row().number(in_image->centroid_px.x()).number(in_image->centroid_px.y());
       marker_.end_row();
     }
     times_.row().number(number).number(static_cast<double>(frame.slot)).number(state.t_s).number(frame.stamp_s);
@@ -106,11 +106,11 @@ void write_frames(const Scenario& scenario, const sim::Body& body, ClipStream& s
                   ClipTruth& truth, const std::function<void()>& frame_done) {
   const PixelRect all{0, 0, scenario.camera.width_px, scenario.camera.height_px};
   std::vector<Code> codes(static_cast<std::size_t>(all.width) * all.height);
-  std::optional<MarkerInPicture> marker;
+  std::optional<MarkerInImage> marker;
   while (const std::optional<ClipStream::Next> next = stream.next()) {
     if (!next->repeated) {
       stream.read(*next->shown, all, std::span<Code>(codes));
-      marker = marker_in_picture(scenario, body, *next->shown);
+      marker = marker_in_image(scenario, body, *next->shown);
     }
     write_frame(writer, std::span<const Code>(codes),
                 scenario.recording.clock.variable ? std::optional(next->stamp_s) : std::nullopt);
@@ -159,10 +159,10 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
 
   const ClipCount count = count_clips(scenario, options.seed);
   const bool draws_stage = !stage && (options.stills || options.clips);
-  const std::size_t pictures =
+  const std::size_t images =
       (options.stills ? count_stills(scenario) : 0) + (draws_stage ? count_set_ups(scenario) : 0);
   const double all_work =
-      kStillWork * static_cast<double>(pictures) + (options.clips ? static_cast<double>(count.frames) : 0.0);
+      kStillWork * static_cast<double>(images) + (options.clips ? static_cast<double>(count.frames) : 0.0);
   std::atomic<double> done{0.0};
   const auto advance = [&](double work) {
     double before = done.load();
@@ -170,13 +170,13 @@ RenderSummary render_experiment(const Scenario& scenario, const fs::path& experi
     }
     progress("rendering", std::min(1.0, (before + work) / all_work));
   };
-  const auto picture_done = [&] { advance(kStillWork); };
+  const auto image_done = [&] { advance(kStillWork); };
 
-  if (draws_stage) stage = set_stage(scenario, options.jobs, picture_done);
+  if (draws_stage) stage = set_stage(scenario, options.jobs, image_done);
   if (options.stills) {
     take_stills(scenario, *stage, options.seed, options.jobs, [&](const std::string& name, const cv::Mat& codes) {
       write_png(experiment_dir / name, codes);
-      picture_done();
+      image_done();
     });
   }
   if (options.clips) {

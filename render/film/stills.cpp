@@ -43,7 +43,7 @@ bool wholly_seen(const Camera& camera, const Chessboard& board, double margin_px
     for (int k = 0; k < kSteps; ++k) {
       const Eigen::Vector3d p = outline[i] + (outline[(i + 1) % outline.size()] - outline[i]) * k / kSteps;
       const auto pixel = project(camera, p);
-      if (!pixel || !in_picture(camera, *pixel, margin_px)) return false;
+      if (!pixel || !in_image(camera, *pixel, margin_px)) return false;
     }
   }
   return true;
@@ -141,7 +141,7 @@ class Painter {
   Painter(const Scenario& scenario, const Stage& stage)
       : scenario_(scenario), stage_(stage), white_e_(electrons_of_white(scenario)) {}
 
-  FloatPicture paint(const StaticScene& scene) {
+  FloatImage paint(const StaticScene& scene) {
     if (!scenario_.focus && !scene.plumb && stands_free(scenario_.camera, scene)) {
       return paint_board(scenario_.camera, stage_.rays_of_stills(), stage_.behind_stills_e, scene, white_e_);
     }

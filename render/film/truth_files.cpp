@@ -139,15 +139,15 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed) {
   return truth.dump(2) + "\n";
 }
 
-std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const sim::Body& body,
-                                                 const FrameMotion& frame) {
+std::optional<MarkerInImage> marker_in_image(const Scenario& scenario, const sim::Body& body,
+                                             const FrameMotion& frame) {
   const Camera& camera = scenario.camera;
   const Recording& recording = scenario.recording;
   const auto center_C = [&](double x_m, double t_s) -> Eigen::Vector3d {
     const Eigen::Vector3d at_rest = camera.X_WC.inverse() * marker_position_W(scenario, body.incline_rad, x_m);
     return scenario.mount.moves() ? mount_at(scenario.mount, t_s).inverse() * at_rest : at_rest;
   };
-  MarkerInPicture marker;
+  MarkerInImage marker;
   marker.x_m = frame.middle.x_m;
   marker.t_s = frame.middle.t_s;
   const double middle_row = 0.5 * (camera.height_px - 1);
@@ -173,9 +173,9 @@ std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const
   const Eigen::Vector3d c = center_C(marker.x_m, sim_s);
   const auto pixel = c.z() > 0.0 ? pixel_of(camera, c.hnormalized()) : std::nullopt;
   const auto outline = image_of_sphere(c, 0.5 * scenario.marker.diameter_m);
-  if (!pixel || !outline || !in_picture(camera, *pixel)) return std::nullopt;
+  if (!pixel || !outline || !in_image(camera, *pixel)) return std::nullopt;
   marker.center_px = *pixel;
-  marker.centroid_px = picture_of(camera, *outline).centroid_px;
+  marker.centroid_px = image_of(camera, *outline).centroid_px;
   return marker;
 }
 
@@ -203,13 +203,13 @@ void write_ideal_frames(const Scenario& scenario, const std::filesystem::path& t
         frame.start_s = real.start_s;
         frame.middle = real.middle;
         frame.x_m = {real.middle.x_m};
-        const FloatPicture& expected_e = renderer.expected(frame);
+        const FloatImage& expected_e = renderer.expected(frame);
         for (std::size_t i = 0; i < codes.size(); ++i) {
           const double code = std::round(code_per_e * static_cast<double>(expected_e.values[i]));
           codes[i] = static_cast<std::uint8_t>(std::clamp(code, 0.0, 255.0));
         }
         writer->write(std::span<const std::uint8_t>(codes));
-        if (const auto marker = marker_in_picture(ideal, body, frame)) {
+        if (const auto marker = marker_in_image(ideal, body, frame)) {
           marker_truth.number(static_cast<double>(frame.frame)).number(marker->t_s);
           marker_truth.number(marker->center_px.x()).number(marker->center_px.y());
           marker_truth.end_row();

@@ -30,7 +30,7 @@ double x_origin_m(const Scenario& scenario, double incline_rad);
 /// A frame shows the marker at the middle of the exposure of the row on which its centre lies (with a global shutter,
 /// of any row). Centre: the projection of the sphere's centre. Centroid: of the area of the sphere's sharp image at
 /// that instant, which differs by the effect of perspective and lens on a sphere (about 1e-3 px for a small one).
-struct MarkerInPicture {
+struct MarkerInImage {
   double t_s = 0.0;  ///< the instant, on the recording's clock
   double x_m = 0.0;  ///< on the track, at that instant
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
@@ -38,8 +38,7 @@ struct MarkerInPicture {
 };
 
 /// Empty if the centre lies outside the image. NumericalError if the marker outruns a rolling readout.
-std::optional<MarkerInPicture> marker_in_picture(const Scenario& scenario, const sim::Body& body,
-                                                 const FrameMotion& frame);
+std::optional<MarkerInImage> marker_in_image(const Scenario& scenario, const sim::Body& body, const FrameMotion& frame);
 
 /// The second product of a render: frames as taken by a perfect camera, and the marker's position in each.
 ///

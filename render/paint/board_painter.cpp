@@ -164,8 +164,8 @@ struct Plate {
 
 }  // namespace
 
-FloatPicture paint_board(const Camera& camera, const RayTable& rays, const FloatPicture& empty,
-                         const StaticScene& scene, double white) {
+FloatImage paint_board(const Camera& camera, const RayTable& rays, const FloatImage& empty, const StaticScene& scene,
+                       double white) {
   assert(stands_free(camera, scene));
   const Chessboard& board = *scene.board;
   const Plate plate(board);
@@ -177,7 +177,7 @@ FloatPicture paint_board(const Camera& camera, const RayTable& rays, const Float
   const double shade = white * shade_of(-board.X_WP.linear().col(2));
   const Eigen::Vector3d x_W = board.square_m * board.X_WP.linear().col(0);
   const Eigen::Vector3d y_W = board.square_m * board.X_WP.linear().col(1);
-  FloatPicture picture = empty;
+  FloatImage image = empty;
   const PixelRect rect = pixels_before(camera, scene, 0);
   for (int v = rect.y; v < rect.y + rect.height; ++v) {
     const std::size_t start = static_cast<std::size_t>(v) * rays.width;
@@ -198,11 +198,11 @@ FloatPicture paint_board(const Camera& camera, const RayTable& rays, const Float
       const double albedo = board.white_albedo * (parts.plate - parts.black) + board.black_albedo * parts.black;
       double value = albedo * shade * light_at(scene, p_W);
       if (!rays.gain.empty()) value *= static_cast<double>(rays.gain[at]);
-      float& pixel = picture.values[at];
+      float& pixel = image.values[at];
       pixel = static_cast<float>(value + (1.0 - parts.plate) * static_cast<double>(pixel));
     }
   }
-  return picture;
+  return image;
 }
 
 }  // namespace glidelab::render

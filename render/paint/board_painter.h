@@ -12,7 +12,7 @@
 
 #include "render/camera/camera.h"
 #include "render/camera/optics.h"
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 #include "render/scenario/scene.h"
 
 namespace glidelab::render {
@@ -23,7 +23,7 @@ bool stands_free(const Camera& camera, const StaticScene& scene);
 
 /// The image of the scene with its board, which must be unobstructed (asserted), made from `empty`, the image without
 /// it. There a relative radiance of 1 corresponds to `white` (times the gain of the table). `rays` belongs to `camera`.
-FloatPicture paint_board(const Camera& camera, const RayTable& rays, const FloatPicture& empty,
-                         const StaticScene& scene, double white);
+FloatImage paint_board(const Camera& camera, const RayTable& rays, const FloatImage& empty, const StaticScene& scene,
+                       double white);
 
 }  // namespace glidelab::render

@@ -15,7 +15,7 @@
 #include <span>
 #include <string_view>
 
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 
 namespace glidelab::render {
 

@@ -43,10 +43,10 @@ bool moves_sideways(const Mount& mount) {
   });
 }
 
-FloatPicture box_means(const FloatPicture& fine) {
+FloatImage box_means(const FloatImage& fine) {
   const int width = fine.width - kFine + 1;
   const int height = fine.height - kFine + 1;
-  FloatPicture across(width, fine.height);
+  FloatImage across(width, fine.height);
   for (int y = 0; y < fine.height; ++y) {
     for (int x = 0; x < width; ++x) {
       float sum = 0.0f;
@@ -54,7 +54,7 @@ FloatPicture box_means(const FloatPicture& fine) {
       across.at(x, y) = sum / static_cast<float>(kFine);
     }
   }
-  FloatPicture means(width, height);
+  FloatImage means(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       float sum = 0.0f;
@@ -75,7 +75,7 @@ std::optional<Focus> as_fine(std::optional<Focus> focus) {
 }
 
 /// The pixel position of the still camera that shows what the moved one shows at a pixel.
-Eigen::Vector2d source_of(const FinePicture& fine, const Eigen::Isometry3d& moved, int u, int v) {
+Eigen::Vector2d source_of(const FineImage& fine, const Eigen::Isometry3d& moved, int u, int v) {
   const std::size_t at = static_cast<std::size_t>(v) * fine.rays.width + u;
   const Eigen::Vector3d ray(static_cast<double>(fine.rays.x_y_dxdu_dxdv[4 * at]),
                             static_cast<double>(fine.rays.x_y_dxdu_dxdv[4 * at + 1]), 1.0);
@@ -115,9 +115,9 @@ double largest_shift_px(const Camera& camera, const Mount& mount, double duratio
   return largest;
 }
 
-FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::optional<Focus>& focus,
-                         const StaticScene& scene, double duration_s) {
-  FinePicture fine;
+FineImage fine_image(const Camera& camera, const Mount& mount, const std::optional<Focus>& focus,
+                     const StaticScene& scene, double duration_s) {
+  FineImage fine;
   fine.camera = camera;
   fine.rays = make_ray_table(camera);
   constexpr double kNearest = 0.5;  // m
@@ -131,7 +131,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
   fine.margin_px = static_cast<int>(std::ceil(shift));
   const int columns = (camera.width_px + 2 * fine.margin_px) * kFine;
   const int rows = (camera.height_px + 2 * fine.margin_px) * kFine;
-  FloatPicture cast(columns, rows);
+  FloatImage cast(columns, rows);
   // In strips, to save memory. A strip includes the reach of blurred edges beyond it.
   constexpr int kStrip = 512;
   const int overlap = focus ? 128 : 8;
@@ -145,7 +145,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
     const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);
     strip.center_px = kFine * (camera.center_px + half + Eigen::Vector2d::Constant(fine.margin_px)) - half;
     strip.center_px.y() -= first;
-    const FloatPicture seen = StaticPainter(strip, make_ray_table(strip), as_fine(focus)).paint(scene);
+    const FloatImage seen = StaticPainter(strip, make_ray_table(strip), as_fine(focus)).paint(scene);
     for (int y = top; y < std::min(rows, top + kStrip); ++y) {
       const std::span<const float> from = seen.row(y - first, 0, columns);
       std::copy(from.begin(), from.end(), cast.row(y, 0, columns).begin());
@@ -153,7 +153,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
   }
   fine.means = box_means(cast);
   if (moves_sideways(mount)) {
-    fine.depth_m = FloatPicture(camera.width_px + 2 * fine.margin_px, camera.height_px + 2 * fine.margin_px);
+    fine.depth_m = FloatImage(camera.width_px + 2 * fine.margin_px, camera.height_px + 2 * fine.margin_px);
     for (int y = 0; y < fine.depth_m.height; ++y) {
       for (int x = 0; x < fine.depth_m.width; ++x) {
         const auto ray = undistort(
@@ -168,7 +168,7 @@ FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::op
   return fine;
 }
 
-void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int x, float weight,
+void add_row(const FineImage& fine, const Eigen::Isometry3d& moved, int y, int x, float weight,
              std::span<float> values) {
   constexpr int kStep = 16;
   const int step = fine.depth_m.values.empty() ? kStep : 1;
@@ -223,7 +223,7 @@ std::vector<double> pixel_shares(double center, double sigma, int first, int cou
 
 PixelRect add_reflection(const Scenario& scenario, const RayTable& rays, const sim::Body& body,
                          const Reflection& reflection, const FrameMotion& frame, double white_e,
-                         const PixelRect& within, FloatPicture& picture) {
+                         const PixelRect& within, FloatImage& image) {
   const Recording& recording = scenario.recording;
   const Eigen::Vector3d along_W = track_direction_W(scenario.track, body.incline_rad);
   const auto place_W = [&](double t_s) -> Eigen::Vector3d {
@@ -267,7 +267,7 @@ PixelRect add_reflection(const Scenario& scenario, const RayTable& rays, const s
     const std::vector<double> down = pixel_shares(pixel->y(), sigma_v, rect.y, rect.height);
     const double light_e = white_e * reflection.radiance * 2.0 * std::numbers::pi * sigma_u * sigma_v / kInstants;
     for (int y = 0; y < rect.height; ++y) {
-      const std::span<float> values = picture.row(rect.y + y, rect.x, rect.width);
+      const std::span<float> values = image.row(rect.y + y, rect.x, rect.width);
       const std::size_t at = static_cast<std::size_t>(rect.y + y) * rays.width + rect.x;
       for (int x = 0; x < rect.width; ++x) {
         const double gain = rays.gain.empty() ? 1.0 : static_cast<double>(rays.gain[at + x]);

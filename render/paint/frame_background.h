@@ -7,7 +7,7 @@
 
 #include "render/camera/camera.h"
 #include "render/camera/optics.h"
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scenario_data.h"
 #include "render/scenario/scene.h"
@@ -26,12 +26,12 @@ inline constexpr int kFine = 4;
 /// 1/kFine of a pixel an image is taken as linear; if a straight edge along rows or columns enters a pixel, the error
 /// is at most 1/(4 kFine) of its contrast. A camera that is moved sideways sees parallax: it is computed from the depth
 /// seen by the still camera, so that within a pixel or two of an edge in depth the image is an estimate.
-struct FinePicture {
-  Camera camera;         ///< at rest, of the image's own size
-  RayTable rays;         ///< of it
-  int margin_px = 0;     ///< around it
-  FloatPicture means;    ///< radiance, a pixel's mean about each fine position
-  FloatPicture depth_m;  ///< of the pixel centres, including the margin; empty if the camera does not move sideways
+struct FineImage {
+  Camera camera;       ///< at rest, of the image's own size
+  RayTable rays;       ///< of it
+  int margin_px = 0;   ///< around it
+  FloatImage means;    ///< radiance, a pixel's mean about each fine position
+  FloatImage depth_m;  ///< of the pixel centres, including the margin; empty if the camera does not move sideways
 };
 
 /// How far, in pixels, the image of something at infinity or at `nearest_m` moves at most within `duration_s`: the
@@ -39,12 +39,12 @@ struct FinePicture {
 double largest_shift_px(const Camera& camera, const Mount& mount, double duration_s, double nearest_m);
 
 /// NumericalError if the lens has no rays for the margin.
-FinePicture fine_picture(const Camera& camera, const Mount& mount, const std::optional<Focus>& focus,
-                         const StaticScene& scene, double duration_s);
+FineImage fine_image(const Camera& camera, const Mount& mount, const std::optional<Focus>& focus,
+                     const StaticScene& scene, double duration_s);
 
 /// Adds weight times the radiance of pixels [x, x + values.size()) of the row y, the camera being moved by `moved`
 /// (render/camera/camera.h). std::logic_error if a ray leads beyond the margin.
-void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int x, float weight,
+void add_row(const FineImage& fine, const Eigen::Isometry3d& moved, int y, int x, float weight,
              std::span<float> values);
 
 /// Adds the spot, with `white_e` for a radiance of 1, to the pixels of `within`; returns the rectangle of changed
@@ -56,6 +56,6 @@ void add_row(const FinePicture& fine, const Eigen::Isometry3d& moved, int y, int
 /// middle's row, without shear.
 PixelRect add_reflection(const Scenario& scenario, const RayTable& rays, const sim::Body& body,
                          const Reflection& reflection, const FrameMotion& frame, double white_e,
-                         const PixelRect& within, FloatPicture& picture);
+                         const PixelRect& within, FloatImage& image);
 
 }  // namespace glidelab::render

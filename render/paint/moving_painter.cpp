@@ -134,7 +134,7 @@ struct Plan {
   bool even = true;  ///< uniform over all its pixels at all shifts of the range
 };
 
-bool same_picture(const Plan& a, const Plan& b) {
+bool same_image(const Plan& a, const Plan& b) {
   return a.even && b.even &&
          std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), b.steps.end(), [](const Step& s, const Step& t) {
            return s.radiance == t.radiance && s.polygon->box == t.polygon->box &&
@@ -164,12 +164,12 @@ void make_plan(const Shapes& shapes, const RayBounds& tile, const ShiftRange& sh
               std::all_of(plan.steps.begin(), plan.steps.end(), [](const Step& step) { return step.crossing == 0; });
 }
 
-struct RowPicture {
+struct RowImage {
   TileRow radiance;
   TileRow coverage;
 };
 
-constexpr RowPicture kDark{};
+constexpr RowImage kDark{};
 
 /// Coverage by a polygon, only some of whose edges may cross the tile.
 TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
@@ -184,12 +184,12 @@ TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
 
 /// Adds the content of a row of a tile at one instant.
 [[gnu::always_inline]] inline void add_row(const Shapes& shapes, const Plan& plan, double shift, double weight,
-                                           const RowRays& rays, RowPicture& out) {
-  RowPicture seen = kDark;
+                                           const RowRays& rays, RowImage& out) {
+  RowImage seen = kDark;
   // One box after another: its visible faces, which together make up its image, then the patches on them, then the
   // whole over the previous content.
   for (std::size_t k = 0; k < plan.steps.size();) {
-    RowPicture box = kDark;
+    RowImage box = kDark;
     const std::size_t number = plan.steps[k].polygon->box;
     for (; k < plan.steps.size() && plan.steps[k].polygon->box == number; ++k) {
       const Step& step = plan.steps[k];
@@ -230,17 +230,17 @@ TileRow coverage_by(const Step& step, double shift, const RowRays& rays) {
   }
 }
 
-using AddRow = void(const Shapes&, const Plan&, double shift, double weight, const RowRays&, RowPicture&);
+using AddRow = void(const Shapes&, const Plan&, double shift, double weight, const RowRays&, RowImage&);
 
 void add_row_baseline(const Shapes& shapes, const Plan& plan, double shift, double weight, const RowRays& rays,
-                      RowPicture& out) {
+                      RowImage& out) {
   add_row(shapes, plan, shift, weight, rays, out);
 }
 
 #if defined(__x86_64__)
 // AVX2 without FMA: the same operations on more lanes.
 [[gnu::target("avx2")]] void add_row_avx2(const Shapes& shapes, const Plan& plan, double shift, double weight,
-                                          const RowRays& rays, RowPicture& out) {
+                                          const RowRays& rays, RowImage& out) {
   add_row(shapes, plan, shift, weight, rays, out);
 }
 #endif
@@ -317,24 +317,24 @@ class TilePainter {
       if (!ranges_[view]) continue;
       make_plan(shapes_[view], bounds, *ranges_[view], plans_[view]);
       if (first == nullptr) first = &plans_[view];
-      even = even && same_picture(*first, plans_[view]);
+      even = even && same_image(*first, plans_[view]);
     }
     if (first == nullptr || (even && first->steps.empty())) return;
     const PixelRect rect = intersection(layer_.rect, {column * kRayTile, row * kRayTile, kRayTile, kRayTile});
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
       const RowRays rays = rays_of_row(rays_, rect.x, y, rect.width);
-      RowPicture picture = kDark;
+      RowImage image = kDark;
       if (even) {
-        add_row_(shapes_[first - plans_.data()], *first, 0.0, 1.0, rays, picture);
+        add_row_(shapes_[first - plans_.data()], *first, 0.0, 1.0, rays, image);
       } else {
         for (const Instant& instant : instants_[y - row * kRayTile]) {
-          add_row_(shapes_[instant.view], plans_[instant.view], instant.x_m - middle_m_, instant.weight, rays, picture);
+          add_row_(shapes_[instant.view], plans_[instant.view], instant.x_m - middle_m_, instant.weight, rays, image);
         }
       }
       const std::size_t at = static_cast<std::size_t>(y - layer_.rect.y) * layer_.rect.width + (rect.x - layer_.rect.x);
       for (int i = 0; i < rect.width; ++i) {
-        layer_.radiance[at + i] = static_cast<float>(picture.radiance[i]);
-        layer_.coverage[at + i] = static_cast<float>(picture.coverage[i]);
+        layer_.radiance[at + i] = static_cast<float>(image.radiance[i]);
+        layer_.coverage[at + i] = static_cast<float>(image.coverage[i]);
       }
     }
   }
@@ -390,9 +390,9 @@ MovingLayer paint(const RayTable& rays, const MovingBody& body, const Looks& loo
   return layer;
 }
 
-void put_over(const MovingLayer& layer, float scale, FloatPicture& picture) {
+void put_over(const MovingLayer& layer, float scale, FloatImage& image) {
   for (int y = 0; y < layer.rect.height; ++y) {
-    const std::span<float> row = picture.row(layer.rect.y + y, layer.rect.x, layer.rect.width);
+    const std::span<float> row = image.row(layer.rect.y + y, layer.rect.x, layer.rect.width);
     const std::size_t start = static_cast<std::size_t>(y) * layer.rect.width;
     for (std::size_t i = 0; i < row.size(); ++i) {
       row[i] = scale * layer.radiance[start + i] + (1.0f - layer.coverage[start + i]) * row[i];

@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "render/camera/optics.h"
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 #include "render/scenario/scene.h"
 
 namespace glidelab::render {
@@ -130,6 +130,6 @@ struct Looks {
 MovingLayer paint(const RayTable& rays, const MovingBody& body, const Looks& looks, const PixelRect& within);
 
 /// Puts the layer over an image (of radiance, or of any quantity equal to radiance times `scale`).
-void put_over(const MovingLayer& layer, float scale, FloatPicture& picture);
+void put_over(const MovingLayer& layer, float scale, FloatImage& image);
 
 }  // namespace glidelab::render

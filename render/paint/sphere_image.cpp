@@ -37,7 +37,7 @@ std::optional<Ellipse> image_of_sphere(const Eigen::Vector3d& center_C, double r
   return ellipse;
 }
 
-AreaMoments picture_of(const Camera& camera, const Ellipse& ellipse) {
+AreaMoments image_of(const Camera& camera, const Ellipse& ellipse) {
   AreaMoments moments;
   const double ellipse_jacobian =
       std::abs(ellipse.axis_u.x() * ellipse.axis_v.y() - ellipse.axis_u.y() * ellipse.axis_v.x());

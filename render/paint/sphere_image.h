@@ -29,6 +29,6 @@ struct AreaMoments {
 /// Area and centroid of an ellipse's image under the lens: the integrals of 1 and of the pixel position over the
 /// ellipse with the mapping's Jacobian, by Gauss-Legendre in the radius and the trapezoid rule in the angle (exact
 /// within rounding for the polynomials of a lens).
-AreaMoments picture_of(const Camera& camera, const Ellipse& ellipse);
+AreaMoments image_of(const Camera& camera, const Ellipse& ellipse);
 
 }  // namespace glidelab::render

@@ -102,23 +102,23 @@ constexpr float kEdge = 0.04f;
 
 }  // namespace
 
-FloatPicture wanted_rays(const FloatPicture& picture, const FloatPicture& spread) {
-  FloatPicture change = spread;
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const float here = picture.at(x, y);
+FloatImage wanted_rays(const FloatImage& image, const FloatImage& spread) {
+  FloatImage change = spread;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float here = image.at(x, y);
       float& most = change.at(x, y);
-      if (x + 1 < picture.width) most = std::max(most, std::abs(picture.at(x + 1, y) - here));
-      if (y + 1 < picture.height) most = std::max(most, std::abs(picture.at(x, y + 1) - here));
+      if (x + 1 < image.width) most = std::max(most, std::abs(image.at(x + 1, y) - here));
+      if (y + 1 < image.height) most = std::max(most, std::abs(image.at(x, y + 1) - here));
     }
   }
-  FloatPicture wanted(picture.width, picture.height);
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
+  FloatImage wanted(image.width, image.height);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
       if (change.at(x, y) <= kUneven) continue;
       const float rays = change.at(x, y) > kEdge ? 64.0f : 16.0f;
-      for (int v = std::max(0, y - 1); v < std::min(picture.height, y + 2); ++v) {
-        for (int u = std::max(0, x - 1); u < std::min(picture.width, x + 2); ++u) {
+      for (int v = std::max(0, y - 1); v < std::min(image.height, y + 2); ++v) {
+        for (int u = std::max(0, x - 1); u < std::min(image.width, x + 2); ++u) {
           wanted.at(u, v) = std::max(wanted.at(u, v), rays);
         }
       }
@@ -314,25 +314,25 @@ void StaticPainter::draw_tiles(const StaticScene& scene, const PixelRect& within
   }
 }
 
-FloatPicture StaticPainter::cast_rays(const StaticScene& scene, const PixelRect& within, int reach_px) {
+FloatImage StaticPainter::cast_rays(const StaticScene& scene, const PixelRect& within, int reach_px) {
   std::vector<float> values(static_cast<std::size_t>(within.width) * within.height * 2);
   canvas_.set("first_pass", 1);
   draw_tiles(scene, within, [](const PixelRect&) { return true; });
   canvas_.read(within, values);
-  FloatPicture picture(within.width, within.height);
-  FloatPicture spread(within.width, within.height);
-  for (std::size_t i = 0; i < picture.values.size(); ++i) {
-    picture.values[i] = values[2 * i];
+  FloatImage image(within.width, within.height);
+  FloatImage spread(within.width, within.height);
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    image.values[i] = values[2 * i];
     spread.values[i] = values[2 * i + 1];
   }
-  FloatPicture wanted = wanted_rays(picture, spread);
+  FloatImage wanted = wanted_rays(image, spread);
   if (focus_) {
     // Everything that a blurred edge may reach.
     cv::Mat rays(within.height, within.width, CV_32F, wanted.values.data());
     cv::dilate(rays, rays, cv::Mat::ones(2 * reach_px + 1, 2 * reach_px + 1, CV_8U));
     for (float& count : wanted.values) count = count > 0.0f ? static_cast<float>(kFocusRays) : 0.0f;
   }
-  FloatPicture of_all(camera_.width_px, camera_.height_px);
+  FloatImage of_all(camera_.width_px, camera_.height_px);
   for (int y = 0; y < within.height; ++y) {
     std::ranges::copy(wanted.row(y, 0, within.width), of_all.row(within.y + y, within.x, within.width).begin());
   }
@@ -345,23 +345,23 @@ FloatPicture StaticPainter::cast_rays(const StaticScene& scene, const PixelRect&
     return false;
   });
   canvas_.read(within, values);
-  for (std::size_t i = 0; i < picture.values.size(); ++i) {
-    if (wanted.values[i] > 0.5f) picture.values[i] = values[2 * i];
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    if (wanted.values[i] > 0.5f) image.values[i] = values[2 * i];
   }
   for (int y = 0; y < (gain_.empty() ? 0 : within.height); ++y) {
-    const std::span<float> row = picture.row(y, 0, within.width);
+    const std::span<float> row = image.row(y, 0, within.width);
     const float* gain = gain_.data() + static_cast<std::size_t>(within.y + y) * camera_.width_px + within.x;
     for (std::size_t x = 0; x < row.size(); ++x) row[x] *= gain[x];
   }
-  return picture;
+  return image;
 }
 
-FloatPicture StaticPainter::paint(const StaticScene& scene) {
+FloatImage StaticPainter::paint(const StaticScene& scene) {
   show(scene);
   return cast_rays(scene, {0, 0, camera_.width_px, camera_.height_px}, focus_ ? blur_reach_px(scene) : 0);
 }
 
-FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const StaticScene& scene, double white) {
+FloatImage StaticPainter::paint_before(const FloatImage& empty, const StaticScene& scene, double white) {
   show(scene);
   const int reach_px = focus_ ? blur_reach_px(scene) : 0;
   const PixelRect changed = pixels_before(camera_, scene, reach_px);
@@ -371,14 +371,14 @@ FloatPicture StaticPainter::paint_before(const FloatPicture& empty, const Static
   const PixelRect drawn =
       intersection({0, 0, camera_.width_px, camera_.height_px},
                    {changed.x - around, changed.y - around, changed.width + 2 * around, changed.height + 2 * around});
-  const FloatPicture part = cast_rays(scene, drawn, reach_px);
-  FloatPicture picture = empty;
+  const FloatImage part = cast_rays(scene, drawn, reach_px);
+  FloatImage image = empty;
   for (int y = changed.y; y < changed.y + changed.height; ++y) {
     std::ranges::transform(part.row(y - drawn.y, changed.x - drawn.x, changed.width),
-                           picture.row(y, changed.x, changed.width).begin(),
+                           image.row(y, changed.x, changed.width).begin(),
                            [white](float value) { return static_cast<float>(static_cast<double>(value) * white); });
   }
-  return picture;
+  return image;
 }
 
 }  // namespace glidelab::render

@@ -16,7 +16,7 @@
 
 #include "render/camera/camera.h"
 #include "render/camera/optics.h"
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 #include "render/paint/float_canvas.h"
 #include "render/scenario/scene.h"
 
@@ -31,7 +31,7 @@ PixelRect pixels_before(const Camera& camera, const StaticScene& scene, int reac
 
 /// How many rays each pixel needs (0, 16 or 64): determined by the change within the pixel (`spread`) or against a
 /// neighbour, for the pixel itself or one of its neighbours.
-FloatPicture wanted_rays(const FloatPicture& picture, const FloatPicture& spread);
+FloatImage wanted_rays(const FloatImage& image, const FloatImage& spread);
 
 /// The first 64 points of the Sobol sequence in two dimensions, within [0, 1)²: the first 16 of them, or all, have one
 /// point in every column and row of as many.
@@ -48,18 +48,18 @@ class StaticPainter {
   StaticPainter(const Camera& camera, const RayTable& rays, const std::optional<Focus>& focus = std::nullopt);
 
   /// Relative radiance, times the table's gain, in the size of the image.
-  FloatPicture paint(const StaticScene& scene);
+  FloatImage paint(const StaticScene& scene);
 
   /// The same, made from `empty`, the image of the scene without its board and plumb line: only pixels that these may
   /// change are drawn. (With `focus` the other pixels have as many rays as `empty` needed.) In both images a radiance
   /// of 1 corresponds to `white`.
-  FloatPicture paint_before(const FloatPicture& empty, const StaticScene& scene, double white = 1.0);
+  FloatImage paint_before(const FloatImage& empty, const StaticScene& scene, double white = 1.0);
 
  private:
   void show(const StaticScene& scene);
   void draw_tiles(const StaticScene& scene, const PixelRect& within,
                   const std::function<bool(const PixelRect&)>& is_wanted);
-  FloatPicture cast_rays(const StaticScene& scene, const PixelRect& within, int reach_px);
+  FloatImage cast_rays(const StaticScene& scene, const PixelRect& within, int reach_px);
   int blur_reach_px(const StaticScene& scene) const;
 
   Camera camera_;

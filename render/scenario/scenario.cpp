@@ -131,7 +131,7 @@ namespace {
 using base::TomlTable;
 
 /// The checks that need the whole scenario; made only if there are no other errors.
-void check_pictures(const TomlTable& root, const Scenario& scenario) {
+void check_images(const TomlTable& root, const Scenario& scenario) {
   const Camera& camera = scenario.camera;
   if (const auto why = why_not_one_to_one(camera)) {
     root.reject("camera", *why, "a lens that maps one to one over the image");
@@ -140,7 +140,7 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
   for (std::size_t view = 0; view < scenario.pattern.plane_x_m.size(); ++view) {
     for (const Eigen::Vector3d& corner : outline_of(plane_board(scenario, view))) {
       const auto pixel = project(camera, corner);
-      if (pixel && in_picture(camera, *pixel)) continue;
+      if (pixel && in_image(camera, *pixel)) continue;
       root.reject("calibration",
                   fmt::format("a pattern of which a part is not in the image, at plane_x_m = {}",
                               scenario.pattern.plane_x_m[view]),
@@ -167,7 +167,7 @@ void check_pictures(const TomlTable& root, const Scenario& scenario) {
         const Eigen::Vector3d marker = marker_position_W(scenario, configuration.body.incline_rad, state.x_m);
         behind = behind || !((camera.X_WC.inverse() * marker).z() > kNearest + scenario.marker.diameter_m);
         const auto pixel = project(camera, marker);
-        seen = seen || (pixel && in_picture(camera, *pixel));
+        seen = seen || (pixel && in_image(camera, *pixel));
       }
       const std::string clip = fmt::format("clip \"{}\"", motion.name);
       if (behind) {
@@ -238,7 +238,7 @@ Scenario read_scenario(std::string_view text, const std::filesystem::path& path,
   read_sections(root, scenario);
   file.finish();
   check_length(root, scenario);
-  if (checks == ScenarioChecks::all) check_pictures(root, scenario);
+  if (checks == ScenarioChecks::all) check_images(root, scenario);
   file.finish();
   return scenario;
 }

@@ -219,7 +219,7 @@ std::optional<PixelRect> plumb_region(const Scenario& scenario) {
   for (int i = 0; i <= kSteps; ++i) {
     const double y = low_y + (line.top_y_m - low_y) * i / kSteps;
     const auto pixel = project(camera, {line.x_m, y, line.z_m});
-    if (!pixel || !in_picture(camera, *pixel)) continue;
+    if (!pixel || !in_image(camera, *pixel)) continue;
     low = low.cwiseMin(*pixel);
     high = high.cwiseMax(*pixel);
   }

@@ -40,16 +40,16 @@ PixelRect with_neighbours(const PixelRect& inner, int width, int height) {
   return intersection({inner.x - 1, inner.y - 1, inner.width + 2, inner.height + 2}, {0, 0, width, height});
 }
 
-FloatPicture demosaic(std::span<const std::uint16_t> codes, const PixelRect& outer, const PixelRect& inner, int width,
-                      int height, const std::array<float, 4>& response, float offset_dn) {
-  FloatPicture balanced(outer.width, outer.height);
+FloatImage demosaic(std::span<const std::uint16_t> codes, const PixelRect& outer, const PixelRect& inner, int width,
+                    int height, const std::array<float, 4>& response, float offset_dn) {
+  FloatImage balanced(outer.width, outer.height);
   for (int y = 0; y < outer.height; ++y) {
     for (int x = 0; x < outer.width; ++x) {
       const float code = codes[static_cast<std::size_t>(y) * outer.width + x];
       balanced.at(x, y) = (code - offset_dn) / response[mosaic_place(outer.x + x, outer.y + y)];
     }
   }
-  FloatPicture grey(inner.width, inner.height);
+  FloatImage grey(inner.width, inner.height);
   for (int y = inner.y; y < inner.y + inner.height; ++y) {
     const float* here = balanced.values.data() + static_cast<std::ptrdiff_t>(y - outer.y) * outer.width;
     const float* above =
@@ -116,17 +116,17 @@ PixelRect Readout::seen_by(const PixelRect& rect) const {
   return sensor_.colour == Colour::mono ? rect : with_neighbours(rect, width_, height_);
 }
 
-void Readout::read(const FloatPicture& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
+void Readout::read(const FloatImage& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
                    std::span<std::uint8_t> codes) const {
   read_as(expected_e, {seed_, stream, frame}, rect, codes);
 }
-void Readout::read(const FloatPicture& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
+void Readout::read(const FloatImage& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
                    std::span<std::uint16_t> codes) const {
   read_as(expected_e, {seed_, stream, frame}, rect, codes);
 }
 
 template <typename Code>
-void Readout::read_as(const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect,
+void Readout::read_as(const FloatImage& expected_e, const NoiseKey& key, const PixelRect& rect,
                       std::span<Code> codes) const {
   const FixedPattern* pattern = patterned_ ? &pattern_ : nullptr;
   if (table_.empty() && sensor_.colour == Colour::mono) {
@@ -149,7 +149,7 @@ void Readout::read_as(const FloatPicture& expected_e, const NoiseKey& key, const
   std::vector<std::uint16_t> raw(static_cast<std::size_t>(outer.width) * outer.height);
   read_out(sensor_, expected_e, key, outer, std::span<std::uint16_t>(raw), Simd::best, pattern);
   const auto offset = static_cast<float>(sensor_.offset_dn);
-  const FloatPicture grey = demosaic(raw, outer, rect, expected_e.width, expected_e.height, response_, offset);
+  const FloatImage grey = demosaic(raw, outer, rect, expected_e.width, expected_e.height, response_, offset);
   const auto largest = static_cast<float>(sensor_.largest_converter_code());
   std::transform(grey.values.begin(), grey.values.end(), codes.begin(), [&](float value) {
     return out(static_cast<std::size_t>(std::clamp(value + offset + 0.5f, 0.0f, largest)));

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 #include "render/sensor/sensor.h"
 
 namespace glidelab::render {
@@ -37,8 +37,8 @@ std::array<float, 4> mosaic_response(const std::array<double, 3>& red_green_blue
 /// `outer`, which contains all of `inner` and its neighbours: one more pixel on each side that is not the image's edge.
 /// At an edge the image is mirrored about its last pixel, which keeps the colours in place. Codes are relative to
 /// `offset_dn`, and so is the result.
-FloatPicture demosaic(std::span<const std::uint16_t> codes, const PixelRect& outer, const PixelRect& inner, int width,
-                      int height, const std::array<float, 4>& response, float offset_dn);
+FloatImage demosaic(std::span<const std::uint16_t> codes, const PixelRect& outer, const PixelRect& inner, int width,
+                    int height, const std::array<float, 4>& response, float offset_dn);
 
 /// `inner` with the neighbours that demosaic() needs.
 PixelRect with_neighbours(const PixelRect& inner, int width, int height);
@@ -55,14 +55,14 @@ class Readout {
   PixelRect seen_by(const PixelRect& rect) const;
 
   /// Codes of the pixels of `rect`, row by row; 8-bit ones for bit_depth 8. The same in any part of the image.
-  void read(const FloatPicture& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
+  void read(const FloatImage& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
             std::span<std::uint8_t> codes) const;
-  void read(const FloatPicture& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
+  void read(const FloatImage& expected_e, std::uint32_t stream, std::uint32_t frame, const PixelRect& rect,
             std::span<std::uint16_t> codes) const;
 
  private:
   template <typename Code>
-  void read_as(const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect, std::span<Code> codes) const;
+  void read_as(const FloatImage& expected_e, const NoiseKey& key, const PixelRect& rect, std::span<Code> codes) const;
 
   Sensor sensor_;
   std::uint64_t seed_;

@@ -212,7 +212,7 @@ class FilledGroup {
 template <typename Code>
 class RowReader {
  public:
-  RowReader(const Sensor& sensor, const FloatPicture& expected_e, const NoiseKey& key, Simd simd,
+  RowReader(const Sensor& sensor, const FloatImage& expected_e, const NoiseKey& key, Simd simd,
             const FixedPattern* pattern)
       : sensor_(sensor),
         expected_e_(expected_e),
@@ -286,7 +286,7 @@ class RowReader {
   }
 
   const Sensor& sensor_;
-  const FloatPicture& expected_e_;
+  const FloatImage& expected_e_;
   const NoiseKey& key_;
   Simd simd_;
   const FixedPattern* pattern_;
@@ -298,7 +298,7 @@ class RowReader {
 };
 
 template <typename Code>
-void read_out_as(const Sensor& sensor, const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect,
+void read_out_as(const Sensor& sensor, const FloatImage& expected_e, const NoiseKey& key, const PixelRect& rect,
                  std::span<Code> codes, Simd simd, const FixedPattern* pattern) {
   if (codes.size() != static_cast<std::size_t>(rect.width) * rect.height ||
       intersection(rect, {0, 0, expected_e.width, expected_e.height}) != rect ||
@@ -316,11 +316,11 @@ void read_out_as(const Sensor& sensor, const FloatPicture& expected_e, const Noi
 
 }  // namespace
 
-void read_out(const Sensor& sensor, const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect,
+void read_out(const Sensor& sensor, const FloatImage& expected_e, const NoiseKey& key, const PixelRect& rect,
               std::span<std::uint8_t> codes, Simd simd, const FixedPattern* pattern) {
   read_out_as(sensor, expected_e, key, rect, codes, simd, pattern);
 }
-void read_out(const Sensor& sensor, const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect,
+void read_out(const Sensor& sensor, const FloatImage& expected_e, const NoiseKey& key, const PixelRect& rect,
               std::span<std::uint16_t> codes, Simd simd, const FixedPattern* pattern) {
   read_out_as(sensor, expected_e, key, rect, codes, simd, pattern);
 }

@@ -25,7 +25,7 @@
 #include <span>
 #include <vector>
 
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 #include "render/random/random_numbers.h"
 
 namespace glidelab::render {
@@ -119,9 +119,9 @@ inline constexpr float kNormalMean = 256.0f;
 /// The converter's codes of the pixels of `rect`, row by row, from the expected electrons of the whole image, without
 /// colours. `codes` holds rect.width x rect.height; the 8-bit form is for 8-bit converters. Without a pattern all
 /// pixels are alike. std::logic_error if sizes do not match.
-void read_out(const Sensor& sensor, const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect,
+void read_out(const Sensor& sensor, const FloatImage& expected_e, const NoiseKey& key, const PixelRect& rect,
               std::span<std::uint8_t> codes, Simd simd = Simd::best, const FixedPattern* pattern = nullptr);
-void read_out(const Sensor& sensor, const FloatPicture& expected_e, const NoiseKey& key, const PixelRect& rect,
+void read_out(const Sensor& sensor, const FloatImage& expected_e, const NoiseKey& key, const PixelRect& rect,
               std::span<std::uint16_t> codes, Simd simd = Simd::best, const FixedPattern* pattern = nullptr);
 
 }  // namespace glidelab::render

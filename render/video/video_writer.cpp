@@ -296,9 +296,9 @@ class LibavWriter final : public VideoWriter {
   }
 
   void put_jpeg(std::span<const std::uint8_t> frame, std::int64_t stamp) {
-    const cv::Mat picture(format_.height, format_.width, CV_8U, const_cast<std::uint8_t*>(frame.data()));
+    const cv::Mat image(format_.height, format_.width, CV_8U, const_cast<std::uint8_t*>(frame.data()));
     std::vector<unsigned char> bytes;
-    if (!cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, format_.compression.quality})) {
+    if (!cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, format_.compression.quality})) {
       throw base::EnvironmentError(fmt::format("{}: JPEG encoder failed", path_.string()));
     }
     check(av_new_packet(packet_, static_cast<int>(bytes.size())), path_, "a frame cannot be encoded");

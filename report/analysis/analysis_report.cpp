@@ -228,15 +228,15 @@ std::string value_tiles(const core::AnalysisResults& results) {
 /// "12 clips, 2400 frames, the marker found in 2388".
 std::string size_words(const core::AnalysisResults& results) {
   std::size_t frames = 0, detected = 0;
-  bool pictures = false;
+  bool images = false;
   for (const core::ClipResult& clip : results.clips) {
-    pictures = pictures || !clip.sightings.empty();
+    images = images || !clip.sightings.empty();
     frames += clip.frames;
     detected += clip.detected;
   }
   const std::size_t clips = results.clips.size();
-  const std::string seen = pictures ? fmt::format("{} frames, the marker found in {}", frames, detected)
-                                    : fmt::format("{} positions", detected);
+  const std::string seen = images ? fmt::format("{} frames, the marker found in {}", frames, detected)
+                                  : fmt::format("{} positions", detected);
   return fmt::format("{} {}, {}", clips, clips == 1 ? "clip" : "clips", seen);
 }
 

@@ -56,7 +56,7 @@ std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::str
            (experiment.empty() ? "" : experiment + ", ") + "Residuals of the calibration over the image"}};
 }
 
-double curve_excess(const diagnose::PictureCurve& curve) {
+double curve_excess(const diagnose::ImageCurve& curve) {
   double sum = 0.0;
   for (std::size_t p = 0; p < curve.at.size(); ++p) {
     sum += std::pow((curve.value[p] - curve.fitted[p]) / curve.sd[p], 2);
@@ -64,7 +64,7 @@ double curve_excess(const diagnose::PictureCurve& curve) {
   return curve.at.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(curve.at.size()));
 }
 
-Plot noise_plot(const diagnose::PictureCurve& curve) {
+Plot noise_plot(const diagnose::ImageCurve& curve) {
   PlotData data{
       "noise", {}, {"level (codes)", "variance (codes²)", "its standard deviation (codes²)", "linear (codes²)"}};
   for (std::size_t p = 0; p < curve.at.size(); ++p) {

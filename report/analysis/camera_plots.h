@@ -18,10 +18,10 @@ namespace glidelab::report {
 std::vector<Plot> calibration_plots(const core::CornerMap& rests, const std::string& experiment);
 
 /// A curve `noise` (diagnosis.h).
-Plot noise_plot(const diagnose::PictureCurve& curve);
+Plot noise_plot(const diagnose::ImageCurve& curve);
 
 /// RMS of a curve's deviations from the fit, over their standard deviations.
-double curve_excess(const diagnose::PictureCurve& curve);
+double curve_excess(const diagnose::ImageCurve& curve);
 
 /// One marker's centre, along the image's axis in which the marker moves most: its phase (distance from the pixel's
 /// middle) and its error in pixels, that is the measured position minus the smoothed one (or, in a rehearsal, minus the

@@ -59,7 +59,7 @@ std::string left_out_table(const core::ClipResult& clip) {
   return text;
 }
 
-std::string pictures(const core::ClipResult& clip, const core::Preview& preview) {
+std::string images(const core::ClipResult& clip, const core::Preview& preview) {
   std::string text;
   if (!preview.mp4.empty()) {
     const std::string caption =
@@ -129,7 +129,7 @@ Html clip_html(const core::ClipResult& clip, std::size_t index, const std::strin
       base::number_text(clip.frame_rate_hz, 5), used, noise_text(clip.position_noise_m * 1e3, used),
       smoothing_text(clip), escape(phase_file), escape(motion_file));
   text += notes_html(notes_words(clip.notes));
-  if (preview != nullptr) text += pictures(clip, *preview);
+  if (preview != nullptr) text += images(clip, *preview);
   text += figures(motion_plots(clip));
   text += left_out_table(clip);
   return text;

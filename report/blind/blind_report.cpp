@@ -276,7 +276,7 @@ std::string blind_json(const BlindRun& run) {
   Json document;
   document["format"] = 1;
   document["seed"] = run.seed;
-  if (run.pictures) document["pictures"] = true;
+  if (run.images) document["pictures"] = true;
   document["cases"] = run.outcomes.size();
   document["failed"] = score.failed;
   document["targets"] = Json::array();
@@ -348,7 +348,7 @@ Page blind_page(const BlindRun& run) {
   const validate::BlindScore& score = run.score;
   const char* const question = "How often is the diagnosis right?";
   Html body = question_heading(
-      fmt::format("blind cases: {} {}, seed {}", run.outcomes.size(), run.pictures ? "films" : "tracks", run.seed),
+      fmt::format("blind cases: {} {}, seed {}", run.outcomes.size(), run.images ? "films" : "tracks", run.seed),
       question);
   body +=
       "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis. Another "
@@ -381,7 +381,7 @@ Page blind_page(const BlindRun& run) {
       "<p class=\"soft\">A case's gain is the log likelihood by which the true model beats the nominal one, fitted to "
       "the same positions: weak below 15, moderate up to 50, strong above. ";
   body +=
-      run.pictures
+      run.images
           ? "For an effect that moves no position, it is half the square of its size over what images may show when "
             "nothing is wrong. A wrong scale and a wrong frame rate count as one. Where the file itself says that "
             "it is lossily compressed, compression is no secret: naming it makes a verdict neither better nor "

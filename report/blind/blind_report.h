@@ -45,7 +45,7 @@ struct BlindRun {
   std::uint64_t seed = 0;
   std::vector<validate::BlindOutcome> outcomes;
   validate::BlindScore score;
-  bool pictures = false;                                 ///< filmed experiments, not tracks
+  bool images = false;                                   ///< filmed experiments, not tracks
   std::optional<validate::EverydayScore> everyday = {};  ///< of everyday cases; `score` is then empty
 };
 

@@ -57,7 +57,7 @@ Json clip_json(const core::ClipCheck& clip) {
   put(json, "top_speed_m_s", clip.top_speed_m_s);
   put(json, "position_noise_m", clip.position_noise_m, "too few points");
   json["notes"] = notes_words(clip.notes);
-  if (!clip.pictures) return json;
+  if (!clip.images) return json;
   json["spanned"] = clip.spanned;
   json["first_seen"] = clip.first;
   json["picture_px"] = {clip.width_px, clip.height_px};
@@ -296,19 +296,16 @@ const std::vector<ClipRow> kClipRows = {
      }},
     {"lost / repeated",
      [](const core::ClipCheck& clip) {
-       return clip.pictures ? fmt::format("{} / {}", clip.jumps, std::max(clip.repeated, clip.stalls))
-                            : std::string("–");
+       return clip.images ? fmt::format("{} / {}", clip.jumps, std::max(clip.repeated, clip.stalls)) : std::string("–");
      }},
     {"speed (m/s)", [](const core::ClipCheck& clip) { return base::digits_text(clip.top_speed_m_s, 3); }},
     {"blur (px)",
      [](const core::ClipCheck& clip) {
-       if (!clip.pictures) return std::string("–");
+       if (!clip.images) return std::string("–");
        return clip.blur_px ? base::digits_text(*clip.blur_px, 2) : "&lt; " + base::number_text(clip.longest_blur_px, 2);
      }},
     {"marker (px)",
-     [](const core::ClipCheck& clip) {
-       return clip.pictures ? base::digits_text(clip.marker_px, 3) : std::string("–");
-     }},
+     [](const core::ClipCheck& clip) { return clip.images ? base::digits_text(clip.marker_px, 3) : std::string("–"); }},
     {"contrast",
      [](const core::ClipCheck& clip) { return clip.contrast ? share_cell(*clip.contrast) : std::string("–"); }},
     {"over noise",
@@ -318,7 +315,7 @@ const std::vector<ClipRow> kClipRows = {
      }},
     {"white, black",
      [](const core::ClipCheck& clip) {
-       return clip.pictures ? share_cell(clip.saturated) + ", " + share_cell(clip.dark) : std::string("–");
+       return clip.images ? share_cell(clip.saturated) + ", " + share_cell(clip.dark) : std::string("–");
      }},
     {"noise (mm)",
      [](const core::ClipCheck& clip) {
@@ -379,10 +376,10 @@ std::string check_text(const core::RecordingCheck& check) {
     }
     rows.push_back({clip.name, fmt::format("{} of {}", clip.seen, clip.frames),
                     base::number_text(clip.top_speed_m_s, 3),
-                    !clip.pictures ? "-"
+                    !clip.images   ? "-"
                     : clip.blur_px ? base::number_text(*clip.blur_px, 2)
                                    : "< " + base::number_text(clip.longest_blur_px, 2),
-                    clip.pictures ? base::number_text(clip.marker_px, 3) : "-",
+                    clip.images ? base::number_text(clip.marker_px, 3) : "-",
                     clip.position_noise_m ? base::number_text(1e3 * *clip.position_noise_m, 2) : "-"});
   }
   return text + "\n" + text_table(rows, 1);

@@ -83,7 +83,7 @@ struct FindingSentence {
 
   FindingWords operator()(const found::NotTracked& of) const {
     return {of.failure,
-            of.pictures
+            of.images
                 ? "check that the file plays, that the marker is in the image and moves, and that [marker] describes it"
                 : "repair the file, or state what it lacks"};
   }

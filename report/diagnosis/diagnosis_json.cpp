@@ -10,7 +10,7 @@
 #include "report/analysis/camera_plots.h"
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/words/diagnosis_words.h"
-#include "report/diagnosis/words/picture_words.h"
+#include "report/diagnosis/words/image_words.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "report/text/found_json.h"
 #include "report/text/json_numbers.h"
@@ -156,7 +156,7 @@ Json gap_json(const diagnose::GapSizes& gap) {
   return object;
 }
 
-Json noise_json(const diagnose::PictureCurve& curve) {
+Json noise_json(const diagnose::ImageCurve& curve) {
   Json one;
   one["level_code"] = curve.at;
   one["variance_code2"] = curve.value;
@@ -260,18 +260,18 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   document["next_experiment"] = next_step_words(diagnosis.next);
   document["isolability"] = {{"effects", diagnosis.isolability.ids}, {"cosine", diagnosis.isolability.cosine}};
   document["pictures"] = Json::array();
-  for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
+  for (const diagnose::ImageFinding& finding : diagnosis.images) {
     Json one;
     one["id"] = finding.id;
     one["stage"] = to_text(finding.stage);
     one["seen"] = finding.seen;
     put(one, "log_evidence", finding.log_evidence);
     one["parameters"] = parameters_json(finding.parameters);
-    one["words"] = picture_words(finding.fact);
+    one["words"] = image_words(finding.fact);
     document["pictures"].push_back(std::move(one));
   }
   document["pixel_noise"] = Json::array();
-  for (const diagnose::PictureCurve& curve : diagnosis.picture_curves) {
+  for (const diagnose::ImageCurve& curve : diagnosis.image_curves) {
     if (curve.what == "noise") document["pixel_noise"].push_back(noise_json(curve));
   }
   document["calibration_rests"] = Json::array();

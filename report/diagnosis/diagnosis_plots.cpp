@@ -161,7 +161,7 @@ Plot residual_plot(const diagnose::Diagnosis& diagnosis, diagnose::GapVariable v
       one ? "Residuals" : "Residuals before and after"};
 }
 
-Plot lengthening_plot(const diagnose::PictureCurve& curve) {
+Plot lengthening_plot(const diagnose::ImageCurve& curve) {
   PlotData data{"seen",
                 {},
                 {"speed in the image (px/s)", "lengthening (px²)", "standard deviation (px²)",
@@ -192,10 +192,10 @@ struct OverTime {
   std::vector<std::string> clips;
 };
 
-OverTime over_time(const std::vector<diagnose::PictureCurve>& curves, const std::string& what, PlotData data,
+OverTime over_time(const std::vector<diagnose::ImageCurve>& curves, const std::string& what, PlotData data,
                    double scale) {
   OverTime of{std::move(data), {}};
-  for (const diagnose::PictureCurve& curve : curves) {
+  for (const diagnose::ImageCurve& curve : curves) {
     if (curve.what != what || curve.at.empty()) continue;
     if (!of.data.rows.empty()) of.data.rows.emplace_back();  // the next clip begins a new block
     const std::size_t step = std::max<std::size_t>(1, curve.at.size() / kPoints);
@@ -291,15 +291,15 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis) {
   return plots;
 }
 
-std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis) {
+std::vector<Plot> image_plots(const diagnose::Diagnosis& diagnosis) {
   std::vector<Plot> plots;
   for (const diagnose::CalibrationRests& of : diagnosis.calibrations) {
     for (Plot& plot : calibration_plots(of.rests, diagnosis.calibrations.size() > 1 ? of.experiment : "")) {
       plots.push_back(std::move(plot));
     }
   }
-  const std::vector<diagnose::PictureCurve>& curves = diagnosis.picture_curves;
-  for (const diagnose::PictureCurve& curve : curves) {
+  const std::vector<diagnose::ImageCurve>& curves = diagnosis.image_curves;
+  for (const diagnose::ImageCurve& curve : curves) {
     if (curve.what == "lengthening") plots.push_back(lengthening_plot(curve));
     if (curve.what == "noise") plots.push_back(noise_plot(curve));
   }

@@ -28,7 +28,7 @@ std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis);
 
 /// What the images show: the residuals of the calibration over the image, the marker's lengthening over its speed,
 /// pixels' noise over their brightness, the light and the scene's position over time. Empty for tracks.
-std::vector<Plot> picture_plots(const diagnose::Diagnosis& diagnosis);
+std::vector<Plot> image_plots(const diagnose::Diagnosis& diagnosis);
 
 /// Which effects look alike in these data. Empty if fewer than two can be seen.
 std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability);

@@ -13,7 +13,7 @@
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/words/cause_words.h"
 #include "report/diagnosis/words/diagnosis_words.h"
-#include "report/diagnosis/words/picture_words.h"
+#include "report/diagnosis/words/image_words.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "report/html/folded.h"
 #include "report/html/html.h"
@@ -169,12 +169,12 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
 }
 
 /// The effects searched for in the images, those present first.
-std::string picture_table(const diagnose::Diagnosis& diagnosis) {
+std::string image_table(const diagnose::Diagnosis& diagnosis) {
   HtmlTable table({"looked for", "seen", "what the images show"}, 3);
   for (const bool seen : {true, false}) {
-    for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
+    for (const diagnose::ImageFinding& finding : diagnosis.images) {
       if (finding.seen == seen)
-        table.row({effect_html(finding.id), seen ? "yes" : "no", escape(picture_words(finding.fact))});
+        table.row({effect_html(finding.id), seen ? "yes" : "no", escape(image_words(finding.fact))});
     }
   }
   return table.str();
@@ -221,11 +221,11 @@ Html gap_parts(const diagnose::Diagnosis& diagnosis) {
   return html;
 }
 
-Html picture_part(const diagnose::Diagnosis& diagnosis) {
-  if (diagnosis.pictures.empty()) return {};
+Html image_part(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.images.empty()) return {};
   return "<p>Some faults of a camera hardly shift the positions and show in the images themselves. Each is looked for, "
          "whether or not the positions call for it.</p>\n" +
-         picture_table(diagnosis) + figures(picture_plots(diagnosis));
+         image_table(diagnosis) + figures(image_plots(diagnosis));
 }
 
 }  // namespace
@@ -245,7 +245,7 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
       Html(told ? tiles(diagnosis) : std::string()) + effect_table(diagnosis) + figures(verdict_plots(diagnosis)));
   body += gap_parts(diagnosis);
   if (!twin.empty()) body += folded("The twin compared with the data", twin_section(diagnosis, twin));
-  body += folded("What the images show", picture_part(diagnosis));
+  body += folded("What the images show", image_part(diagnosis));
   body += folded("What these data can tell apart", figures(isolability_plots(diagnosis.isolability)));
   std::string numbers = ranking_table(diagnosis);
   if (diagnosis.gap) numbers += "<h3>The gap, clip by clip</h3>\n" + gap_tables(diagnosis);
@@ -357,8 +357,8 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
       text += fmt::format("{}: {}\n", effect.id, parameter_text(parameter));
     }
   }
-  for (const diagnose::PictureFinding& finding : diagnosis.pictures) {
-    if (finding.seen) text += "images: " + wrapped(picture_words(finding.fact));
+  for (const diagnose::ImageFinding& finding : diagnosis.images) {
+    if (finding.seen) text += "images: " + wrapped(image_words(finding.fact));
   }
   if (diagnosis.gap) {
     text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor {:.3g})\n",

@@ -74,7 +74,7 @@ SheetCanvas SheetCanvas::page(double width_m, double height_m, SheetFormat forma
   return SheetCanvas(std::move(cairo));
 }
 
-SheetCanvas SheetCanvas::picture(double width_m, double height_m, double pixels_per_m) {
+SheetCanvas SheetCanvas::image(double width_m, double height_m, double pixels_per_m) {
   auto cairo = std::make_unique<Cairo>();
   const auto pixels = [&](double length_m) { return static_cast<int>(std::lround(length_m * pixels_per_m)); };
   cairo->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels(width_m), pixels(height_m));
@@ -116,20 +116,19 @@ std::string SheetCanvas::finish_page() {
   return std::move(cairo_->bytes);
 }
 
-SheetPicture SheetCanvas::finish_picture() {
+SheetImage SheetCanvas::finish_image() {
   cairo_surface_flush(cairo_->surface);
-  SheetPicture picture{
-      cairo_image_surface_get_width(cairo_->surface), cairo_image_surface_get_height(cairo_->surface), {}};
+  SheetImage image{cairo_image_surface_get_width(cairo_->surface), cairo_image_surface_get_height(cairo_->surface), {}};
   const unsigned char* pixels = cairo_image_surface_get_data(cairo_->surface);
   const int stride = cairo_image_surface_get_stride(cairo_->surface);
-  for (int row = 0; pixels != nullptr && row < picture.height; ++row) {
-    for (int column = 0; column < picture.width; ++column) {
+  for (int row = 0; pixels != nullptr && row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
       constexpr int kBytesPerPixel = 4;  // RGB24, with equal channels
-      picture.grey.push_back(pixels[row * stride + column * kBytesPerPixel + 1]);
+      image.grey.push_back(pixels[row * stride + column * kBytesPerPixel + 1]);
     }
   }
   cairo_->finish();
-  return picture;
+  return image;
 }
 
 namespace {
@@ -234,11 +233,11 @@ std::string page_of(const Sheet& sheet, SheetFormat format) {
 }
 
 template <class Sheet>
-SheetPicture picture_of(const Sheet& sheet, double pixels_per_m) {
+SheetImage image_of(const Sheet& sheet, double pixels_per_m) {
   validate(sheet);
-  SheetCanvas canvas = SheetCanvas::picture(sheet.paper.width_m, sheet.paper.height_m, pixels_per_m);
+  SheetCanvas canvas = SheetCanvas::image(sheet.paper.width_m, sheet.paper.height_m, pixels_per_m);
   draw(canvas, sheet);
-  return canvas.finish_picture();
+  return canvas.finish_image();
 }
 
 }  // namespace
@@ -300,14 +299,14 @@ std::string measure_text(const BoardSheet& sheet) {
 std::string board_page(const BoardSheet& sheet, SheetFormat format) {
   return page_of(sheet, format);
 }
-SheetPicture board_picture(const BoardSheet& sheet, double pixels_per_m) {
-  return picture_of(sheet, pixels_per_m);
+SheetImage board_image(const BoardSheet& sheet, double pixels_per_m) {
+  return image_of(sheet, pixels_per_m);
 }
 std::string marker_page(const MarkerSheet& sheet, SheetFormat format) {
   return page_of(sheet, format);
 }
-SheetPicture marker_picture(const MarkerSheet& sheet, double pixels_per_m) {
-  return picture_of(sheet, pixels_per_m);
+SheetImage marker_image(const MarkerSheet& sheet, double pixels_per_m) {
+  return image_of(sheet, pixels_per_m);
 }
 
 }  // namespace glidelab::report

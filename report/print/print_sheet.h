@@ -13,7 +13,7 @@ namespace glidelab::report {
 
 enum class SheetFormat { pdf, svg };
 
-struct SheetPicture {
+struct SheetImage {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> grey;  ///< row by row, 0 black to 255 white
@@ -28,7 +28,7 @@ class SheetCanvas {
   /// A white sheet that becomes a file.
   static SheetCanvas page(double width_m, double height_m, SheetFormat format);
   /// The same as pixels; width and height are rounded to whole pixels.
-  static SheetCanvas picture(double width_m, double height_m, double pixels_per_m);
+  static SheetCanvas image(double width_m, double height_m, double pixels_per_m);
   SheetCanvas(SheetCanvas&&) noexcept;
   ~SheetCanvas();
 
@@ -41,8 +41,8 @@ class SheetCanvas {
 
   /// The bytes of a page()'s file. EnvironmentError if Cairo fails. Nothing may be drawn afterwards.
   std::string finish_page();
-  /// The pixels of a picture(); likewise.
-  SheetPicture finish_picture();
+  /// The pixels of an image(); likewise.
+  SheetImage finish_image();
 
  private:
   struct Cairo;
@@ -88,7 +88,7 @@ void validate(const BoardSheet& sheet);
 std::string measure_text(const BoardSheet& sheet);
 /// The file's bytes, and the same as pixels (for tests). InputError as in validate(); EnvironmentError if Cairo fails.
 std::string board_page(const BoardSheet& sheet, SheetFormat format);
-SheetPicture board_picture(const BoardSheet& sheet, double pixels_per_m);
+SheetImage board_image(const BoardSheet& sheet, double pixels_per_m);
 
 /// Discs of these diameters, in each row white ones on black and black ones on white, on squares of twice the size.
 struct MarkerSheet {
@@ -98,8 +98,8 @@ struct MarkerSheet {
 
 /// InputError (of `--marker-mm`) if they do not fit, or if one is finer than 1 mm.
 void validate(const MarkerSheet& sheet);
-/// As board_page() and board_picture().
+/// As board_page() and board_image().
 std::string marker_page(const MarkerSheet& sheet, SheetFormat format);
-SheetPicture marker_picture(const MarkerSheet& sheet, double pixels_per_m);
+SheetImage marker_image(const MarkerSheet& sheet, double pixels_per_m);
 
 }  // namespace glidelab::report

@@ -228,7 +228,7 @@ class Row {
     frame.middle = states_[frame.frame];
     frame.start_s = frame.middle.t_s;
     frame.x_m = {frame.middle.x_m};
-    const render::FloatPicture& expected_e = renderer_.expected(frame);
+    const render::FloatImage& expected_e = renderer_.expected(frame);
     for (std::size_t i = 0; i < codes.size(); ++i) {
       const double code = std::round(code_per_e_ * static_cast<double>(expected_e.values[i]));
       codes[i] = static_cast<std::uint8_t>(std::clamp(code, 0.0, 255.0));
@@ -275,12 +275,12 @@ LawFilm film_law(const std::filesystem::path& path, const LawFilmOptions& option
   const base::TemporaryFolder folder("film");
   const auto writer = render::open_video(folder / "film.mp4", format);
   const std::size_t row_size = static_cast<std::size_t>(camera.width_px) * camera.height_px;
-  std::vector<std::uint8_t> picture(row_size * rows.size());
+  std::vector<std::uint8_t> image(row_size * rows.size());
   for (std::size_t k = 0; k < film.frames; ++k) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (k < rows[i].frames()) rows[i].draw(k, std::span(picture).subspan(i * row_size, row_size));
+      if (k < rows[i].frames()) rows[i].draw(k, std::span(image).subspan(i * row_size, row_size));
     }
-    writer->write(std::span<const std::uint8_t>(picture));
+    writer->write(std::span<const std::uint8_t>(image));
   }
   writer->finish();
   film.mp4 = base::read_file(folder / "film.mp4");

@@ -1,4 +1,4 @@
-/// A track experiment from the closed form of equation (8): thrown uphill, turns, comes back. No picture is needed.
+/// A track experiment from the closed form of equation (8): thrown uphill, turns, comes back. No image is needed.
 #pragma once
 
 #include <cmath>

@@ -125,7 +125,7 @@ TEST_CASE("hostile clips and images end with one message and status 1, soon, and
   }
 }
 
-TEST_CASE("a picture that takes a thousand times as much as its file is read within the limit alone") {
+TEST_CASE("an image that takes a thousand times as much as its file is read within the limit alone") {
   const tests::TempDir temp;
   fs::create_directories(temp / "bomb/clip");
   for (const char* name : {"bomb/clip/0.png", "bomb/clip/1.png"}) {

@@ -59,7 +59,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "diagnose/result/given_causes.h",
       "diagnose/result/next_step.h",
       "diagnose/result/note.h",
-      "diagnose/result/picture_fact.h",
+      "diagnose/result/image_fact.h",
       "diagnose/effects/effect_library.h",
       "diagnose/effects/effect_list.h",
       "validate/film/twin_motions.h",
@@ -242,8 +242,8 @@ void build_alone(const std::vector<std::string>& folders, const std::string& bui
 }
 
 /// The folders of core's analysis of tracks.
-const std::vector<std::string> kWithoutPictures = {"core/experiment", "core/math", "core/motion", "core/result",
-                                                   "core/track"};
+const std::vector<std::string> kWithoutImages = {"core/experiment", "core/math", "core/motion", "core/result",
+                                                 "core/track"};
 
 }  // namespace
 
@@ -252,22 +252,22 @@ TEST_CASE("core builds alone in an empty tree, with base and cmake and no other 
 }
 
 TEST_CASE("the analysis of tracks builds alone in an empty tree, where OpenCV is not to be found", "[slow]") {
-  std::vector<std::string> folders = kWithoutPictures;
+  std::vector<std::string> folders = kWithoutImages;
   folders.insert(folders.end(), {"base", "cmake"});
   build_alone(folders, "core/motion", "libglidelab_motion.a", {"-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON"});
 }
 
-TEST_CASE("the analysis of tracks includes neither OpenCV nor the suites that read pictures, and these not it") {
+TEST_CASE("the analysis of tracks includes neither OpenCV nor the suites that read images, and these not it") {
   for (const Source& source : sources_of_rooms()) {
     const std::string path = source.path.string();
     const auto lies_in = [&](const std::string& folder) { return path.starts_with(folder + "/"); };
-    const bool of_tracks = std::any_of(kWithoutPictures.begin(), kWithoutPictures.end(), lies_in);
+    const bool of_tracks = std::any_of(kWithoutImages.begin(), kWithoutImages.end(), lies_in);
     for (const std::string& include : includes_of(source)) {
       INFO(path << " includes " << include);
       if (of_tracks) {
         CHECK_FALSE(include.starts_with("opencv"));
         const bool of_core = include.starts_with("core/");
-        CHECK((!of_core || std::any_of(kWithoutPictures.begin(), kWithoutPictures.end(),
+        CHECK((!of_core || std::any_of(kWithoutImages.begin(), kWithoutImages.end(),
                                        [&](const std::string& folder) { return include.starts_with(folder + "/"); })));
       }
       if (lies_in("core/pictures")) CHECK_FALSE(include.starts_with("core/motion/"));

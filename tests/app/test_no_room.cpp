@@ -89,7 +89,7 @@ TEST_CASE("a result that the standard output has no room for is an error of the 
 TEST_CASE("a file that may not grow further (a full quota) leaves no half-written folder") {
   const tests::TempDir temp;
   tests::write_tiny_scenario(temp / "tiny.toml");
-  // 8 blocks of 512 bytes: the first picture does not fit. SIGXFSZ is ignored, as under a quota write(2) then fails.
+  // 8 blocks of 512 bytes: the first image does not fit. SIGXFSZ is ignored, as under a quota write(2) then fails.
   const tests::ProcessResult result =
       tests::run({"sh", "-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" render \"$1\" -q --out \"$2\"", tests::kBinary,
                   (temp / "tiny.toml").string(), (temp / "out").string()});

@@ -1,4 +1,4 @@
-/// A scenario that renders in about a second: one glider, one clip, a small picture.
+/// A scenario that renders in about a second: one glider, one clip, a small image.
 #pragma once
 
 #include <fmt/format.h>

@@ -64,7 +64,7 @@ inline core::BoardCorners known_corners(const KnownCamera& camera, const KnownPl
   return corners;
 }
 
-/// A dozen poses that fill the picture, as a person holds a board of 40 mm squares.
+/// A dozen poses that fill the image, as a person holds a board of 40 mm squares.
 inline core::BoardViews known_views(const KnownCamera& camera, double noise_px, cv::RNG& random) {
   core::BoardViews boards;
   boards.image_size = camera.size;

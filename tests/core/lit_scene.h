@@ -43,14 +43,14 @@ inline double srgb_of_light(double light) {
 
 /// 8-bit codes of a scene of light with noise, through sRGB or in proportion to the light.
 inline cv::Mat expose_light(cv::Size size, const Light& light, bool srgb, double noise_sd, std::uint64_t seed) {
-  cv::Mat picture = paint(size, light, 12);
-  for (int v = 0; v < picture.rows; ++v) {
-    for (int u = 0; u < picture.cols; ++u) {
-      double& pixel = picture.at<double>(v, u);
+  cv::Mat image = paint(size, light, 12);
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      double& pixel = image.at<double>(v, u);
       pixel = 255.0 * (srgb ? srgb_of_light(pixel) : std::clamp(pixel, 0.0, 1.0));
     }
   }
-  return expose(picture, noise_sd, seed);
+  return expose(image, noise_sd, seed);
 }
 
 }  // namespace glidelab::tests

@@ -1,4 +1,4 @@
-/// A small painter for the tests of core/: pictures with exactly known geometry, by area averaging of point samples. It
+/// A small painter for the tests of core/: images with exactly known geometry, by area averaging of point samples. It
 /// shares no code with render/.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace glidelab::tests {
 /// A scene as light over the continuous image plane (the centre of the first pixel is (0, 0)).
 using Light = std::function<double(double u, double v)>;
 
-/// Mean of samples x samples points in every pixel, after a Gaussian blur (sd in pixels); 64-bit float picture.
+/// Mean of samples x samples points in every pixel, after a Gaussian blur (sd in pixels); 64-bit float image.
 inline cv::Mat paint(cv::Size size, const Light& light, int samples = 8, double blur_px = 0.0) {
   const int margin = blur_px > 0.0 ? static_cast<int>(std::ceil(5.0 * blur_px)) : 0;
   const cv::Size fine_size((size.width + 2 * margin) * samples, (size.height + 2 * margin) * samples);
@@ -33,17 +33,17 @@ inline cv::Mat paint(cv::Size size, const Light& light, int samples = 8, double 
   cv::Mat coarse;
   cv::resize(fine, coarse, cv::Size(size.width + 2 * margin, size.height + 2 * margin), 0, 0, cv::INTER_AREA);
   coarse = coarse(cv::Rect(margin, margin, size.width, size.height));
-  cv::Mat picture;
-  coarse.convertTo(picture, CV_64F);
-  return picture;
+  cv::Mat image;
+  coarse.convertTo(image, CV_64F);
+  return image;
 }
 
 /// Rounds to 8 or 16 bits after adding Gaussian noise of this standard deviation.
-inline cv::Mat expose(const cv::Mat& picture, double noise_sd, std::uint64_t seed, int depth = CV_8U) {
-  cv::Mat noisy = picture.clone();
+inline cv::Mat expose(const cv::Mat& image, double noise_sd, std::uint64_t seed, int depth = CV_8U) {
+  cv::Mat noisy = image.clone();
   if (noise_sd > 0.0) {
     cv::RNG random(seed);
-    cv::Mat noise(picture.size(), CV_64F);
+    cv::Mat noise(image.size(), CV_64F);
     random.fill(noise, cv::RNG::NORMAL, 0.0, noise_sd);
     noisy += noise;
   }

@@ -17,13 +17,13 @@
 
 namespace glidelab::tests {
 
-/// Puts an opaque disc with a soft edge (Gaussian, sd `blur_px`) into the picture; 8 x 8 samples a pixel.
-inline void put_disc(cv::Mat& picture, cv::Point2d centre, double radius, double value, double blur_px = 0.4) {
+/// Puts an opaque disc with a soft edge (Gaussian, sd `blur_px`) into the image; 8 x 8 samples a pixel.
+inline void put_disc(cv::Mat& image, cv::Point2d centre, double radius, double value, double blur_px = 0.4) {
   constexpr int kSamples = 8;
   const double reach = radius + 5.0 * blur_px + 1.0;
   for (int v = static_cast<int>(std::floor(centre.y - reach)); v <= centre.y + reach; ++v) {
     for (int u = static_cast<int>(std::floor(centre.x - reach)); u <= centre.x + reach; ++u) {
-      if (u < 0 || v < 0 || u >= picture.cols || v >= picture.rows) continue;
+      if (u < 0 || v < 0 || u >= image.cols || v >= image.rows) continue;
       double share = 0.0;
       for (int j = 0; j < kSamples; ++j) {
         for (int i = 0; i < kSamples; ++i) {
@@ -33,14 +33,14 @@ inline void put_disc(cv::Mat& picture, cv::Point2d centre, double radius, double
         }
       }
       share /= kSamples * kSamples;
-      double& pixel = picture.at<double>(v, u);
+      double& pixel = image.at<double>(v, u);
       pixel = pixel * (1.0 - share) + value * share;
     }
   }
 }
 
-inline void put_box(cv::Mat& picture, cv::Rect box, double value) {
-  picture(box & cv::Rect(0, 0, picture.cols, picture.rows)).setTo(value);
+inline void put_box(cv::Mat& image, cv::Rect box, double value) {
+  image(box & cv::Rect(0, 0, image.cols, image.rows)).setTo(value);
 }
 
 /// Writes frames (CV_64F, or CV_64FC3) as FFV1 in Matroska with 8 bits; noise of this standard deviation is added.

@@ -1,6 +1,6 @@
 /// Damaged recordings through the analysis: small experiments in five codecs are rendered, and each run damages one of
 /// their files (clip, frame, view of the pattern, plane) and analyses the folder in a process of its own. One run in
-/// eight has the pattern, whose pictures take most of an analysis; the others have a scale, and only clips to damage.
+/// eight has the pattern, whose images take most of an analysis; the others have a scale, and only clips to damage.
 ///
 ///     mutate_clips GLIDELAB RUNS [SEED] [--command]
 ///
@@ -61,7 +61,7 @@ name = "{}"
          tests::one_glider(4.0, 2.768, 0.0, {{"up", 0.2, -1.2, 0.4}});
 }
 
-/// Puts the scale that the scenario's camera has in the place of the calibration and its pictures.
+/// Puts the scale that the scenario's camera has in the place of the calibration and its images.
 void take_scale(const fs::path& folder, int width_px) {
   std::string experiment = base::read_file(folder / "experiment.toml");
   const std::size_t from = experiment.find("[calibration]"), to = experiment.find("\n[", from);

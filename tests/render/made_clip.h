@@ -25,15 +25,15 @@ struct MadeClip {
   const sim::ConfigurationSetup& configuration = scenario.motion.configurations.front();
   RayTable rays = make_ray_table(scenario.camera, scenario.vignetting);
   StaticScene scene = empty_track(scenario, configuration.body.incline_rad);
-  FloatPicture background_e;
-  std::optional<FinePicture> fine;
+  FloatImage background_e;
+  std::optional<FineImage> fine;
 
   explicit MadeClip(const Scenario& read) : scenario(as_in_clips(read)) {
     background_e = StaticPainter(scenario.camera, rays, scenario.focus).paint(scene);
     for (float& value : background_e.values) value *= static_cast<float>(electrons_of_white(scenario));
     if (scenario.mount.moves()) {
-      fine = fine_picture(scenario.camera, scenario.mount, scenario.focus, scene,
-                          configuration.motions.front().duration_s);
+      fine =
+          fine_image(scenario.camera, scenario.mount, scenario.focus, scene, configuration.motions.front().duration_s);
     }
   }
   MadeClip(const MadeClip&) = delete;

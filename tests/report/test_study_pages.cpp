@@ -64,7 +64,7 @@ TEST_CASE("require says its target, and its columns in the thousandths, milliont
   validate::Requirement rendered = one_camera("mu", 0.0005, 1.8e-5);
   rendered.confirm = validate::Confirm::clips;
   CHECK_FALSE(has(report::requirement_text(rendered), "--confirm clips"));
-  // What the bound forbids was not run, and pictures would not help.
+  // What the bound forbids was not run, and images would not help.
   validate::Requirement impossible = one_camera("mu", 1e-6, 1.8e-5);
   impossible.candidates.front().verdict = validate::Verdict::impossible;
   impossible.candidates.front().results = {{1.8e-5, {}, 0.0, 0, 0, ""}};

@@ -27,14 +27,14 @@ void check(const BlindOptions& options) {
     throw base::InputError(
         base::Issue{"", 0, "--cases", fmt::format("{}", options.cases), fmt::format("1 to {}", kMostBlindCases)});
   }
-  if (options.everyday && (options.pictures || options.leave_out)) {
-    throw base::InputError(base::Issue{"", 0, "--everyday", options.pictures ? "with --pictures" : "with --leave-out",
+  if (options.everyday && (options.images || options.leave_out)) {
+    throw base::InputError(base::Issue{"", 0, "--everyday", options.images ? "with --pictures" : "with --leave-out",
                                        "everyday cases are tracks, diagnosed once"});
   }
   if (options.only.empty()) return;
   std::string known;
-  const auto& library = options.pictures ? filmed_effects() : options.everyday ? everyday_effects() : library_effects();
-  const auto& outside = options.pictures   ? filmed_outside_effects()
+  const auto& library = options.images ? filmed_effects() : options.everyday ? everyday_effects() : library_effects();
+  const auto& outside = options.images     ? filmed_outside_effects()
                         : options.everyday ? everyday_outside()
                                            : outside_effects();
   for (const auto* list : {&library, &outside}) {
@@ -49,7 +49,7 @@ void check(const BlindOptions& options) {
 /// Checks the settings that two runs must share, except for their number of cases.
 void check_same_run(const BlindOptions& options, const fs::path& out) {
   Ordered wanted = {{"format", 1}, {"seed", options.seed}, {"only", options.only}};
-  if (options.pictures) wanted["pictures"] = true;
+  if (options.images) wanted["pictures"] = true;
   if (options.everyday) wanted["everyday"] = true;
   const fs::path file = out / "run.json";
   if (!fs::exists(file)) {
@@ -136,7 +136,7 @@ Made make_case(const BlindOptions& options, const fs::path& out, std::size_t ind
             [one](const fs::path& folder) { write_blind_folder(*one, folder); },
             one->truth};
   }
-  if (!options.pictures) {
+  if (!options.images) {
     const auto one = std::make_shared<BlindCase>(make_blind_case(options.seed, index, {options.only}));
     return {one->kind,
             one->causes,
@@ -187,7 +187,7 @@ BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::siz
     base::write_file(staged.dir() / truth.filename(), one.truth_json);
     staged.publish_files();
   }
-  BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.pictures, one.everyday, {}};
+  BlindOutcome outcome{index, one.kind, one.causes, one.clips, {}, {}, options.images, one.everyday, {}};
   if (one.everyday) outcome.seconds = seconds_in(diagnosis);
   outcome.verdict = verdict_in(diagnosis, one.told);
   if (leaves_out) outcome.left_out = verdict_in(without, one.told);

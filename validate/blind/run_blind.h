@@ -32,7 +32,7 @@ struct BlindOptions {
   std::size_t cases = 0;
   bool leave_out = false;  ///< diagnose each case of one effect again, with its effect removed from the list
   std::string only;        ///< an effect that every case has
-  bool pictures = false;   ///< filmed experiments instead of tracks
+  bool images = false;     ///< filmed experiments instead of tracks
   bool everyday = false;   ///< tracks with several small imperfections (everyday_case.h)
   int jobs = 1;
 };

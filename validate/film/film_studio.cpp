@@ -22,12 +22,12 @@
 namespace glidelab::validate {
 
 void Canvas::clear() {
-  for (const cv::Rect& rect : drawn) picture(rect).setTo(0);
+  for (const cv::Rect& rect : drawn) image(rect).setTo(0);
   drawn.clear();
 }
 
 bool is_free(const std::shared_ptr<Canvas>& canvas) {
-  return canvas.use_count() == 1 && canvas->picture.u->refcount == 1;
+  return canvas.use_count() == 1 && canvas->image.u->refcount == 1;
 }
 
 std::shared_ptr<Canvas> CanvasPool::take(cv::Size size, int type) {
@@ -39,7 +39,7 @@ std::shared_ptr<Canvas> CanvasPool::take(cv::Size size, int type) {
       all_.pop_back();
     }
   }
-  if (!canvas || canvas->picture.size() != size || canvas->picture.type() != type) {
+  if (!canvas || canvas->image.size() != size || canvas->image.type() != type) {
     return std::make_shared<Canvas>(Canvas{cv::Mat::zeros(size, type), {}});
   }
   canvas->clear();
@@ -107,17 +107,17 @@ class RenderedFrames : public core::FrameSource {
     if (!now) return std::nullopt;
     core::Frame frame;
     const std::shared_ptr<Canvas> canvas = canvases_.clear_one();
-    frame.grey = canvas->picture;
+    frame.grey = canvas->image;
     frame.index = index_++;
     const render::Recording& recording = set_->scenario().recording;
     frame.t_s = recording.clock.variable ? now->stamp_s : static_cast<double>(frame.index) / recording.frame_rate_hz;
     // Copies of the frame share the canvas.
     frame.draw = [this, canvas, shown = now->shown](const cv::Rect& part) {
-      cv::Mat& picture = canvas->picture;
+      cv::Mat& image = canvas->image;
       if (std::ranges::any_of(canvas->drawn, [&](const cv::Rect& known) { return (known & part) == part; })) return;
       canvas->drawn.push_back(part);
-      cv::Mat target = picture(part);
-      if (picture.depth() == CV_16U) {
+      cv::Mat target = image(part);
+      if (image.depth() == CV_16U) {
         read<std::uint16_t>(*shown, part, target);
       } else {
         read<std::uint8_t>(*shown, part, target);
@@ -191,15 +191,15 @@ namespace fs = std::filesystem;
 core::Experiment rendered(const render::Scenario& scenario, const fs::path& folder, std::uint64_t seed, int jobs,
                           bool clips, const std::shared_ptr<const render::Stage>& stage,
                           const base::Progress& progress) {
-  const fs::path pictures = folder / "e", truth = folder / "t";
-  fs::create_directories(pictures);
-  fs::remove_all(pictures / "clips");
+  const fs::path images = folder / "e", truth = folder / "t";
+  fs::create_directories(images);
+  fs::remove_all(images / "clips");
   fs::remove_all(truth);
   fs::create_directory(truth);
-  render::render_experiment(scenario, pictures, truth,
+  render::render_experiment(scenario, images, truth,
                             {.seed = seed, .jobs = jobs, .ideal = false, .clips = clips, .stills = false}, progress,
                             stage);
-  return core::read_experiment(pictures);
+  return core::read_experiment(images);
 }
 
 /// Tracks do not use a plumb line.
@@ -216,15 +216,15 @@ FilmStudio::FilmStudio(const render::Scenario& with_plumb, std::uint64_t seed, i
   const render::Scenario scenario = without_plumb(with_plumb);
   if (!stage_) stage_ = render::set_stage(scenario, jobs, [this] { progress_("stage", 0.0); });
   // The images stay in memory; empty files stand in for them.
-  const fs::path pictures = folder_.path() / "e";
+  const fs::path images = folder_.path() / "e";
   std::map<fs::path, cv::Mat> stills;
   std::mutex mutex;
-  fs::create_directories(pictures / "calibration");
+  fs::create_directories(images / "calibration");
   render::take_stills(scenario, *stage_, seed, jobs, [&](const std::string& name, const cv::Mat& codes) {
     progress_("rendering", 0.0);
-    base::write_file(pictures / name, "");
+    base::write_file(images / name, "");
     const std::lock_guard lock(mutex);
-    stills[pictures / name] = codes.clone();
+    stills[images / name] = codes.clone();
   });
   const core::Experiment experiment = rendered(scenario, folder_.path(), seed, jobs, false, stage_, progress_);
   const core::CalibrationSetup& setup = *experiment.calibration;

@@ -22,7 +22,7 @@ namespace glidelab::validate {
 
 /// A frame's pixels and the region that is drawn; the rest is 0.
 struct Canvas {
-  cv::Mat picture;
+  cv::Mat image;
   std::vector<cv::Rect> drawn;
 
   /// Resets all pixels to 0.

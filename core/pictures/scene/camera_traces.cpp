@@ -98,7 +98,7 @@ BlockEdges block_edges(const BlockSteps& steps) {
   return {steps.mean[0] / mean - 1.0, (steps.mean[0] - largest) / std::hypot(std::sqrt(unlike), kLeastScatter * mean)};
 }
 
-bool through_lossy_codec(const PictureRecord& record) {
+bool through_lossy_codec(const ImageRecord& record) {
   return record.lossy.value_or(false) || block_edges(record.steps).z > kLeastZOfCodec;
 }
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 
 namespace glidelab::core {
 
@@ -58,6 +58,6 @@ struct BlockEdges {
 BlockEdges block_edges(const BlockSteps& steps);
 
 /// The file says so, or its images show blocks beyond doubt (z above 10).
-bool through_lossy_codec(const PictureRecord& record);
+bool through_lossy_codec(const ImageRecord& record);
 
 }  // namespace glidelab::core

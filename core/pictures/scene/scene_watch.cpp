@@ -206,7 +206,7 @@ PixelChanges SceneWatch::changes_by_level() const {
   return pixels;
 }
 
-void SceneWatch::finish(PictureRecord& record) {
+void SceneWatch::finish(ImageRecord& record) {
   record.scene = std::move(looks_);
   record.steps = steps_.finish();
   if (!lossy_ && through_lossy_codec(record)) allow_for_codec(record.scene);

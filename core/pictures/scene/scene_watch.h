@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "core/pictures/scene/camera_traces.h"
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 
 namespace glidelab::core {
 
@@ -38,7 +38,7 @@ class SceneWatch {
   explicit SceneWatch(bool lossy = false) : lossy_(lossy) {}
   void add(const cv::Mat& grey, double t_s);
   /// Fills what it has seen into the record: scene, steps, noise.
-  void finish(PictureRecord& record);
+  void finish(ImageRecord& record);
 
  private:
   struct Patch {

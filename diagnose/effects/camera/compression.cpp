@@ -17,7 +17,7 @@ EffectInfo compression() {
       .words = "a codec that loses detail",
       .name = "lossy compression",
       .meaning = {},
-      .search = Search::pictures,
+      .search = Search::images,
       .both_signs = false,
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,

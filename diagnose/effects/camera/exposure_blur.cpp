@@ -22,7 +22,7 @@ EffectInfo exposure_blur() {
       .words = "an exposure that is longer than stated",
       .name = "exposure longer than stated",
       .meaning = "exposure: inferred from the smear of the marker",
-      .search = Search::pictures,
+      .search = Search::images,
       .both_signs = false,
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,

@@ -22,7 +22,7 @@ EffectInfo light_flicker() {
       .words = "light that flickers",
       .name = "flickering light",
       .meaning = "brightness changes by this depth, with frequency f",
-      .search = Search::pictures,
+      .search = Search::images,
       .both_signs = false,
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,

@@ -27,7 +27,7 @@ EffectInfo light_gradient() {
       .words = "light that is much brighter on one side",
       .name = "light from one side",
       .meaning = "how much brighter it is on one side of the marker",
-      .search = Search::pictures,
+      .search = Search::images,
       .both_signs = false,
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,

@@ -42,7 +42,7 @@ TEST_CASE("characterize writes camera.toml, characterize.json and a page, and --
   CHECK(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator{}) == 2);  // no staging is left
 }
 
-TEST_CASE("characterize of pictures with a gamma prints why there is no gain, and its camera file has none") {
+TEST_CASE("characterize of images with a gamma prints why there is no gain, and its camera file has none") {
   const tests::TempDir temp;
   tests::TrueCamera camera;
   camera.tone = [](double x) { return std::pow(x, 1.0 / 2.2); };

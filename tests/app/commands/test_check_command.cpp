@@ -89,7 +89,7 @@ TEST_CASE("a recording without a fault is usable, and its numbers are those of t
   CHECK(speed_m_s < 1.2);
   CHECK(speed_m_s > 1.2 - 0.13);
   CHECK(std::abs(clip.at("blur_px").get<double>() - clip.at("top_speed_px_s").get<double>() * 1e-3) < 1e-9);
-  // The plane view and nine others, some of which a picture as small as this may not show well enough.
+  // The plane view and nine others, some of which an image as small as this may not show well enough.
   CHECK(check.at("pattern").at("found_in").get<std::size_t>() + check.at("pattern").at("not_found_in").size() == 10);
 }
 

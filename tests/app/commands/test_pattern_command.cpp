@@ -62,10 +62,10 @@ TEST_CASE("on the PDF as another program prints it, the squares have the stated 
     WARN("skipped: no pdftoppm program");
     return;
   }
-  const cv::Mat picture = core::read_grey_image(temp / "printed.pgm");
-  const auto found = core::find_board(picture, cv::Size(7, 4));
+  const cv::Mat image = core::read_grey_image(temp / "printed.pgm");
+  const auto found = core::find_board(image, cv::Size(7, 4));
   REQUIRE(found);
-  const core::BoardCorners board = core::refine_board(picture, *found);
+  const core::BoardCorners board = core::refine_board(image, *found);
   const double side_px = 0.030 / 0.0254 * 300.0;
   // Poppler puts the edges of filled rectangles on whole pixels: half a pixel at either end, 0.05 px for the corners.
   CHECK(std::abs(cv::norm(board.at(6, 0) - board.at(0, 0)) - 6.0 * side_px) < 1.05);

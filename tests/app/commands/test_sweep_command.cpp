@@ -102,7 +102,7 @@ TEST_CASE("Shards merged are the sweep as a whole, and a page says what came out
   CHECK(merged.status == 0);
   CHECK(contents(out / "merged" / "sweep.sqlite") == contents(out / "whole" / "sweep.sqlite"));
   const std::string page = base::read_file(out / "merged" / "report.html");
-  CHECK(page.find("<svg") == std::string::npos);  // as pictures of their own
+  CHECK(page.find("<svg") == std::string::npos);  // as images of their own
   CHECK(page.find("data:image/svg+xml") != std::string::npos);
   CHECK(page.find("6 / 6") != std::string::npos);
 }

@@ -13,7 +13,7 @@ using namespace glidelab;
 
 namespace {
 
-constexpr double kRate = 100.0, kPixelsPerMetre = 400.0, kSpeed = 300.0;  // px/s, along the picture's diagonal
+constexpr double kRate = 100.0, kPixelsPerMetre = 400.0, kSpeed = 300.0;  // px/s, along the image's diagonal
 const cv::Size kSize(240, 200);
 
 /// Pixels along the line of motion at a time.
@@ -51,9 +51,9 @@ TEST_CASE("a rolling shutter's rows have their own times where the experiment de
     const double middle = 0.5 * (kSize.height - 1), slope = kSpeed * 0.6 * line_readout_s;
     const double v = (place(k / kRate).y - slope * middle) / (1.0 - slope);
     const double t = k / kRate + line_readout_s * (v - middle);
-    cv::Mat picture(kSize, CV_64F, cv::Scalar(60.0));
-    tests::put_disc(picture, place(t), 6.0, 210.0);
-    frames.push_back(picture);
+    cv::Mat image(kSize, CV_64F, cv::Scalar(60.0));
+    tests::put_disc(image, place(t), 6.0, 210.0);
+    frames.push_back(image);
   }
   tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
   const auto error_of = [&](double declared_s) {
@@ -81,11 +81,11 @@ std::filesystem::path card_clip(const tests::TempDir& dir, double card,
                                 const std::vector<std::pair<cv::Point2d, double>>& discs) {
   std::vector<cv::Mat> frames;
   for (int k = 0; k < 45; ++k) {
-    cv::Mat picture(kSize, CV_64F, cv::Scalar(110.0));
+    cv::Mat image(kSize, CV_64F, cv::Scalar(110.0));
     const cv::Point2d at = place(k / kRate);
-    tests::put_box(picture, cv::Rect(cv::Point(at) - cv::Point(28, 16), cv::Size(56, 32)), card);
-    for (const auto& [on_card, value] : discs) tests::put_disc(picture, at + on_card, 6.0, value);
-    frames.push_back(picture);
+    tests::put_box(image, cv::Rect(cv::Point(at) - cv::Point(28, 16), cv::Size(56, 32)), card);
+    for (const auto& [on_card, value] : discs) tests::put_disc(image, at + on_card, 6.0, value);
+    frames.push_back(image);
   }
   tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
   return dir / "clip.mkv";
@@ -126,12 +126,12 @@ TEST_CASE("spots that jump about are not taken for a marker") {
   const tests::TempDir dir;
   std::vector<cv::Mat> frames;
   for (int k = 0; k < 45; ++k) {
-    cv::Mat picture(kSize, CV_64F, cv::Scalar(110.0));
+    cv::Mat image(kSize, CV_64F, cv::Scalar(110.0));
     // On the card's path, but ahead of it or behind it by up to 20 px, as golden sections scatter.
     const double golden = std::fmod(0.618034 * k, 1.0), other = std::fmod(0.754878 * k, 1.0);
     const cv::Point2d off(40.0 * (golden - 0.5), 40.0 * (other - 0.5));
-    tests::put_disc(picture, place(k / kRate) + off, 6.0, 200.0);
-    frames.push_back(picture);
+    tests::put_disc(image, place(k / kRate) + off, 6.0, 200.0);
+    frames.push_back(image);
   }
   tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
   for (const core::MarkerSearch search : {core::MarkerSearch::thorough, core::MarkerSearch::disc}) {
@@ -170,9 +170,9 @@ TEST_CASE("a fall in a portrait clip counts along the image's y, downwards or up
   const tests::TempDir dir;
   std::vector<cv::Mat> frames;
   for (int k = 0; k < 70; ++k) {
-    cv::Mat picture(cv::Size(120, 330), CV_64F, cv::Scalar(60.0));
-    tests::put_disc(picture, fallen(k / kRate), 6.0, 210.0);
-    frames.push_back(picture);
+    cv::Mat image(cv::Size(120, 330), CV_64F, cv::Scalar(60.0));
+    tests::put_disc(image, fallen(k / kRate), 6.0, 210.0);
+    frames.push_back(image);
   }
   tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
   const auto track_of = [&](core::Downhill downhill) {

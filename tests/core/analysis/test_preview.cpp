@@ -67,12 +67,12 @@ TEST_CASE("a preview shows the first, the middle and the last sighting, with the
   CHECK(preview.frames[1].frame == 24);
   CHECK(preview.frames[2].frame == 49);
   CHECK(std::abs(preview.frames[2].t_s - 49.0 / 240.0) < 1e-12);
-  const cv::Mat picture = decoded(preview.frames[1].jpeg);
-  REQUIRE(picture.cols == 400);
-  REQUIRE(picture.rows == 300);
+  const cv::Mat image = decoded(preview.frames[1].jpeg);
+  REQUIRE(image.cols == 400);
+  REQUIRE(image.rows == 300);
   // White at the marker's place, half as far as in the clip; orange on the circle around it (radius 10/2 + 2.5 px).
   // The last path dot within the disc leaves most of it white: take a point 3 px above the centre.
-  const auto at = [&](double u, double v) { return picture.at<cv::Vec3b>(cv::Point(cvRound(u), cvRound(v))); };
+  const auto at = [&](double u, double v) { return image.at<cv::Vec3b>(cv::Point(cvRound(u), cvRound(v))); };
   const double u = (marker_u(24) + 0.5) / 2.0 - 0.5;
   const double v = (kHeight / 2.0 + 0.5) / 2.0 - 0.5;
   CHECK(at(u, v - 3.0)[0] > 200);

@@ -40,7 +40,7 @@ struct Folder {
     return "";
   }
   void settings(const std::string& text) const { base::write_file(dir / "characterize.toml", text); }
-  void picture(const std::string& name, int width, int height, int type, double value) const {
+  void image(const std::string& name, int width, int height, int type, double value) const {
     write_png(dir / name, cv::Mat(height, width, type, cv::Scalar::all(value)));
   }
 };
@@ -132,18 +132,18 @@ TEST_CASE("sets that are missing or too small are named, all at once") {
 TEST_CASE("frames that cannot be used are named, with what was expected") {
   const Folder folder;
   SECTION("another size") {
-    folder.picture("flat-01/001.png", 65, 64, CV_16U, 500);
+    folder.image("flat-01/001.png", 65, 64, CV_16U, 500);
     check(folder.message(), {"flat-01/001.png: found 65 x 64 pixels, expected 64 x 64 pixels, as dark/000.png"});
   }
   SECTION("another depth") {
-    folder.picture("flat-01/001.png", 64, 64, CV_8U, 200);
+    folder.image("flat-01/001.png", 64, 64, CV_8U, 200);
     check(folder.message(), {"flat-01/001.png: found 8 bits, expected 16 bits, as dark/000.png"});
   }
   SECTION("8 bits for codes of 12") {
-    for (const char* name : {"dark/000.png", "dark/001.png"}) folder.picture(name, 64, 64, CV_8U, 20);
+    for (const char* name : {"dark/000.png", "dark/001.png"}) folder.image(name, 64, 64, CV_8U, 20);
     check(folder.message(), {"dark/000.png: found an image of 8 bits", "bit_depth = 12"});
   }
-  SECTION("no picture") {
+  SECTION("no image") {
     base::write_file(folder.dir / "flat-02" / "000.png", "no picture");
     check(folder.message(), {"flat-02/000.png", "no image that can be decoded"});
   }
@@ -157,7 +157,7 @@ TEST_CASE("frames that cannot be used are named, with what was expected") {
     check(folder.message(), {"flat-00/000.png: found an image with colours, expected a grey image"});
   }
   SECTION("codes above the largest") {
-    folder.picture("flat-02/000.png", 64, 64, CV_16U, 65520);
+    folder.image("flat-02/000.png", 64, 64, CV_16U, 65520);
     check(folder.message(), {"flat-02/000.png: found a code of 65520, expected codes up to 4095"});
   }
   SECTION("the same frame twice") {
@@ -165,7 +165,7 @@ TEST_CASE("frames that cannot be used are named, with what was expected") {
     check(folder.message(), {"flat-01/001.png: found the same image as 000.png"});
   }
   SECTION("too small") {
-    for (const char* name : {"dark/000.png", "dark/001.png"}) folder.picture(name, 32, 32, CV_16U, 64);
+    for (const char* name : {"dark/000.png", "dark/001.png"}) folder.image(name, 32, 32, CV_16U, 64);
     check(folder.message(), {"dark/000.png: found 32 x 32 pixels, expected at least 64 x 64 pixels"});
   }
 }
@@ -179,7 +179,7 @@ TEST_CASE("flat fields without light, or all saturated, are refused") {
       if (dark) {
         fs::copy_file(folder.dir / "dark" / name, folder.dir / file, fs::copy_options::overwrite_existing);
       } else {
-        folder.picture(file, 64, 64, CV_16U, 4095);
+        folder.image(file, 64, 64, CV_16U, 4095);
       }
     }
   }

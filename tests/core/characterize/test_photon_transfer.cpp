@@ -153,8 +153,7 @@ TEST_CASE("a flat field that is darker by half in the corners gives the same num
   check_all(measure(camera, usual_plan(camera)), camera);
 }
 
-TEST_CASE(
-    "a level of which only the dark corners are in the linear range is shown with the mean of the whole picture") {
+TEST_CASE("a level of which only the dark corners are in the linear range is shown with the mean of the whole image") {
   TrueCamera camera;
   camera.shading = 0.5;
   const core::CameraMeasurement found = measure(camera, usual_plan(camera));
@@ -309,7 +308,7 @@ TEST_CASE("a knee above the linear range takes the full well away, not the gain"
   CHECK(lacks<unmeasured::Knee>(found.full_well_e));
 }
 
-TEST_CASE("pictures that were smoothed, compressed or averaged over time give no gain but the reason") {
+TEST_CASE("images that were smoothed, compressed or averaged over time give no gain but the reason") {
   TrueCamera camera = camera_of_8_bits();
   FlatFieldPlan plan = usual_plan(camera);
   SECTION("smoothed") {

@@ -27,9 +27,9 @@ const cv::Size kSize(240, 200);
 void write_clip(const std::filesystem::path& file) {
   std::vector<cv::Mat> frames;
   for (int k = 0; k < 60; ++k) {
-    cv::Mat picture(kSize, CV_64F, cv::Scalar(kBackground));
-    tests::put_disc(picture, {25.0 + kSpeed * k / kRate, 100.0}, 6.0, kMarker);
-    frames.push_back(picture);
+    cv::Mat image(kSize, CV_64F, cv::Scalar(kBackground));
+    tests::put_disc(image, {25.0 + kSpeed * k / kRate, 100.0}, 6.0, kMarker);
+    frames.push_back(image);
   }
   tests::write_video(file, frames, kRate, kNoise);
 }

@@ -13,7 +13,7 @@ namespace {
 core::ClipCheck fine_clip() {
   core::ClipCheck clip;
   clip.name = "m1-up";
-  clip.pictures = true;
+  clip.images = true;
   clip.frames = clip.seen = clip.spanned = 100;
   clip.frame_rate_hz = 100.0;
   clip.marker_px = clip.marker_expected_px = 12.0;

@@ -282,7 +282,7 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
   }
 }
 
-TEST_CASE("sections that a clip made of pictures needs are asked for") {
+TEST_CASE("sections that a clip made of images needs are asked for") {
   const Folder folder;
   const std::string message = folder.message(kHead + kTrack + kClip);
   CHECK(contains(message, "camera: found nothing, expected a table [camera], for clip \"a\""));

@@ -22,7 +22,7 @@ namespace {
 
 bool is_scatter(const diagnose::EffectInfo& effect) {
   using diagnose::Search;
-  return effect.search == Search::frames || effect.search == Search::noise || effect.search == Search::pictures ||
+  return effect.search == Search::frames || effect.search == Search::noise || effect.search == Search::images ||
          effect.search == Search::rows;
 }
 

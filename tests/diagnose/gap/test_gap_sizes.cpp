@@ -19,7 +19,7 @@ TEST_CASE("the gap of each domain is the root mean square of its differences ove
   gap.parameters = {{"mu", diagnose::Against::all_clips, "a", 3.0, 0.0},
                     {"mu", diagnose::Against::all_clips, "b", 4.0, 1.0},
                     {"mu", diagnose::Against::all_clips, "c"}};
-  diagnose::PictureFinding blur, blocks, light;
+  diagnose::ImageFinding blur, blocks, light;
   blur.id = "exposure_blur";
   blur.log_evidence = 8.0;
   blocks.id = "compression";
@@ -39,7 +39,7 @@ TEST_CASE("the gap of each domain is the root mean square of its differences ove
   CHECK(*domains[3].after == 1.0);
   gap.parameters.front().z_after.reset();
   domains = diagnose::gap_domains(gap, {}, {});
-  REQUIRE(domains.size() == 3);   // tracks have no picture
+  REQUIRE(domains.size() == 3);   // tracks have no image
   CHECK_FALSE(domains[2].after);  // not that of fewer parameters than before
 }
 

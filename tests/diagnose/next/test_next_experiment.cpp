@@ -169,7 +169,7 @@ TEST_CASE("twice the frame rate knows the drag better by the root of two, half t
     return std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.kind == ChangeKind::exposure; });
   };
   CHECK_FALSE(offered());  // tracks
-  set.pictures = true;
+  set.images = true;
   CHECK(offered());
   for (auto& motion : set.motions) motion.wider.clear();
   CHECK_FALSE(offered());  // no blur that costs anything
@@ -218,9 +218,8 @@ TEST_CASE("a clip is worth what it is worth once it is recorded, also where the 
 TEST_CASE("what only images or single frames show has a sentence with its reason, what moves a glider has none") {
   using diagnose::Search;
   for (const diagnose::EffectInfo& info : diagnose::effect_list()) {
-    const bool seen = info.search == Search::pictures || info.search == Search::noise ||
-                      info.search == Search::frames || info.search == Search::rows ||
-                      info.id == std::string_view("camera_motion");
+    const bool seen = info.search == Search::images || info.search == Search::noise || info.search == Search::frames ||
+                      info.search == Search::rows || info.id == std::string_view("camera_motion");
     INFO(info.id);
     CHECK(info.next.empty() != seen);
   }

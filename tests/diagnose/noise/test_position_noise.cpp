@@ -18,7 +18,7 @@ constexpr double kPxPerM = 600.0;
 constexpr double kMode = 1e-6;  // one error of the camera: a scale, by so much
 
 /// Clips of a camera at 100 Hz whose columns lie along the track: `off_px` is what a position errs by at (column,
-/// speed in px/s), besides white noise of 0.002 px; `sway_px` is how far the picture is moved at a time.
+/// speed in px/s), besides white noise of 0.002 px; `sway_px` is how far the image is moved at a time.
 tests::MadeExperiment filmed(
     const std::function<double(double u_px, double v_px_s)>& off_px, unsigned seed,
     const std::function<double(double t_s)>& sway_px = [](double) { return 0.0; }) {
@@ -208,7 +208,7 @@ TEST_CASE("uneven times are told from errors that go with the place") {
   CHECK(std::abs(noise.jitter_s - 4e-5) < 5.0 * noise.jitter_sd_s + 6e-6);  // and half a step of the sizes tried
 }
 
-TEST_CASE("in a file whose pictures are made of those before, noise that goes with the speed is its codec's own") {
+TEST_CASE("in a file whose images are made of those before, noise that goes with the speed is its codec's own") {
   // At 600 px/s, 3 times the noise and 12 times: a codec does the first, and the second seven times in a thousand.
   const auto noise_of = [](double uneven_s, bool handed_on) {
     std::mt19937_64 random(5);
@@ -226,7 +226,7 @@ TEST_CASE("in a file whose pictures are made of those before, noise that goes wi
   CHECK(noise_of(4e-5, true).jitter_log_evidence > 2.0);
 }
 
-TEST_CASE("a step in the picture beside uneven times is not given to these") {
+TEST_CASE("a step in the image beside uneven times is not given to these") {
   // 0.3 px over 0.02 m, a hundred times the noise; 20 µs at 600 px/s are six times. The list holds no such step.
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0.0, 2e-5);

@@ -167,11 +167,11 @@ TEST_CASE("the noise of filmed positions does not go with how many pixels the ma
   for (const auto& motion : motions) CHECK(std::abs(motion.sd_m / 3e-6 - 1.0) < 0.28);
 }
 
-TEST_CASE("in pictures a scatter that goes with the speed counts as jitter from ten microseconds on") {
+TEST_CASE("in images a scatter that goes with the speed counts as jitter from ten microseconds on") {
   for (const double jitter_s : {6e-6, 3e-5}) {
     const tests::MadeExperiment made = filmed({0.0, 0.0, jitter_s}, 9);
     const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-    REQUIRE(set.pictures);
+    REQUIRE(set.images);
     const diagnose::FrameEffect found = diagnose::scan_jitter(set, diagnose::fit_nominal(set));
     INFO("jitter " << jitter_s);
     CHECK((found.log_evidence > 3.0) == (jitter_s > 1e-5));

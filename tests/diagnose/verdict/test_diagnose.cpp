@@ -177,7 +177,7 @@ TEST_CASE("in images a strong effect keeps its name beside a weak rest, and lose
                                               [=](double x, double) { return x + bend_m * std::sin(9.0 * x); }},
                                              5);
     diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-    set.pictures = filmed;
+    set.images = filmed;
     return diagnose::compare_hypotheses(set, {}, 2);
   };
   const std::size_t drag = diagnose::effect_index("quadratic_drag");

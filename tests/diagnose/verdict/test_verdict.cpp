@@ -26,7 +26,7 @@ std::string first(const diagnose::TrackSet& set, const std::vector<diagnose::Hyp
 
 TEST_CASE("two names for one cause count together against one name for another") {
   diagnose::TrackSet tracks, films;
-  films.pictures = true;
+  films.images = true;
   CHECK(first(tracks, {of({"direction_asymmetry"}, 0.38), of({"scale_error"}, 0.32), of({"frame_rate_error"}, 0.3)}) ==
         "scale_error");
   CHECK(first(tracks, {of({"direction_asymmetry"}, 0.7), of({"scale_error"}, 0.16), of({"frame_rate_error"}, 0.14)}) ==

@@ -259,14 +259,14 @@ TEST_CASE("the sway of a camera is stated in pixels if they are known and of one
   fit.layout = std::make_shared<const diagnose::ParameterLayout>(set, std::vector{sway});
   const std::vector<diagnose::DiagnosedParameter> known = {{"amplitude_m", 1e-3, 1e-5}};
   CHECK(diagnose::derived_parameters(set, fit, sway, {}, known).empty());  // tracks
-  diagnose::PictureEvidence pictures;
-  pictures.clips.resize(2);
-  for (diagnose::FilmedClip& clip : pictures.clips) clip.px_per_m = 400.0;
-  const auto derived = diagnose::derived_parameters(set, fit, sway, pictures, known);
+  diagnose::ImageEvidence images;
+  images.clips.resize(2);
+  for (diagnose::FilmedClip& clip : images.clips) clip.px_per_m = 400.0;
+  const auto derived = diagnose::derived_parameters(set, fit, sway, images, known);
   REQUIRE(derived.size() == 1);
   CHECK(derived[0].key == "amplitude_px");
   CHECK(std::abs(derived[0].value - 0.4) < 1e-12);
   CHECK(std::abs(derived[0].sd - 0.004) < 1e-12);
-  pictures.clips.back().px_per_m = 500.0;
-  CHECK(diagnose::derived_parameters(set, fit, sway, pictures, known).empty());
+  images.clips.back().px_per_m = 500.0;
+  CHECK(diagnose::derived_parameters(set, fit, sway, images, known).empty());
 }

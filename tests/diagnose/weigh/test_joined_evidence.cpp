@@ -14,8 +14,8 @@ double normal(double x, double mean, double sd) {
   return std::exp(-0.5 * std::pow((x - mean) / sd, 2)) / (sd * std::sqrt(2.0 * std::numbers::pi));
 }
 
-diagnose::PictureFinding finding(const std::string& id, double log_evidence) {
-  diagnose::PictureFinding one;
+diagnose::ImageFinding finding(const std::string& id, double log_evidence) {
+  diagnose::ImageFinding one;
   one.id = id;
   one.log_evidence = log_evidence;
   one.seen = log_evidence > 3.0;
@@ -48,24 +48,24 @@ diagnose::Comparison weighed() {
 }  // namespace
 
 TEST_CASE("two measurements of one size agree as the integral over that size says") {
-  for (const auto& [pictures, tracks] : std::vector<std::pair<diagnose::Measured, diagnose::Measured>>{
+  for (const auto& [images, tracks] : std::vector<std::pair<diagnose::Measured, diagnose::Measured>>{
            {{3.0, 0.5}, {2.5, 0.8}}, {{0.2, 1.0}, {4.0, 0.1}}, {{-1.0, 0.3}, {1.0, 0.3}}}) {
     // The trapezoidal rule on a Gaussian is exact to rounding with steps of half a standard deviation and less.
     double integral = 0.0;
     const double step = 0.05;
     for (double size = -20.0; size < 20.0; size += step) {
-      integral += step * normal(pictures.value, size, pictures.sd) * normal(size, tracks.value, tracks.sd);
+      integral += step * normal(images.value, size, images.sd) * normal(size, tracks.value, tracks.sd);
     }
-    const double expected = std::log(integral / normal(pictures.value, 0.0, pictures.sd));
-    CHECK(std::abs(diagnose::agreement(pictures, tracks) - expected) < 1e-9);
+    const double expected = std::log(integral / normal(images.value, 0.0, images.sd));
+    CHECK(std::abs(diagnose::agreement(images, tracks) - expected) < 1e-9);
   }
 }
 
-TEST_CASE("what pictures show joins every explanation with its own log evidence, and competes with none") {
+TEST_CASE("what images show joins every explanation with its own log evidence, and competes with none") {
   diagnose::Comparison comparison = weighed();
-  diagnose::PictureEvidence pictures;
-  pictures.findings = {finding("light_flicker", 11.0)};
-  diagnose::join_pictures({}, pictures, {}, comparison);
+  diagnose::ImageEvidence images;
+  images.findings = {finding("light_flicker", 11.0)};
+  diagnose::join_images({}, images, {}, comparison);
   REQUIRE(comparison.all.size() == 6);
   for (const bool unnamed : {false, true}) {
     const auto *without = of(comparison, {}, unnamed), *with = of(comparison, {"light_flicker"}, unnamed);
@@ -76,14 +76,14 @@ TEST_CASE("what pictures show joins every explanation with its own log evidence,
   REQUIRE(of(comparison, {"quadratic_drag", "light_flicker"}, false) != nullptr);
   CHECK(of(comparison, {"quadratic_drag", "light_flicker"}, false)->log_evidence == 16.0);
   CHECK(of(comparison, {"quadratic_drag"}, false)->log_evidence == 5.0);
-  CHECK(comparison.in_pictures == std::set<std::size_t>{diagnose::effect_index("light_flicker")});
+  CHECK(comparison.in_images == std::set<std::size_t>{diagnose::effect_index("light_flicker")});
 }
 
-TEST_CASE("two findings join one another, what pictures speak against joins nothing, and what is left out neither") {
+TEST_CASE("two findings join one another, what images speak against joins nothing, and what is left out neither") {
   diagnose::Comparison comparison = weighed();
-  diagnose::PictureEvidence pictures;
-  pictures.findings = {finding("light_flicker", 11.0), finding("light_gradient", 7.0), finding("camera_motion", -40.0)};
-  diagnose::join_pictures({}, pictures, {}, comparison);
+  diagnose::ImageEvidence images;
+  images.findings = {finding("light_flicker", 11.0), finding("light_gradient", 7.0), finding("camera_motion", -40.0)};
+  diagnose::join_images({}, images, {}, comparison);
   const auto* both = of(comparison, {"light_flicker", "light_gradient"}, false);
   REQUIRE(both != nullptr);
   CHECK(both->log_evidence == 18.0);
@@ -91,18 +91,18 @@ TEST_CASE("two findings join one another, what pictures speak against joins noth
   CHECK(comparison.all.size() == 12);
 
   diagnose::Comparison fewer = weighed();
-  diagnose::join_pictures({}, pictures, {diagnose::effect_index("light_gradient")}, fewer);
+  diagnose::join_images({}, images, {diagnose::effect_index("light_gradient")}, fewer);
   CHECK(of(fewer, {"light_gradient"}, false) == nullptr);
   CHECK(fewer.all.size() == 6);
 }
 
-TEST_CASE("an explanation that holds the effect already is raised or lowered by what the pictures show of it") {
+TEST_CASE("an explanation that holds the effect already is raised or lowered by what the images show of it") {
   for (const double log_evidence : {9.0, -9.0}) {
     diagnose::Comparison comparison = weighed();
     comparison.all.push_back({{diagnose::effect_index("camera_motion")}, false, 20.0, 14.0, 0.0, -1});
-    diagnose::PictureEvidence pictures;
-    pictures.findings = {finding("camera_motion", log_evidence)};
-    diagnose::join_pictures({}, pictures, {}, comparison);
+    diagnose::ImageEvidence images;
+    images.findings = {finding("camera_motion", log_evidence)};
+    diagnose::join_images({}, images, {}, comparison);
     CHECK(of(comparison, {"camera_motion"}, false)->log_evidence == 14.0 + log_evidence);
     CHECK(std::count_if(comparison.all.begin(), comparison.all.end(), [](const auto& h) {
             return h.effects == std::vector<std::size_t>{diagnose::effect_index("camera_motion")} && !h.unnamed;
@@ -114,9 +114,9 @@ TEST_CASE("a smeared marker that scatters more at speed is one effect, not two")
   diagnose::Comparison comparison = weighed();
   comparison.frames = {{diagnose::effect_index("heavy_tailed_noise"), 20.0, 13.0, 0.05, 0.01}};
   comparison.all.push_back({{diagnose::effect_index("heavy_tailed_noise")}, false, 20.0, 13.0, 0.0, -1});
-  diagnose::PictureEvidence pictures;
-  pictures.findings = {finding("exposure_blur", 70.0)};
-  diagnose::join_pictures({}, pictures, {}, comparison);
+  diagnose::ImageEvidence images;
+  images.findings = {finding("exposure_blur", 70.0)};
+  diagnose::join_images({}, images, {}, comparison);
   CHECK(of(comparison, {"exposure_blur"}, false)->log_evidence == 83.0);
   CHECK(of(comparison, {"exposure_blur", "heavy_tailed_noise"}, false)->log_evidence == 83.0);
 }

@@ -55,10 +55,10 @@ class PaintedFrames final : public core::FrameSource {
       : u_px_(std::move(u_px)), seed_(seed), predicts_(predicts) {}
   std::optional<core::Frame> next() override {
     if (index_ == u_px_.size()) return std::nullopt;
-    cv::Mat picture(kSize, CV_64F, cv::Scalar(60.0));
-    tests::put_disc(picture, {u_px_[index_], 20.3}, 4.0, 200.0);
+    cv::Mat image(kSize, CV_64F, cv::Scalar(60.0));
+    tests::put_disc(image, {u_px_[index_], 20.3}, 4.0, 200.0);
     core::Frame frame;
-    frame.grey = tests::expose(picture, 1.0, seed_ + index_);
+    frame.grey = tests::expose(image, 1.0, seed_ + index_);
     frame.index = index_;
     frame.t_s = static_cast<double>(index_++) / kRate;
     return frame;

@@ -4,7 +4,7 @@
 
 namespace glidelab::render {
 
-FloatPicture behind(const Dust& dust, FloatPicture expected_e) {
+FloatImage behind(const Dust& dust, FloatImage expected_e) {
   for (int y = 0; y < expected_e.height; ++y) {
     for (int x = 0; x < expected_e.width; ++x) {
       if (std::hypot(x - dust.x_px, y - dust.y_px) < dust.radius_px) {

@@ -1,7 +1,7 @@
 /// A round speck on the sensor's cover glass: the example of docs/extending.md.
 #pragma once
 
-#include "render/image/float_picture.h"
+#include "render/image/float_image.h"
 
 namespace glidelab::render {
 
@@ -11,6 +11,6 @@ struct Dust {
 };
 
 /// The expected electrons behind the speck.
-FloatPicture behind(const Dust& dust, FloatPicture expected_e);
+FloatImage behind(const Dust& dust, FloatImage expected_e);
 
 }  // namespace glidelab::render

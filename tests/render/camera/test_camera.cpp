@@ -48,7 +48,7 @@ const std::array<Lens, 6> kLenses = {{{},
 
 }  // namespace
 
-TEST_CASE("A pixel's ray leads back to the pixel, over the whole picture") {
+TEST_CASE("A pixel's ray leads back to the pixel, over the whole image") {
   // Newton's method ends within 1e-14 of the focal length; the mapping magnifies by less than 10.
   for (const Lens& lens : kLenses) {
     const Camera camera = some_camera(lens);
@@ -163,7 +163,7 @@ TEST_CASE("Beyond the fold nothing is projected, though the formula would give a
   CHECK(pixel_of(camera, {1.2, 0.0}));
 }
 
-TEST_CASE("A lens is one to one over the picture until it folds within it") {
+TEST_CASE("A lens is one to one over the image until it folds within it") {
   CHECK_FALSE(why_not_one_to_one(some_camera(kLenses[1])));
   CHECK_FALSE(why_not_one_to_one(some_camera(kLenses[2])));
   // The corner is at 0.57 focal lengths; r (1 - r²) reaches 0.385 at most.
@@ -178,7 +178,7 @@ TEST_CASE("A camera looks at its target, right side up, and roll turns it clockw
   camera.X_WC = look_at({0.0, 0.0, 2.0}, {0.0, 0.0, 0.0}, 0.0);
   CHECK(std::abs(camera.X_WC.linear().determinant() - 1.0) < 1e-12);
   CHECK(project(camera, {0.1, 0.0, 0.0})->x() > camera.center_px.x());
-  CHECK(project(camera, {0.0, 0.1, 0.0})->y() < camera.center_px.y());  // up in the world is up in the picture
+  CHECK(project(camera, {0.0, 0.1, 0.0})->y() < camera.center_px.y());  // up in the world is up in the image
   // A camera that is turned clockwise sees the world turned anticlockwise: what was to the right moves up.
   camera.X_WC = look_at({0.0, 0.0, 2.0}, {0.0, 0.0, 0.0}, 0.1);
   CHECK(project(camera, {0.1, 0.0, 0.0})->y() < camera.center_px.y());

@@ -115,7 +115,7 @@ TEST_CASE("A board's edge that is out of focus spreads as theory says") {
   scene.board->X_WP.linear() = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()).toRotationMatrix();
   scene.board->X_WP.translation() = Eigen::Vector3d(-0.05, 0.05, 0.0);
   for (const Focus& focus : {lens(1.4, 2.0, 0.6), lens(1.4, 1.5), lens(1.0, 1.2, 0.3), lens(1.0, 1.0)}) {
-    const FloatPicture picture = StaticPainter(camera, rays, focus).paint(scene);
+    const FloatImage image = StaticPainter(camera, rays, focus).paint(scene);
     const double disc = disc_radius_px(focus, camera, 2.0);
     const double sigma = core_sigma_px(focus, camera);
     // The edge at X = 0 between the inner corners (0, 0) and (0, 1): black on one side, white on the other.
@@ -124,17 +124,17 @@ TEST_CASE("A board's edge that is out of focus spreads as theory says") {
     };
     const Eigen::Vector2d middle = pixel(0.0, 0.5);
     const Eigen::Vector2d normal = (pixel(1.0, 0.5) - middle).normalized();
-    const double bright = static_cast<double>(picture.at(static_cast<int>(std::lround(pixel(0.5, 0.5).x())),
-                                                         static_cast<int>(std::lround(pixel(0.5, 0.5).y()))));
-    const double other = static_cast<double>(picture.at(static_cast<int>(std::lround(pixel(-0.5, 0.5).x())),
-                                                        static_cast<int>(std::lround(pixel(-0.5, 0.5).y()))));
+    const double bright = static_cast<double>(image.at(static_cast<int>(std::lround(pixel(0.5, 0.5).x())),
+                                                       static_cast<int>(std::lround(pixel(0.5, 0.5).y()))));
+    const double other = static_cast<double>(image.at(static_cast<int>(std::lround(pixel(-0.5, 0.5).x())),
+                                                      static_cast<int>(std::lround(pixel(-0.5, 0.5).y()))));
     double worst = 0.0, squares = 0.0;
     int count = 0;
     for (int y = static_cast<int>(middle.y()) - 4; y <= static_cast<int>(middle.y()) + 4; ++y) {
       for (int x = static_cast<int>(middle.x()) - 10; x <= static_cast<int>(middle.x()) + 10; ++x) {
         const double d = (Eigen::Vector2d(x, y) - middle).dot(normal);
         const double expected = other + (bright - other) * edge_spread(d, normal, disc, sigma);
-        const double error = std::abs(static_cast<double>(picture.at(x, y)) - expected) / std::abs(bright - other);
+        const double error = std::abs(static_cast<double>(image.at(x, y)) - expected) / std::abs(bright - other);
         worst = std::max(worst, error);
         squares += error * error;
         ++count;
@@ -160,7 +160,7 @@ TEST_CASE("The glider's edge spreads likewise, and its marker keeps its centre")
         "[[configuration.clip]]\nname = \"c\"\nlaunched = \"down\"\nx0_m = 0.03\nv0_m_s = 0.1\nduration_s = 0.05\n",
         focus_m)));
     clip.each_frame([&](const FrameMotion& frame, ClipRenderer& renderer) {
-      const FloatPicture& picture = renderer.expected(frame);
+      const FloatImage& image = renderer.expected(frame);
       const Camera& camera = clip.scenario.camera;
       const MovingBox box = glider(clip.scenario, clip.scene, clip.configuration.body, frame.middle.x_m).boxes.front();
       const auto pixel = [&](double along, double up_m) {
@@ -180,7 +180,7 @@ TEST_CASE("The glider's edge spreads likewise, and its marker keeps its centre")
       for (int y = static_cast<int>(middle.y()) - 2; y <= static_cast<int>(middle.y()) + 2; ++y) {
         for (int x = static_cast<int>(middle.x()) - 8; x <= static_cast<int>(middle.x()) + 8; ++x) {
           const double d = (Eigen::Vector2d(x, y) - middle).dot(normal);
-          const double error = static_cast<double>(picture.at(x, y)) / inside - edge_spread(d, normal, disc, sigma);
+          const double error = static_cast<double>(image.at(x, y)) / inside - edge_spread(d, normal, disc, sigma);
           worst = std::max(worst, std::abs(error));
           squares += error * error;
           ++count;
@@ -190,14 +190,14 @@ TEST_CASE("The glider's edge spreads likewise, and its marker keeps its centre")
       CHECK(worst < 0.04);
       CHECK(std::sqrt(squares / count) < 0.01);
       // The marker over the body, which is even around it: its centroid, less the body.
-      const MarkerInPicture truth = marker_in_picture(clip.scenario, clip.configuration.body, frame).value();
+      const MarkerInImage truth = marker_in_image(clip.scenario, clip.configuration.body, frame).value();
       double sum = 0.0;
       Eigen::Vector2d moment = Eigen::Vector2d::Zero();
       const int u = static_cast<int>(std::lround(truth.center_px.x()));
       const int v = static_cast<int>(std::lround(truth.center_px.y()));
       for (int y = v - 6; y <= v + 6; ++y) {
         for (int x = u - 8; x <= u + 8; ++x) {
-          const double more = static_cast<double>(picture.at(x, y)) - inside;
+          const double more = static_cast<double>(image.at(x, y)) - inside;
           sum += more;
           moment += more * Eigen::Vector2d(x, y);
         }

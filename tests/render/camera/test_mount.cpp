@@ -39,7 +39,7 @@ struct Difference {
   double largest = 0.0;
 };
 
-Difference difference(const FloatPicture& a, const FloatPicture& b) {
+Difference difference(const FloatImage& a, const FloatImage& b) {
   Difference found;
   for (std::size_t i = 0; i < a.values.size(); ++i) {
     const double d = std::abs(static_cast<double>(a.values[i]) - static_cast<double>(b.values[i]));
@@ -66,8 +66,8 @@ TEST_CASE("A mount's motions add up along and about the camera's own axes") {
 }
 
 TEST_CASE("What stands still is drawn as a camera that stands there casts it") {
-  // Radiance goes up to 0.6. The picture between fine places is taken as linear: where an edge along the rows enters a
-  // pixel that errs by up to 1/16 of its contrast, and a picture cast again with 64 rays by as much as 1/64 each.
+  // Radiance goes up to 0.6. The image between fine places is taken as linear: where an edge along the rows enters a
+  // pixel that errs by up to 1/16 of its contrast, and an image cast again with 64 rays by as much as 1/64 each.
   struct Case {
     const char* mount;
     double rms, largest;
@@ -85,8 +85,8 @@ TEST_CASE("What stands still is drawn as a camera that stands there casts it") {
     const double white_e = electrons_of_white(clip.scenario);
     for (const double t_s : {0.061}) {
       const Camera there = moved_camera(clip.scenario, t_s);
-      FloatPicture cast = StaticPainter(there, make_ray_table(there)).paint(clip.scene);
-      FloatPicture drawn(320, 240);
+      FloatImage cast = StaticPainter(there, make_ray_table(there)).paint(clip.scene);
+      FloatImage drawn(320, 240);
       for (int y = 0; y < 240; ++y) {
         add_row(*clip.fine, mount_at(clip.scenario.mount, t_s), y, 0, 1.0f, drawn.row(y, 0, 320));
       }
@@ -110,8 +110,8 @@ TEST_CASE("The marker moves with the mount, and the truth says where it is") {
                                  "31.0\n[[mount.motion]]\naxis = \"y\"\ndrift_m_s = 0.05\n",
                          shutter)));
     clip.each_frame([&](const FrameMotion& frame, ClipRenderer& renderer) {
-      const FloatPicture& picture = renderer.expected(frame);
-      const MarkerInPicture truth = marker_in_picture(clip.scenario, clip.configuration.body, frame).value();
+      const FloatImage& image = renderer.expected(frame);
+      const MarkerInImage truth = marker_in_image(clip.scenario, clip.configuration.body, frame).value();
       // The truth is the projection by the camera as it stands at that instant.
       const double sim_s = truth.t_s + 0.5 * 0.0005 + 0.5 * clip.scenario.recording.shutter.readout_s();
       const Eigen::Vector2d projected =
@@ -124,8 +124,8 @@ TEST_CASE("The marker moves with the mount, and the truth says where it is") {
       const int v = static_cast<int>(std::lround(truth.center_px.y()));
       for (int y = v - 5; y <= v + 5; ++y) {
         for (int x = u - 5; x <= u + 5; ++x) {
-          sum += static_cast<double>(picture.at(x, y));
-          moment += static_cast<double>(picture.at(x, y)) * Eigen::Vector2d(x, y);
+          sum += static_cast<double>(image.at(x, y));
+          moment += static_cast<double>(image.at(x, y)) * Eigen::Vector2d(x, y);
         }
       }
       CAPTURE(shutter, frame.frame);
@@ -143,7 +143,7 @@ TEST_CASE("A focus that was changed after the calibration enlarges the clips and
   CHECK((after - 1.01 * before).norm() < 1e-9);
 }
 
-TEST_CASE("A mount that moves the picture out of all reason is refused") {
+TEST_CASE("A mount that moves the image out of all reason is refused") {
   CHECK_THROWS_AS(MadeClip(scenario_of(text("[[mount.motion]]\naxis = \"pan\"\noffset_deg = 29.0\ndrift_deg_s = 30.0\n"
                                             "[[mount.motion]]\naxis = \"pan\"\noffset_deg = 29.0\n"))),
                   base::NumericalError);

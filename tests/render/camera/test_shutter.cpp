@@ -26,7 +26,7 @@ constexpr double kRate = 50.0;
 constexpr double kVariance = 0.03;
 
 /// A marker of 6 px radius at constant speed from x = -0.4 m on a level track, before black. `y_m` is the height of the
-/// camera over it, in the picture `kPxPerM * y_m` rows.
+/// camera over it, in the image `kPxPerM * y_m` rows.
 Scenario moving_marker(const std::string& sections, double y_m = 0.0) {
   const tests::TempDir dir;
   const std::string text = fmt::format(
@@ -47,16 +47,16 @@ struct Moments {
 
 struct Seen {
   std::size_t frame = 0;
-  MarkerInPicture truth;
+  MarkerInImage truth;
   Moments moments;
 };
 
 /// Of the marker alone: within 14 px of it; the glider's magnets begin at 20 px.
-Moments moments_of(const FloatPicture& picture, const PixelRect& near) {
+Moments moments_of(const FloatImage& image, const PixelRect& near) {
   Moments m;
   const auto each = [&](const auto& add) {
     for (int y = near.y; y < near.y + near.height; ++y) {
-      for (int x = near.x; x < near.x + near.width; ++x) add(static_cast<double>(picture.at(x, y)), x, y);
+      for (int x = near.x; x < near.x + near.width; ++x) add(static_cast<double>(image.at(x, y)), x, y);
     }
   };
   each([&](double value, int x, int y) {
@@ -74,17 +74,17 @@ Moments moments_of(const FloatPicture& picture, const PixelRect& near) {
   return m;
 }
 
-/// All frames that have the glider's middle well in the picture.
+/// All frames that have the glider's middle well in the image.
 std::vector<Seen> frames_of(const Scenario& scenario) {
   const sim::ConfigurationSetup& configuration = scenario.motion.configurations.front();
   const RayTable rays = make_ray_table(scenario.camera);
   const StaticScene scene = empty_track(scenario, 0.0);
-  const FloatPicture black(scenario.camera.width_px, scenario.camera.height_px);
+  const FloatImage black(scenario.camera.width_px, scenario.camera.height_px);
   ClipRenderer renderer(scenario, configuration, scene, rays, black, 1, 0);
   std::vector<Seen> seen;
   const auto visit = [&](const FrameMotion& frame) {
-    const auto marker = marker_in_picture(scenario, configuration.body, frame);
-    if (!marker || !in_picture(scenario.camera, marker->center_px, 30.0)) return;
+    const auto marker = marker_in_image(scenario, configuration.body, frame);
+    if (!marker || !in_image(scenario.camera, marker->center_px, 30.0)) return;
     constexpr int kReach = 14;
     const PixelRect near{static_cast<int>(std::lround(marker->center_px.x())) - kReach,
                          static_cast<int>(std::lround(marker->center_px.y())) - kReach, 2 * kReach + 1, 2 * kReach + 1};
@@ -95,7 +95,7 @@ std::vector<Seen> frames_of(const Scenario& scenario) {
   return seen;
 }
 
-/// The second moments of the resting marker's picture at this place: those of the ellipse that a sphere is seen as, a
+/// The second moments of the resting marker's image at this place: those of the ellipse that a sphere is seen as, a
 /// quarter of its half axes squared, and 1/12 of the pixels' squares.
 Eigen::Matrix2d resting(const Scenario& scenario, const Seen& seen) {
   const Eigen::Vector3d c = scenario.camera.X_WC.inverse() * marker_position_W(scenario, 0.0, seen.truth.x_m);
@@ -140,7 +140,7 @@ TEST_CASE("A marker at constant speed is smeared by v T f / Z, about its place a
 
 TEST_CASE("A rolling shutter shifts and shears a marker that moves along the rows") {
   // Row r sees the marker v (T/2 + L i) farther, i counted from the first row: the centre is shifted by v L i(v_c) and
-  // the picture sheared by v L px a row. The marker lies 90 rows below the middle. Tolerances as above.
+  // the image sheared by v L px a row. The marker lies 90 rows below the middle. Tolerances as above.
   constexpr double kLine = 3e-5;
   constexpr double kExposure = 0.002;
   for (const bool bottom : {false, true}) {
@@ -172,7 +172,7 @@ TEST_CASE("A rolling shutter shifts and shears a marker that moves along the row
 }
 
 TEST_CASE("In portrait a rolling shutter stretches a marker that moves with the rows and shortens one against them") {
-  // Turned by 90 degrees the track's +x is up in the picture: v(t) = 299.5 - px/m x(t). The centre is on the row that
+  // Turned by 90 degrees the track's +x is up in the image: v(t) = 299.5 - px/m x(t). The centre is on the row that
   // is read when it is there: r = v0 - w (t0 + L i(r)), linear in r; the height changes by dr/dv0.
   constexpr double kLine = 3e-5;
   constexpr double kExposure = 0.0005;

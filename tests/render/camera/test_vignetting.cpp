@@ -37,15 +37,15 @@ TEST_CASE("cos⁴ is that of the angle to the axis, and the radial table is line
 }
 
 TEST_CASE("What stands still and what moves get the same vignetting") {
-  // The picture with it over the one without, pixel by pixel: single precision.
+  // The image with it over the one without, pixel by pixel: single precision.
   const Camera camera = small_camera();
   const Vignetting vignetting{true, {{0.0, 1.0}, {200.0, 0.5}}};
   const RayTable plain = make_ray_table(camera);
   const RayTable dark = make_ray_table(camera, vignetting);
   REQUIRE(plain.gain.empty());
   const StaticScene wall;
-  const FloatPicture bright = StaticPainter(camera, plain).paint(wall);
-  const FloatPicture darker = StaticPainter(camera, dark).paint(wall);
+  const FloatImage bright = StaticPainter(camera, plain).paint(wall);
+  const FloatImage darker = StaticPainter(camera, dark).paint(wall);
   MovingBody body;
   body.marker = MarkerSphere{{0.8, 0.5, 0.0}, 0.1, 1.0};
   const double still[] = {0.0};

@@ -45,7 +45,7 @@ TEST_CASE("A region holds the very codes that the whole frame holds there") {
     std::vector<std::uint8_t> whole(160 * 120);
     clip.each_frame([&](const FrameMotion& frame, ClipRenderer& renderer) {
       renderer.read(frame, all, std::span<std::uint8_t>(whole));
-      const auto marker = marker_in_picture(clip.scenario, clip.configuration.body, frame).value();
+      const auto marker = marker_in_image(clip.scenario, clip.configuration.body, frame).value();
       // Around the marker, not aligned with anything; and a corner in which the glider is not.
       const int u = static_cast<int>(marker.center_px.x()) - 13;
       const int v = static_cast<int>(marker.center_px.y()) - 9;

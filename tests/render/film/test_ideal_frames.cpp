@@ -92,7 +92,7 @@ TEST_CASE("ideal frames hold no noise, no flicker and no lens, and the marker wh
     const cv::Mat& grey = frame->grey;
     REQUIRE(grey.type() == CV_8UC1);
     if (k == 0) first = grey.clone();
-    // The picture's top corners show the wall alone, which neither moves nor changes.
+    // The image's top corners show the wall alone, which neither moves nor changes.
     CHECK(cv::norm(grey(cv::Rect(0, 0, 40, 20)), first(cv::Rect(0, 0, 40, 20)), cv::NORM_INF) == 0.0);
     const Spot spot = brightest(grey);
     INFO("frame " << k);

@@ -170,14 +170,14 @@ TEST_CASE("Every codec and container gives the frames, the rate and the codec th
     const std::vector<core::Frame> frames = frames_of(recorded);
     REQUIRE(frames.size() == 100);
     CHECK(frames[99].t_s == 99.0 / 240.0);
-    // Lossy, but the same picture: noise of 1 to 2 codes is what the codecs leave out, and the range of video rounds.
+    // Lossy, but the same image: noise of 1 to 2 codes is what the codecs leave out, and the range of video rounds.
     const double rms = difference(frames, lossless);
     CHECK(rms > 0.1);
     CHECK(rms < 4.0);
   }
 }
 
-TEST_CASE("Less quality costs more of the picture and makes a smaller file") {
+TEST_CASE("Less quality costs more of the image and makes a smaller file") {
   const std::vector<core::Frame> lossless = frames_of(Recorded(""));
   const auto both = [&](const std::string& codec) {
     const Recorded recorded("[codec]\n" + codec);
@@ -216,7 +216,7 @@ TEST_CASE("The same scenario makes the same file with every codec") {
   }
 }
 
-TEST_CASE("Dropped frames are missing from the file, and duplicated ones show the picture before, as the truth says") {
+TEST_CASE("Dropped frames are missing from the file, and duplicated ones show the image before, as the truth says") {
   const Recorded recorded("[clock]\ndropped_fraction = 0.1\nduplicated_fraction = 0.1\n");
   const Recorded whole("");
   const std::vector<core::Frame> frames = frames_of(recorded);

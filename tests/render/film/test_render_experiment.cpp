@@ -225,7 +225,7 @@ TEST_CASE("The marker in the frames is where the truth says, through the true ca
       const double incline = scenario.motion.configurations[0].body.incline_rad;
       const Eigen::Vector3d marker_C =
           scenario.camera.X_WC.inverse() * marker_position_W(scenario, incline, table.column("x_m")[k]);
-      const Eigen::Vector2d expected = picture_of(scenario.camera, image_of_sphere(marker_C, 0.02).value()).centroid_px;
+      const Eigen::Vector2d expected = image_of(scenario.camera, image_of_sphere(marker_C, 0.02).value()).centroid_px;
       double sum = 0.0;
       Eigen::Vector2d moment = Eigen::Vector2d::Zero();
       const int middle_u = static_cast<int>(std::lround(expected.x()));
@@ -243,7 +243,7 @@ TEST_CASE("The marker in the frames is where the truth says, through the true ca
   }
 }
 
-TEST_CASE("16-bit clips are folders of pictures, raw ones are AVI, and the folder says so") {
+TEST_CASE("16-bit clips are folders of images, raw ones are AVI, and the folder says so") {
   Scenario scenario = small_scenario();
   scenario.codec = Codec::raw;
   {

@@ -28,7 +28,7 @@ TEST_CASE("Every calibration view shows the whole board with its border, and tog
         for (const Eigen::Vector3d& corner : outline_of(board)) {
           const auto pixel = project(scenario.camera, corner);
           REQUIRE(pixel);
-          CHECK(in_picture(scenario.camera, *pixel, 1.0));
+          CHECK(in_image(scenario.camera, *pixel, 1.0));
           low = low.cwiseMin(*pixel);
           high = high.cwiseMax(*pixel);
         }

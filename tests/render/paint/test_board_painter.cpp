@@ -42,8 +42,8 @@ TEST_CASE("A painted board's pixels are the areas of its squares and of its plat
   scene.board = glidelab::tests::tilted_board();
   const Chessboard& board = *scene.board;
   // Nothing behind the board: what is seen is its light alone.
-  const FloatPicture picture =
-      paint_board(camera, make_ray_table(camera), FloatPicture(camera.width_px, camera.height_px), scene, 1.0);
+  const FloatImage image =
+      paint_board(camera, make_ray_table(camera), FloatImage(camera.width_px, camera.height_px), scene, 1.0);
   const double shade = shade_of(-board.X_WP.linear().col(2));
   double worst = 0.0, sum = 0.0;
   int edges = 0;
@@ -66,7 +66,7 @@ TEST_CASE("A painted board's pixels are the areas of its squares and of its plat
       for (int i = 0; i < (even ? 0 : kRays * kRays); ++i) {
         seen += albedo_at(u - 0.5 + (i % kRays + 0.5) / kRays, v - 0.5 + (i / kRays + 0.5) / kRays) / (kRays * kRays);
       }
-      const double off = (static_cast<double>(picture.at(u, v)) / shade - seen) / 0.80;
+      const double off = (static_cast<double>(image.at(u, v)) / shade - seen) / 0.80;
       worst = std::max(worst, std::abs(off));
       const double whole = std::min(std::abs(seen), std::min(std::abs(seen - 0.05), std::abs(seen - 0.85)));
       if (whole < 1e-6) continue;
@@ -93,8 +93,8 @@ TEST_CASE("Before a camera without distortion that faces it, each pixel of a boa
   board.X_WP.linear() = Eigen::AngleAxisd(std::acos(-1.0), Eigen::Vector3d::UnitX()).toRotationMatrix();
   board.X_WP.translation() = Eigen::Vector3d(-0.2153, 0.1807, 0.0);
   scene.board = board;
-  const FloatPicture picture =
-      paint_board(camera, make_ray_table(camera), FloatPicture(camera.width_px, camera.height_px), scene, 2.0);
+  const FloatImage image =
+      paint_board(camera, make_ray_table(camera), FloatImage(camera.width_px, camera.height_px), scene, 2.0);
   const double side = 18.62, shade = 2.0 * shade_of(Eigen::Vector3d::UnitZ());
   const Eigen::Vector2d first = project(camera, board.X_WP.translation()).value();
   // Of a pixel, along one axis: the part in even squares less that in odd ones, and the part on squares, on the plate.
@@ -115,7 +115,7 @@ TEST_CASE("Before a camera without distortion that faces it, each pixel of a boa
       const Eigen::Array3d x = along(u, first.x(), 6), y = along(v, first.y(), 5);
       const double black = 0.5 * (x[1] * y[1] + x[0] * y[0]);
       const double expected = shade * (0.85 * (x[2] * y[2] - black) + 0.05 * black);
-      worst = std::max(worst, std::abs(static_cast<double>(picture.at(u, v)) - expected));
+      worst = std::max(worst, std::abs(static_cast<double>(image.at(u, v)) - expected));
     }
   }
   CHECK(worst < 1e-4);  // the rays are kept in single precision: 320 px / 2^24 = 2e-5 px
@@ -135,11 +135,11 @@ TEST_CASE("A board before the track is painted as the ray caster paints it") {
   track.surface = Surface::matt;
   scene.boxes.push_back(track);
   StaticPainter painter(camera, rays);
-  const FloatPicture empty = painter.paint(scene);
+  const FloatImage empty = painter.paint(scene);
   scene.board = glidelab::tests::tilted_board();
   REQUIRE(stands_free(camera, scene));
-  const FloatPicture cast = painter.paint_before(empty, scene, 1.0),
-                     painted = paint_board(camera, rays, empty, scene, 1.0);
+  const FloatImage cast = painter.paint_before(empty, scene, 1.0),
+                   painted = paint_board(camera, rays, empty, scene, 1.0);
   double worst = 0.0, sum = 0.0;
   for (std::size_t i = 0; i < cast.values.size(); ++i) {
     const double off = static_cast<double>(painted.values[i]) - static_cast<double>(cast.values[i]);

@@ -93,7 +93,7 @@ const std::array<double, 1> kStill{0.0};
 
 }  // namespace
 
-TEST_CASE("The photometric centre of a still marker is the centroid of its exact picture, anywhere") {
+TEST_CASE("The photometric centre of a still marker is the centroid of its exact image, anywhere") {
   // Square pixels sample the disc: Poisson's summation gives their centroid an error of |J1(2 pi R)| / (pi² R) a
   // direction, at most sqrt(2) 0.16 / 40 = 0.0057 px at R = 4. The renderer's own error is an order below (next test).
   double worst = 0.0;
@@ -110,7 +110,7 @@ TEST_CASE("The photometric centre of a still marker is the centroid of its exact
           const Eigen::Vector2d pixel = around + Eigen::Vector2d(0.137 * phase, std::fmod(0.391 * phase, 1.0));
           const MovingBody body = marker_at(camera, pixel, 2.4, radius_px);
           const Moments seen = moments_of(paint(camera, rays, body, kStill));
-          const AreaMoments exact = picture_of(
+          const AreaMoments exact = image_of(
               camera, image_of_sphere(camera.X_WC.inverse() * body.marker->center_W, body.marker->radius_m).value());
           worst = std::max(worst, (seen.centroid - exact.centroid_px).norm());
           worst_area = std::max(worst_area, std::abs(seen.area / exact.area_px - 1.0));
@@ -255,7 +255,7 @@ TEST_CASE("A box's pixels are those of rays cast at it, however it is turned") {
   }
 }
 
-TEST_CASE("A body that is out of the picture leaves an empty layer, one that is half in it a part") {
+TEST_CASE("A body that is out of the image leaves an empty layer, one that is half in it a part") {
   const Camera camera = paper_like_camera(kBarrel);
   const RayTable rays = make_ray_table(camera);
   MovingBody body = marker_at(camera, {400, 300}, 2.4, 6.0);
@@ -276,10 +276,10 @@ TEST_CASE("A body that reaches behind the camera is an error") {
   CHECK_THROWS_AS(paint(camera, rays, body, std::array<double, 1>{5.0}), glidelab::base::NumericalError);
 }
 
-TEST_CASE("A layer goes over a picture by its coverage") {
+TEST_CASE("A layer goes over an image by its coverage") {
   MovingLayer layer{{1, 0, 2, 1}, {0.5f, 0.25f}, {1.0f, 0.5f}};
-  FloatPicture picture(3, 1);
-  picture.values = {10.0f, 20.0f, 30.0f};
-  put_over(layer, 100.0f, picture);
-  CHECK(picture.values == std::vector<float>{10.0f, 50.0f, 40.0f});
+  FloatImage image(3, 1);
+  image.values = {10.0f, 20.0f, 30.0f};
+  put_over(layer, 100.0f, image);
+  CHECK(image.values == std::vector<float>{10.0f, 50.0f, 40.0f});
 }

@@ -35,7 +35,7 @@ TEST_CASE("A sphere that reaches the camera's plane has no ellipse") {
 }
 
 TEST_CASE(
-    "Without a lens the picture of an ellipse has its area and centre, and with one those of a fine grid of points") {
+    "Without a lens the image of an ellipse has its area and centre, and with one those of a fine grid of points") {
   Camera camera;
   camera.width_px = 800;
   camera.height_px = 600;
@@ -45,13 +45,13 @@ TEST_CASE(
   const double area = std::numbers::pi *
                       std::abs(ellipse.axis_u.x() * ellipse.axis_v.y() - ellipse.axis_u.y() * ellipse.axis_v.x()) *
                       1.01e6;
-  AreaMoments moments = picture_of(camera, ellipse);
+  AreaMoments moments = image_of(camera, ellipse);
   CHECK(std::abs(moments.area_px / area - 1.0) < 1e-12);
   const Eigen::Vector2d center = ellipse.center.cwiseProduct(camera.focal_px) + camera.center_px;
   CHECK((moments.centroid_px - center).norm() < 1e-10);
 
   camera.lens = {-0.25, 0.1, 0.02, 0.003, -0.002};
-  moments = picture_of(camera, ellipse);
+  moments = image_of(camera, ellipse);
   // An independent count: pixels of 1/20 px whose inverse lies in the ellipse. Its border has some 3000 of them, so the
   // centroid errs by sqrt(3000/12) * 0.05 * 25 / area(px) / 20 ~ 1e-3 px at most.
   Eigen::Matrix2d axes;

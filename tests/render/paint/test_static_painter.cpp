@@ -52,7 +52,7 @@ TEST_CASE("The chessboard's pixels are the areas of its squares, by rays cast on
   StaticScene scene = bare_scene();
   scene.board = glidelab::tests::tilted_board();
   StaticPainter painter(camera, make_ray_table(camera));
-  const FloatPicture picture = painter.paint(scene);
+  const FloatImage image = painter.paint(scene);
   const Eigen::Isometry3d X_PW = scene.board->X_WP.inverse();
   const double shade = shade_of(-scene.board->X_WP.linear().col(2));
   const auto square_of = [&](const Eigen::Vector3d& ray) {
@@ -79,7 +79,7 @@ TEST_CASE("The chessboard's pixels are the areas of its squares, by rays cast on
         const int row = static_cast<int>(std::floor(p.y()));
         return column >= -1 && row >= -1 && column < 5 && row < 4 && (column + row) % 2 == 0;
       });
-      const double seen = (0.85 - static_cast<double>(picture.at(u, v)) / shade) / 0.80;
+      const double seen = (0.85 - static_cast<double>(image.at(u, v)) / shade) / 0.80;
       worst = std::max(worst, std::abs(seen - black));
       if (black > 0.0 && black < 1.0) {
         sum += seen - black;
@@ -98,7 +98,7 @@ TEST_CASE("A black box before the wall covers the pixels that rays say") {
   const Camera camera = camera_for_tests();
   StaticScene scene = bare_scene();
   StaticPainter painter(camera, make_ray_table(camera));
-  const FloatPicture wall = painter.paint(scene);
+  const FloatImage wall = painter.paint(scene);
   StaticBox box;
   box.center_W = {0.1, 0.05, 0.02};
   box.half_m = {0.3, 0.05, 0.04};
@@ -106,7 +106,7 @@ TEST_CASE("A black box before the wall covers the pixels that rays say") {
   box.albedo = 0.0;
   box.casts_shadow = false;
   scene.boxes.push_back(box);
-  const FloatPicture picture = painter.paint(scene);
+  const FloatImage image = painter.paint(scene);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(box.turn_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   double worst = 0.0;
   double area = 0.0;
@@ -120,7 +120,7 @@ TEST_CASE("A black box before the wall covers the pixels that rays say") {
         const Eigen::Vector3d b = (box.half_m - from).cwiseQuotient(along);
         return a.cwiseMin(b).maxCoeff() < a.cwiseMax(b).minCoeff();
       });
-      const double seen = 1.0 - static_cast<double>(picture.at(u, v)) / static_cast<double>(wall.at(u, v));
+      const double seen = 1.0 - static_cast<double>(image.at(u, v)) / static_cast<double>(wall.at(u, v));
       worst = std::max(worst, std::abs(seen - cast));
       area += seen;
       cast_area += cast;
@@ -136,11 +136,11 @@ TEST_CASE("The plumb line darkens each pixel by its share of the thread's width,
   const Camera camera = camera_for_tests();
   StaticScene scene = bare_scene();
   StaticPainter painter(camera, make_ray_table(camera));
-  const FloatPicture wall = painter.paint(scene);
+  const FloatImage wall = painter.paint(scene);
   for (const double diameter_m : {0.0025, 0.01}) {
     scene.plumb =
         PlumbLine{.x_m = 0.37, .z_m = 0.0, .top_y_m = 3.0, .bottom_y_m = -2.0, .diameter_m = diameter_m, .albedo = 0.0};
-    const FloatPicture picture = painter.paint(scene);
+    const FloatImage image = painter.paint(scene);
     double worst = 0.0;
     double sum = 0.0;
     int rows = 0;
@@ -161,7 +161,7 @@ TEST_CASE("The plumb line darkens each pixel by its share of the thread's width,
                                     .norm();
       double moment = 0.0;
       for (int u = static_cast<int>(axis) - 3; u <= static_cast<int>(axis) + 4; ++u) {
-        const double dark = 1.0 - static_cast<double>(picture.at(u, v)) / static_cast<double>(wall.at(u, v));
+        const double dark = 1.0 - static_cast<double>(image.at(u, v)) / static_cast<double>(wall.at(u, v));
         const double expected = std::max(0.0, std::min(u + 0.5, axis + half) - std::max(u - 0.5, axis - half));
         worst = std::max(worst, std::abs(dark - expected));
         moment += (dark - expected) * (u - axis);
@@ -175,7 +175,7 @@ TEST_CASE("The plumb line darkens each pixel by its share of the thread's width,
   }
 }
 
-TEST_CASE("The same scene gives the same picture, and what stands nearer hides what stands behind") {
+TEST_CASE("The same scene gives the same image, and what stands nearer hides what stands behind") {
   const Camera camera = camera_for_tests();
   StaticScene scene = bare_scene();
   scene.board = glidelab::tests::tilted_board();
@@ -186,7 +186,7 @@ TEST_CASE("The same scene gives the same picture, and what stands nearer hides w
   scene.boxes.push_back(box);
   const RayTable rays = make_ray_table(camera);
   StaticPainter painter(camera, rays);
-  const FloatPicture first = painter.paint(scene);
+  const FloatImage first = painter.paint(scene);
   CHECK(painter.paint(scene).values == first.values);
   StaticPainter other(camera, rays);
   CHECK(other.paint(scene).values == first.values);
@@ -195,23 +195,23 @@ TEST_CASE("The same scene gives the same picture, and what stands nearer hides w
   CHECK(first.at(static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y()))) < 0.1f);
 }
 
-TEST_CASE("A board or a plumb line painted before the empty scene gives the picture painted whole") {
+TEST_CASE("A board or a plumb line painted before the empty scene gives the image painted whole") {
   const Camera camera = camera_for_tests();
   const RayTable rays = make_ray_table(camera);
   StaticScene scene = bare_scene();
   scene.light_falloff = 0.3;
-  StaticBox track;  // in front of a part of the board, with edges all over the picture
+  StaticBox track;  // in front of a part of the board, with edges all over the image
   track.center_W = {0.0, -0.25, 0.35};
   track.half_m = {0.9, 0.06, 0.03};
   track.turn_rad = 0.07;
   track.surface = Surface::scale_tape;
   scene.boxes.push_back(track);
   StaticPainter painter(camera, rays);
-  const FloatPicture empty = painter.paint(scene);
+  const FloatImage empty = painter.paint(scene);
   SECTION("a board") {
     scene.board = glidelab::tests::tilted_board();
   }
-  SECTION("a board at the picture's corner, part of it outside") {
+  SECTION("a board at the image's corner, part of it outside") {
     scene.board = glidelab::tests::tilted_board();
     scene.board->X_WP.translation() += Eigen::Vector3d(0.5, -0.35, 0.1);
   }
@@ -219,7 +219,7 @@ TEST_CASE("A board or a plumb line painted before the empty scene gives the pict
     scene.plumb = PlumbLine{};
     scene.plumb->z_m = 0.2;
   }
-  const FloatPicture whole = painter.paint(scene);
+  const FloatImage whole = painter.paint(scene);
   CHECK(painter.paint_before(empty, scene).values == whole.values);
   CHECK(whole.values != empty.values);
 }

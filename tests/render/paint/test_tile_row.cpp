@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFocal = 900.0;  // px
 
-/// A row of a camera whose lens turns and stretches the picture a little here.
+/// A row of a camera whose lens turns and stretches the image a little here.
 RowRays row_at(double x, double y) {
   RowRays rays;
   for (int i = 0; i < kRayTile; ++i) {

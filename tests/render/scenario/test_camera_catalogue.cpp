@@ -164,7 +164,7 @@ TEST_CASE("Every camera of the catalogue has its head and its sources, and takes
     CHECK_FALSE(root.text("price_class").empty());
     CHECK(root.has("source"));
     for (const char* section : {"camera", "shutter", "sensor", "clock", "codec"}) CHECK(root.has(section));
-    // From where 1.9 m of the track fill the picture.
+    // From where 1.9 m of the track fill the image.
     const base::TomlTable camera = root.table("camera");
     const double distance_m = 1.9 * camera.numbers("focal_px", 2)[0] / camera.number("width_px");
     const tests::TempDir dir;
@@ -178,7 +178,7 @@ TEST_CASE("Every camera of the catalogue has its head and its sources, and takes
     const sim::ConfigurationSetup& configuration = scenario.motion.configurations.front();
     const RayTable rays = make_ray_table(scenario.camera);
     const StaticScene scene = empty_track(scenario, configuration.body.incline_rad);
-    FloatPicture background_e(scenario.camera.width_px, scenario.camera.height_px);
+    FloatImage background_e(scenario.camera.width_px, scenario.camera.height_px);
     const auto white_e = static_cast<float>(electrons_of_white(scenario));
     std::fill(background_e.values.begin(), background_e.values.end(), 0.38f * white_e);
     ClipRenderer renderer(scenario, configuration, scene, rays, background_e, 1, 0);
@@ -218,6 +218,6 @@ TEST_CASE("Every camera of the catalogue has its head and its sources, and takes
     const double black = sensor.tone.kind == ToneCurve::Kind::linear ? 0.0 : sensor.offset_dn;
     const double expected =
         sensor.largest_code() * sensor.tone((converter - black) / (sensor.largest_converter_code() - black));
-    CHECK(std::abs(mean / expected - 1.0) < 0.02);  // glider and marker cover 2 % of the picture at most
+    CHECK(std::abs(mean / expected - 1.0) < 0.02);  // glider and marker cover 2 % of the image at most
   }
 }

@@ -14,7 +14,7 @@ using namespace glidelab::render::tests;
 
 namespace {
 
-/// A glider that leaves the picture's left part alone; everything square on, 150 px/m.
+/// A glider that leaves the image's left part alone; everything square on, 150 px/m.
 std::string text(const std::string& sections, const std::string& camera = "") {
   return fmt::format(
       "{}\n[camera]\nwidth_px = 240\nheight_px = 180\nframe_rate_hz = 97.0\nexposure_s = 0.004\nfocal_px = [300.0, "
@@ -24,10 +24,10 @@ std::string text(const std::string& sections, const std::string& camera = "") {
       sections, camera);
 }
 
-double mean(const FloatPicture& picture, const PixelRect& rect) {
+double mean(const FloatImage& image, const PixelRect& rect) {
   double sum = 0.0;
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
-    for (const float value : picture.row(y, rect.x, rect.width)) sum += static_cast<double>(value);
+    for (const float value : image.row(y, rect.x, rect.width)) sum += static_cast<double>(value);
   }
   return sum / rect.width / rect.height;
 }
@@ -87,11 +87,11 @@ TEST_CASE("With a rolling shutter flicker becomes bands") {
   const std::string rolling = "[shutter]\nkind = \"rolling\"\nline_readout_s = 5e-5\n";
   const MadeClip plain(scenario_of(text("", rolling)));
   const MadeClip lamp(scenario_of(text("[light]\nflicker_depth = 0.4\nflicker_hz = 100.0\n", rolling)));
-  std::vector<FloatPicture> dull;
+  std::vector<FloatImage> dull;
   plain.each_frame([&](const FrameMotion& frame, ClipRenderer& renderer) { dull.push_back(renderer.expected(frame)); });
   std::size_t k = 0;
   lamp.each_frame([&](const FrameMotion& frame, ClipRenderer& renderer) {
-    const FloatPicture& banded = renderer.expected(frame);
+    const FloatImage& banded = renderer.expected(frame);
     for (const int row : {0, 45, 90, 179}) {
       const PixelRect left{0, row, 100, 1};  // the glider is to the right
       const double expected = mean_flicker(lamp.scenario.light, static_cast<double>(k) / 97.0 + 5e-5 * row, 0.004);
@@ -102,7 +102,7 @@ TEST_CASE("With a rolling shutter flicker becomes bands") {
 }
 
 TEST_CASE("A gradient makes light exp(g x) times as bright at x") {
-  // The wall is at z = -0.6, 2.6 m away: x = (u - 119.5) 2.6 / 300. Its own texture is the same in both pictures.
+  // The wall is at z = -0.6, 2.6 m away: x = (u - 119.5) 2.6 / 300. Its own texture is the same in both images.
   const MadeClip plain(scenario_of(text("")));
   const MadeClip graded(scenario_of(text("[light]\ngradient_per_m = [0.4, -0.2]\n")));
   for (const auto& [u, v] : {std::pair{10, 10}, {120, 20}, {230, 15}}) {
@@ -136,11 +136,11 @@ TEST_CASE("A reflection adds its light: 2 pi radiance (radius f/Z)², where it i
   const MadeClip moving(scenario_of(text(spot + "velocity_m_s = [0.5, 0.0, 0.0]\n")));
   const MadeClip following(scenario_of(text(spot + "follow = 0.5\n")));
   const double white_e = electrons_of_white(plain.scenario);
-  std::vector<FloatPicture> dull;
+  std::vector<FloatImage> dull;
   plain.each_frame([&](const FrameMotion& frame, ClipRenderer& renderer) { dull.push_back(renderer.expected(frame)); });
   const auto check = [&](const MadeClip& clip, const auto& x_m) {
     clip.each_frame([&](const FrameMotion& frame, ClipRenderer& renderer) {
-      const FloatPicture& bright = renderer.expected(frame);
+      const FloatImage& bright = renderer.expected(frame);
       double sum = 0.0, u = 0.0, v = 0.0;
       for (int y = 0; y < 90; ++y) {
         for (int x = 0; x < 125; ++x) {

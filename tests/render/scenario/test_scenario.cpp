@@ -205,7 +205,7 @@ TEST_CASE("A marker that is never seen is refused, one that is seen for a while 
   };
   CHECK_THAT(message("", motion(5.0, 1.0)), Catch::Contains("clip \"c\"") && Catch::Contains("never in the image"));
   CHECK(message("", motion(-1.5, 1.2)) == "nothing");
-  // A fisheye-like barrel maps what is far outside back into the picture by its formula; that is not seen either.
+  // A fisheye-like barrel maps what is far outside back into the image by its formula; that is not seen either.
   CHECK_THAT(message("[camera]\ndistortion = { k1 = -0.3 }\n", motion(-3.4, -0.1)),
              Catch::Contains("never in the image"));
 }

@@ -15,26 +15,26 @@ constexpr int kWidth = 203;
 constexpr int kHeight = 90;
 constexpr double kExposure = 0.01;
 
-FloatPicture flat(float value, int width = kWidth, int height = kHeight) {
-  FloatPicture picture(width, height);
-  std::fill(picture.values.begin(), picture.values.end(), value);
-  return picture;
+FloatImage flat(float value, int width = kWidth, int height = kHeight) {
+  FloatImage image(width, height);
+  std::fill(image.values.begin(), image.values.end(), value);
+  return image;
 }
 
-FloatPicture slope(double most_e) {
-  FloatPicture picture(kWidth, kHeight);
+FloatImage slope(double most_e) {
+  FloatImage image(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) picture.at(x, y) = static_cast<float>(most_e * (x + y) / (kWidth + kHeight));
+    for (int x = 0; x < kWidth; ++x) image.at(x, y) = static_cast<float>(most_e * (x + y) / (kWidth + kHeight));
   }
-  return picture;
+  return image;
 }
 
 template <typename Code>
-std::vector<Code> codes_of(const Readout& readout, const FloatPicture& picture, std::uint32_t frame = 0,
+std::vector<Code> codes_of(const Readout& readout, const FloatImage& image, std::uint32_t frame = 0,
                            PixelRect rect = {}) {
-  if (rect.empty()) rect = {0, 0, picture.width, picture.height};
+  if (rect.empty()) rect = {0, 0, image.width, image.height};
   std::vector<Code> codes(static_cast<std::size_t>(rect.width) * rect.height);
-  readout.read(picture, 3, frame, rect, std::span<Code>(codes));
+  readout.read(image, 3, frame, rect, std::span<Code>(codes));
   return codes;
 }
 
@@ -135,9 +135,9 @@ TEST_CASE("A tone curve turns the converter's codes into those of the video") {
   Sensor plain = sensor;
   plain.bit_depth = 10;
   plain.tone = {};
-  const FloatPicture picture = slope(6000.0);
-  const auto linear = codes_of<std::uint16_t>(Readout(plain, kExposure, 9, kWidth, kHeight), picture);
-  const auto video = codes_of<std::uint8_t>(Readout(sensor, kExposure, 9, kWidth, kHeight), picture);
+  const FloatImage image = slope(6000.0);
+  const auto linear = codes_of<std::uint16_t>(Readout(plain, kExposure, 9, kWidth, kHeight), image);
+  const auto video = codes_of<std::uint8_t>(Readout(sensor, kExposure, 9, kWidth, kHeight), image);
   for (std::size_t i = 0; i < linear.size(); ++i) {
     const double x = std::max(0.0, (linear[i] - 16.0) / (1023.0 - 16.0));
     const double y = x < 0.018 ? 4.5 * x : 1.099 * std::pow(x, 0.45) - 0.099;
@@ -189,12 +189,12 @@ TEST_CASE("A mosaic behind white balance shows the same grey, with the noise of 
   CHECK(std::abs(mean - 4200.0) < 4.5 * std::sqrt(4000.0 * 4.0 / 480'000.0));
 }
 
-TEST_CASE("A part of the picture has the codes of the whole with every effect switched on") {
-  const FloatPicture picture = slope(6000.0);
+TEST_CASE("A part of the image has the codes of the whole with every effect switched on") {
+  const FloatImage image = slope(6000.0);
   const Readout readout(with_everything(), kExposure, 7, kWidth, kHeight);
-  const auto whole = codes_of<std::uint8_t>(readout, picture, 4);
+  const auto whole = codes_of<std::uint8_t>(readout, image, 4);
   for (const PixelRect& rect : {PixelRect{0, 0, 33, 20}, PixelRect{31, 17, 64, 40}, PixelRect{150, 60, 53, 30}}) {
-    const auto part = codes_of<std::uint8_t>(readout, picture, 4, rect);
+    const auto part = codes_of<std::uint8_t>(readout, image, 4, rect);
     for (int y = 0; y < rect.height; ++y) {
       for (int x = 0; x < rect.width; ++x) {
         REQUIRE(part[static_cast<std::size_t>(y * rect.width + x)] ==
@@ -202,14 +202,14 @@ TEST_CASE("A part of the picture has the codes of the whole with every effect sw
       }
     }
   }
-  CHECK(codes_of<std::uint8_t>(readout, picture, 4) == whole);
-  CHECK(codes_of<std::uint8_t>(Readout(with_everything(), kExposure, 8, kWidth, kHeight), picture, 4) != whole);
+  CHECK(codes_of<std::uint8_t>(readout, image, 4) == whole);
+  CHECK(codes_of<std::uint8_t>(Readout(with_everything(), kExposure, 8, kWidth, kHeight), image, 4) != whole);
 }
 
 TEST_CASE("A sensor without patterns, colours and tone gives the codes that read_out gives") {
   const Sensor sensor;
-  const FloatPicture picture = slope(70000.0);
+  const FloatImage image = slope(70000.0);
   std::vector<std::uint8_t> direct(static_cast<std::size_t>(kWidth) * kHeight);
-  read_out(sensor, picture, {6, 3, 2}, {0, 0, kWidth, kHeight}, std::span<std::uint8_t>(direct));
-  CHECK(codes_of<std::uint8_t>(Readout(sensor, kExposure, 6, kWidth, kHeight), picture, 2) == direct);
+  read_out(sensor, image, {6, 3, 2}, {0, 0, kWidth, kHeight}, std::span<std::uint8_t>(direct));
+  CHECK(codes_of<std::uint8_t>(Readout(sensor, kExposure, 6, kWidth, kHeight), image, 2) == direct);
 }

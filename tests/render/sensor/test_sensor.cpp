@@ -13,27 +13,27 @@ using namespace glidelab::render;
 
 namespace {
 
-FloatPicture flat(int width, int height, float value) {
-  FloatPicture picture(width, height);
-  std::fill(picture.values.begin(), picture.values.end(), value);
-  return picture;
+FloatImage flat(int width, int height, float value) {
+  FloatImage image(width, height);
+  std::fill(image.values.begin(), image.values.end(), value);
+  return image;
 }
 
 /// All levels side by side: dark enough for the exact path, and up to beyond the full well.
-FloatPicture all_levels(int width, int height, double full_well) {
-  FloatPicture picture(width, height);
-  for (std::size_t i = 0; i < picture.values.size(); ++i) {
-    picture.values[i] = static_cast<float>(1.1 * full_well * static_cast<double>((i * 7919) % 1000) / 1000.0);
+FloatImage all_levels(int width, int height, double full_well) {
+  FloatImage image(width, height);
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    image.values[i] = static_cast<float>(1.1 * full_well * static_cast<double>((i * 7919) % 1000) / 1000.0);
   }
-  return picture;
+  return image;
 }
 
 template <typename Code>
-std::vector<Code> codes_of(const Sensor& sensor, const FloatPicture& picture, const NoiseKey& key, PixelRect rect = {},
+std::vector<Code> codes_of(const Sensor& sensor, const FloatImage& image, const NoiseKey& key, PixelRect rect = {},
                            Simd simd = Simd::best) {
-  if (rect.empty()) rect = {0, 0, picture.width, picture.height};
+  if (rect.empty()) rect = {0, 0, image.width, image.height};
   std::vector<Code> codes(static_cast<std::size_t>(rect.width) * rect.height);
-  read_out(sensor, picture, key, rect, std::span<Code>(codes), simd);
+  read_out(sensor, image, key, rect, std::span<Code>(codes), simd);
   return codes;
 }
 
@@ -69,8 +69,8 @@ TEST_CASE("Mean and variance of the codes are those of the photon transfer, dark
   const double n = 480'000.0;
   std::uint32_t stream = 0;
   for (const double electrons : {0.0, 0.4, 3.0, 40.0, 255.0, 257.0, 1000.0, 30000.0}) {
-    const FloatPicture picture = flat(800, 600, static_cast<float>(electrons));
-    const Sample sample = sample_of(codes_of<std::uint16_t>(sensor, picture, {11, stream++, 3}));
+    const FloatImage image = flat(800, 600, static_cast<float>(electrons));
+    const Sample sample = sample_of(codes_of<std::uint16_t>(sensor, image, {11, stream++, 3}));
     const double variance = electrons + 400.0 + 1.0 / 12.0;
     CAPTURE(electrons);
     CHECK(std::abs(sample.mean - 200.0 - electrons) < 4.5 * std::sqrt(variance / n));
@@ -96,8 +96,8 @@ TEST_CASE("The noise is normal where it is said to be, and Poisson's skewness is
 TEST_CASE("Pixels, frames and streams are not correlated") {
   // The correlation of n independent pairs has a standard deviation of 1/sqrt(n) = 1.4e-3; 4.5 of them.
   const Sensor sensor = counting_sensor();
-  const FloatPicture picture = flat(800, 600, 5000.0f);
-  const auto base = codes_of<std::uint16_t>(sensor, picture, {1, 1, 1});
+  const FloatImage image = flat(800, 600, 5000.0f);
+  const auto base = codes_of<std::uint16_t>(sensor, image, {1, 1, 1});
   const auto correlation = [&](const std::vector<std::uint16_t>& other, std::size_t lag) {
     const Sample a = sample_of(base);
     const Sample b = sample_of(other);
@@ -110,29 +110,29 @@ TEST_CASE("Pixels, frames and streams are not correlated") {
     CHECK(std::abs(correlation(base, lag)) < limit);
   for (const NoiseKey& key :
        {NoiseKey{1, 1, 2}, NoiseKey{1, 2, 1}, NoiseKey{2, 1, 1}, NoiseKey{1ull << 32 | 1, 1, 1}}) {
-    CHECK(std::abs(correlation(codes_of<std::uint16_t>(sensor, picture, key), 0)) < limit);
+    CHECK(std::abs(correlation(codes_of<std::uint16_t>(sensor, image, key), 0)) < limit);
   }
-  CHECK(codes_of<std::uint16_t>(sensor, picture, {1, 1, 1}) == base);
+  CHECK(codes_of<std::uint16_t>(sensor, image, {1, 1, 1}) == base);
 }
 
 TEST_CASE("Every way to compute a pixel gives the same code") {
   for (const int width : {800, 801, 64, 33, 7}) {
     const Sensor sensor{};
-    const FloatPicture picture = all_levels(width, 50, sensor.full_well_e);
+    const FloatImage image = all_levels(width, 50, sensor.full_well_e);
     const NoiseKey key{99, 4, 12};
-    const auto best = codes_of<std::uint8_t>(sensor, picture, key);
-    CHECK(codes_of<std::uint8_t>(sensor, picture, key, {}, Simd::baseline) == best);
-    CHECK(codes_of<std::uint8_t>(sensor, picture, key, {}, Simd::portable) == best);
-    const auto deep = codes_of<std::uint16_t>(sensor, picture, key);
+    const auto best = codes_of<std::uint8_t>(sensor, image, key);
+    CHECK(codes_of<std::uint8_t>(sensor, image, key, {}, Simd::baseline) == best);
+    CHECK(codes_of<std::uint8_t>(sensor, image, key, {}, Simd::portable) == best);
+    const auto deep = codes_of<std::uint16_t>(sensor, image, key);
     CHECK(std::equal(best.begin(), best.end(), deep.begin()));
   }
 }
 
-TEST_CASE("A part of the picture has the codes of the whole, in any order and on any thread") {
+TEST_CASE("A part of the image has the codes of the whole, in any order and on any thread") {
   const Sensor sensor{};
-  const FloatPicture picture = all_levels(203, 90, sensor.full_well_e);
+  const FloatImage image = all_levels(203, 90, sensor.full_well_e);
   const NoiseKey key{7, 0, 5};
-  const auto whole = codes_of<std::uint8_t>(sensor, picture, key);
+  const auto whole = codes_of<std::uint8_t>(sensor, image, key);
   std::vector<PixelRect> parts;
   for (int y = 0; y < 90; y += 17) {
     for (int x = 0; x < 203; x += 29) {
@@ -147,7 +147,7 @@ TEST_CASE("A part of the picture has the codes of the whole, in any order and on
       threads.emplace_back([&, t] {
         for (std::size_t i = t; i < parts.size(); i += 3) {
           const PixelRect& part = parts[i];
-          const auto codes = codes_of<std::uint8_t>(sensor, picture, key, part);
+          const auto codes = codes_of<std::uint8_t>(sensor, image, key, part);
           for (int y = 0; y < part.height; ++y) {
             std::copy_n(codes.begin() + y * part.width, part.width, together.begin() + (part.y + y) * 203 + part.x);
           }

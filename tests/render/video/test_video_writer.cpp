@@ -92,7 +92,7 @@ TEST_CASE("Clips of 8 bits read back bit for bit, with their number of frames an
   }
 }
 
-TEST_CASE("Frames of more than 8 bits are a folder of 16-bit pictures in order") {
+TEST_CASE("Frames of more than 8 bits are a folder of 16-bit images in order") {
   const tests::TempDir dir;
   const VideoFormat format{Codec::png, 70, 40, 100.0, 1};
   const auto writer = open_video(dir / "clip", format);

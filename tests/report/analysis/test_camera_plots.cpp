@@ -7,7 +7,7 @@
 
 using namespace glidelab;
 
-TEST_CASE("the numbers along the calibration's picture leave room between them, whatever its width") {
+TEST_CASE("the numbers along the calibration's image leave room between them, whatever its width") {
   for (const int width_px : {320, 640, 800, 1280, 1440, 1456, 1920, 3840}) {
     core::CornerMap rests;
     rests.width_px = width_px;

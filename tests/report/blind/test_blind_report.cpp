@@ -23,9 +23,9 @@ TEST_CASE("the page of blind cases asks how often the diagnosis is right, and sa
   run.outcomes.resize(3);
   run.score.methods.resize(1);
   CHECK(heading_of(run) == "<h1><small>blind cases: 3 tracks, seed 17</small> How often is the diagnosis right?");
-  run.pictures = true;
+  run.images = true;
   CHECK(heading_of(run) == "<h1><small>blind cases: 3 films, seed 17</small> How often is the diagnosis right?");
-  run.pictures = false;
+  run.images = false;
   run.everyday.emplace().methods.resize(1);
   for (validate::BlindOutcome& outcome : run.outcomes) outcome.everyday.emplace();
   CHECK(heading_of(run) ==

@@ -8,10 +8,10 @@
 using namespace glidelab;
 using Part = core::Subject::Part;
 
-TEST_CASE("check.json says how far the glider goes in each clip, of pictures and of a track alike") {
+TEST_CASE("check.json says how far the glider goes in each clip, of images and of a track alike") {
   core::RecordingCheck check;
   check.clips.resize(2);
-  check.clips[0].pictures = true;
+  check.clips[0].images = true;
   check.clips[0].distance_m = 0.75;
   check.clips[1].distance_m = 1.25;
   const auto json = nlohmann::json::parse(report::check_json(check));

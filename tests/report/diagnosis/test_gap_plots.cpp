@@ -1,4 +1,4 @@
-/// The page of a diagnosis: its gap in pictures, its sizes in handy units.
+/// The page of a diagnosis: its gap in images, its sizes in handy units.
 #include "report/diagnosis/gap_plots.h"
 
 #include <algorithm>
@@ -197,10 +197,10 @@ TEST_CASE("what the scene does over time has a colour and a name for each clip, 
   diagnose::Diagnosis of;
   for (const std::string clip : {"up_1", "do'wn"}) {
     for (const char* what : {"brightness", "drift across", "drift down"}) {
-      of.picture_curves.push_back({what, clip, {0.0, 0.1}, {0.0, 0.01}, {0.001, 0.001}, {}, {}});
+      of.image_curves.push_back({what, clip, {0.0, 0.1}, {0.0, 0.01}, {0.001, 0.001}, {}, {}});
     }
   }
-  const auto plots = report::picture_plots(of);
+  const auto plots = report::image_plots(of);
   REQUIRE(plots.size() == 2);
   for (const report::Plot& plot : plots) {
     CHECK(has(plot.drawing.script, "maxcols 3"));  // a fourth name would leave the plot at its right

@@ -108,14 +108,14 @@ diagnose::Diagnosis evil_diagnosis() {
               diagnose::OppositeLaunch{kEvil, true},
               diagnose::ContradictedReading{0.3, {}},
               of.limits.contradicted.front()};
-  of.pictures = {{kEvil,
-                  diagnose::Stage::optics,
-                  true,
-                  3.0,
-                  false,
-                  {{kEvil, 1.0, 0.1, "", ""}},
-                  diagnose::picture::Compression{true, kEvil, 0.1, {}}}};
-  of.picture_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
+  of.images = {{kEvil,
+                diagnose::Stage::optics,
+                true,
+                3.0,
+                false,
+                {{kEvil, 1.0, 0.1, "", ""}},
+                diagnose::image::Compression{true, kEvil, 0.1, {}}}};
+  of.image_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
   of.residuals = {{kEvil,
                    {0.0, 1.0, 2.0},
                    {0.0, 1.0, 2.0},

@@ -97,12 +97,12 @@ TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one l
   CHECK(says(*dom, "spare=\"true\""));  // 13ch are some 125 pixels
 }
 
-TEST_CASE("four pictures stand in one row or two by two, a note with a list is as wide as one without") {
+TEST_CASE("four images stand in one row or two by two, a note with a list is as wide as one without") {
   const tests::TempDir temp;
-  std::string pictures;
-  for (int i = 0; i < 4; ++i) pictures += "<figure><figcaption>picture</figcaption></figure>";
+  std::string images;
+  for (int i = 0; i < 4; ++i) images += "<figure><figcaption>picture</figcaption></figure>";
   std::string html =
-      report::page("look", "<div class=\"figures\">" + pictures +
+      report::page("look", "<div class=\"figures\">" + images +
                                "</div><p class=\"note\">text</p><div class=\"note\"><ul><li>text</li></ul>"
                                "</div>")
           .html;

@@ -16,14 +16,14 @@ namespace {
 
 constexpr double kPixelsPerM = 200.0 / 0.0254;  // 200 dpi
 
-cv::Mat as_mat(const report::SheetPicture& picture) {
-  return cv::Mat(picture.height, picture.width, CV_8U, const_cast<std::uint8_t*>(picture.grey.data())).clone();
+cv::Mat as_mat(const report::SheetImage& image) {
+  return cv::Mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.grey.data())).clone();
 }
 
 /// Pixels darker than mid-grey along a row from `from` on, until the first brighter one.
-int dark_run(const cv::Mat& picture, int row, int from) {
+int dark_run(const cv::Mat& image, int row, int from) {
   int at = from;
-  while (at < picture.cols && picture.at<std::uint8_t>(row, at) < 128) ++at;
+  while (at < image.cols && image.at<std::uint8_t>(row, at) < 128) ++at;
   return at - from;
 }
 
@@ -34,10 +34,10 @@ TEST_CASE("the printed board's corners are found in the contract's order and sta
     report::BoardSheet sheet{report::paper_of(name), 9, 6, 0.0};
     sheet.square_m = report::largest_square_m(sheet.paper, sheet.columns, sheet.rows);
     INFO(name << " " << sheet.square_m);
-    const cv::Mat picture = as_mat(report::board_picture(sheet, kPixelsPerM));
-    const auto found = core::find_board(picture, cv::Size(9, 6));
+    const cv::Mat image = as_mat(report::board_image(sheet, kPixelsPerM));
+    const auto found = core::find_board(image, cv::Size(9, 6));
     REQUIRE(found);
-    const core::BoardCorners board = core::refine_board(picture, *found);
+    const core::BoardCorners board = core::refine_board(image, *found);
     CHECK(board.unrefined == 0);
     // Cairo's edges are box-filtered and 8 bits deep, which is the model of refine_board: 1/255 of a pixel's step moves
     // an edge by 1/255 px, and the corner's fit blurs by a fraction of a pixel; 0.05 px holds both.
@@ -57,11 +57,11 @@ TEST_CASE("the printed board's corners are found in the contract's order and sta
 
 TEST_CASE("the line to check the print is as long as it says") {
   const report::BoardSheet sheet{report::paper_of("a4"), 9, 6, 0.025};
-  const cv::Mat picture = as_mat(report::board_picture(sheet, kPixelsPerM));
+  const cv::Mat image = as_mat(report::board_image(sheet, kPixelsPerM));
   const int left = static_cast<int>(std::lround(0.010 * kPixelsPerM));
   int longest = 0;
-  for (int row = picture.rows * 9 / 10; row < picture.rows; ++row) {
-    longest = std::max(longest, dark_run(picture, row, left));
+  for (int row = image.rows * 9 / 10; row < image.rows; ++row) {
+    longest = std::max(longest, dark_run(image, row, left));
   }
   // Either end is dark to within a pixel.
   CHECK(std::abs(longest - 0.100 * kPixelsPerM) <= 2.0);
@@ -69,7 +69,7 @@ TEST_CASE("the line to check the print is as long as it says") {
 
 TEST_CASE("markers have their diameters, white on black and black on white") {
   const report::MarkerSheet sheet{report::paper_of("a4"), {0.010, 0.030}};
-  const cv::Mat picture = as_mat(report::marker_picture(sheet, kPixelsPerM));
+  const cv::Mat image = as_mat(report::marker_image(sheet, kPixelsPerM));
   // The disc's area in the first square (white on black) and in the second (black on white) of each row.
   double top_m = 0.010;
   for (const double diameter_m : sheet.diameters_m) {
@@ -81,7 +81,7 @@ TEST_CASE("markers have their diameters, white on black and black on white") {
           cv::Point(static_cast<int>((left_m + inset_m) * kPixelsPerM),
                     static_cast<int>((top_m + inset_m) * kPixelsPerM)),
           cv::Size(static_cast<int>(1.2 * diameter_m * kPixelsPerM), static_cast<int>(1.2 * diameter_m * kPixelsPerM)));
-      const double white = cv::sum(picture(inside))[0] / 255.0;
+      const double white = cv::sum(image(inside))[0] / 255.0;
       const double disc_px = k == 0 ? white : inside.area() - white;
       // Coverage is rendered in 1/255 steps along an outline of pi d pixels, and a circle is drawn by splines to 0.1
       // px.

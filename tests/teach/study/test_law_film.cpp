@@ -22,12 +22,12 @@ struct Seen {
   int pixels = 0;
 };
 
-Seen white_about(const cv::Mat& picture, double u, double v) {
+Seen white_about(const cv::Mat& image, double u, double v) {
   const cv::Rect window(static_cast<int>(std::lround(u)) - 12, static_cast<int>(std::lround(v)) - 2, 25, 5);
   Seen seen;
   for (int y = window.y; y < window.y + window.height; ++y) {
     for (int x = window.x; x < window.x + window.width; ++x) {
-      if (picture.at<unsigned char>(y, x) < 220) continue;
+      if (image.at<unsigned char>(y, x) < 220) continue;
       seen.u_px += x;
       ++seen.pixels;
     }
@@ -59,10 +59,10 @@ TEST_CASE("A law's film is small, and in each of its rows the marker is where eq
   base::write_file(temp / "film.mp4", film.mp4);
   cv::VideoCapture video((temp / "film.mp4").string());
   REQUIRE(video.isOpened());
-  cv::Mat picture, grey;
+  cv::Mat image, grey;
   std::size_t k_frame = 0;
-  for (; video.read(picture); ++k_frame) {
-    cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+  for (; video.read(image); ++k_frame) {
+    cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
     REQUIRE(grey.size() == cv::Size(film.width_px, film.height_px));
     const int height = grey.rows / static_cast<int>(motions.size());
     for (std::size_t i = 0; i < motions.size(); ++i) {
@@ -75,7 +75,7 @@ TEST_CASE("A law's film is small, and in each of its rows the marker is where eq
       const double v = (static_cast<double>(i) + 0.5) * height - 0.5 + px_m * x * std::sin(m.alpha);
       INFO("frame " << k_frame << ", row " << i);
       const Seen marker = white_about(grey, u, v);
-      // A disc of 7 px: more than half of 5 lines of it, and its middle to half a pixel in an encoded picture.
+      // A disc of 7 px: more than half of 5 lines of it, and its middle to half a pixel in an encoded image.
       CHECK(marker.pixels > 15);
       CHECK(std::abs(marker.u_px - u) < 0.8);
     }

@@ -149,7 +149,7 @@ TEST_CASE("a blind case is the same for the same seed and index, and its folder 
 TEST_CASE("every effect of the diagnosis' list is among the blind ones, and nothing outside is") {
   std::set<std::string> known;
   for (const auto& info : diagnose::effect_list()) {
-    const bool filmed = info.search == diagnose::Search::pictures || info.search == diagnose::Search::rows;
+    const bool filmed = info.search == diagnose::Search::images || info.search == diagnose::Search::rows;
     if (!filmed) known.insert(std::string(info.id));  // cases are tracks
   }
   // The clean cases hold what the everyday ones do not add; those may be ahead of the list.
@@ -199,7 +199,7 @@ TEST_CASE("a truth is written after its diagnosis, a second run goes on, and ano
   CHECK_THROWS_AS(validate::run_blind(options, temp / "none", diagnoser), base::InputError);
 }
 
-TEST_CASE("pictures tell a camera that shakes from a table that does, and what a file says itself is no alarm") {
+TEST_CASE("images tell a camera that shakes from a table that does, and what a file says itself is no alarm") {
   using validate::BlindKind;
   auto shaken = outcome(BlindKind::single, "camera_motion", 100.0, "effect", "base_vibration", 0.9);
   CHECK(validate::score_blind({shaken}).methods.front().single.at("strong").yes == 1);

@@ -21,7 +21,7 @@ struct Kind {
   const char* name;
   const char* exposure;  // a line of [camera]
   const char* sections;  // of the camera, besides
-  double readout_s;      // of a whole picture
+  double readout_s;      // of a whole image
 };
 
 const Kind kIndustrial{"industrial, raw", "", "[sensor]\nfull_well_e = 10000\nread_noise_e = 12\nprnu = 0.01\n", 0.0};

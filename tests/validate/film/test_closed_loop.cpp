@@ -1,4 +1,4 @@
-/// The closed loop: a scenario is filmed, the pictures alone are analysed, and the truth comes back.
+/// The closed loop: a scenario is filmed, the images alone are analysed, and the truth comes back.
 #include <cmath>
 
 #include "base/files/file_io.h"
@@ -72,7 +72,7 @@ const validate::QuantityComparison& find(const validate::Comparison& comparison,
 
 }  // namespace
 
-TEST_CASE("from pictures of one mass of the paper, K/m, mu, alpha and v_lim come back within the project's targets",
+TEST_CASE("from images of one mass of the paper, K/m, mu, alpha and v_lim come back within the project's targets",
           "[slow]") {
   const tests::TempDir temp;
   base::write_file(temp / "scenario.toml", kOneMass);

@@ -1,5 +1,5 @@
 /// The photon-transfer loop: flat fields that the renderer's sensor reads out, and the sensor that core/ recovers from
-/// the pictures alone. Neither knows of the other.
+/// the images alone. Neither knows of the other.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,20 +28,20 @@ constexpr double kExposure = 0.01;
 constexpr double kClaim = 4.0;
 
 /// An even light that falls off towards the corners.
-render::FloatPicture light() {
-  render::FloatPicture picture(kWidth, kHeight);
+render::FloatImage light() {
+  render::FloatImage image(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const double u = 2.0 * x / kWidth - 1.0;
       const double v = 2.0 * y / kHeight - 1.0;
-      picture.at(x, y) = static_cast<float>(1.0 - 0.1 * (u * u + v * v));
+      image.at(x, y) = static_cast<float>(1.0 - 0.1 * (u * u + v * v));
     }
   }
-  return picture;
+  return image;
 }
 
 template <typename Code>
-cv::Mat frame(const render::Readout& readout, const render::FloatPicture& expected_e, std::uint32_t stream,
+cv::Mat frame(const render::Readout& readout, const render::FloatImage& expected_e, std::uint32_t stream,
               std::uint32_t number, int type) {
   std::vector<Code> codes(expected_e.values.size());
   readout.read(expected_e, stream, number, {0, 0, kWidth, kHeight}, std::span<Code>(codes));
@@ -58,7 +58,7 @@ struct Set {
 
 void write_set(const fs::path& folder, const render::Sensor& sensor, const Set& set, std::uint32_t stream) {
   fs::create_directories(folder / set.name);
-  render::FloatPicture expected_e = light();
+  render::FloatImage expected_e = light();
   for (float& value : expected_e.values) value *= static_cast<float>(set.light_e);
   const render::Readout readout(sensor, set.exposure_s, 7, kWidth, kHeight);  // the seed is the camera
   for (std::uint32_t f = 0; f < set.frames; ++f) {
@@ -166,7 +166,7 @@ TEST_CASE("photon transfer on rendered flat fields of 8 bits recovers what the c
   }
 }
 
-TEST_CASE("photon transfer refuses the renderer's pictures with a tone curve, and those of a demosaiced sensor") {
+TEST_CASE("photon transfer refuses the renderer's images with a tone curve, and those of a demosaiced sensor") {
   render::Sensor sensor;
   sensor.converter_bits = 12;
   sensor.full_well_e = 10000.0;

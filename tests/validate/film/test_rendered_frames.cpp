@@ -13,7 +13,7 @@ using namespace glidelab;
 
 namespace {
 
-// A glider that crosses a small picture once in each direction, on a slope that brings it back.
+// A glider that crosses a small image once in each direction, on a slope that brings it back.
 const std::string kScenario = R"(
 format = 1
 name = "small"

@@ -56,9 +56,9 @@ render::FrameMotion moved_to(render::FrameMotion motion, const ShownAt& shown_at
 }
 
 /// The images of a clip, one after another.
-using Pictures = std::function<std::optional<cv::Mat>()>;
+using Images = std::function<std::optional<cv::Mat>()>;
 
-Pictures as_filed(const fs::path& clip, double rate_hz) {
+Images as_filed(const fs::path& clip, double rate_hz) {
   core::CameraSettings settings;
   settings.frame_rate_hz = rate_hz;
   const std::shared_ptr<core::FrameSource> source = core::open_frames(clip, settings, false, std::nullopt);
@@ -69,20 +69,20 @@ Pictures as_filed(const fs::path& clip, double rate_hz) {
   };
 }
 
-Pictures drawn_anew(const std::shared_ptr<const render::ClipSet>& set, std::size_t c, const ShownAt& shown_at) {
+Images drawn_anew(const std::shared_ptr<const render::ClipSet>& set, std::size_t c, const ShownAt& shown_at) {
   const auto stream = std::make_shared<render::ClipStream>(set, c, set->scenario().seed);
   return [set, stream, shown_at]() -> std::optional<cv::Mat> {
     const auto next = stream->next();
     if (!next) return std::nullopt;
     const render::Camera& camera = set->scenario().camera;
-    cv::Mat picture(camera.height_px, camera.width_px, CV_8U);
-    stream->read(moved_to(*next->shown, shown_at), render::PixelRect{0, 0, picture.cols, picture.rows},
-                 std::span<std::uint8_t>(picture.ptr<std::uint8_t>(), picture.total()));
-    return picture;
+    cv::Mat image(camera.height_px, camera.width_px, CV_8U);
+    stream->read(moved_to(*next->shown, shown_at), render::PixelRect{0, 0, image.cols, image.rows},
+                 std::span<std::uint8_t>(image.ptr<std::uint8_t>(), image.total()));
+    return image;
   };
 }
 
-void file_anew(const BlindScene& scene, std::size_t c, const Pictures& pictures, const fs::path& to) {
+void file_anew(const BlindScene& scene, std::size_t c, const Images& images, const fs::path& to) {
   const BlindRetouch& retouch = scene.retouch;
   render::VideoFormat format;
   format.width = scene.camera.width_px;
@@ -91,10 +91,10 @@ void file_anew(const BlindScene& scene, std::size_t c, const Pictures& pictures,
   const auto writer = render::open_video(to, format);
   std::size_t filed = 0;
   for (std::size_t slot = 0; filed < scene.motion.clips[c].frames; ++slot) {
-    const std::optional<cv::Mat> picture = pictures();
-    if (!picture) break;
+    const std::optional<cv::Mat> image = images();
+    if (!image) break;
     if (!retouch.lost.empty() && slot < retouch.lost[c].size() && retouch.lost[c][slot] != 0) continue;
-    writer->write(std::span<const std::uint8_t>(picture->ptr<std::uint8_t>(), picture->total()));
+    writer->write(std::span<const std::uint8_t>(image->ptr<std::uint8_t>(), image->total()));
     ++filed;
   }
   writer->finish();

@@ -27,8 +27,8 @@ double top_speed(const BlindScene& scene) {
   return top;
 }
 
-std::optional<BlindCause> by_pictures(const char* id, double size, double usual, double largest, double wanted,
-                                      const char* parameter) {
+std::optional<BlindCause> by_images(const char* id, double size, double usual, double largest, double wanted,
+                                    const char* parameter) {
   if (size > largest) {
     if (kLeastOfWanted * size > largest) return std::nullopt;
     size = largest;
@@ -45,8 +45,8 @@ std::optional<BlindCause> long_exposure(double wanted, BlindScene& scene, BlindR
   const double usual_s = std::hypot(0.4 * stated_s, 0.2 / camera.px_per_m() / top_speed(scene));
   // Rows that are read one after another must still end within the frame time.
   const double largest_s = 0.85 / camera.rate_hz - camera.line_s * camera.height_px - stated_s;
-  auto cause = by_pictures(diagnose::ids::exposure_blur, usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s, wanted,
-                           "exposure_s");
+  auto cause = by_images(diagnose::ids::exposure_blur, usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s, wanted,
+                         "exposure_s");
   if (!cause) return cause;
   camera.exposure_s = stated_s + cause->size;
   cause->parameters["exposure_s"] = camera.exposure_s;
@@ -60,8 +60,8 @@ std::optional<BlindCause> hidden_rolling(double wanted, BlindScene& scene, Blind
   const double usual_s = 0.02 / (marker_px * top_speed(scene) * camera.px_per_m());
   const double largest_s = (1.0 / camera.rate_hz - camera.exposure_s) / camera.height_px;
   camera.line_s = 0.0;
-  auto cause = by_pictures(diagnose::ids::rolling_shutter, usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s,
-                           wanted, "line_s");
+  auto cause = by_images(diagnose::ids::rolling_shutter, usual_s * std::sqrt(2.0 * wanted), usual_s, largest_s, wanted,
+                         "line_s");
   if (!cause) return cause;
   camera.line_s = cause->size;
   scene.stated.push_back({"shutter", "\"global\""});
@@ -82,7 +82,7 @@ std::optional<BlindCause> flicker(double wanted, BlindScene& scene, BlindRandom&
   if (folded * shortest_s < 5.0 || folded > 0.47 * camera.rate_hz) return std::nullopt;
   const double half_turns = std::numbers::pi * hz * camera.exposure_s;
   const double usual = (camera.lossy() ? 0.01 : 0.002) / (std::sin(half_turns) / half_turns);
-  auto cause = by_pictures(diagnose::ids::light_flicker, usual * std::sqrt(2.0 * wanted), usual, 0.25, wanted, "depth");
+  auto cause = by_images(diagnose::ids::light_flicker, usual * std::sqrt(2.0 * wanted), usual, 0.25, wanted, "depth");
   if (!cause) return cause;
   scene.flicker_depth = cause->size;
   scene.flicker_hz = hz;
@@ -92,8 +92,8 @@ std::optional<BlindCause> flicker(double wanted, BlindScene& scene, BlindRandom&
 
 std::optional<BlindCause> gradient(double wanted, BlindScene& scene, BlindRandom& random) {
   constexpr double kUsual_1_m = 0.1, kMost_1_m = 1.2;
-  auto cause = by_pictures(diagnose::ids::light_gradient, kUsual_1_m * std::sqrt(2.0 * wanted), kUsual_1_m, kMost_1_m,
-                           wanted, "gradient");
+  auto cause = by_images(diagnose::ids::light_gradient, kUsual_1_m * std::sqrt(2.0 * wanted), kUsual_1_m, kMost_1_m,
+                         wanted, "gradient");
   if (!cause) return cause;
   scene.gradient_1_m = uniform(random, 0.0, 1.0) < 0.5 ? -cause->size : cause->size;
   cause->parameters["gradient"] = scene.gradient_1_m;
@@ -205,7 +205,7 @@ std::optional<BlindCause> friction_of_each_run(double wanted, BlindScene& scene,
 }
 
 /// An image stitched from two parts that do not quite match: a step in position.
-std::optional<BlindCause> seam_in_picture(double wanted, BlindScene& scene, BlindRandom& random) {
+std::optional<BlindCause> seam_in_image(double wanted, BlindScene& scene, BlindRandom& random) {
   const double at = uniform(random, -0.25, 0.25);
   const auto see = [at](double size, double x) { return x + 0.5 * size * std::tanh((x - at) / 0.02); };
   BlindEffect effect;
@@ -328,7 +328,7 @@ const std::vector<std::pair<std::string, Put>>& outside_library_filmed() {
   static const std::vector<std::pair<std::string, Put>> list = {
       {"drag_of_each_run", as_drag_factor("drag_of_each_run")}, {"drag_by_load", as_drag_factor("drag_by_load")},
       {"friction_of_each_run", friction_of_each_run},           {"flawed_pane", as_warp("flawed_pane")},
-      {"scale_of_each_clip", as_warp("scale_of_each_clip")},    {"seam_in_picture", seam_in_picture},
+      {"scale_of_each_clip", as_warp("scale_of_each_clip")},    {"seam_in_picture", seam_in_image},
   };
   return list;
 }

@@ -27,7 +27,7 @@ bool is_filmed(const core::AnalysisResults& results, const std::vector<core::Exp
   for (const core::Experiment& folder : folders) {
     for (std::size_t c = 0; c < folder.clips.size(); ++c) {
       const core::ClipResult& clip = results.clips.at(i++);
-      if (!folder.camera || !folder.marker || !clip.pictures || clip.sightings.size() < kFewestPlaces) return false;
+      if (!folder.camera || !folder.marker || !clip.images || clip.sightings.size() < kFewestPlaces) return false;
     }
   }
   return i > 0;

@@ -77,7 +77,7 @@ struct RecordingTwin {
   std::vector<NotInTwins> without;
 };
 
-/// `results` as passed to diagnose::diagnose_results(), with their pictures, and the folders (or files) from which they
+/// `results` as passed to diagnose::diagnose_results(), with their images, and the folders (or files) from which they
 /// come, in order. A recording of which a scenario's camera would not see enough is simulated as tracks, and `without`
 /// says so. InputError if the motions cannot be expressed as a scenario.
 RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diagnose::Diagnosis& diagnosis,

@@ -14,7 +14,7 @@ using tests::paint;
 namespace {
 
 /// From board coordinates (squares) to pixels: the board's centre at `centre`, `side` pixels a square, turned by
-/// `angle` in the picture, tilted (the far side shrinks by `tilt` a square).
+/// `angle` in the image, tilted (the far side shrinks by `tilt` a square).
 cv::Matx33d board_pose(int columns, int rows, cv::Point2d centre, double side, double angle, double tilt = 0.0) {
   const cv::Matx33d to_centre(1, 0, -0.5 * (columns - 1), 0, 1, -0.5 * (rows - 1), 0, 0, 1);
   const cv::Matx33d perspective(1, 0, 0, 0, 1, 0, tilt, 0.6 * tilt, 1);
@@ -83,7 +83,7 @@ TEST_CASE("a board's axes do not depend on how a detector numbers its corners") 
   }
 }
 
-TEST_CASE("a board whose ends look alike has X to the right in the picture") {
+TEST_CASE("a board whose ends look alike has X to the right in the image") {
   struct Alike {
     int columns, rows;
   };
@@ -114,7 +114,7 @@ TEST_CASE("inner corners counted the other way round give the same board") {
   CHECK(distance(board->at(8, 0), tests::map(pose, 8, 0)) < 0.5);
 }
 
-TEST_CASE("corners are found to 0.015 px in noisy pictures at any sub-pixel place, blur and tilt") {
+TEST_CASE("corners are found to 0.015 px in noisy images at any sub-pixel place, blur and tilt") {
   // Noise 2 of a contrast of 175: the fit's own sd is about 0.01 px at 24 px a square (checked below against the
   // scatter), painting at 8 x 8 samples adds 1/8/sqrt(12)/sqrt(number of edge pixels) ~ 0.007 px.
   double sum = 0.0, predicted = 0.0, worst = 0.0;
@@ -151,15 +151,15 @@ TEST_CASE("corners are found to 0.015 px in noisy pictures at any sub-pixel plac
 TEST_CASE("light that falls off across the board does not move its corners") {
   const cv::Matx33d pose = board_pose(9, 6, {160.3, 130.7}, 24.0, 0.2);
   const cv::Matx33d back = pose.inv();
-  const cv::Mat picture = paint(
+  const cv::Mat image = paint(
       {320, 290},
       [&](double u, double v) {
         const cv::Point2d p = tests::map(back, u, v);
-        // 60 % across the picture: about 5 % across one corner's window.
+        // 60 % across the image: about 5 % across one corner's window.
         return board_light(p.x, p.y, 9, 6) * (0.4 + 0.6 * u / 320.0) * (1.0 - 0.3 * v / 290.0);
       },
       8, 0.6);
-  const auto board = core::find_board(tests::expose(picture, 0.0, 1, CV_8U), {9, 6});
+  const auto board = core::find_board(tests::expose(image, 0.0, 1, CV_8U), {9, 6});
   REQUIRE(board);
   double sum = 0.0;
   for (int j = 0; j < 6; ++j) {
@@ -169,18 +169,18 @@ TEST_CASE("light that falls off across the board does not move its corners") {
   CHECK(std::sqrt(0.5 * sum / 54.0) < 0.008);
 }
 
-TEST_CASE("a 16-bit picture with 12 bits used gives the same corners as an 8-bit one") {
+TEST_CASE("a 16-bit image with 12 bits used gives the same corners as an 8-bit one") {
   const cv::Matx33d pose = board_pose(9, 6, {160.3, 130.7}, 24.0, 0.2);
-  const cv::Mat picture = paint_board({320, 290}, pose, 9, 6, true, 8, 0.5);
-  const auto eight = core::find_board(tests::expose(picture, 0.0, 1, CV_8U), {9, 6});
-  const auto sixteen = core::find_board(tests::expose(16.0 * picture, 0.0, 1, CV_16U), {9, 6});
+  const cv::Mat image = paint_board({320, 290}, pose, 9, 6, true, 8, 0.5);
+  const auto eight = core::find_board(tests::expose(image, 0.0, 1, CV_8U), {9, 6});
+  const auto sixteen = core::find_board(tests::expose(16.0 * image, 0.0, 1, CV_16U), {9, 6});
   REQUIRE(eight);
   REQUIRE(sixteen);
   // Rounding to 8 bits alone separates them: 0.29 of 175.
   for (std::size_t i = 0; i < 54; ++i) CHECK(distance(eight->points[i], sixteen->points[i]) < 0.01);
 }
 
-TEST_CASE("a picture of any size without the board gives nothing") {
+TEST_CASE("an image of any size without the board gives nothing") {
   for (const cv::Size size :
        {cv::Size(1, 1), cv::Size(65535, 1), cv::Size(1, 65535), cv::Size(5, 9), cv::Size(20000, 9)}) {
     for (const core::BoardDetector detector : {core::BoardDetector::classic, core::BoardDetector::sector_based}) {
@@ -190,13 +190,13 @@ TEST_CASE("a picture of any size without the board gives nothing") {
   }
 }
 
-TEST_CASE("a picture without the board gives nothing") {
+TEST_CASE("an image without the board gives nothing") {
   const cv::Mat grey = tests::expose(cv::Mat(240, 320, CV_64F, cv::Scalar(100.0)), 3.0, 5);
   CHECK_FALSE(core::find_board(grey, {9, 6}));
 }
 
 TEST_CASE("a board is found in noise of a third of its contrast, and none in noise alone") {
-  // The detectors alone take minutes for the specks of such a picture.
+  // The detectors alone take minutes for the specks of such an image.
   const cv::Matx33d pose = board_pose(9, 6, {320.0, 240.0}, 42.0, 0.2, 0.01);
   const cv::Mat noisy = tests::expose(paint_board({640, 480}, pose, 9, 6, true, 2, 0.5), 40.0, 5);
   const auto board = core::find_board(noisy, {9, 6});

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSd_px = 0.05;
 
-/// Boards of 9 x 6 corners at twenty places of a picture of 800 x 600, each corner off by `off` and noise.
+/// Boards of 9 x 6 corners at twenty places of an image of 800 x 600, each corner off by `off` and noise.
 template <class Off>
 std::vector<core::CornerRest> rests_of(Off off, unsigned seed) {
   std::mt19937 random(seed);

@@ -16,7 +16,7 @@
 using namespace glidelab;
 using tests::KnownCamera;
 
-TEST_CASE("undoing the distortion is the inverse of distorting, to 1e-9 px over the whole picture") {
+TEST_CASE("undoing the distortion is the inverse of distorting, to 1e-9 px over the whole image") {
   const core::CameraModel model{830.0, 828.0, 403.7, 296.2, {-0.21, 0.07, 4e-4, -3e-4, 0.01}, {800, 600}};
   for (int v = 0; v < 600; v += 50) {
     for (int u = 0; u < 800; u += 50) {
@@ -134,7 +134,7 @@ TEST_CASE("a term that is there but hardly seen is left out, and what it may do 
 
 namespace {
 
-/// Seen through a long picture's middle third only, so that nothing but chance says what a high term does at its sides.
+/// Seen through a long image's middle third only, so that nothing but chance says what a high term does at its sides.
 core::BoardViews views_of_the_middle(const KnownCamera& camera, cv::RNG& random) {
   core::BoardViews boards;
   boards.image_size = camera.size;
@@ -150,7 +150,7 @@ core::BoardViews views_of_the_middle(const KnownCamera& camera, cv::RNG& random)
 
 }  // namespace
 
-TEST_CASE("noise that looks like a high term where the pattern was seen does not bend the picture's sides") {
+TEST_CASE("noise that looks like a high term where the pattern was seen does not bend the image's sides") {
   const KnownCamera known{800.0, 800.0, 319.5, 119.5, -0.055, 0.0, 0.0, 0.0, 0.0, {640, 240}};
   cv::RNG random(585);  // of 600 draws the one in which k3 has more than three of its standard deviations
   const core::Calibration calibration = core::calibrate_camera(views_of_the_middle(known, random), 0.04);
@@ -187,7 +187,7 @@ TEST_CASE("fewer than three views with a visible pattern are an error that names
                     Catch::Contains("2 images with a visible pattern") && Catch::Contains("view-07.png"));
 }
 
-TEST_CASE("pictures without any visible pattern are an error that names them") {
+TEST_CASE("images without any visible pattern are an error that names them") {
   const tests::TempDir dir;
   std::vector<std::filesystem::path> files;
   for (const char* name : {"view-00.png", "view-01.png", "view-02.png", "view-03.png"}) {

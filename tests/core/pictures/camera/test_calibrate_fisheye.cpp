@@ -15,7 +15,7 @@ core::CameraModel wide_camera() {
   return {380.0, 381.0, 402.4, 297.1, {0.03, -0.012, 0.006, 0.0, 0.0}, {800, 600}, core::LensKind::fisheye};
 }
 
-/// A dozen poses that fill the wide picture; projected by OpenCV, with noise.
+/// A dozen poses that fill the wide image; projected by OpenCV, with noise.
 core::BoardViews wide_views(const core::CameraModel& camera, double noise_px, cv::RNG& random) {
   const cv::Matx33d matrix(camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0);
   const cv::Vec4d lens(camera.distortion[0], camera.distortion[1], camera.distortion[2], camera.distortion[3]);
@@ -78,7 +78,7 @@ TEST_CASE("a known fisheye is recovered from noisy corners within its stated unc
   // The rms distance of an error with sd 0.02 in each coordinate over 648 corners, of which 80 terms take their share:
   // 0.02 sqrt(2) sqrt(1 - 80/1296) +- 2 %.
   CHECK(std::abs(found.rms_px / (0.02 * std::sqrt(2.0) * std::sqrt(1.0 - 80.0 / 1296.0)) - 1.0) < 0.08);
-  // Over the picture: the modelled direction of each pixel against the true one, in pixels. The camera's own
+  // Over the image: the modelled direction of each pixel against the true one, in pixels. The camera's own
   // covariance says how far it may be off; four standard deviations, the corners' being large where no board was seen.
   for (int v = 30; v < 600; v += 90) {
     for (int u = 40; u < 800; u += 90) {
@@ -100,7 +100,7 @@ TEST_CASE("a known fisheye is recovered from noisy corners within its stated unc
   }
 }
 
-TEST_CASE("a fisheye is found out from its pictures, and a Brown-Conrady lens is not taken for one") {
+TEST_CASE("a fisheye is found out from its images, and a Brown-Conrady lens is not taken for one") {
   cv::RNG random(7);
   const core::BoardViews wide = wide_views(wide_camera(), 0.02, random);
   CHECK(core::calibrate_any_lens(wide, 0.04).camera.lens == core::LensKind::fisheye);

@@ -35,17 +35,17 @@ core::Restitution restitution() {
 
 /// A thread from (x, top) that hangs straight down along the plane's Y, `off` before the plane; painted as the distance
 /// of each pixel from its projected, finely divided course.
-cv::Mat picture_of(double x, double off, double half_width_px, double value, std::uint64_t seed) {
+cv::Mat image_of(double x, double off, double half_width_px, double value, std::uint64_t seed) {
   std::vector<cv::Point2d> course;
   for (int k = 0; k <= 400; ++k) course.push_back(kCamera.project(wall().at(x, -0.45 + 0.0025 * k, -off)));
   const auto distance = [&](double u, double v) {
-    // The course runs down the picture: the piece at this row.
+    // The course runs down the image: the piece at this row.
     std::size_t k = 0;
     while (k + 2 < course.size() && course[k + 1].y < v) ++k;
     const cv::Point2d direction = (course[k + 1] - course[k]) / cv::norm(course[k + 1] - course[k]);
     return std::abs(direction.cross(cv::Point2d(u, v) - course[k]));
   };
-  const cv::Mat picture = tests::paint(
+  const cv::Mat image = tests::paint(
       kCamera.size,
       [&](double u, double v) {
         const double background = 90.0 + 0.1 * u + (u > 262.0 ? 40.0 : 0.0);  // a slope, and an upright edge
@@ -53,7 +53,7 @@ cv::Mat picture_of(double x, double off, double half_width_px, double value, std
         return inside ? value : background;
       },
       4, 0.5);
-  return tests::expose(picture, 2.0, seed);
+  return tests::expose(image, 2.0, seed);
 }
 
 core::MotionAxis axis_at(double alpha_rad) {
@@ -74,7 +74,7 @@ TEST_CASE("the inclination against a plumb line comes out within its uncertainty
   std::uint64_t seed = 1;
   for (const Hanging h :
        {Hanging{0.25, 0.0, 0.6, 20.0}, Hanging{0.25, 0.03, 0.6, 230.0}, Hanging{-0.2, -0.05, 1.5, 30.0}}) {
-    cv::imwrite((dir / "plumb.png").string(), picture_of(h.x, h.off, h.half_width_px, h.value, seed++));
+    cv::imwrite((dir / "plumb.png").string(), image_of(h.x, h.off, h.half_width_px, h.value, seed++));
     const cv::Point2d middle = kCamera.project(wall().at(h.x, 0.0));
     const core::PixelRegion region{static_cast<int>(middle.x) - 30, 10, 60, 270};
     const auto found = core::plumb_angle({dir / "plumb.png", region}, restitution(), axis_at(alpha), kCamera.size);
@@ -89,9 +89,9 @@ TEST_CASE("the inclination against a plumb line comes out within its uncertainty
   }
 }
 
-TEST_CASE("a region without a thread, or outside the picture, is an error that names the file") {
+TEST_CASE("a region without a thread, or outside the image, is an error that names the file") {
   const tests::TempDir dir;
-  cv::imwrite((dir / "plumb.png").string(), picture_of(0.25, 0.0, 0.6, 20.0, 1));
+  cv::imwrite((dir / "plumb.png").string(), image_of(0.25, 0.0, 0.6, 20.0, 1));
   const auto error = [&](core::PixelRegion region) {
     try {
       core::plumb_angle({dir / "plumb.png", region}, restitution(), axis_at(0.0), kCamera.size);
@@ -106,7 +106,7 @@ TEST_CASE("a region without a thread, or outside the picture, is an error that n
 
 TEST_CASE("an inclination is not determined where the marker does not move") {
   const tests::TempDir dir;
-  cv::imwrite((dir / "plumb.png").string(), picture_of(0.25, 0.0, 0.6, 20.0, 1));
+  cv::imwrite((dir / "plumb.png").string(), image_of(0.25, 0.0, 0.6, 20.0, 1));
   const cv::Point2d middle = kCamera.project(wall().at(0.25, 0.0));
   const core::PixelRegion region{static_cast<int>(middle.x) - 30, 10, 60, 270};
   const auto found = core::plumb_angle({dir / "plumb.png", region}, restitution(),

@@ -19,7 +19,7 @@ core::Calibration exact(const KnownCamera& known) {
   return calibration;
 }
 
-/// A plane 1.6 m before the camera, seen at a slant, its X axis a little off the picture's.
+/// A plane 1.6 m before the camera, seen at a slant, its X axis a little off the image's.
 KnownPlane slanted() {
   return tests::known_plane({0.05, -0.02, 1.6}, 0.10, -0.20, 0.07, 0.16, 0.10);
 }

@@ -13,9 +13,9 @@ constexpr int kRows = 160, kColumns = 31;
 
 /// A stripe `width` pixels wide whose middle is at column c0 + slant * row, on a background that slopes: the mean over
 /// 64 points across the row and 4 along it in every pixel, of edges blurred by a Gaussian.
-cv::Mat picture_of(double c0, double slant, double width, double blur_px) {
+cv::Mat image_of(double c0, double slant, double width, double blur_px) {
   const double length = std::hypot(1.0, slant);
-  cv::Mat picture(kRows, kColumns, CV_64F);
+  cv::Mat image(kRows, kColumns, CV_64F);
   const auto step = [&](double t) {
     return blur_px > 0.0 ? 0.5 * std::erfc(-t / (std::sqrt(2.0) * blur_px)) : t > 0.0 ? 1.0 : 0.0;
   };
@@ -29,19 +29,19 @@ cv::Mat picture_of(double c0, double slant, double width, double blur_px) {
           share += (step(s + 0.5 * width) - step(s - 0.5 * width)) / 256.0;
         }
       }
-      picture.at<double>(v, u) = 120.0 + 0.5 * u - 90.0 * share;
+      image.at<double>(v, u) = 120.0 + 0.5 * u - 90.0 * share;
     }
   }
-  return picture;
+  return image;
 }
 
 /// As a thread is found: to a whole pixel.
-std::vector<core::ThreadRow> rows_of(const cv::Mat& picture, double c0, double slant) {
+std::vector<core::ThreadRow> rows_of(const cv::Mat& image, double c0, double slant) {
   std::vector<core::ThreadRow> rows;
-  for (int v = 0; v < picture.rows; ++v) {
+  for (int v = 0; v < image.rows; ++v) {
     core::ThreadRow row;
     row.row = v;
-    for (int u = 0; u < picture.cols; ++u) row.values.push_back(picture.at<double>(v, u));
+    for (int u = 0; u < image.cols; ++u) row.values.push_back(image.at<double>(v, u));
     row.middle = std::round(c0) + slant * v + 0.3;
     rows.push_back(row);
   }
@@ -59,11 +59,10 @@ TEST_CASE("the direction of a thread is known as well as it says, however slowly
       for (int k = 0; k < kThreads; ++k) {
         // From a third of a pixel over the whole height to five of them.
         const double c0 = 14.0 + 0.37 * k - std::floor(0.37 * k), slant = (k % 2 == 0 ? 1.0 : -1.0) * 0.002 * (k + 1);
-        const cv::Mat seen =
-            tests::expose(picture_of(c0, slant, width, blur_px), 2.0, static_cast<std::uint64_t>(k + 1));
-        cv::Mat picture;
-        seen.convertTo(picture, CV_64F);
-        const auto fit = core::fit_thread(rows_of(picture, c0, slant), slant, 1.0);
+        const cv::Mat seen = tests::expose(image_of(c0, slant, width, blur_px), 2.0, static_cast<std::uint64_t>(k + 1));
+        cv::Mat image;
+        seen.convertTo(image, CV_64F);
+        const auto fit = core::fit_thread(rows_of(image, c0, slant), slant, 1.0);
         REQUIRE(fit);
         INFO("blur " << blur_px << ", width " << width << ", slant " << slant << ": off by " << fit->turn << ", sd "
                      << fit->sd_turn);
@@ -85,18 +84,18 @@ TEST_CASE("the direction of a thread is known as well as it says, however slowly
 
 TEST_CASE("rows in which something crosses the thread are left out of it") {
   const double c0 = 14.3, slant = 0.011;
-  cv::Mat seen = tests::expose(picture_of(c0, slant, 1.5, 0.4), 2.0, 3);
+  cv::Mat seen = tests::expose(image_of(c0, slant, 1.5, 0.4), 2.0, 3);
   seen(cv::Rect(0, 40, 15, 12)).setTo(30.0);  // its edge runs beside the thread's middle
-  cv::Mat picture;
-  seen.convertTo(picture, CV_64F);
-  const auto fit = core::fit_thread(rows_of(picture, c0, slant), slant, 1.0);
+  cv::Mat image;
+  seen.convertTo(image, CV_64F);
+  const auto fit = core::fit_thread(rows_of(image, c0, slant), slant, 1.0);
   REQUIRE(fit);
   CHECK(fit->rows <= kRows - 12);
   CHECK(std::abs(fit->turn) < 1e-3);
 }
 
 TEST_CASE("too few rows make no thread") {
-  auto rows = rows_of(picture_of(14.3, 0.0, 1.5, 0.4), 14.3, 0.0);
+  auto rows = rows_of(image_of(14.3, 0.0, 1.5, 0.4), 14.3, 0.0);
   rows.resize(9);
   CHECK_FALSE(core::fit_thread(rows, 0.0, 1.0));
 }

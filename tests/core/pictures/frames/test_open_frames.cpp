@@ -247,9 +247,9 @@ TEST_CASE("a clip that lacks one or two of the frames its container says is acce
 }
 
 TEST_CASE("grey of three equal channels is exactly their value") {
-  cv::Mat picture(16, 16, CV_8UC3);
-  for (int i = 0; i < 256; ++i) picture.at<cv::Vec3b>(i / 16, i % 16) = cv::Vec3b::all(static_cast<uchar>(i));
-  const cv::Mat grey = core::to_grey(picture);
+  cv::Mat image(16, 16, CV_8UC3);
+  for (int i = 0; i < 256; ++i) image.at<cv::Vec3b>(i / 16, i % 16) = cv::Vec3b::all(static_cast<uchar>(i));
+  const cv::Mat grey = core::to_grey(image);
   for (int i = 0; i < 256; ++i) CHECK(grey.at<uchar>(i / 16, i % 16) == i);
 }
 

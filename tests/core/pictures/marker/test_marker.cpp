@@ -16,19 +16,19 @@ constexpr double kBright = 220.0;
 constexpr double kBackground = 80.0;
 
 /// A disc on a sloping background.
-cv::Mat picture_of(cv::Point2d centre, double radius, double blur_px, cv::Point2d slope = {1.2, -0.7}) {
-  cv::Mat picture(49, 49, CV_64F);
-  for (int v = 0; v < picture.rows; ++v) {
-    for (int u = 0; u < picture.cols; ++u) {
-      picture.at<double>(v, u) = kBackground + slope.x * (u - 24) + slope.y * (v - 24);
+cv::Mat image_of(cv::Point2d centre, double radius, double blur_px, cv::Point2d slope = {1.2, -0.7}) {
+  cv::Mat image(49, 49, CV_64F);
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      image.at<double>(v, u) = kBackground + slope.x * (u - 24) + slope.y * (v - 24);
     }
   }
-  tests::put_disc(picture, centre, radius, kBright, blur_px);
-  return picture;
+  tests::put_disc(image, centre, radius, kBright, blur_px);
+  return image;
 }
 
-core::Signal exact(const cv::Mat& picture) {
-  return {tests::expose(200.0 * picture, 0.0, 1, CV_16U)};  // rounding error: 0.0014 of a grey value
+core::Signal exact(const cv::Mat& image) {
+  return {tests::expose(200.0 * image, 0.0, 1, CV_16U)};  // rounding error: 0.0014 of a grey value
 }
 
 /// As in a clip: blur and size are known from earlier frames, and the position to a third of a pixel.
@@ -54,7 +54,7 @@ TEST_CASE("a disc's centre is found to 0.01 px without noise at any sub-pixel pl
       constexpr int kPlaces = 12;
       for (int k = 0; k < kPlaces; ++k) {
         const cv::Point2d centre(24.0 + random.uniform(0.0, 1.0), 24.0 + random.uniform(0.0, 1.0));
-        const auto fit = core::fit_marker(exact(picture_of(centre, radius, blur_px)), guess_of(centre, radius, blur_px),
+        const auto fit = core::fit_marker(exact(image_of(centre, radius, blur_px)), guess_of(centre, radius, blur_px),
                                           core::Surface::uniform);
         REQUIRE(fit);
         const double error = cv::norm(fit->centre - centre);
@@ -73,11 +73,11 @@ TEST_CASE("the centroid of a marker's light lies off its centre by a quarter of 
   constexpr double kRadius = 8.0;
   const cv::Point2d centre(24.3, 24.6);
   for (const double share : {0.0, 0.2}) {
-    const cv::Mat picture = tests::paint({49, 49}, [&](double u, double v) {
+    const cv::Mat image = tests::paint({49, 49}, [&](double u, double v) {
       const double x = (u - centre.x) / kRadius, y = (v - centre.y) / kRadius;
       return kBackground + (std::hypot(x, y) < 1.0 ? 100.0 * (1.0 + share * x) : 0.0);
     });
-    const auto fit = core::fit_marker(exact(picture), guess_of(centre, kRadius, 0.2), core::Surface::shaded);
+    const auto fit = core::fit_marker(exact(image), guess_of(centre, kRadius, 0.2), core::Surface::shaded);
     REQUIRE(fit);
     // The centre is good to 0.01 px. The 16 samples per pixel at the rim change the sum by less than that.
     CHECK(std::abs(fit->light_px.x - share * kRadius / 4.0) < 0.02);
@@ -87,7 +87,7 @@ TEST_CASE("the centroid of a marker's light lies off its centre by a quarter of 
 
 TEST_CASE("a centroid above a threshold would be pulled by the background's slope") {
   const cv::Point2d centre(24.3, 24.6);
-  const cv::Mat picture = tests::paint(
+  const cv::Mat image = tests::paint(
       {49, 49},
       [&](double u, double v) {
         return std::hypot(u - centre.x, v - centre.y) < 8.0 ? kBright : kBackground + 3.0 * (u - 24.0);
@@ -96,13 +96,13 @@ TEST_CASE("a centroid above a threshold would be pulled by the background's slop
   double sum = 0.0, moment = 0.0;
   for (int v = 12; v < 37; ++v) {
     for (int u = 12; u < 37; ++u) {
-      const double w = std::max(0.0, picture.at<double>(v, u) - 60.0);
+      const double w = std::max(0.0, image.at<double>(v, u) - 60.0);
       sum += w;
       moment += w * u;
     }
   }
   CHECK(moment / sum - centre.x > 0.3);
-  const auto fit = core::fit_marker(exact(picture), guess_of(centre, 8.0, 0.8), core::Surface::uniform);
+  const auto fit = core::fit_marker(exact(image), guess_of(centre, 8.0, 0.8), core::Surface::uniform);
   REQUIRE(fit);
   CHECK(std::abs(fit->centre.x - centre.x) < 0.01);
 }
@@ -111,13 +111,13 @@ TEST_CASE("the noise of the centre is within 1.3 times the Cramer-Rao bound and 
   for (const double radius : {3.0, 5.0, 10.0}) {
     for (const double blur_px : {0.4, 0.8}) {
       const cv::Point2d centre(24.37, 24.61);
-      const cv::Mat picture = picture_of(centre, radius, blur_px, {0.0, 0.0});
-      const auto mean = core::fit_marker(exact(picture), guess_of(centre, radius, blur_px), core::Surface::uniform);
+      const cv::Mat image = image_of(centre, radius, blur_px, {0.0, 0.0});
+      const auto mean = core::fit_marker(exact(image), guess_of(centre, radius, blur_px), core::Surface::uniform);
       REQUIRE(mean);
       double variance = 0.0, stated = 0.0;
       constexpr int kTrials = 300;
       for (int k = 0; k < kTrials; ++k) {
-        const core::Signal noisy{tests::expose(picture, kNoise, static_cast<std::uint64_t>(1000 + k))};
+        const core::Signal noisy{tests::expose(image, kNoise, static_cast<std::uint64_t>(1000 + k))};
         const auto fit = core::fit_marker(noisy, guess_of(centre, radius, blur_px), core::Surface::uniform);
         REQUIRE(fit);
         variance += 0.5 * squared(fit->centre - mean->centre) / kTrials;
@@ -126,8 +126,8 @@ TEST_CASE("the noise of the centre is within 1.3 times the Cramer-Rao bound and 
       // Information on u: the sum over pixels of (dI/du)^2, by the difference of two images. The noise includes
       // rounding.
       const double step = 0.05;
-      const cv::Mat right = picture_of(centre + cv::Point2d(step, 0), radius, blur_px, {0.0, 0.0});
-      const cv::Mat left = picture_of(centre - cv::Point2d(step, 0), radius, blur_px, {0.0, 0.0});
+      const cv::Mat right = image_of(centre + cv::Point2d(step, 0), radius, blur_px, {0.0, 0.0});
+      const cv::Mat left = image_of(centre - cv::Point2d(step, 0), radius, blur_px, {0.0, 0.0});
       const double information = std::pow(cv::norm(right - left) / (2.0 * step), 2);
       const double bound = std::sqrt((kNoise * kNoise + 1.0 / 12.0) / information);
       INFO("radius " << radius << ", blur " << blur_px << ": noise " << std::sqrt(variance) << " px, stated "
@@ -144,7 +144,7 @@ TEST_CASE("a sphere that is lit from one side keeps its centre if its shading is
   const cv::Point2d centre(24.3, 24.8);
   const double radius = 7.0;
   const cv::Point2d light(0.6, -0.3);
-  const cv::Mat picture = tests::paint(
+  const cv::Mat image = tests::paint(
       {49, 49},
       [&](double u, double v) {
         const double x = (u - centre.x) / radius, y = (v - centre.y) / radius;
@@ -155,8 +155,8 @@ TEST_CASE("a sphere that is lit from one side keeps its centre if its shading is
         return 90.0 + 120.0 * std::max(0.0, facing);
       },
       8, 0.5);
-  const auto uniform = core::fit_marker(exact(picture), guess_of(centre, radius, 0.5), core::Surface::uniform);
-  const auto shaded = core::fit_marker(exact(picture), guess_of(centre, radius, 0.5), core::Surface::shaded);
+  const auto uniform = core::fit_marker(exact(image), guess_of(centre, radius, 0.5), core::Surface::uniform);
+  const auto shaded = core::fit_marker(exact(image), guess_of(centre, radius, 0.5), core::Surface::shaded);
   REQUIRE(uniform);
   REQUIRE(shaded);
   INFO("uniform off by " << cv::norm(uniform->centre - centre) << " px, shaded by "
@@ -171,7 +171,7 @@ TEST_CASE("a sphere that is lit from one side keeps its centre if its shading is
 TEST_CASE("an ellipse and a streak of motion keep their centre and show their elongation") {
   const cv::Point2d centre(24.4, 23.7);
   const double angle = 0.5;
-  const cv::Mat picture = tests::paint(
+  const cv::Mat image = tests::paint(
       {49, 49},
       [&](double u, double v) {
         const double x = std::cos(angle) * (u - centre.x) + std::sin(angle) * (v - centre.y);
@@ -179,7 +179,7 @@ TEST_CASE("an ellipse and a streak of motion keep their centre and show their el
         return std::hypot(x / 7.0, y / 5.0) < 1.0 ? kBright : kBackground;
       },
       8, 0.5);
-  const auto fit = core::fit_marker(exact(picture), guess_of(centre, 6.0, 0.5), core::Surface::uniform);
+  const auto fit = core::fit_marker(exact(image), guess_of(centre, 6.0, 0.5), core::Surface::uniform);
   REQUIRE(fit);
   CHECK(cv::norm(fit->centre - centre) < 0.01);
   CHECK(std::abs(fit->elongation - 1.4) < 0.03);
@@ -193,10 +193,10 @@ TEST_CASE("the body that carries the marker hardly moves its centre") {
   double first = 0.0;
   for (const double phase : {0.0, 0.25, 0.5, 0.75}) {
     const cv::Point2d centre(24.0 + phase, 24.0 + phase);
-    cv::Mat picture = tests::paint(
+    cv::Mat image = tests::paint(
         {49, 49}, [&](double, double v) { return v > centre.y + 1.2 * radius ? 40.0 : 80.0; }, 8, 0.5);
-    tests::put_disc(picture, centre, radius, kBright, 0.5);
-    const auto fit = core::fit_marker(exact(picture), guess_of(centre, radius, 0.5), core::Surface::uniform);
+    tests::put_disc(image, centre, radius, kBright, 0.5);
+    const auto fit = core::fit_marker(exact(image), guess_of(centre, radius, 0.5), core::Surface::uniform);
     REQUIRE(fit);
     // Along the glider nothing changes. Across it, a constant offset may be left, which does not vary with the phase of
     // the pixels.
@@ -214,7 +214,7 @@ TEST_CASE("an object that is no marker gives no fit") {
   cv::Mat edge = flat.clone();
   edge(cv::Rect(24, 0, 25, 49)).setTo(200.0);
   CHECK_FALSE(core::fit_marker({tests::expose(edge, 2.0, 3)}, guess, core::Surface::uniform));
-  const cv::Mat disc = picture_of({24.0, 24.0}, 6.0, 0.5);
+  const cv::Mat disc = image_of({24.0, 24.0}, 6.0, 0.5);
   CHECK_FALSE(core::fit_marker({tests::expose(300.0 - disc, 2.0, 3)}, guess, core::Surface::uniform));  // dark
   core::MarkerGuess at_rim = guess;
   at_rim.centre = {4.0, 24.0};
@@ -229,7 +229,7 @@ TEST_CASE("the centroid of an object of any shape moves with it") {
   const double angle = 0.4;
   for (const double phase : {0.0, 0.3, 0.6}) {
     const cv::Point2d centre(24.0 + phase, 23.5 - phase);
-    const cv::Mat picture = tests::paint(
+    const cv::Mat image = tests::paint(
         {49, 49},
         [&](double u, double v) {
           const double x = std::cos(angle) * (u - centre.x) + std::sin(angle) * (v - centre.y);
@@ -237,7 +237,7 @@ TEST_CASE("the centroid of an object of any shape moves with it") {
           return std::abs(x) < 5.5 && std::abs(y) < 7.0 ? 180.0 : 5.0;
         },
         8, 0.7);
-    const auto found = core::centroid_of_marker(exact(picture), guess_of(centre, 7.0, 0.5));
+    const auto found = core::centroid_of_marker(exact(image), guess_of(centre, 7.0, 0.5));
     REQUIRE(found);
     // The floor cuts the blurred rim unevenly along its 50 px, which shifts the centroid by hundredths of a pixel.
     CHECK(cv::norm(found->centre - centre) < 0.03);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kNoise = 2.0, kLevel = 80.0, kAmplitude = 120.0;
 const cv::Size kSize(41, 41);
 
-cv::Mat picture_of(cv::Point2d centre, double radius, double blur_px, int samples) {
+cv::Mat image_of(cv::Point2d centre, double radius, double blur_px, int samples) {
   return tests::paint(
       kSize,
       [&](double u, double v) {
@@ -53,12 +53,12 @@ TEST_CASE("the centre's variance is within 1.2 of the Cramer-Rao bound") {
   for (const double radius : {3.0, 5.0, 9.0}) {
     for (const double blur_px : {0.3, 0.6}) {
       const cv::Point2d centre(20.37, 20.61);
-      const cv::Mat picture = picture_of(centre, radius, blur_px, 16);
+      const cv::Mat image = image_of(centre, radius, blur_px, 16);
       double squares = 0.0;
       cv::Point2d sum;
       constexpr int kTrials = 400;
       for (int k = 0; k < kTrials; ++k) {
-        const core::Signal noisy{tests::expose(picture, kNoise, static_cast<std::uint64_t>(1000 + k))};
+        const core::Signal noisy{tests::expose(image, kNoise, static_cast<std::uint64_t>(1000 + k))};
         const auto fit = core::fit_marker(noisy, guess_of(centre, radius, blur_px), core::Surface::uniform);
         REQUIRE(fit);
         const cv::Point2d off = fit->centre - centre;
@@ -86,8 +86,8 @@ TEST_CASE("the centre's bias is below 0.005 px at every phase of the pixels") {
       for (int j = 0; j < 4; ++j) {
         for (int i = 0; i < 4; ++i) {
           const cv::Point2d centre(20.0 + 0.25 * i + 0.03, 20.0 + 0.25 * j + 0.07);
-          const cv::Mat picture = 200.0 * picture_of(centre, radius, blur_px, 16);
-          const auto fit = core::fit_marker({tests::expose(picture, 0.0, 1, CV_16U)}, guess_of(centre, radius, blur_px),
+          const cv::Mat image = 200.0 * image_of(centre, radius, blur_px, 16);
+          const auto fit = core::fit_marker({tests::expose(image, 0.0, 1, CV_16U)}, guess_of(centre, radius, blur_px),
                                             core::Surface::uniform);
           REQUIRE(fit);
           worst = std::max(worst, cv::norm(fit->centre - centre));

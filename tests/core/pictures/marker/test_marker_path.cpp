@@ -40,12 +40,12 @@ core::TrackedMarker track(const Scene& scene, std::optional<core::PixelPoint> st
   core::MarkerTracker tracker(
       "clip.mkv", setup, [](cv::Point2d) { return kRadius; }, start_s);
   for (std::size_t k = 0; k < kFrames; ++k) {
-    cv::Mat picture(kSize, CV_64F, cv::Scalar(60.0));
-    scene(picture, k);
+    cv::Mat image(kSize, CV_64F, cv::Scalar(60.0));
+    scene(image, k);
     core::Frame frame;
     frame.index = k;
     frame.t_s = static_cast<double>(k) / kRate;
-    frame.grey = tests::expose(picture, 2.0, 5 + k);
+    frame.grey = tests::expose(image, 2.0, 5 + k);
     tracker.add(frame);
   }
   return tracker.finish();

@@ -20,13 +20,13 @@ constexpr double kRadius = 5.0;
 
 /// A wall that gets brighter to the right, with broad smooth spots.
 cv::Mat wall(double slope = 0.3) {
-  cv::Mat picture(kSize, CV_64F);
+  cv::Mat image(kSize, CV_64F);
   for (int v = 0; v < kSize.height; ++v) {
     for (int u = 0; u < kSize.width; ++u) {
-      picture.at<double>(v, u) = 50.0 + slope * u + 6.0 * std::sin(0.05 * u + 0.3) * std::cos(0.07 * v);
+      image.at<double>(v, u) = 50.0 + slope * u + 6.0 * std::sin(0.05 * u + 0.3) * std::cos(0.07 * v);
     }
   }
-  return picture;
+  return image;
 }
 
 /// A motion that slows down as under friction, from u = 20 to about 190, and climbs 0.15 px per pixel.
@@ -72,9 +72,9 @@ std::string error_of(const std::vector<cv::Mat>& frames, const core::MarkerSetup
 std::vector<cv::Mat> clip(const std::function<void(cv::Mat&, std::size_t)>& scene, double slope = 0.3) {
   std::vector<cv::Mat> frames;
   for (std::size_t k = 0; k < kFrames; ++k) {
-    cv::Mat picture = wall(slope);
-    scene(picture, k);
-    frames.push_back(picture);
+    cv::Mat image = wall(slope);
+    scene(image, k);
+    frames.push_back(image);
   }
   return frames;
 }

@@ -17,21 +17,21 @@ core::BlockSteps steps_of(unsigned seed, double block_code, const std::vector<in
   for (int k = 0; k < 24; ++k) {
     cv::Mat_<double> blocks(kHeight / 8, kWidth / 8);
     for (double& one : blocks) one = block_code * noise(random);
-    cv::Mat_<unsigned char> picture(kHeight, kWidth);
+    cv::Mat_<unsigned char> image(kHeight, kWidth);
     for (int v = 0; v < kHeight; ++v) {
       double scene = 80.0;
       for (int u = 0; u < kWidth; ++u) {
         for (const int edge : edges) scene += edge == u ? 9.0 : 0.0;
-        picture(v, u) = cv::saturate_cast<unsigned char>(scene + blocks(v / 8, u / 8) + noise(random));
+        image(v, u) = cv::saturate_cast<unsigned char>(scene + blocks(v / 8, u / 8) + noise(random));
       }
     }
-    sums.add(picture);
+    sums.add(image);
   }
   return sums.finish();
 }
 
-core::PictureRecord record_of(const core::BlockSteps& steps) {
-  core::PictureRecord record;
+core::ImageRecord record_of(const core::BlockSteps& steps) {
+  core::ImageRecord record;
   record.steps = steps;
   return record;
 }
@@ -48,7 +48,7 @@ TEST_CASE("blocks of eight pixels show at their edges, as large as they differ",
   CHECK(core::through_lossy_codec(record_of(steps)));
 }
 
-TEST_CASE("a picture without blocks has none, nor do upright edges in the scene make them", "[blocks]") {
+TEST_CASE("an image without blocks has none, nor do upright edges in the scene make them", "[blocks]") {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     CHECK(core::block_edges(steps_of(seed, 0.0)).z < 5.0);
   }
@@ -68,7 +68,7 @@ TEST_CASE("a codec's smooth blocks are no scatter of its columns", "[blocks]") {
 }
 
 TEST_CASE("what the file says needs no blocks, and a clip without pixels has none", "[blocks]") {
-  core::PictureRecord record;
+  core::ImageRecord record;
   CHECK_FALSE(core::through_lossy_codec(record));
   record.lossy = true;
   CHECK(core::through_lossy_codec(record));

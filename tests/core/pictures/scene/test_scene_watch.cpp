@@ -23,27 +23,27 @@ double wall(double u, double v) {
 struct Made {
   std::function<double(double t)> shift_u = [](double) { return 0.0; };
   std::function<double(double t)> light = [](double) { return 1.0; };
-  bool with_glider = false;  ///< a dark thing of 60 x 40 px that crosses the picture in the clip
+  bool with_glider = false;  ///< a dark thing of 60 x 40 px that crosses the image in the clip
 };
 
-core::PictureRecord watched(const Made& made, int frames) {
+core::ImageRecord watched(const Made& made, int frames) {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, kNoise);
   core::SceneWatch watch;
   for (int k = 0; k < frames; ++k) {
     const double t = k / kRate_hz;
-    cv::Mat_<unsigned char> picture(kHeight, kWidth);
+    cv::Mat_<unsigned char> image(kHeight, kWidth);
     const double left = -60.0 + 300.0 * k / frames;
     for (int v = 0; v < kHeight; ++v) {
       for (int u = 0; u < kWidth; ++u) {
         const bool hidden = made.with_glider && u > left && u < left + 60.0 && v > 60 && v < 100;
         const double value = hidden ? 30.0 : wall(u - made.shift_u(t), v);
-        picture(v, u) = cv::saturate_cast<unsigned char>(made.light(t) * value + noise(random));
+        image(v, u) = cv::saturate_cast<unsigned char>(made.light(t) * value + noise(random));
       }
     }
-    watch.add(picture, t);
+    watch.add(image, t);
   }
-  core::PictureRecord record;
+  core::ImageRecord record;
   watch.finish(record);
   return record;
 }
@@ -53,7 +53,7 @@ core::PictureRecord watched(const Made& made, int frames) {
 TEST_CASE("A scene that sways is followed to its stated noise, and beyond the pixel that a first-order step covers",
           "[scene]") {
   const auto truth = [](double t) { return 1.6 * std::sin(2.0 * std::numbers::pi * 3.0 * t); };
-  const core::PictureRecord record = watched({truth, [](double) { return 1.0; }, false}, 120);
+  const core::ImageRecord record = watched({truth, [](double) { return 1.0; }, false}, 120);
   REQUIRE(record.scene.size() == 120);
   // The reference is the mean of six frames, over which the scene moves: its own place is theirs.
   double start = 0.0, off = 0.0, variance = 0.0;
@@ -68,7 +68,7 @@ TEST_CASE("A scene that sways is followed to its stated noise, and beyond the pi
 }
 
 TEST_CASE("A scene at rest stays where it is while something dark passes before it", "[scene]") {
-  const core::PictureRecord record = watched({[](double) { return 0.0; }, [](double) { return 1.0; }, true}, 150);
+  const core::ImageRecord record = watched({[](double) { return 0.0; }, [](double) { return 1.0; }, true}, 150);
   for (const core::SceneLook& look : record.scene) {
     // Five standard deviations of 300 numbers, and a hundredth of a pixel for what touches a patch's rim.
     CHECK(std::abs(look.u_px) < 5.0 * look.sd_u_px + 0.01);
@@ -78,7 +78,7 @@ TEST_CASE("A scene at rest stays where it is while something dark passes before 
 
 TEST_CASE("The light's change is measured in each band of rows, whatever passes", "[scene]") {
   const auto light = [](double t) { return 1.0 + 0.02 * std::cos(2.0 * std::numbers::pi * 10.0 * t); };
-  const core::PictureRecord record = watched({[](double) { return 0.0; }, light, true}, 100);
+  const core::ImageRecord record = watched({[](double) { return 0.0; }, light, true}, 100);
   double start = 0.0;
   for (int k = 0; k < 6; ++k) start += light(k / kRate_hz) / 6.0;
   for (const core::SceneLook& look : record.scene) {
@@ -92,7 +92,7 @@ TEST_CASE("The light's change is measured in each band of rows, whatever passes"
 }
 
 TEST_CASE("Noise that is new in every frame has no memory, and blocks of eight show at their edges", "[scene]") {
-  const core::PictureRecord record = watched({}, 60);
+  const core::ImageRecord record = watched({}, 60);
   REQUIRE(record.noise_memory);
   // A ratio of two variances from 54 frames of thousands of pixels each, blurred: below 2 %.
   CHECK(std::abs(*record.noise_memory - 1.0) < 0.02);
@@ -100,12 +100,12 @@ TEST_CASE("Noise that is new in every frame has no memory, and blocks of eight s
   CHECK(std::abs(record.noise_code - std::sqrt(kNoise * kNoise + 1.0 / 12.0)) < 0.05);
 
   core::SceneWatch blocks;
-  cv::Mat_<unsigned char> picture(kHeight, kWidth);
+  cv::Mat_<unsigned char> image(kHeight, kWidth);
   for (int v = 0; v < kHeight; ++v) {
-    for (int u = 0; u < kWidth; ++u) picture(v, u) = static_cast<unsigned char>(80 + (u / 8) % 3 + u % 2);
+    for (int u = 0; u < kWidth; ++u) image(v, u) = static_cast<unsigned char>(80 + (u / 8) % 3 + u % 2);
   }
-  for (int k = 0; k < 8; ++k) blocks.add(picture, k / kRate_hz);
-  core::PictureRecord of_blocks;
+  for (int k = 0; k < 8; ++k) blocks.add(image, k / kRate_hz);
+  core::ImageRecord of_blocks;
   blocks.finish(of_blocks);
   for (std::size_t c = 1; c < 8; ++c) CHECK(of_blocks.steps.mean[c] == 1.0);
   CHECK(of_blocks.steps.mean[0] != 1.0);
@@ -117,14 +117,14 @@ TEST_CASE("Noise that a codec freezes and then replaces is no scene that moves",
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.5);
   core::SceneWatch watch(true);
-  cv::Mat picture(kHeight, kWidth, CV_8U);
+  cv::Mat image(kHeight, kWidth, CV_8U);
   for (int k = 0; k < 120; ++k) {
     for (int i = 0; k % 30 == 0 && i < kHeight * kWidth; ++i) {
-      picture.at<unsigned char>(i / kWidth, i % kWidth) = cv::saturate_cast<unsigned char>(90.0 + noise(random));
+      image.at<unsigned char>(i / kWidth, i % kWidth) = cv::saturate_cast<unsigned char>(90.0 + noise(random));
     }
-    watch.add(picture, k / kRate_hz);
+    watch.add(image, k / kRate_hz);
   }
-  core::PictureRecord record;
+  core::ImageRecord record;
   watch.finish(record);
   REQUIRE(record.scene.size() == 120);
   for (const core::SceneLook& look : record.scene) {
@@ -133,10 +133,10 @@ TEST_CASE("Noise that a codec freezes and then replaces is no scene that moves",
   }
 }
 
-TEST_CASE("A picture that is smaller than a patch has nothing to watch", "[scene]") {
+TEST_CASE("An image that is smaller than a patch has nothing to watch", "[scene]") {
   core::SceneWatch watch;
   for (int k = 0; k < 10; ++k) watch.add(cv::Mat(20, 20, CV_8U, cv::Scalar(80)), k / kRate_hz);
-  core::PictureRecord record;
+  core::ImageRecord record;
   watch.finish(record);
   CHECK(record.scene.empty());
   CHECK_FALSE(record.noise_memory);
@@ -147,17 +147,17 @@ TEST_CASE("A pixel's noise is measured at each brightness", "[scene]") {
   std::mt19937 random(11);
   core::SceneWatch watch;
   for (int k = 0; k < 60; ++k) {
-    cv::Mat_<unsigned char> picture(kHeight, kWidth);
+    cv::Mat_<unsigned char> image(kHeight, kWidth);
     for (int v = 0; v < kHeight; ++v) {
       for (int u = 0; u < kWidth; ++u) {
         const double level = 20.0 + 200.0 * u / kWidth;
         std::normal_distribution<double> noise(0.0, std::sqrt(kDark + kGain * level));
-        picture(v, u) = cv::saturate_cast<unsigned char>(level + noise(random));
+        image(v, u) = cv::saturate_cast<unsigned char>(level + noise(random));
       }
     }
-    watch.add(picture, k / kRate_hz);
+    watch.add(image, k / kRate_hz);
   }
-  core::PictureRecord record;
+  core::ImageRecord record;
   watch.finish(record);
   REQUIRE(record.noise_levels.size() >= 6);
   CHECK(record.noise_levels.back().level_code - record.noise_levels.front().level_code > 100.0);
@@ -181,19 +181,19 @@ TEST_CASE("A scene whose blocks show is trusted as little as one of a file that 
     for (int k = 0; k < 40; ++k) {
       cv::Mat_<double> blocks(kHeight / 8 + 1, kWidth / 8 + 1);
       for (double& one : blocks) one = 6.0 * noise(random);
-      cv::Mat_<unsigned char> picture(kHeight, kWidth);
+      cv::Mat_<unsigned char> image(kHeight, kWidth);
       for (int v = 0; v < kHeight; ++v) {
         for (int u = 0; u < kWidth; ++u) {
-          picture(v, u) = cv::saturate_cast<unsigned char>(wall(u, v) + blocks(v / 8, u / 8) + noise(random));
+          image(v, u) = cv::saturate_cast<unsigned char>(wall(u, v) + blocks(v / 8, u / 8) + noise(random));
         }
       }
-      watch.add(picture, k / kRate_hz);
+      watch.add(image, k / kRate_hz);
     }
-    core::PictureRecord record;
+    core::ImageRecord record;
     watch.finish(record);
     return record;
   };
-  const core::PictureRecord said = seen(true), silent = seen(false);
+  const core::ImageRecord said = seen(true), silent = seen(false);
   REQUIRE(said.scene.size() == silent.scene.size());
   for (std::size_t k = 0; k < said.scene.size(); ++k) {
     // What patches differ by is weighed against a pixel's noise, then widened: up to twice as wide.

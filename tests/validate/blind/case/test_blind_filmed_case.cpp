@@ -198,7 +198,7 @@ TEST_CASE("a filmed case's folder says nothing of what it withholds, and scratch
   validate::BlindOptions options;
   options.seed = 4;
   options.cases = 1;
-  options.pictures = true;
+  options.images = true;
   options.only = "rolling_shutter";
   std::size_t calls = 0;
   const validate::Diagnoser diagnoser = [&](const fs::path& folder, const fs::path&, const auto&) -> std::string {
@@ -229,10 +229,10 @@ TEST_CASE("a filmed case's folder says nothing of what it withholds, and scratch
   // Goes on where it stopped, and is not mixed with tracks of the same seed.
   validate::run_blind(options, temp / "out", diagnoser, base::no_progress, render_here);
   CHECK(calls == 1);
-  options.pictures = false;
+  options.images = false;
   options.only.clear();
   CHECK_THROWS_AS(validate::run_blind(options, temp / "out", diagnoser), base::InputError);
-  options.pictures = true;
+  options.images = true;
   options.only = "tether";  // of tracks, not of films
   CHECK_THROWS_AS(validate::run_blind(options, temp / "out2", diagnoser), base::InputError);
 }
@@ -264,7 +264,7 @@ TEST_CASE("a glider that a filmed case shows elsewhere is seen there, to what th
   const render::Scenario scenario = render::read_scenario(one.scenario(), "scenario.toml");
   const core::Experiment experiment = core::read_experiment(temp / "case");
   const auto& design = one.scene.motion;
-  // On the marker's line, by the renderer's camera; half the frames of one clip, the marker's rim within the picture.
+  // On the marker's line, by the renderer's camera; half the frames of one clip, the marker's rim within the image.
   const auto source =
       core::open_frames(temp / "case" / "clips" / (experiment.clips[0].name + ".mkv"), *experiment.camera, false, {});
   const double incline = design.groups[design.clips[0].group].true_rad;

@@ -289,9 +289,9 @@ TEST_CASE("an everyday run leaves truth and time, goes on where it stopped, and 
   }
   options.everyday = false;
   CHECK_THROWS_AS(validate::run_blind(options, temp / "out", diagnoser), base::InputError);
-  options.everyday = options.pictures = true;
+  options.everyday = options.images = true;
   CHECK_THROWS_AS(validate::run_blind(options, temp / "other", diagnoser), base::InputError);
-  options.pictures = false;
+  options.images = false;
   options.leave_out = true;
   CHECK_THROWS_AS(validate::run_blind(options, temp / "other", diagnoser), base::InputError);
 }

@@ -76,7 +76,7 @@ TEST_CASE("without a noise each clip has the least that the scenario's camera al
   CHECK(coverage.camera_noise);
   REQUIRE(coverage.noise_sd_m.size() == 2);
   for (const double sd : coverage.noise_sd_m) {
-    CHECK(sd > 5e-7);  // a two-thousandth of a pixel, which is 2 mm: no picture of 8 bits is so good
+    CHECK(sd > 5e-7);  // a two-thousandth of a pixel, which is 2 mm: no image of 8 bits is so good
     CHECK(sd < 5e-5);  // a fortieth of one
   }
   const CoverageRow& k = row_of(coverage, "trajectory", "k_over_m_1_s");

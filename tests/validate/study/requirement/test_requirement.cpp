@@ -244,7 +244,7 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
     REQUIRE(found != only.limits.end());
     return found->gain;
   };
-  // Blocks of 8 pixels at quality 20 shift a marker of 8 pixels by more than the noise of a clean picture; a shutter
+  // Blocks of 8 pixels at quality 20 shift a marker of 8 pixels by more than the noise of a clean image; a shutter
   // whose line time is declared is corrected, and costs less.
   CHECK(gain("codec") > 1.0);
   CHECK(gain("rolling shutter") < gain("codec"));
@@ -253,7 +253,7 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   CHECK(gain("calibration (the true camera") < gain("codec"));
 }
 
-TEST_CASE("Whoever wants to stop while a recording is made waits for a picture or some frames, not for its end") {
+TEST_CASE("Whoever wants to stop while a recording is made waits for an image or some frames, not for its end") {
   const tests::TempDir dir;
   base::write_file(dir / "s.toml",
                    tests::kSweptScenario + "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n");

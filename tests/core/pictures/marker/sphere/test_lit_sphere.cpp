@@ -17,12 +17,12 @@ constexpr double kRadius = 7.0;
 constexpr double kNoise = 1.5;    // codes
 constexpr double kBehind = 0.12;  // the light of the wall and of the unlit side of the ball
 
-std::vector<core::SpherePixel> pixels_of(const cv::Mat& picture, double behind) {
+std::vector<core::SpherePixel> pixels_of(const cv::Mat& image, double behind) {
   std::vector<core::SpherePixel> pixels;
-  for (int v = 0; v < picture.rows; ++v) {
-    for (int u = 0; u < picture.cols; ++u) {
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
       pixels.push_back(
-          {static_cast<double>(u), static_cast<double>(v), picture.at<unsigned char>(v, u) / 255.0, behind, 1.0});
+          {static_cast<double>(u), static_cast<double>(v), image.at<unsigned char>(v, u) / 255.0, behind, 1.0});
     }
   }
   return pixels;
@@ -51,18 +51,18 @@ tests::LitBall side_lit(cv::Point2d centre) {
   return ball;
 }
 
-cv::Mat picture_of(const tests::LitBall& ball, bool srgb, std::uint64_t seed, double noise = kNoise) {
+cv::Mat image_of(const tests::LitBall& ball, bool srgb, std::uint64_t seed, double noise = kNoise) {
   return tests::expose_light(
       {25, 25}, [&](double u, double v) { return tests::light_of(ball, u, v, kBehind); }, srgb, noise, seed);
 }
 
 /// The centroid of what is brighter than the wall.
-double centroid_u(const cv::Mat& picture) {
+double centroid_u(const cv::Mat& image) {
   const double wall = 255.0 * tests::srgb_of_light(kBehind);
   double sum = 0.0, sum_u = 0.0;
-  for (int v = 0; v < picture.rows; ++v) {
-    for (int u = 0; u < picture.cols; ++u) {
-      const double above = std::max(0.0, picture.at<unsigned char>(v, u) - wall - 6.0 * kNoise);
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      const double above = std::max(0.0, image.at<unsigned char>(v, u) - wall - 6.0 * kNoise);
       sum += above;
       sum_u += above * u;
     }
@@ -79,15 +79,15 @@ TEST_CASE("A sphere whose unlit side looks like the wall is found at its centre,
   double squares = 0.0, sum_u = 0.0, sd = 0.0;
   for (int k = 0; k < kFrames; ++k) {
     const cv::Point2d centre(12.0 + part(engine), 12.0 + part(engine));
-    const cv::Mat picture = picture_of(side_lit(centre), true, 100 + static_cast<std::uint64_t>(k));
-    const auto fit = core::fit_lit_sphere(pixels_of(picture, kBehind),
+    const cv::Mat image = image_of(side_lit(centre), true, 100 + static_cast<std::uint64_t>(k));
+    const auto fit = core::fit_lit_sphere(pixels_of(image, kBehind),
                                           guess_at(centre + cv::Point2d(0.6, -0.4), core::ToneCurve::srgb));
     REQUIRE(fit);
     const cv::Point2d off = fit->centre - centre;
     squares += off.dot(off) / (fit->sd_px * fit->sd_px);
     sum_u += off.x;
     sd = fit->sd_px;
-    CHECK(std::abs(centroid_u(picture) - centre.x) > 1.0);
+    CHECK(std::abs(centroid_u(image) - centre.x) > 1.0);
   }
   CHECK(sd < 0.02);
   // The mean of 2 x 40 squared errors over their variance has the mean 1 and the standard deviation sqrt(2/80) = 0.16.
@@ -103,8 +103,8 @@ TEST_CASE("A sphere whose unlit side looks like the wall is found at its centre,
 
 TEST_CASE("The wrong tone curve leaves larger residuals") {
   for (const bool srgb : {false, true}) {
-    const cv::Mat picture = picture_of(side_lit({12.2, 11.9}), srgb, 7);
-    const auto pixels = pixels_of(picture, kBehind);
+    const cv::Mat image = image_of(side_lit({12.2, 11.9}), srgb, 7);
+    const auto pixels = pixels_of(image, kBehind);
     // With another tone curve, the same codes of the wall mean another light.
     auto pixels_linear = pixels;
     const double code = srgb ? tests::srgb_of_light(kBehind) : kBehind;
@@ -129,7 +129,7 @@ TEST_CASE("A disc is fitted at its centre, as a flat marker without a lamp") {
   disc.ambient = 0.6;
   core::SphereGuess guess = guess_at({12.0, 12.0}, core::ToneCurve::srgb);
   guess.flat = true;
-  const auto fit = core::fit_lit_sphere(pixels_of(picture_of(disc, true, 3), kBehind), guess);
+  const auto fit = core::fit_lit_sphere(pixels_of(image_of(disc, true, 3), kBehind), guess);
   REQUIRE(fit);
   CHECK(std::abs(fit->light.ambient - 0.6) < 0.01);
   CHECK(std::abs(fit->light.lamp[2]) < 1e-3);

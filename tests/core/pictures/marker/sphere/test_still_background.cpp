@@ -15,9 +15,9 @@ TEST_CASE(
   core::StillBackground background(kFrames);
   const auto place = [](std::size_t k) { return cv::Point(k < 20 ? 10 : 30, 10); };
   for (std::size_t k = 0; k < kFrames; ++k) {
-    cv::Mat picture(size, CV_64F, 80.0);
-    picture(cv::Rect(place(k).x - 3, place(k).y - 3, 7, 7)).setTo(200.0);
-    background.add(tests::expose(picture, kNoise, 50 + k), k);
+    cv::Mat image(size, CV_64F, 80.0);
+    image(cv::Rect(place(k).x - 3, place(k).y - 3, 7, 7)).setTo(200.0);
+    background.add(tests::expose(image, kNoise, 50 + k), k);
   }
   CHECK(background.median().at<unsigned char>(10, 10) > 190);
   const auto hides = [&](std::size_t frame, cv::Point pixel) {

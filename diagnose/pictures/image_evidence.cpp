@@ -1,4 +1,4 @@
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
-#include "diagnose/pictures/picture_recording.h"
-#include "diagnose/pictures/picture_scene.h"
+#include "diagnose/pictures/image_recording.h"
+#include "diagnose/pictures/image_scene.h"
 #include "diagnose/pictures/twin_camera.h"
 
 namespace glidelab::diagnose {
@@ -38,8 +38,8 @@ std::vector<std::vector<FilmedClip>> by_camera(const std::vector<FilmedClip>& cl
 }
 
 /// Adds the finding of one camera, unless another camera has shown the effect more clearly: then returns false.
-bool add_clearest(PictureFinding finding, PictureEvidence& evidence) {
-  for (PictureFinding& known : evidence.findings) {
+bool add_clearest(ImageFinding finding, ImageEvidence& evidence) {
+  for (ImageFinding& known : evidence.findings) {
     if (known.id != finding.id) continue;
     if (!(finding.log_evidence > known.log_evidence)) return false;
     known = std::move(finding);
@@ -50,13 +50,13 @@ bool add_clearest(PictureFinding finding, PictureEvidence& evidence) {
 }
 
 /// `clips` of one camera.
-void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+void add_shape(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   ShapeFit fit = fit_marker_shape(clips);
   if (!fit.known) return;
   const core::CameraSettings& camera = clips.front().camera;
   evidence.fastest_px_s = std::max(evidence.fastest_px_s, fit.fastest_px_s);
-  for (PictureCurve& curve : fit.curves) evidence.curves.push_back(std::move(curve));
-  PictureFinding blur = finding_of(ids::exposure_blur);
+  for (ImageCurve& curve : fit.curves) evidence.curves.push_back(std::move(curve));
+  ImageFinding blur = finding_of(ids::exposure_blur);
   const double least_s = kLeastSmear_px / fit.fastest_px_s;
   blur.parameters = {{"exposure_s", fit.exposure_s, std::hypot(fit.exposure_sd_s, 0.1 * fit.exposure_s)}};
   if (camera.exposure_s) {
@@ -64,13 +64,13 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
         std::sqrt(std::pow(fit.exposure_sd_s, 2) + std::pow(kToneOfShape * *camera.exposure_s, 2) + least_s * least_s);
     blur.log_evidence =
         log_deviation_evidence((fit.exposure_s - *camera.exposure_s) / sd, 1.0 / camera.frame_rate_hz / sd);
-    blur.fact = picture::Smear{fit.exposure_s, sd, camera.exposure_s};
+    blur.fact = image::Smear{fit.exposure_s, sd, camera.exposure_s};
   } else {
-    blur.fact = picture::Smear{fit.exposure_s, std::hypot(fit.exposure_sd_s, least_s), {}};
+    blur.fact = image::Smear{fit.exposure_s, std::hypot(fit.exposure_sd_s, least_s), {}};
   }
   add_clearest(std::move(blur), evidence);
 
-  PictureFinding shutter = finding_of(ids::rolling_shutter);
+  ImageFinding shutter = finding_of(ids::rolling_shutter);
   const double stated = stated_line_s(camera);
   // Of the height of the marker's image: a hundredth of a pixel is as far as its outline can be trusted.
   const double least_line_s = 0.01 / (2.0 * fit.radius_px * fit.fastest_px_s);
@@ -79,13 +79,13 @@ void add_shape(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
   shutter.parameters = {{"line_s", fit.line_s, sd}};
   shutter.log_evidence =
       log_deviation_evidence(std::abs(fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
-  shutter.fact = picture::Shear{fit.line_s, sd, stated};
+  shutter.fact = image::Shear{fit.line_s, sd, stated};
   if (add_clearest(std::move(shutter), evidence)) evidence.stated_line_s = stated;
 }
 
 /// One curve `noise` for the clips of each view: variance (codes²) of resting pixels over their level (codes), with the
 /// law as fitted.
-void add_noise(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+void add_noise(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   std::map<std::size_t, std::vector<core::NoiseAtLevel>> views;
   for (const FilmedClip& clip : clips) {
     auto& levels = views[clip.view];
@@ -95,7 +95,7 @@ void add_noise(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
     const std::optional<NoiseLaw> law = noise_law(levels);
     if (!law) continue;
     std::sort(levels.begin(), levels.end(), [](const auto& a, const auto& b) { return a.level_code < b.level_code; });
-    PictureCurve curve;
+    ImageCurve curve;
     curve.what = "noise";
     for (const core::NoiseAtLevel& one : levels) {
       curve.at.push_back(one.level_code);
@@ -115,15 +115,15 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
   std::map<std::string, std::size_t> views;
   for (std::size_t i = 0; i < results.clips.size(); ++i) {
     const core::ClipResult& clip = results.clips[i];
-    if (!clip.pictures || !cameras[i] || clip.pictures->marker.empty()) continue;
+    if (!clip.images || !cameras[i] || clip.images->marker.empty()) continue;
     FilmedClip filmed;
     filmed.name = clip.name;
     filmed.view = views.emplace(clip.experiment + "/" + setups[i].group, views.size()).first->second;
-    filmed.record = clip.pictures;
+    filmed.record = clip.images;
     filmed.camera = *cameras[i];
     double xx = 0.0, ux = 0.0, vx = 0.0, mean_u = 0.0, mean_v = 0.0, mean_x = 0.0, count = 0.0;
     for (int pass = 0; pass < 2; ++pass) {
-      for (const core::MarkerLook& look : clip.pictures->marker) {
+      for (const core::MarkerLook& look : clip.images->marker) {
         if (look.frame >= clip.motion.size() || !clip.motion[look.frame].measured_m) continue;
         const double x = *clip.motion[look.frame].measured_m;
         if (pass == 0) {
@@ -150,8 +150,8 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
   return clips;
 }
 
-PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
-  PictureEvidence evidence;
+ImageEvidence image_evidence(std::vector<FilmedClip> clips) {
+  ImageEvidence evidence;
   if (clips.empty()) return evidence;
   evidence.stated_line_s = stated_line_s(clips.front().camera);
   for (const std::vector<FilmedClip>& of_one : by_camera(clips)) add_shape(of_one, evidence);
@@ -161,8 +161,8 @@ PictureEvidence picture_evidence(std::vector<FilmedClip> clips) {
   add_codec(clips, evidence);
   add_missing(clips, evidence);
   add_noise(clips, evidence);
-  for (PictureFinding& finding : evidence.findings) {
-    finding.seen = finding.log_evidence > kSeenInPictures;
+  for (ImageFinding& finding : evidence.findings) {
+    finding.seen = finding.log_evidence > kSeenInImages;
     finding.stage = effect_of(finding.id).stage;
   }
   evidence.clips = std::move(clips);

@@ -1,4 +1,4 @@
-#include "diagnose/pictures/picture_scene.h"
+#include "diagnose/pictures/image_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include "core/pictures/scene/camera_traces.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
-#include "diagnose/pictures/picture_recording.h"
-#include "diagnose/pictures/picture_search.h"
+#include "diagnose/pictures/image_recording.h"
+#include "diagnose/pictures/image_search.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -42,7 +42,7 @@ double flicker_of_mains(double seen_hz, double sd_hz, double rate_hz) {
 
 }  // namespace
 
-void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+void add_flicker(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   std::vector<Series> series;
   for (const FilmedClip& clip : clips) {
     const bool rolling = clip.camera.shutter == core::Shutter::rolling;
@@ -63,7 +63,7 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
       bands[0].t_s.push_back(look.t_s);
       bands[0].value.push_back(sum / weight);
     }
-    PictureCurve curve;
+    ImageCurve curve;
     curve.what = "brightness";
     curve.clip = clip.name;
     curve.at = bands[0].t_s;
@@ -80,10 +80,10 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   const core::CameraSettings& camera = clips.front().camera;
   const double f_hz = flicker_of_mains(wave.f_hz, wave.sd_hz, camera.frame_rate_hz);
   const double passed = std::max(0.1, std::abs(averaged(f_hz, camera.exposure_s.value_or(0.0))));
-  PictureFinding finding = finding_of(ids::light_flicker);
+  ImageFinding finding = finding_of(ids::light_flicker);
   // If the file does not say so, pixels that keep their values show it: light that changes by less than 1 % cannot
   // cause that.
-  double least = memory_log_evidence(clips) > kSeenInPictures ? kLeastFlickerLossy : kLeastFlicker;
+  double least = memory_log_evidence(clips) > kSeenInImages ? kLeastFlickerLossy : kLeastFlicker;
   for (const FilmedClip& clip : clips) {
     if (core::through_lossy_codec(*clip.record)) least = kLeastFlickerLossy;
     for (const core::SceneLook& look : clip.record->scene) {
@@ -92,16 +92,16 @@ void add_flicker(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
   }
   finding.log_evidence = wave.amplitude < least ? std::min(wave.log_evidence, -2.0) : wave.log_evidence;
   finding.parameters = {{"depth", wave.amplitude / passed, wave.sd / passed}, {"f_hz", f_hz, wave.sd_hz}};
-  const bool flickers = finding.log_evidence > kSeenInPictures;
+  const bool flickers = finding.log_evidence > kSeenInImages;
   finding.fact =
-      picture::Flicker{flickers, flickers ? wave.amplitude : std::max(wave.amplitude, 3.0 * wave.sd), wave.f_hz, f_hz};
+      image::Flicker{flickers, flickers ? wave.amplitude : std::max(wave.amplitude, 3.0 * wave.sd), wave.f_hz, f_hz};
   evidence.findings.push_back(std::move(finding));
 }
 
 namespace {
 
 /// The effect of light from one side on the centroid of the marker's light, if it exceeds the noise.
-std::optional<picture::LightAlong::Pull> pull_of_light(const std::vector<FilmedClip>& clips) {
+std::optional<image::LightAlong::Pull> pull_of_light(const std::vector<FilmedClip>& clips) {
   constexpr double kLeastPull_px = 0.1, kTailQuantile = 0.05;
   std::vector<double> pulls, along;
   for (const FilmedClip& clip : clips) {
@@ -113,13 +113,13 @@ std::optional<picture::LightAlong::Pull> pull_of_light(const std::vector<FilmedC
   const double pull = core::quantile(pulls, 0.5);
   if (pull < kLeastPull_px) return std::nullopt;
   const double change = 0.5 * (core::quantile(along, 1.0 - kTailQuantile) - core::quantile(along, kTailQuantile));
-  return picture::LightAlong::Pull{pull, change};
+  return image::LightAlong::Pull{pull, change};
 }
 
 }  // namespace
 
 /// Light along the path from the marker's brightness: ln(brightness) = a + g s + q s² about the image's middle.
-void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   const auto columns = static_cast<Eigen::Index>(clips.size() + 2);
   std::vector<Eigen::VectorXd> rows;
   std::vector<double> values;
@@ -153,11 +153,11 @@ void add_gradient(const std::vector<FilmedClip>& clips, PictureEvidence& evidenc
   const double gradient = found[columns - 2];
   // Neighbouring frames share the pixels' own response; one in ten counts.
   const double sd = std::sqrt(10.0 * variance * inverse(columns - 2, columns - 2));
-  PictureFinding finding = finding_of(ids::light_gradient);
+  ImageFinding finding = finding_of(ids::light_gradient);
   const double usual = std::hypot(sd, kUsualGradient_1_m);
   finding.log_evidence = log_deviation_evidence(std::abs(gradient) / usual, 10.0 / usual);
   finding.parameters = {{"gradient", gradient, sd}};
-  finding.fact = picture::LightAlong{gradient, sd, kUsualGradient_1_m, clips.front().down, pull_of_light(clips)};
+  finding.fact = image::LightAlong{gradient, sd, kUsualGradient_1_m, clips.front().down, pull_of_light(clips)};
   evidence.findings.push_back(std::move(finding));
 }
 
@@ -213,7 +213,7 @@ Drift slow_drift(const Series& series) {
 
 }  // namespace
 
-void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+void add_sway(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   const double least_px = least_sway_px(clips);
   std::vector<Series> series;
   Drift drift;
@@ -221,7 +221,7 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
     std::vector<Series> both = drift_of(clip);
     for (std::size_t axis = 0; axis < both.size(); ++axis) {
       if (both[axis].value.empty()) continue;
-      PictureCurve curve;
+      ImageCurve curve;
       curve.what = axis == 0 ? "drift across" : "drift down";
       curve.clip = clip.name;
       curve.at = both[axis].t_s;
@@ -234,22 +234,22 @@ void add_sway(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
   }
   if (series.empty()) return;
   const SeriesWave wave = strongest_wave(series);
-  PictureFinding finding = finding_of(ids::camera_motion);
-  const bool shakes = wave.log_evidence > kSeenInPictures && wave.amplitude > least_px;
+  ImageFinding finding = finding_of(ids::camera_motion);
+  const bool shakes = wave.log_evidence > kSeenInImages && wave.amplitude > least_px;
   const double drift_sd = std::hypot(drift.sd, least_px);
   const double of_drift = log_deviation_evidence(drift.size / drift_sd, 100.0 / drift_sd);
   if (shakes) {
     finding.log_evidence = std::max(wave.log_evidence, of_drift);
     finding.parameters = {{"amplitude_px", wave.amplitude, wave.sd}, {"f_hz", wave.f_hz, wave.sd_hz}};
-    finding.fact = picture::Sway{picture::Sway::How::shakes, wave.amplitude, wave.f_hz};
-  } else if (of_drift > kSeenInPictures) {
+    finding.fact = image::Sway{image::Sway::How::shakes, wave.amplitude, wave.f_hz};
+  } else if (of_drift > kSeenInImages) {
     finding.log_evidence = of_drift;
     finding.parameters = {{"amplitude_px", 0.5 * drift.size, 0.5 * drift_sd}};
-    finding.fact = picture::Sway{picture::Sway::How::drifts, drift.size, 0.0};
+    finding.fact = image::Sway{image::Sway::How::drifts, drift.size, 0.0};
   } else {
     finding.log_evidence = std::min({of_drift, wave.log_evidence, -2.0});
     finding.parameters = {{"amplitude_px", 0.0, std::max(least_px, wave.amplitude)}};
-    finding.fact = picture::Sway{picture::Sway::How::rests, std::max({least_px, wave.amplitude, drift.size}), 0.0};
+    finding.fact = image::Sway{image::Sway::How::rests, std::max({least_px, wave.amplitude, drift.size}), 0.0};
   }
   evidence.findings.push_back(std::move(finding));
 }

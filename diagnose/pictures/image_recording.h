@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "diagnose/pictures/picture_search.h"
+#include "diagnose/pictures/image_search.h"
 
 namespace glidelab::diagnose {
 
@@ -16,12 +16,12 @@ double memory_log_evidence(const std::vector<FilmedClip>& clips);
 /// Blocks: steps between pixels at the edges of 8 x 8 blocks are compared with those of the other seven columns.
 /// Memory: the change of a resting pixel over two frames over that over one, which is 1 if the noise is new in every
 /// frame. A change of the light or the scene makes it differ from 1 as well, so it counts only if both are at rest. (A
-/// flicker of less than 1 % whose pixels keep their values is not that of the light: picture_scene.h.) If a file itself
+/// flicker of less than 1 % whose pixels keep their values is not that of the light: image_scene.h.) If a file itself
 /// says that it is lossily compressed, nothing is hidden: compression is named for its effect on the positions
 /// (joined_evidence.h).
-void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
+void add_codec(const std::vector<FilmedClip>& clips, ImageEvidence& evidence);
 /// Whether frames are missing or repeated.
-void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence);
+void add_missing(const std::vector<FilmedClip>& clips, ImageEvidence& evidence);
 
 struct ShapeFit {
   bool known = false;
@@ -29,7 +29,7 @@ struct ShapeFit {
   double line_s = 0.0, line_sd_s = 0.0;  ///< positive if the top row is first
   double fastest_px_s = 0.0;
   double radius_px = 0.0;
-  std::vector<PictureCurve> curves;  ///< lengthening as a function of speed
+  std::vector<ImageCurve> curves;  ///< lengthening as a function of speed
 };
 
 /// Exposure and line time from the shape of the marker's image.

@@ -1,4 +1,4 @@
-#include "diagnose/pictures/picture_recording.h"
+#include "diagnose/pictures/image_recording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ double memory_log_evidence(const std::vector<FilmedClip>& clips) {
   return log_deviation_evidence((memory - kUsualMemory) / kMemory, 1.0 / kMemory);
 }
 
-void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+void add_codec(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   double excess = 0.0, relative = 0.0, memory = 0.0;
   std::size_t lossy = 0, lossless = 0;
   std::string codec, lossy_codec;
@@ -41,10 +41,10 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
     if (codec.empty()) codec = clip.record->codec;
     if (lossy_codec.empty() && clip.record->lossy.value_or(false)) lossy_codec = clip.record->codec;
   }
-  const bool changes = std::any_of(evidence.findings.begin(), evidence.findings.end(), [](const PictureFinding& other) {
-    return (other.id == ids::light_flicker || other.id == ids::camera_motion) && other.log_evidence > kSeenInPictures;
+  const bool changes = std::any_of(evidence.findings.begin(), evidence.findings.end(), [](const ImageFinding& other) {
+    return (other.id == ids::light_flicker || other.id == ids::camera_motion) && other.log_evidence > kSeenInImages;
   });
-  PictureFinding finding = finding_of(ids::compression);
+  ImageFinding finding = finding_of(ids::compression);
   const double blocks =
       log_deviation_evidence((excess - 3.0) / 2.0, 100.0);  // of columns that tell their scatter poorly
   // A file that says that it is lossily compressed hides nothing: compression is named for its effect on the positions.
@@ -53,14 +53,14 @@ void add_codec(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) 
       std::max(lossy > 0 ? std::max(-1.0, blocks) : blocks, changes ? blocks : memory_log_evidence(clips));
   finding.parameters = {{"block_steps", relative, relative / std::max(1.0, excess)}};
   if (!lossy_codec.empty()) finding.parameters.push_back({"codec", 0.0, 0.0, lossy_codec});
-  picture::Compression compression{{}, lossy > 0 ? lossy_codec : codec, relative, {}};
+  image::Compression compression{{}, lossy > 0 ? lossy_codec : codec, relative, {}};
   if (lossy + lossless > 0) compression.lossy = lossy > 0;
   if (memory > kUsualMemory) compression.noise_memory = memory;
   finding.fact = std::move(compression);
   evidence.findings.push_back(std::move(finding));
 }
 
-void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence) {
+void add_missing(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   std::size_t missing = 0, repeated = 0, frames = 0;
   for (const FilmedClip& clip : clips) {
     missing += clip.record->stamps_missing;
@@ -72,12 +72,12 @@ void add_missing(const std::vector<FilmedClip>& clips, PictureEvidence& evidence
     }
   }
   if (missing + repeated == 0) return;
-  PictureFinding finding = finding_of(ids::dropped_frames);
+  ImageFinding finding = finding_of(ids::dropped_frames);
   finding.log_evidence = std::min(50.0, 5.0 * static_cast<double>(missing + repeated));
   const double count = static_cast<double>(missing + repeated);
   finding.parameters = {
       {"fraction", count / static_cast<double>(frames), std::sqrt(count) / static_cast<double>(frames)}};
-  finding.fact = picture::FrameTimes{repeated, missing};
+  finding.fact = image::FrameTimes{repeated, missing};
   evidence.findings.push_back(std::move(finding));
 }
 
@@ -212,9 +212,9 @@ double fastest_of(const std::vector<Sample>& samples) {
   return fastest;
 }
 
-PictureCurve lengthening(const std::vector<Sample>& samples, const Eigen::VectorXd& rest, double exposure_s,
-                         const std::optional<double>& stated_s) {
-  PictureCurve curve;
+ImageCurve lengthening(const std::vector<Sample>& samples, const Eigen::VectorXd& rest, double exposure_s,
+                       const std::optional<double>& stated_s) {
+  ImageCurve curve;
   curve.what = "lengthening";
   const double fastest = std::max(kSlowest_px_s, fastest_of(samples));
   std::vector<std::vector<double>> bins(kBins);

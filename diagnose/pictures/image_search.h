@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/experiment/experiment.h"
-#include "core/result/picture_record.h"
+#include "core/result/image_record.h"
 #include "diagnose/pictures/twin_camera.h"
 #include "diagnose/result/diagnosis.h"
 
@@ -18,25 +18,25 @@ namespace glidelab::diagnose {
 struct FilmedClip {
   std::string name;
   std::size_t view = 0;  ///< in clips of one view (folder and set-up) a point is at the same pixel
-  std::shared_ptr<const core::PictureRecord> record;
+  std::shared_ptr<const core::ImageRecord> record;
   core::CameraSettings camera;
   double px_per_m = 0.0;  ///< along the motion; 0 if unknown
   bool down = false;      ///< whether the marker moves more vertically in the image than horizontally
 };
 
-struct PictureEvidence {
-  std::vector<PictureFinding> findings;
-  std::vector<PictureCurve> curves;
+struct ImageEvidence {
+  std::vector<ImageFinding> findings;
+  std::vector<ImageCurve> curves;
   std::vector<FilmedClip> clips;
   double fastest_px_s = 0.0;   ///< of the marker
   double stated_line_s = 0.0;  ///< of the camera whose clips show the shutter best; of the first if none does
   std::optional<Filming> filming;
 };
 
-inline constexpr double kSeenInPictures = 3.0;  ///< log evidence above which a finding counts as seen
+inline constexpr double kSeenInImages = 3.0;  ///< log evidence above which a finding counts as seen
 
 /// An empty finding of an effect of the list.
-PictureFinding finding_of(std::string_view id);
+ImageFinding finding_of(std::string_view id);
 
 /// Time from one row to the next below, as stated: 0 for a global shutter, negative if the bottom row is first.
 double stated_line_s(const core::CameraSettings& camera);

@@ -1,4 +1,4 @@
-#include "diagnose/pictures/picture_evidence.h"
+#include "diagnose/pictures/image_evidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <random>
 #include <variant>
 
-#include "diagnose/pictures/picture_recording.h"
-#include "diagnose/pictures/picture_scene.h"
-#include "diagnose/pictures/picture_search.h"
+#include "diagnose/pictures/image_recording.h"
+#include "diagnose/pictures/image_scene.h"
+#include "diagnose/pictures/image_search.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -26,7 +26,7 @@ std::vector<diagnose::FilmedClip> filmed(const Made& made, double stated_s, unsi
   std::normal_distribution<double> normal(0.0, 1.0);
   std::vector<diagnose::FilmedClip> clips;
   for (const double direction : {1.0, -1.0}) {
-    auto record = std::make_shared<core::PictureRecord>();
+    auto record = std::make_shared<core::ImageRecord>();
     record->width_px = 480;
     record->height_px = 180;
     record->codec = "FFV1";
@@ -72,7 +72,7 @@ std::vector<diagnose::FilmedClip> filmed(const Made& made, double stated_s, unsi
 }
 
 /// A copy: the evidence may be gone before it is looked at.
-diagnose::PictureFinding finding(const diagnose::PictureEvidence& evidence, const std::string& id) {
+diagnose::ImageFinding finding(const diagnose::ImageEvidence& evidence, const std::string& id) {
   const auto found =
       std::find_if(evidence.findings.begin(), evidence.findings.end(), [&](const auto& f) { return f.id == id; });
   REQUIRE(found != evidence.findings.end());
@@ -97,22 +97,22 @@ TEST_CASE("compression has the name of the codec with loss that a file states, a
   REQUIRE(clips.size() >= 2);
   const auto codecs = [&clips] {
     std::string words;
-    for (const auto& p : finding(diagnose::picture_evidence(clips), "compression").parameters) {
+    for (const auto& p : finding(diagnose::image_evidence(clips), "compression").parameters) {
       if (p.key == "codec") words += p.text;
     }
     return words;
   };
   CHECK(codecs().empty());
-  auto record = std::make_shared<core::PictureRecord>(*clips.back().record);
+  auto record = std::make_shared<core::ImageRecord>(*clips.back().record);
   record->codec = "MJPG";
   record->lossy = true;
   clips.back().record = record;
   CHECK(codecs() == "MJPG");
 }
 
-TEST_CASE("Pictures in which all is as stated show nothing", "[pictures]") {
+TEST_CASE("Images in which all is as stated show nothing", "[pictures]") {
   for (unsigned seed = 1; seed <= 10; ++seed) {
-    const diagnose::PictureEvidence evidence = diagnose::picture_evidence(filmed({0.003, 0.0, 0.0, 0.0}, 0.003, seed));
+    const diagnose::ImageEvidence evidence = diagnose::image_evidence(filmed({0.003, 0.0, 0.0, 0.0}, 0.003, seed));
     CHECK(evidence.findings.size() == 6);
     for (const auto& one : evidence.findings) {
       INFO(one.id << ", seed " << seed);
@@ -121,20 +121,20 @@ TEST_CASE("Pictures in which all is as stated show nothing", "[pictures]") {
   }
 }
 
-TEST_CASE("Each thing that pictures alone can tell is seen where it is, and nothing else with it", "[pictures]") {
+TEST_CASE("Each thing that images alone can tell is seen where it is, and nothing else with it", "[pictures]") {
   const std::vector<std::pair<std::string, Made>> cases = {{"exposure_blur", {0.007, 0.0, 0.0, 0.0}},
                                                            {"rolling_shutter", {0.001, 3e-5, 0.0, 0.0}},
                                                            {"light_flicker", {0.001, 0.0, 0.02, 0.0}},
                                                            {"camera_motion", {0.001, 0.0, 0.0, 0.2}}};
   for (const auto& [id, made] : cases) {
-    const diagnose::PictureEvidence evidence = diagnose::picture_evidence(filmed(made, 0.001, 5));
+    const diagnose::ImageEvidence evidence = diagnose::image_evidence(filmed(made, 0.001, 5));
     for (const auto& one : evidence.findings) {
       INFO("made " << id << ", looked at " << one.id);
       CHECK(one.seen == (one.id == id));
     }
   }
-  const diagnose::PictureFinding flicker =
-      finding(diagnose::picture_evidence(filmed({0.001, 0.0, 0.02, 0.0}, 0.001, 5)), "light_flicker");
+  const diagnose::ImageFinding flicker =
+      finding(diagnose::image_evidence(filmed({0.001, 0.0, 0.02, 0.0}, 0.001, 5)), "light_flicker");
   // 100 Hz at 120 frames a second is seen as 20 Hz; the exposure of 1 ms passes 0.984 of the depth.
   CHECK(flicker.parameters[1].value == 100.0);
   CHECK(std::abs(flicker.parameters[0].value - 0.02 / 0.9836) < 5.0 * flicker.parameters[0].sd);
@@ -189,10 +189,10 @@ TEST_CASE("clips of several cameras are each held to what is stated of their own
       clip.view = 1;
       clips.push_back(clip);
     }
-    return finding(diagnose::picture_evidence(clips), "exposure_blur");
+    return finding(diagnose::image_evidence(clips), "exposure_blur");
   };
   CHECK(blur_of(0.001, 0.008, 0.008).log_evidence < 0.0);  // eight times the first one's, as stated
-  const diagnose::PictureFinding longer = blur_of(0.005, 0.006, 0.001);
+  const diagnose::ImageFinding longer = blur_of(0.005, 0.006, 0.001);
   CHECK(longer.log_evidence > 5.0);
   CHECK(std::abs(longer.parameters.front().value - 0.006) < 4.0 * longer.parameters.front().sd);
 }
@@ -205,7 +205,7 @@ TEST_CASE("the stated line time that goes with a rolling shutter is that of the 
     clip.camera.line_readout_s = 1e-5;
     clips.push_back(clip);
   }
-  const diagnose::PictureEvidence evidence = diagnose::picture_evidence(clips);
+  const diagnose::ImageEvidence evidence = diagnose::image_evidence(clips);
   CHECK(finding(evidence, "rolling_shutter").log_evidence > 5.0);
   CHECK(evidence.stated_line_s == 1e-5);
 }
@@ -215,7 +215,7 @@ namespace {
 /// What a camera sees that is turned by a right angle: columns for rows.
 std::vector<diagnose::FilmedClip> turned(std::vector<diagnose::FilmedClip> clips) {
   for (diagnose::FilmedClip& clip : clips) {
-    auto record = std::make_shared<core::PictureRecord>(*clip.record);
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
     std::swap(record->width_px, record->height_px);
     for (core::MarkerLook& look : record->marker) {
       std::swap(look.u_px, look.v_px);
@@ -235,7 +235,7 @@ std::vector<diagnose::FilmedClip> turned(std::vector<diagnose::FilmedClip> clips
 /// The marker is brighter by this a metre along its path, and as bright as before at 450 px.
 std::vector<diagnose::FilmedClip> with_gradient(std::vector<diagnose::FilmedClip> clips, double gradient_1_m) {
   for (diagnose::FilmedClip& clip : clips) {
-    auto record = std::make_shared<core::PictureRecord>(*clip.record);
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
     for (core::MarkerLook& look : record->marker)
       look.amplitude *= std::exp(gradient_1_m * (look.u_px - 450.0) / clip.px_per_m);
     clip.record = record;
@@ -243,24 +243,24 @@ std::vector<diagnose::FilmedClip> with_gradient(std::vector<diagnose::FilmedClip
   return clips;
 }
 
-diagnose::picture::LightAlong light_of(const diagnose::PictureEvidence& evidence) {
-  return std::get<diagnose::picture::LightAlong>(finding(evidence, "light_gradient").fact);
+diagnose::image::LightAlong light_of(const diagnose::ImageEvidence& evidence) {
+  return std::get<diagnose::image::LightAlong>(finding(evidence, "light_gradient").fact);
 }
 
 }  // namespace
 
 TEST_CASE("light from one side is told with how far it draws the centroid of the marker's light", "[pictures]") {
   const auto even = with_gradient(filmed({0.006, 0.0, 0.0, 0.0}, 0.006, 4), 1.5);
-  CHECK_FALSE(light_of(diagnose::picture_evidence(even)).pull);
+  CHECK_FALSE(light_of(diagnose::image_evidence(even)).pull);
   auto drawn = even;
   for (diagnose::FilmedClip& clip : drawn) {
-    auto record = std::make_shared<core::PictureRecord>(*clip.record);
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
     std::size_t k = 0;
     // In turn five values from -0.4 to -0.8 px: median 0.6, half the range 0.2.
     for (core::MarkerLook& look : record->marker) look.light_u_px = -0.4 - 0.1 * static_cast<double>(k++ % 5);
     clip.record = record;
   }
-  const auto pull = light_of(diagnose::picture_evidence(drawn)).pull;
+  const auto pull = light_of(diagnose::image_evidence(drawn)).pull;
   REQUIRE(pull);
   CHECK(pull->size_px == Approx(0.6));
   CHECK(pull->change_px == Approx(0.2));
@@ -274,10 +274,10 @@ TEST_CASE("a motion down the image tells exposure and light as the same motion a
   CHECK(std::abs(of_down.exposure_s - 0.006) < 5.0 * of_down.exposure_sd_s);
   // Down the image a line time would stretch the marker too, as speed does and not as its square: known less well.
   CHECK(of_down.exposure_sd_s < 2.0 * of_across.exposure_sd_s);
-  const auto light_across = finding(diagnose::picture_evidence(across), "light_gradient");
-  const auto light_down = finding(diagnose::picture_evidence(down), "light_gradient");
+  const auto light_across = finding(diagnose::image_evidence(across), "light_gradient");
+  const auto light_down = finding(diagnose::image_evidence(down), "light_gradient");
   CHECK(light_down.parameters[0].value == Approx(light_across.parameters[0].value).epsilon(1e-6));
-  CHECK(std::get<diagnose::picture::LightAlong>(light_down.fact).down);
-  CHECK_FALSE(std::get<diagnose::picture::LightAlong>(light_across.fact).down);
+  CHECK(std::get<diagnose::image::LightAlong>(light_down.fact).down);
+  CHECK_FALSE(std::get<diagnose::image::LightAlong>(light_across.fact).down);
   CHECK(light_down.seen == light_across.seen);
 }

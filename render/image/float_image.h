@@ -37,13 +37,13 @@ inline PixelRect united(const PixelRect& a, const PixelRect& b) {
 
 /// Row by row from the top, no padding. Radiance (1 is a white wall in the scene's light) or electrons, as stated where
 /// it is used.
-struct FloatPicture {
+struct FloatImage {
   int width = 0;
   int height = 0;
   std::vector<float> values;
 
-  FloatPicture() = default;
-  FloatPicture(int width_px, int height_px)
+  FloatImage() = default;
+  FloatImage(int width_px, int height_px)
       : width(width_px), height(height_px), values(static_cast<std::size_t>(width_px) * height_px, 0.0f) {}
 
   float& at(int x, int y) { return values[static_cast<std::size_t>(y) * width + x]; }

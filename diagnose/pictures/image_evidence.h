@@ -11,7 +11,7 @@
 
 #include "core/experiment/experiment.h"
 #include "core/result/results.h"
-#include "diagnose/pictures/picture_search.h"
+#include "diagnose/pictures/image_search.h"
 
 namespace glidelab::diagnose {
 
@@ -19,6 +19,6 @@ namespace glidelab::diagnose {
 std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
                                      const std::vector<std::optional<core::CameraSettings>>& cameras);
 
-PictureEvidence picture_evidence(std::vector<FilmedClip> clips);
+ImageEvidence image_evidence(std::vector<FilmedClip> clips);
 
 }  // namespace glidelab::diagnose

@@ -1,5 +1,5 @@
 /// What images show of an effect, as data: one struct for each effect that they are searched for.
-/// report/diagnosis/words/picture_words.h puts it into words.
+/// report/diagnosis/words/image_words.h puts it into words.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <variant>
 
 namespace glidelab::diagnose {
-namespace picture {
+namespace image {
 
 /// The marker is smeared as by an exposure.
 struct Smear {
@@ -60,20 +60,20 @@ struct FrameTimes {
   std::size_t repeated = 0, missing = 0;
 };
 
-}  // namespace picture
+}  // namespace image
 
-using AnyPictureFact = std::variant<picture::Smear, picture::Shear, picture::LightAlong, picture::Flicker,
-                                    picture::Sway, picture::Compression, picture::FrameTimes>;
+using AnyImageFact = std::variant<image::Smear, image::Shear, image::LightAlong, image::Flicker, image::Sway,
+                                  image::Compression, image::FrameTimes>;
 
-/// What copies, moves and destroys it is compiled once (picture_fact.cpp), as of core::Note.
-struct PictureFact : AnyPictureFact {
-  using AnyPictureFact::AnyPictureFact;
-  PictureFact();
-  PictureFact(const PictureFact&);
-  PictureFact(PictureFact&&) noexcept;
-  PictureFact& operator=(const PictureFact&);
-  PictureFact& operator=(PictureFact&&) noexcept;
-  ~PictureFact();
+/// What copies, moves and destroys it is compiled once (image_fact.cpp), as of core::Note.
+struct ImageFact : AnyImageFact {
+  using AnyImageFact::AnyImageFact;
+  ImageFact();
+  ImageFact(const ImageFact&);
+  ImageFact(ImageFact&&) noexcept;
+  ImageFact& operator=(const ImageFact&);
+  ImageFact& operator=(ImageFact&&) noexcept;
+  ~ImageFact();
 };
 
 }  // namespace glidelab::diagnose

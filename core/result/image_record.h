@@ -51,7 +51,7 @@ struct NoiseAtLevel {
   double known_to = 0.0;    ///< standard deviation of sd_code
 };
 
-struct PictureRecord {
+struct ImageRecord {
   int width_px = 0, height_px = 0;
   double full_code = 255.0;        ///< largest code
   std::string codec;               ///< four letters as stored in the container; empty: a folder of frames

@@ -1,4 +1,4 @@
-#include "report/diagnosis/words/picture_words.h"
+#include "report/diagnosis/words/image_words.h"
 
 #include <fmt/format.h>
 
@@ -10,21 +10,21 @@
 namespace glidelab::report {
 namespace {
 
-namespace picture = diagnose::picture;
+namespace image = diagnose::image;
 
 /// A sentence for every kind; a kind without one does not compile.
-struct PictureSentence {
-  std::string operator()(const picture::Smear& of) const {
+struct ImageSentence {
+  std::string operator()(const image::Smear& of) const {
     return fmt::format("The marker is smeared as by an exposure of {} ms; {}.",
                        base::value_and_sd_text(1e3 * of.exposure_s, 1e3 * of.sd_s),
                        of.stated_s ? fmt::format("{:.3g} ms is stated", 1e3 * *of.stated_s) : "none is stated");
   }
-  std::string operator()(const picture::Shear& of) const {
+  std::string operator()(const image::Shear& of) const {
     return fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
                        base::value_and_sd_text(1e6 * of.line_s, 1e6 * of.sd_s), 1e6 * of.stated_s,
                        of.stated_s == 0.0 ? "(a global shutter) is stated" : "is stated");
   }
-  std::string operator()(const picture::LightAlong& of) const {
+  std::string operator()(const image::LightAlong& of) const {
     std::string text = fmt::format("The light on the marker changes by {} % per metre {}; {:.0f} % is usual in a room.",
                                    base::value_and_sd_text(100.0 * of.gradient_1_m, 100.0 * of.sd_1_m),
                                    of.down ? "down the image" : "to the right", 100.0 * of.usual_1_m);
@@ -36,7 +36,7 @@ struct PictureSentence {
     }
     return text;
   }
-  std::string operator()(const picture::Flicker& of) const {
+  std::string operator()(const image::Flicker& of) const {
     if (!of.flickers) {
       return fmt::format("The light does not flicker: no wave above {:.2g} % in the fixed scene.",
                          100.0 * of.amplitude);
@@ -45,20 +45,20 @@ struct PictureSentence {
         "The brightness of the fixed scene varies by ±{:.2g} % at {:.4g} Hz{}.", 100.0 * of.amplitude, of.seen_hz,
         of.f_hz != of.seen_hz ? fmt::format(" ({:.0f} Hz looks like this at this frame rate)", of.f_hz) : "");
   }
-  std::string operator()(const picture::Sway& of) const {
+  std::string operator()(const image::Sway& of) const {
     switch (of.how) {
-      case picture::Sway::How::shakes:
+      case image::Sway::How::shakes:
         return fmt::format("The fixed scene sways in the image by ±{:.2g} px at {:.3g} Hz: the camera shakes.",
                            of.size_px, of.f_hz);
-      case picture::Sway::How::drifts:
+      case image::Sway::How::drifts:
         return fmt::format("The fixed scene drifts in the image by {:.2g} px within a clip: the camera moves.",
                            of.size_px);
-      case picture::Sway::How::rests:
+      case image::Sway::How::rests:
         break;
     }
     return fmt::format("The camera is at rest: the fixed scene stays within {:.2g} px in the image.", of.size_px);
   }
-  std::string operator()(const picture::Compression& of) const {
+  std::string operator()(const image::Compression& of) const {
     const bool times = of.block_steps > 2.0;
     std::string text = fmt::format(
         "{}; steps between pixels are {} at the edges of 8 × 8 blocks {} elsewhere.",
@@ -74,7 +74,7 @@ struct PictureSentence {
     }
     return text;
   }
-  std::string operator()(const picture::FrameTimes& of) const {
+  std::string operator()(const image::FrameTimes& of) const {
     return fmt::format("{} frames repeat the image before, and the time stamps leave a gap for {}.", of.repeated,
                        of.missing);
   }
@@ -82,8 +82,8 @@ struct PictureSentence {
 
 }  // namespace
 
-std::string picture_words(const diagnose::PictureFact& fact) {
-  return std::visit(PictureSentence{}, fact);
+std::string image_words(const diagnose::ImageFact& fact) {
+  return std::visit(ImageSentence{}, fact);
 }
 
 }  // namespace glidelab::report

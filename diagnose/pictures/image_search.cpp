@@ -1,4 +1,4 @@
-#include "diagnose/pictures/picture_search.h"
+#include "diagnose/pictures/image_search.h"
 
 #include <Eigen/Core>
 
@@ -14,8 +14,8 @@
 
 namespace glidelab::diagnose {
 
-PictureFinding finding_of(std::string_view id) {
-  PictureFinding finding;
+ImageFinding finding_of(std::string_view id) {
+  ImageFinding finding;
   finding.id = id;
   return finding;
 }
