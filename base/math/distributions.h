@@ -9,6 +9,7 @@ double normal_tail(double z);  ///< P(> z)
 double normal_quantile(double p);
 double normal_upper_quantile(double p);  ///< exceeded with probability p
 
+/// Infinite degrees of freedom: the normal distribution.
 double student_t_tail(double degrees, double t);  ///< P(> t)
 double student_t_quantile(double degrees, double p);
 

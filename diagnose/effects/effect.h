@@ -192,6 +192,9 @@ enum class ShownAs {
   itself_and_directions,  ///< d, and K (1 + d) and K (1 - d) under k_plus_n_s_m and k_minus_n_s_m
   one_more,               ///< n, where n - 1 is fitted; s, where s - 1 is
   inverse_root,           ///< v_c, where 1/v_c² is fitted
+  beside_stated,          ///< the stated value plus e, where e is fitted
+  itself_and_middle,      ///< the slope, and under x_mid_m the middle of each set-up's positions, about which it is
+  place_of_middle,        ///< as x_mid_m alone: at this part of the distance from a set-up's own middle to that of all
   of_mu,                  ///< deviations d of mu: the standard deviation of all mu + d, and each of them (own_sizes.h)
   of_drag,                ///< relative deviations d of K: the same of all K (1 + d)
   along_track,            ///< with the effect's other parameters, as a function of position (own_sizes.h)
@@ -275,7 +278,9 @@ struct OnLines {
   std::string_view key = {};
   double largest = 0.0;  ///< in the unit of the key
   OwnOfLines own = OwnOfLines::nothing;
-  std::string_view same_as = {};  ///< the effect that changes lines in the same way to first order
+  std::string_view same_as = {};      ///< the effect that changes lines in the same way to first order
+  std::string_view unknown_key = {};  ///< of a second size, which no table determines,
+  std::string_view why_unknown = {};  ///< and why
 };
 
 /// An effect earlier in the list that no experiment with tracks can tell from this one.

@@ -50,10 +50,9 @@ std::vector<DiagnosedParameter> parameters_of(const LineExplanation& explanation
   const auto at = static_cast<Eigen::Index>(first);
   std::vector<DiagnosedParameter> parameters = {
       {cause.terms.front().key, explanation.solution.size[at], explanation.solution.sd[at]}};
-  if (cause.id == ids::smoothing_bias) {
+  if (const OnLines& lines = effect_of(cause.id).lines; !lines.unknown_key.empty()) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    parameters.push_back({"bandwidth_s", kNan, kNan,
-                          "a table says neither how wide the kernel was nor which stretch each line was fitted to"});
+    parameters.push_back({std::string(lines.unknown_key), kNan, kNan, std::string(lines.why_unknown)});
   }
   return parameters;
 }
@@ -139,14 +138,12 @@ std::vector<DiagnosedEffect> effects_of(const LineExplanation& best, const std::
     for (const LineExplanation& e : all) {
       if (explanation_of(e, causes).holds(cause.id)) effect.probability += e.probability;
     }
-    bool force = cause.id == ids::load_independent_friction;
+    std::vector<std::string> named = {cause.id};
     for (std::size_t t = 1; t < equals.size(); ++t) {
       effect.equivalent_to.push_back(causes[equals[t]].id);
-      force = force || causes[equals[t]].id == ids::load_independent_friction;
+      named.push_back(causes[equals[t]].id);
     }
-    if (force) {
-      for (const std::string& id : alike_friction_force(without)) effect.equivalent_to.push_back(id);
-    }
+    for (const std::string& id : same_on_lines_as(named, without)) effect.equivalent_to.push_back(id);
     effects.push_back(effect);
   }
   return effects;

@@ -375,8 +375,8 @@ std::vector<LineOff> lines_off(const std::vector<TableLine>& lines, const LineSo
 LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, const LineCause& cause,
                      const LineSolution& with) {
   LineCurve curve{cause.id, {}, {}, {}};
-  const bool force = cause.id == ids::load_independent_friction;
-  if (!force && cause.id != ids::smoothing_bias) return curve;
+  const OnLines& on_lines = effect_of(cause.id).lines;
+  if (on_lines.change == nullptr || on_lines.change({1.0, 1.0, 0.0, 1.0}).of_log_k != 0.0) return curve;
   // The part that the term takes from mu is removed with it: the part of its column that the nominal model would have
   // fitted.
   const Eigen::VectorXd fitted = base::least_squares(data.base_a0, cause.terms.front().of_a0).col(0);
@@ -385,7 +385,7 @@ LineCurve line_curve(const std::vector<TableLine>& lines, const LineData& data, 
   const double drag = drag_of(lines), from = 1.0 / masses.back(), to = 1.0 / masses.front();
   for (int i = 0; i <= kPoints; ++i) {
     const double mass = 1.0 / (from + (to - from) * (1.1 * i / kPoints - 0.05));
-    const double k = drag / mass, column = force ? 1.0 / mass : k * k;
+    const double k = drag / mass, column = -on_lines.change({mass, 1.0, 0.0, k}).of_a0_m_s2;
     curve.mass_kg.push_back(mass);
     curve.k_over_m_1_s.push_back(k);
     curve.friction_m_s2.push_back(with.size[0] * (column + taken));

@@ -214,10 +214,11 @@ std::vector<LineCause> own_of_each_configuration(const std::vector<TableLine>& l
   return causes;
 }
 
-std::vector<std::string> alike_friction_force(const std::vector<std::string>& without) {
+std::vector<std::string> same_on_lines_as(const std::vector<std::string>& named,
+                                          const std::vector<std::string>& without) {
   std::vector<std::string> alike;
   for (const EffectInfo& effect : all_effects()) {
-    if (effect.lines.same_as == ids::load_independent_friction) alike.emplace_back(effect.id);
+    if (contains(named, std::string(effect.lines.same_as))) alike.emplace_back(effect.id);
   }
   std::erase_if(alike, [&](const std::string& id) { return contains(without, id); });
   return alike;

@@ -104,8 +104,10 @@ std::vector<LineCause> line_causes(const std::vector<TableLine>& lines, const Li
 /// A mu, and a K, of each mass on each set-up, each a cause; empty if there is only one of these.
 std::vector<LineCause> own_of_each_configuration(const std::vector<TableLine>& lines, const LineData& data);
 
-/// Effects of the speed whose lines are those of load_independent_friction, except those in `without`.
-std::vector<std::string> alike_friction_force(const std::vector<std::string>& without);
+/// Effects whose lines are those of one of the `named` ones to first order (OnLines::same_as), except those in
+/// `without`.
+std::vector<std::string> same_on_lines_as(const std::vector<std::string>& named,
+                                          const std::vector<std::string>& without);
 
 /// A fit of lines by the nominal model and additional terms, and its quality.
 struct LineSolution {

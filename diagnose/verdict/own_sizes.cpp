@@ -168,6 +168,9 @@ std::vector<DiagnosedParameter> own_sizes(const TrackSet& set, const MotionFit& 
         return shown;
       }
       case ShownAs::itself:
+      case ShownAs::beside_stated:
+      case ShownAs::itself_and_middle:
+      case ShownAs::place_of_middle:
       case ShownAs::one_more:
       case ShownAs::inverse_root:
         break;

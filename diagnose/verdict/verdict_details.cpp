@@ -53,7 +53,7 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
     if (shown_together(parameter->shown_as)) continue;
     const auto at = static_cast<Eigen::Index>(g);
     ShownValue value = shown(*parameter, fit.at.global[at]);
-    if (parameter->slot == slot_of(ids::rolling_shutter)) value.value += stated_line_s;
+    if (parameter->shown_as == ShownAs::beside_stated) value.value += stated_line_s;
     parameters.push_back({std::string(parameter->key), value.value, uncertainty.sd(at) * std::abs(value.by_fitted)});
   }
   return parameters;
@@ -64,15 +64,13 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
                                                    const std::vector<DiagnosedParameter>& known) {
   if (std::vector<DiagnosedParameter> own = own_sizes(set, fit, effect); !own.empty()) return own;
   const auto& globals = fit.layout->globals();
-  const auto at = [&](const EffectSlot& slot) {
-    return std::find_if(globals.begin(), globals.end(), [&](const ParameterLayout::Global& global) {
-      return global.parameter != nullptr && global.effect == effect && global.parameter->slot == slot;
-    });
-  };
-  const auto index = [&](auto global) { return static_cast<Eigen::Index>(global - globals.begin()); };
-  if (at(slot_of(ids::track_bow)) != globals.end()) return middles(set, 0.0, 0.0);
-  if (const auto about = at(slot_of(ids::damping_gradient, 1)); about != globals.end()) {
-    return middles(set, fit.at.global[index(about)], SizeUncertainty(set, fit).sd(index(about)));
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter == nullptr || globals[g].effect != effect) continue;
+    const auto at = static_cast<Eigen::Index>(g);
+    if (globals[g].parameter->shown_as == ShownAs::itself_and_middle) return middles(set, 0.0, 0.0);
+    if (globals[g].parameter->shown_as == ShownAs::place_of_middle) {
+      return middles(set, fit.at.global[at], SizeUncertainty(set, fit).sd(at));
+    }
   }
   const auto in_metres = std::find_if(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_m"; });
   const bool in_pixels = std::any_of(known.begin(), known.end(), [](const auto& p) { return p.key == "amplitude_px"; });

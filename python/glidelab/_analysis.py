@@ -17,6 +17,8 @@ from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_track
                       source_of, teller)
 from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, quantity_of
 
+DEFAULT_ESTIMATOR = _glidelab.estimator_names()[0]
+
 QUANTITIES = {"k_over_m_1_s": "1/s", "mu": "", "alpha_deg": "°", "v_lim_m_s": "m/s"}
 
 
@@ -287,7 +289,7 @@ def _choices(bandwidth: Union[float, str, None], estimator: str, robust: bool, j
 def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
             x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
             force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
-            bandwidth: Union[float, str, None] = None, estimator: str = "phase-diagram", robust: bool = False,
+            bandwidth: Union[float, str, None] = None, estimator: str = DEFAULT_ESTIMATOR, robust: bool = False,
             gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
             progress: Progress = None, smoother: str = "local-polynomial", runs: Runs = None,
             masses_kg: Optional[Sequence[float]] = None) -> Analysis:

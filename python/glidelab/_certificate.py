@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Optional, Union
 
 from . import _glidelab
+from ._analysis import DEFAULT_ESTIMATOR
 from ._errors import input_error
 from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller
 from ._results import Made, Result, frame_of, html_table
@@ -167,7 +168,7 @@ def _change(found: Mapping[str, Any]) -> ChangedTwin:
                        _pair(fall.get("interval95")), found["stands_out"])
 
 
-def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, estimator: str = "phase-diagram",
+def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, estimator: str = DEFAULT_ESTIMATOR,
             bandwidth_s: Optional[float] = None, seed: Optional[int] = None, allow_outside: bool = False,
             jobs: Optional[int] = None, progress: Progress = None, column: str = "", mass_kg: Optional[float] = None,
             incline_deg: Optional[float] = None, runs: Runs = None,

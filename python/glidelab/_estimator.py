@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Optional, TypeVar, Union
 
 from . import _glidelab
-from ._analysis import QUANTITIES, analyze
+from ._analysis import DEFAULT_ESTIMATOR, QUANTITIES, analyze
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._results import Quantity, frame_of, html_table, rounded
@@ -228,7 +228,7 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
     ...     return {"mu": 0.0}
     >>> print(glidelab.judge("scenarios/paper/inclined.toml", noise_m=2e-5)) # doctest: +SKIP
     """
-    chosen: list[Union[Estimator, str]] = list(estimators) or ["phase-diagram", *_registered.values()]
+    chosen: list[Union[Estimator, str]] = list(estimators) or [DEFAULT_ESTIMATOR, *_registered.values()]
     named: dict[str, Union[Estimator, str]] = {}
     for one in chosen:
         name = one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__)

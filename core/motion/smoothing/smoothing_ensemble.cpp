@@ -11,21 +11,11 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kNormal = 1.959964;  // its 97.5 % quantile
-
-double student_quantile(double freedom, double p) {
-  return std::isinf(freedom) ? kNormal : base::student_t_quantile(freedom, p);
-}
+constexpr double kNormal = 1.959963984540054;  // its 97.5 % quantile
 
 /// exp(-u^2 / 2), or its mean over an estimated variance.
 double tail(double u2, double freedom) {
   return std::isinf(freedom) ? std::exp(-0.5 * u2) : std::pow(1.0 + u2 / freedom, -0.5 * freedom);
-}
-
-/// P(z > u).
-double beyond(double u, double freedom) {
-  if (std::isinf(freedom)) return 0.5 * std::erfc(u / std::numbers::sqrt2);
-  return base::student_t_tail(freedom, u);
 }
 
 /// Data for the crossings of one side between two nodes, without c.
@@ -39,7 +29,7 @@ double crossings(const std::vector<std::vector<Crossing>>& parts, double c, doub
   double expected = 0.0;
   for (const auto& part : parts) {
     for (const double sign : {-1.0, 1.0}) {
-      expected += beyond(c * part.front().sd - sign * part.front().off, freedom);
+      expected += base::student_t_tail(freedom, c * part.front().sd - sign * part.front().off);
       for (const Crossing& at : part) {
         const double u = std::max(c * at.sd - sign * at.off, 0.0);
         // The mean over angles 0 … angle of u^2 / (1 + cos) is u^2 / 2 (1 + angle^2 / 12) to the required order.
@@ -92,7 +82,7 @@ double standard_deviation(const SmoothingEnsemble& ensemble, std::size_t p, std:
 
 std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnsemble& ensemble) {
   std::vector<std::vector<Eigen::Array3d>> made;
-  const double wider = student_quantile(ensemble.freedom, 0.975) / kNormal;
+  const double wider = base::student_t_quantile(ensemble.freedom, 0.975) / kNormal;
   for (std::size_t p = 0; p < ensemble.nodes.size(); ++p) {
     const std::vector<ChainNode>& nodes = ensemble.nodes[p];
     std::vector<Eigen::Array3d> sd(nodes.size());

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "base/math/dense.h"
+#include "core/math/least_squares.h"
 #include "core/math/quantile.h"
 #include "core/pictures/marker/sphere/sphere_window.h"
 
@@ -22,13 +24,32 @@ constexpr double kLeastOfNode = 0.5;      // weight of pixels, below which a nod
 constexpr double kRobustTimes = 2.5;      // times the usual residual, beyond which a pixel counts less (Huber)
 constexpr double kLeastResidual = 0.29;   // codes, 1 / sqrt(12)
 constexpr double kSettled_px = 2e-4;
+constexpr double kNormalOfMedian = 1.4826;  // standard deviation of a normal residual over the median of its size
+constexpr std::size_t kFewestPixels = 12;   // three for each parameter of the fit
 constexpr int kMostSteps = 25;
+constexpr int kStepsWithUsual = 2;  // steps before the usual residual is one
 constexpr double kLeastLightGain = 0.3, kMostLightGain = 3.0;
 constexpr double kLeastPixels = 0.6;     // relative to the number in a whole window
 constexpr double kTurnedReach = 1.15;    // radii around its centre in which a look is compared with itself turned
 constexpr double kFarthestCentre = 0.2;  // radii from the mean of the guesses
 constexpr double kSettledCentre = 1e-5;  // radii
 constexpr double kMostTurnedDifference = 0.15;  // of the contrast, root mean square
+
+/// The Gauss-Newton method, in which weights depend on the place, so that costs cannot be compared: every step is
+/// taken. `step(from)` makes a base::FitTrial. Empty if it does not settle.
+template <class Point, class Step>
+std::optional<Point> gauss_newton(Point at, const Step& step) {
+  base::FitOptions options;
+  options.most_iterations = kMostSteps;
+  options.take_every_step = true;
+  const auto undamped = [&](const Point& from, double) {
+    base::FitTrial<Point> trial = step(from);
+    trial.cost = 0.0;
+    return trial;
+  };
+  if (!base::is_settled(base::levenberg_marquardt(at, 0.0, options, undamped).stop)) return std::nullopt;
+  return at;
+}
 
 /// Weights of four values at -1, 0, 1, 2 in the Catmull-Rom cubic between 0 and 1, and in its derivative.
 struct Cubic {
@@ -190,87 +211,92 @@ std::optional<MarkerTemplate> MarkerTemplate::of(const std::vector<TemplateWindo
 
 std::optional<cv::Point2d> MarkerTemplate::centre_of_symmetry() const {
   const int steps = static_cast<int>(std::floor(kTurnedReach * nodes_per_radius_));
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  for (int round = 0; round < kMostSteps; ++round) {
-    Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-    double squares = 0.0, weights = 0.0;
+  struct Point {
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    double difference = 0.0;  // root mean square, before the last step
+  };
+  const auto found = gauss_newton(Point{}, [&](const Point& from) {
+    NormalEquations<2> equations;
     for (int j = -steps; j <= steps; ++j) {
       for (int i = -steps; i <= steps; ++i) {
         const double x = i * step(), y = j * step();
         if (x * x + y * y > kTurnedReach * kTurnedReach) continue;
-        const double weight =
-            std::min(weight_at(centre[0] + x, centre[1] + y), weight_at(centre[0] - x, centre[1] - y));
+        const double weight = std::min(weight_at(from.centre[0] + x, from.centre[1] + y),
+                                       weight_at(from.centre[0] - x, from.centre[1] - y));
         if (weight <= 0.0) continue;
-        const Value here = at(centre[0] + x, centre[1] + y), turned = at(centre[0] - x, centre[1] - y);
-        const double off = here.value - turned.value;
-        const Eigen::Vector2d slope(here.x - turned.x, here.y - turned.y);
-        information += weight * slope * slope.transpose();
-        gradient += weight * off * slope;
-        squares += weight * off * off;
-        weights += weight;
+        const Value here = at(from.centre[0] + x, from.centre[1] + y),
+                    turned = at(from.centre[0] - x, from.centre[1] - y);
+        equations.add({here.x - turned.x, here.y - turned.y}, here.value - turned.value, weight);
       }
     }
-    const Eigen::Vector2d change = -base::solve_positive(information, gradient);
-    if (!change.allFinite()) return std::nullopt;
-    centre += change;
-    if (centre.norm() > kFarthestCentre) return std::nullopt;
-    if (change.norm() > kSettledCentre) continue;
-    // Half of the difference is what is not the same after half a turn.
-    if (0.5 * std::sqrt(squares / weights) > kMostTurnedDifference * contrast_) return std::nullopt;
-    return cv::Point2d(centre[0], centre[1]);
-  }
-  return std::nullopt;
+    equations.complete();
+    base::FitTrial<Point> trial;
+    const Eigen::Vector2d change = -base::solve_positive(equations.jtj, equations.jtr);
+    if (!change.allFinite()) return trial;
+    trial.why_none = base::FitStop::out_of_range;
+    if ((from.centre + change).norm() > kFarthestCentre) return trial;
+    trial.point = Point{from.centre + change, std::sqrt(equations.cost / equations.weight)};
+    trial.is_small = change.norm() <= kSettledCentre;
+    return trial;
+  });
+  // Half of the difference is what is not the same after half a turn.
+  if (!found || 0.5 * found->difference > kMostTurnedDifference * contrast_) return std::nullopt;
+  return cv::Point2d(found->centre[0], found->centre[1]);
 }
 
 std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) const {
-  TemplateFit fit;
-  fit.centre = window.start;
+  struct Point {
+    TemplateFit fit;
+    double usual = 0.0;  // the usual residual; 0: not known yet
+    int steps = 0;
+  };
   const double radius = radius_of(window.shape);
   const cv::Vec3d& m = window.shape;
-  double usual = 0.0;  // the usual residual; 0: not known yet
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
-  const double whole = 3.14159 * kReach * kReach * radius * radius;
-  for (int step = 0; step < kMostSteps; ++step) {
-    information.setZero();
-    Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+  const double whole = std::numbers::pi * kReach * kReach * radius * radius;
+  Point start;
+  start.fit.centre = window.start;
+  const auto found = gauss_newton(start, [&](const Point& from) {
+    const TemplateFit& fit = from.fit;
+    NormalEquations<4> equations;
     std::vector<double> residuals;
-    double pixels = 0.0, cost = 0.0, weights = 0.0;
+    double pixels = 0.0;
     for_pixels(window, fit.centre, [&](double x, double y, double code) {
       pixels += 1.0;
       double weight = weight_at(x, y);
       if (weight <= 0.0) return;
       const Value look = at(x, y);
-      const double off = code - fit.level - fit.gain * look.value;
+      const double off = fit.level + fit.gain * look.value - code;
       const double scaled = std::abs(off) * std::sqrt(weight);
       residuals.push_back(scaled);
-      if (usual > 0.0 && scaled > kRobustTimes * usual) weight *= kRobustTimes * usual / scaled;
+      if (from.usual > 0.0 && scaled > kRobustTimes * from.usual) weight *= kRobustTimes * from.usual / scaled;
       // q = M (p - c): a shift of the centre changes q by -M times the shift.
-      const Eigen::Vector4d slope(-fit.gain * (look.x * m[0] + look.y * m[1]),
-                                  -fit.gain * (look.x * m[1] + look.y * m[2]), 1.0, look.value);
-      information += weight * slope * slope.transpose();
-      gradient += weight * off * slope;
-      cost += weight * off * off;
-      weights += weight;
+      equations.add(
+          {-fit.gain * (look.x * m[0] + look.y * m[1]), -fit.gain * (look.x * m[1] + look.y * m[2]), 1.0, look.value},
+          off, weight);
     });
-    if (pixels < kLeastPixels * whole || residuals.size() < 12) return std::nullopt;
-    const Eigen::Vector4d change = base::solve_positive(information, gradient);
-    if (!change.allFinite()) return std::nullopt;
+    equations.complete();
+    base::FitTrial<Point> trial;
+    trial.why_none = base::FitStop::out_of_range;
+    if (pixels < kLeastPixels * whole || residuals.size() < kFewestPixels) return trial;
+    trial.why_none = base::FitStop::singular;
+    const Eigen::Vector4d change = -base::solve_positive(equations.jtj, equations.jtr);
+    const std::optional<Eigen::MatrixXd> inverse = inverse_of_equations(equations.jtj);
+    if (!change.allFinite() || !inverse) return trial;
     const double moved = std::hypot(change[0], change[1]), allowed = 0.3 * radius;
     const double share = moved > allowed ? allowed / moved : 1.0;
-    fit.centre += share * cv::Point2d(change[0], change[1]);
-    fit.level += change[2];
-    fit.gain += change[3];
-    usual = std::max(1.4826 * median_of(residuals), kLeastResidual);
-    fit.rms = std::sqrt(cost / std::max(weights, 1.0));
-    if (fit.gain < kLeastLightGain || fit.gain > kMostLightGain) return std::nullopt;
-    if (cv::norm(fit.centre - window.start) > radius) return std::nullopt;
-    if (moved > kSettled_px || step < 2) continue;
-    const Eigen::Matrix4d covariance = information.inverse() * (fit.rms * fit.rms);
-    fit.sd_px = std::sqrt(0.5 * (covariance(0, 0) + covariance(1, 1)));
-    return fit;
-  }
-  return std::nullopt;
+    const double rms = std::sqrt(equations.cost / std::max(equations.weight, 1.0));
+    const TemplateFit to{fit.centre + share * cv::Point2d(change[0], change[1]),
+                         rms * std::sqrt(0.5 * ((*inverse)(0, 0) + (*inverse)(1, 1))), fit.level + change[2],
+                         fit.gain + change[3], rms};
+    trial.why_none = base::FitStop::out_of_range;
+    if (to.gain < kLeastLightGain || to.gain > kMostLightGain || cv::norm(to.centre - window.start) > radius)
+      return trial;
+    trial.point = Point{to, std::max(kNormalOfMedian * median_of(residuals), kLeastResidual), from.steps + 1};
+    trial.is_small = moved <= kSettled_px && from.steps >= kStepsWithUsual;
+    return trial;
+  });
+  if (!found) return std::nullopt;
+  return found->fit;
 }
 
 }  // namespace glidelab::core

@@ -29,8 +29,9 @@ EffectInfo damping_gradient() {
       .both_signs = true,
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
-      .parameters = {{.key = "b_1_m", .absent = 0.0, .low = -3.0, .high = 3.0, .step = 1e-6},
-                     {.key = {}, .absent = 0.0, .low = -5.0, .high = 5.0, .step = 1e-4}},
+      .parameters =
+          {{.key = "b_1_m", .absent = 0.0, .low = -3.0, .high = 3.0, .step = 1e-6},
+           {.key = {}, .absent = 0.0, .low = -5.0, .high = 5.0, .step = 1e-4, .shown_as = ShownAs::place_of_middle}},
       .law = {.resistance = gradient_resistance},
       .shapes = gradient_middles,
       .lines = {},

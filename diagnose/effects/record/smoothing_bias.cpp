@@ -25,7 +25,12 @@ EffectInfo smoothing_bias() {
       .parameters = {},
       .law = {},
       .shapes = nullptr,
-      .lines = {.change = smoothing_lines, .key = "intercept_s2_m_s2", .largest = 1.0},
+      .lines = {.change = smoothing_lines,
+                .key = "intercept_s2_m_s2",
+                .largest = 1.0,
+                .unknown_key = "bandwidth_s",
+                .why_unknown =
+                    "a table says neither how wide the kernel was nor which stretch each line was fitted to"},
       .twin = EffectTwin::none("a table of lines has no motion to simulate"),
       .in_images = std::nullopt,
       .next =

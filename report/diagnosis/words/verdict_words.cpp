@@ -176,7 +176,8 @@ std::string line_words(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string form_words(const diagnose::LineForm& form) {
-  const char* what = form.id == diagnose::ids::configuration_drag ? "K" : "µ";
+  const diagnose::EffectInfo* const effect = diagnose::find_effect(form.id);
+  const char* what = effect != nullptr && effect->lines.own == diagnose::OwnOfLines::drag ? "K" : "µ";
   switch (form.over) {
     case diagnose::LinesOver::mass:
       return fmt::format("a separate {} for each mass", what);

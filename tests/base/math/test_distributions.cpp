@@ -1,6 +1,7 @@
 #include "base/math/distributions.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "tests/catch.h"
@@ -35,5 +36,15 @@ TEST_CASE("Student's t of one degree of freedom is Cauchy's distribution, and be
   }
   for (const double t : {-2.0, 0.1, 12.0}) {
     CHECK(base::student_t_tail(1.0, t) == Approx(0.5 - std::atan(t) / std::numbers::pi).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("Student's t of infinitely many degrees of freedom is the normal distribution") {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const double p : {0.01, 0.3, 0.975}) {
+    CHECK(base::student_t_quantile(kInfinite, p) == Approx(base::normal_quantile(p)).epsilon(1e-12));
+  }
+  for (const double t : {-2.0, 0.1, 6.0}) {
+    CHECK(base::student_t_tail(kInfinite, t) == Approx(0.5 * std::erfc(t / std::numbers::sqrt2)).epsilon(1e-12));
   }
 }
