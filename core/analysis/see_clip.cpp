@@ -155,19 +155,20 @@ namespace {
 /// As a disc, bright or dark.
 SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
-  const auto look = [&](const MarkerSetup& marker) {
-    return look_for(marker, experiment, clip, setting, open, look_at_scene, counter);
+  const auto look = [&](const MarkerSetup& sought) {
+    return look_for(sought, experiment, clip, setting, open, look_at_scene, counter);
   };
-  if (experiment.marker->color_bgr) return look(*experiment.marker);
+  const MarkerSetup marker = marker_in(experiment, clip);
+  if (marker.color_bgr) return look(marker);
   std::optional<SeenClip> bright;
   std::optional<NoMarker> no_bright;
   try {
-    bright = look(*experiment.marker);
+    bright = look(marker);
     if (well_seen(bright->marker)) return *std::move(bright);
   } catch (const NoMarker& nothing) {
     no_bright = nothing;
   }
-  MarkerSetup dark = *experiment.marker;
+  MarkerSetup dark = marker;
   dark.color_bgr = {0, 0, 0};
   try {
     SeenClip seen = look(dark);
@@ -188,7 +189,7 @@ std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSe
                                       const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene,
                                       FrameCounter& counter, const AnyShape& any) {
   try {
-    return look_for(*experiment.marker, experiment, clip, setting, open, look_at_scene, counter, &any);
+    return look_for(marker_in(experiment, clip), experiment, clip, setting, open, look_at_scene, counter, &any);
   } catch (const base::InputError&) {
     return std::nullopt;  // the error of the first search counts
   }

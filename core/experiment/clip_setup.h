@@ -61,6 +61,8 @@ struct ClipSetup {
   Launched launched = Launched::released;
   std::optional<double> start_s;
   std::optional<double> end_s;
+  std::optional<PixelPoint> start_px = {};  ///< where its marker is at start_s, or in its first frame; in place of the
+                                            ///< marker's own start_px
   std::string group;  ///< never empty once read: as given, otherwise one name for each stated inclination
 };
 

@@ -115,14 +115,18 @@ std::optional<std::array<unsigned char, 3>> read_color(const TomlTable& table) {
   return std::array<unsigned char, 3>{byte(0), byte(8), byte(16)};
 }
 
+std::optional<PixelPoint> read_start(const TomlTable& table) {
+  const auto start = table.maybe_numbers("start_px", 2, base::at_least(0.0));
+  if (!start) return std::nullopt;
+  return PixelPoint{(*start)[0], (*start)[1]};
+}
+
 MarkerSetup read_marker(const TomlTable& table) {
   MarkerSetup setup;
   setup.diameter_m = table.number("diameter_m", base::above(0.0));
   setup.height_m = table.number_or("height_m", 0.0);
   setup.color_bgr = read_color(table);
-  if (const auto start = table.maybe_numbers("start_px", 2, base::at_least(0.0))) {
-    setup.start_px = PixelPoint{(*start)[0], (*start)[1]};
-  }
+  setup.start_px = read_start(table);
   return setup;
 }
 
@@ -176,6 +180,8 @@ ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
   if (clip.start_s && clip.end_s && *clip.start_s >= *clip.end_s) {
     table.reject("end_s", fmt::format("{}", *clip.end_s), fmt::format("a time after start_s = {}", *clip.start_s));
   }
+  clip.start_px = read_start(table);
+  if (clip.start_px && !clip.track.empty()) table.reject("start_px", "a place in an image for a track", "nothing");
   clip.group = table.maybe_text("group").value_or("");
   return clip;
 }
@@ -321,6 +327,12 @@ const GroupSetup* group_of(const Experiment& experiment, const std::string& name
 std::optional<Downhill> downhill_of(const Experiment& experiment, const std::string& group) {
   const GroupSetup* own = group_of(experiment, group);
   return own != nullptr && own->downhill ? own->downhill : experiment.track.downhill;
+}
+
+MarkerSetup marker_in(const Experiment& experiment, const ClipSetup& clip) {
+  MarkerSetup marker = experiment.marker.value();
+  if (clip.start_px) marker.start_px = clip.start_px;
+  return marker;
 }
 
 void require_clips(const Experiment& experiment) {

@@ -90,6 +90,9 @@ const GroupSetup* group_of(const Experiment& experiment, const std::string& name
 /// Which direction is down, from the group or else from [track]; empty if neither states it.
 std::optional<Downhill> downhill_of(const Experiment& experiment, const std::string& group);
 
+/// The marker as it is in this clip: with the clip's start_px, if it has one. The experiment states a marker.
+MarkerSetup marker_in(const Experiment& experiment, const ClipSetup& clip);
+
 /// InputError if there is neither a clip nor a track: a table of lines is for `glidelab diagnose`.
 void require_clips(const Experiment& experiment);
 

@@ -12,53 +12,10 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/experiment/file_names.h"
+#include "core/track/table_units.h"
 
 namespace glidelab::core {
 namespace {
-
-using Unit = std::pair<std::string_view, double>;
-constexpr std::array<Unit, 10> kLengths{{{"m", 1.0},
-                                         {"cm", 1e-2},
-                                         {"mm", 1e-3},
-                                         {"um", 1e-6},
-                                         {"\xC2\xB5m", 1e-6},
-                                         {"\xCE\xBCm", 1e-6},
-                                         {"dm", 0.1},
-                                         {"km", 1e3},
-                                         {"in", 0.0254},
-                                         {"ft", 0.3048}}};
-constexpr std::array<Unit, 7> kTimes{
-    {{"s", 1.0}, {"sec", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"\xC2\xB5s", 1e-6}, {"\xCE\xBCs", 1e-6}, {"min", 60.0}}};
-
-// English, German, French, Spanish and Portuguese, Italian; in lower case.
-constexpr std::array<Unit, 12> kLengthWords{{{"meter", 1.0},
-                                             {"meters", 1.0},
-                                             {"metre", 1.0},
-                                             {"metres", 1.0},
-                                             {"m\xC3\xA8tres", 1.0},
-                                             {"metros", 1.0},
-                                             {"metri", 1.0},
-                                             {"centimeters", 1e-2},
-                                             {"centimetres", 1e-2},
-                                             {"millimeters", 1e-3},
-                                             {"millimetres", 1e-3},
-                                             {"feet", 0.3048}}};
-constexpr std::array<Unit, 9> kTimeWords{{{"second", 1.0},
-                                          {"seconds", 1.0},
-                                          {"sekunden", 1.0},
-                                          {"secondes", 1.0},
-                                          {"segundos", 1.0},
-                                          {"secondi", 1.0},
-                                          {"milliseconds", 1e-3},
-                                          {"minute", 60.0},
-                                          {"minutes", 60.0}}};
-
-template <std::size_t N>
-std::optional<double> factor(const std::array<Unit, N>& units, std::string_view unit) {
-  const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& of) { return of.first == unit; });
-  if (found == units.end()) return {};
-  return found->second;
-}
 
 std::string_view trimmed(std::string_view text) {
   const std::string_view blanks = " \t,:";
@@ -189,16 +146,6 @@ bool is_height_column(const TableColumn& column) {
       "h\xC3\xB6he", "hauteur",           "altura",     "altezza",    "h\xC3\xB8yde", "h\xC3\xB8jde", "h\xC3\xB6jd",
       "hoogte",      "vertical position", "z"};
   return !is_time_column(column) && std::find(kHeights.begin(), kHeights.end(), lower(column.name)) != kHeights.end();
-}
-
-std::optional<double> metres_per(std::string_view unit) {
-  const std::optional<double> symbol = factor(kLengths, unit);
-  return symbol ? symbol : factor(kLengthWords, lower(unit));
-}
-
-std::optional<double> seconds_per(std::string_view unit) {
-  const std::optional<double> symbol = factor(kTimes, unit);
-  return symbol ? symbol : factor(kTimeWords, lower(unit));
 }
 
 namespace {

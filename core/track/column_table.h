@@ -40,10 +40,6 @@ bool is_place_column(const TableColumn& column);
 /// plane, or the only one of a fall.
 bool is_height_column(const TableColumn& column);
 
-/// Metres for a unit of length, seconds for a unit of time; empty for any other text. "um" and "µm" are the same.
-std::optional<double> metres_per(std::string_view unit);
-std::optional<double> seconds_per(std::string_view unit);
-
 /// The header lines of an exported table, split into name, unit and run of each of its `width` columns, which have no
 /// values yet. The lines, first to last: runs (if all fields mention a run, a set or "latest", or if there are fewer
 /// fields than names below, one of which is a time: "mass A" above t, x, y), names, short names (ignored), units. All

@@ -15,6 +15,7 @@
 #include "base/math/dense.h"
 #include "core/experiment/file_names.h"
 #include "core/math/quantile.h"
+#include "core/track/table_units.h"
 
 namespace glidelab::core {
 namespace {

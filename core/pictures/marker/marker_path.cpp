@@ -341,7 +341,7 @@ std::size_t Choice::choose_path(std::vector<Note>& notes) const {
                     "two markers that look and move alike, at ({:.0f}, {:.0f}) px in frame {} and ({:.0f}, {:.0f}) px "
                     "in frame {}",
                     a.x, a.y, marker.seen.front().frame, b.x, b.y, other.seen.front().frame),
-                "one marker, or start_px in [marker] to say which"));
+                "one marker, or start_px in the clip's [[clip]] (or in [marker], for all clips) to say which"));
     }
   }
   return best;

@@ -109,6 +109,23 @@ double worst_px(const core::TrackData& track, cv::Point2d on_card) {
 
 }  // namespace
 
+TEST_CASE("of two gliders alike in every clip, each clip's start_px says which") {
+  const tests::TempDir dir;
+  const cv::Point2d one(-14.0, 0.0), other(14.0, 0.0);
+  card_clip(dir, 30.0, {{one, 200.0}, {other, 200.0}});
+  core::Experiment experiment = experiment_of(dir / "clip.mkv", 0.0);
+  experiment.clips.push_back(experiment.clips.front());
+  experiment.clips.back().name = "again";
+  CHECK_THROWS_WITH(core::tracks_of(experiment, 1), Catch::Contains("start_px in the clip's [[clip]]"));
+  for (const auto& [clip, on_card] : {std::pair(0, one), std::pair(1, other)}) {
+    const cv::Point2d start = place(0.0) + on_card;
+    experiment.clips[static_cast<std::size_t>(clip)].start_px = {start.x, start.y};
+  }
+  const auto tracks = core::tracks_of(experiment, 1).tracks;
+  CHECK(worst_px(tracks.at(0), one) < 0.03);  // as derived below
+  CHECK(worst_px(tracks.at(1), other) < 0.03);
+}
+
 TEST_CASE("a marker whose colour is not stated is found bright on dark and dark on bright, and a note says which") {
   const tests::TempDir dir;
   // 0.03 px: noise of 1 of 120 at 40 pixels of the outline is 0.005 px, and the card moves by whole pixels under it.

@@ -80,7 +80,7 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
       "\"container\"\n" +
       kCalibration + "[plumb]\nview = \"plumb.png\"\nregion = [40, 0, 120, 500]\n" + kMarker +
       "height_m = 0.03\ncolor = \"#10f0A0\"\nstart_px = [400, 120.5]\n" + kTrack + "length_m = 2.0\n" + kClip +
-      "incline_sd_deg = 0.3\nmass_sd_kg = 0.0005\nstart_s = 0.1\nend_s = 1.8\ngroup = \"flat\"\n" +
+      "incline_sd_deg = 0.3\nmass_sd_kg = 0.0005\nstart_s = 0.1\nend_s = 1.8\nstart_px = [7, 8.5]\ngroup = \"flat\"\n" +
       "[[clip]]\nname = \"b\"\nfile = \"clips/frames\"\nmass_kg = 1\nincline_deg = 0\nlaunched = \"released\"\n" +
       "[[group]]\nname = \"flat\"\nplane = \"calibration/plane-flat.png\"\ndownhill = \"+X\"\n"
       "plumb = { view = \"plumb.png\", region = [1, 2, 3, 4] }\n[extra]\nanything = { goes = true }\n");
@@ -113,6 +113,9 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   CHECK(std::abs(clip.incline_rad - 4.0 * std::numbers::pi / 180.0) < 1e-15);
   CHECK(std::abs(*clip.incline_sd_rad - 0.3 * std::numbers::pi / 180.0) < 1e-15);
   CHECK(clip.mass_sd_kg == 0.0005);
+  CHECK(clip.start_px == core::PixelPoint{7.0, 8.5});
+  CHECK(core::marker_in(experiment, clip).start_px == core::PixelPoint{7.0, 8.5});
+  CHECK(core::marker_in(experiment, experiment.clips[1]).start_px == core::PixelPoint{400.0, 120.5});
   CHECK(clip.group == "flat");
   CHECK(experiment.clips[1].group == "0 deg");
   CHECK(experiment.clips[1].file == folder.dir / "clips/frames");
@@ -257,6 +260,9 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"mass_kg", "track = \"track.csv\"\nmass_kg", "19: clip[1].track: found a track and a file"},
       {"file = \"clips/a.mkv\"", "track = \"no.csv\"", "18: clip[1].track: found no file no.csv"},
       {"file = \"clips/a.mkv\"", "", "16: clip[1].file: found nothing"},
+      {"file = \"clips/a.mkv\"", "track = \"track.csv\"\nstart_px = [1, 2]",
+       "19: clip[1].start_px: found a place in an image"},
+      {"mass_kg = 0.335", "mass_kg = 0.335\nstart_px = [1, -2]", "20: clip[1].start_px: found -2"},
       {"mass_kg = 0.335", "mass_kg = 0", "19: clip[1].mass_kg: found 0"},
       {"mass_kg = 0.335", "mass_kg = inf", "19: clip[1].mass_kg: found inf"},
       {"incline_deg = 4.0", "incline_deg = 90.5", "20: clip[1].incline_deg: found 90.5"},

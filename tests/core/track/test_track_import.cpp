@@ -253,6 +253,18 @@ TEST_CASE("units are also words, in several languages") {
   check_motion(with("Tiempo (segundos),X_metros"));
   check_motion(with("Zeit (Sekunden),Ort (Meter)"));
   CHECK(with("Time (seconds),Position (centimeters)").x_m[3] == Approx(0.0009));
+  for (const auto& [header, metres] :
+       std::vector<std::pair<std::string, double>>{{"Zeit (s),Weg (Zentimeter)", 0.01},
+                                                   {"t (s),distance (centimètres)", 0.01},
+                                                   {"t (s),posición (milímetros)", 0.001},
+                                                   {"t (s),Ort (Millimeter)", 0.001},
+                                                   {"t (s),x (décimètres)", 0.1},
+                                                   {"t (s),x (inches)", 0.0254},
+                                                   {"t (s),Weg (Zoll)", 0.0254},
+                                                   {"t (s),x (Kilometer)", 1000.0}}) {
+    INFO(header);
+    CHECK(with(header).x_m[3] == Approx(0.09 * metres));  // the fourth row says 9E-2
+  }
 }
 
 TEST_CASE("Scandinavian and Dutch names of times and places, and h for a height") {
