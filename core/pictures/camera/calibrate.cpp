@@ -127,17 +127,53 @@ struct Term {
   int fixing;                        // OpenCV's flag
   int power;                         // of r², of a radial term
   double usual;                      // standard deviation of the relative displacement of an image's corner by this
-                                     // term, over all lenses
+                                     // term, over all lenses,
+  double of_extent;                  // and over lenses of one extent, relative to it
 };
 
-/// The part of a radial term's size that is left where lenses' sizes are N(0, usual²) at the corner: usual² /
-/// (usual² + sd²).
-double believed(const Term& term, double variance, const OpenCvCalibration& found, cv::Size size) {
+/// A term that was left out: its value and covariance in the last fit that had it.
+struct LeftOut {
+  Term term;
+  Eigen::VectorXd value;
+  Eigen::MatrixXd own, with_others;  // covariance of the term, and of all terms with it
+};
+
+/// The relative displacement of an image's corner by a radial term of 1.
+double at_corner(const Term& term, const OpenCvCalibration& found, cv::Size size) {
   const double u = 0.5 * size.width / found.matrix.at<double>(0, 0);
   const double v = 0.5 * size.height / found.matrix.at<double>(1, 1);
-  const double at_corner = std::pow(u * u + v * v, term.power);
-  const double usual = term.usual * term.usual;
-  return usual / (usual + variance * at_corner * at_corner);
+  return std::pow(u * u + v * v, term.power);
+}
+
+/// The part of a size that is left where sizes are N(0, usual²): usual² / (usual² + sd²).
+double believed(double usual, double sd) {
+  return usual * usual / (usual * usual + sd * sd);
+}
+
+/// What the terms that were left out may still do: see calibrate_camera().
+Eigen::Matrix<double, 9, 9> effect_of(const std::vector<LeftOut>& all, const OpenCvCalibration& found, cv::Size size,
+                                      double kept_at_corner) {
+  constexpr double kWithin = 2.0;  // standard deviations
+  double extent = kept_at_corner;
+  for (const LeftOut& one : all) {
+    if (one.term.power != 1) continue;
+    extent += at_corner(one.term, found, size) * (std::abs(one.value[0]) + kWithin * std::sqrt(one.own(0, 0)));
+  }
+  Eigen::Matrix<double, 9, 9> effect = Eigen::Matrix<double, 9, 9>::Zero();
+  for (const LeftOut& one : all) {
+    double part = 1.0;
+    if (one.term.power > 0) {
+      const double usual = std::min(one.term.usual, one.term.of_extent * extent);
+      part = believed(usual, at_corner(one.term, found, size) * std::sqrt(one.own(0, 0)));
+    }
+    const Eigen::VectorXd weighted = base::solve_positive(one.own, one.value);
+    const double statistic = part * one.value.dot(weighted);
+    const double real = std::max(0.0, 1.0 - static_cast<double>(one.value.size()) / std::max(statistic, 1e-300));
+    const Eigen::VectorXd moved = part * base::product(one.with_others, weighted);
+    effect += part * base::product(one.with_others, base::solve_positive(one.own, one.with_others.transpose())) +
+              real * base::product(moved, moved.transpose());
+  }
+  return effect;
 }
 
 struct SupportedFit {
@@ -148,15 +184,16 @@ struct SupportedFit {
 
 /// The terms that the views determine, from all five backwards (see the header).
 SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv::Size size, double square_m) {
-  const std::vector<Term> terms = {{"k3", {8}, cv::CALIB_FIX_K3, 3, 0.1},
-                                   {kTangential, {6, 7}, cv::CALIB_ZERO_TANGENT_DIST, 0, 0.0},
-                                   {"k2", {5}, cv::CALIB_FIX_K2, 2, 0.2},
-                                   {"k1", {4}, cv::CALIB_FIX_K1, 1, 0.3}};
+  const std::vector<Term> terms = {{"k3", {8}, cv::CALIB_FIX_K3, 3, 0.1, 1.0},
+                                   {kTangential, {6, 7}, cv::CALIB_ZERO_TANGENT_DIST, 0, 0.0, 0.0},
+                                   {"k2", {5}, cv::CALIB_FIX_K2, 2, 0.2, 2.0},
+                                   {"k1", {4}, cv::CALIB_FIX_K1, 1, 0.3, 1.0}};
   int flags = 0;
   SupportedFit fit;
   fit.found = run_opencv(views, size, square_m, flags);
   fit.uncertainty = uncertainty_of(fit.found, views, square_m);
-  Eigen::Matrix<double, 9, 9> left_out = Eigen::Matrix<double, 9, 9>::Zero();
+  std::vector<LeftOut> left_out;
+  double kept_at_corner = 0.0;
   bool radial = true;  // the next radial term may be tested
   for (const Term& term : terms) {
     const bool is_radial = term.places.size() == 1;
@@ -167,28 +204,27 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
       value[i] = fit.found.distortion.at<double>(static_cast<int>(term.places[static_cast<std::size_t>(i)]) - 4);
     }
     const Eigen::MatrixXd own = fit.uncertainty.covariance(term.places, term.places);
-    const Eigen::MatrixXd with_others = fit.uncertainty.covariance(Eigen::all, term.places);
-    const Eigen::VectorXd weighted = base::solve_positive(own, value);
-    const double part = is_radial ? believed(term, own(0, 0), fit.found, size) : 1.0;
-    const double statistic = part * value.dot(weighted);
+    const double part = is_radial ? believed(term.usual, at_corner(term, fit.found, size) * std::sqrt(own(0, 0))) : 1.0;
+    const double statistic = part * value.dot(base::solve_positive(own, value).col(0));
     const double limit = count == 1 ? kSignificantOne : kSignificantPair;
     fit.lens.tests.push_back({term.name, statistic, limit});
     if (statistic > limit) {
       if (is_radial) radial = false;
       continue;
     }
-    const Eigen::VectorXd moved = part * base::product(with_others, weighted);
-    const double real = std::max(0.0, 1.0 - static_cast<double>(count) / std::max(statistic, 1e-300));
-    left_out += part * base::product(with_others, base::solve_positive(own, with_others.transpose())) +
-                real * base::product(moved, moved.transpose());
+    left_out.push_back({term, value, own, fit.uncertainty.covariance(Eigen::all, term.places)});
     flags |= term.fixing;
     fit.found = run_opencv(views, size, square_m, flags);
     fit.uncertainty = uncertainty_of(fit.found, views, square_m);
   }
-  fit.uncertainty.covariance += left_out;
   for (const Term& term : terms) {
-    if ((flags & term.fixing) == 0) fit.lens.kept.insert(fit.lens.kept.begin(), term.name);
+    if ((flags & term.fixing) != 0) continue;
+    fit.lens.kept.insert(fit.lens.kept.begin(), term.name);
+    if (term.power == 0) continue;
+    const double value = fit.found.distortion.at<double>(static_cast<int>(term.places.front()) - 4);
+    kept_at_corner += at_corner(term, fit.found, size) * std::abs(value);
   }
+  fit.uncertainty.covariance += effect_of(left_out, fit.found, size, kept_at_corner);
   return fit;
 }
 

@@ -75,7 +75,11 @@ std::vector<Note> notes_on_views(const BoardViews& boards, const std::vector<con
 /// A term that was left out may still be real, and the fit without it then errs by more than its own covariance. So the
 /// effect of its uncertainty on all terms, C_a C^-1 C_a' (C_a the covariance of all terms with it, to the extent that
 /// the term is believed), and the part of its value beyond noise, (1 - q / (v' C^-1 v)) for q terms, are added to the
-/// covariance. Leaving terms out thus makes no result look more certain.
+/// covariance. Leaving terms out thus makes no result look more certain. Here a radial term is believed the less the
+/// straighter the lens: its part at the corner is N(0, (2 e)²) for k2 and N(0, e²) for k3, if that is less than the
+/// above, e the lens's extent: the sum of the sizes of the parts that were kept, or what k1 may be if it was left out
+/// (its size and two standard deviations). In the three measured
+/// calibrations k2 has 0.6 to 2 times the part of k1.
 ///
 /// Needs at least three views with a visible board; otherwise InputError, naming the images without one. A view whose
 /// error is above 0.2 px and five times the median is left out (with a note).
@@ -85,8 +89,9 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m);
 /// calibrate_camera(). Parameters: fx, fy, cx, cy always; k1 to k4 only if they are determined: from k4 down, a term
 /// is tested as the radial ones there, and fixed to zero and the rest fitted again, until the first that is
 /// significant; what is left out counts in the covariance as it does there. Fisheyes move the image's corner by a part
-/// of N(0, 0.1²) with k1, N(0, 0.07²), N(0, 0.05²), N(0, 0.03²) with the next: an assumption. The rows of the
-/// covariance are fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing if OpenCV finds no such camera.
+/// of N(0, 0.15²) with k1, N(0, 0.3²), N(0, 0.5²), N(0, 0.5²) with the next: an assumption, about twice the larger of
+/// two profiles for k2 to k4 (docs/reference/cameras.md, S23). The rows of the covariance are fx, fy, cx, cy, k1, k2,
+/// k3, k4, and one of zeros. Nothing if OpenCV finds no such camera.
 std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
 
 /// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.
