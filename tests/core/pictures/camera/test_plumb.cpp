@@ -89,6 +89,23 @@ TEST_CASE("the inclination against a plumb line comes out within its uncertainty
   }
 }
 
+TEST_CASE("a thread that lies across the image is found as the one of the image turned on its diagonal") {
+  const cv::Mat upright = image_of(0.25, 0.0, 0.6, 20.0, 1);
+  const cv::Point2d middle = kCamera.project(wall().at(0.25, 0.0));
+  const cv::Rect region(static_cast<int>(middle.x) - 30, 17, 60, 250);
+  const auto no_lens = [](cv::Point2d pixel) { return std::optional(pixel); };
+  const core::ThreadInImage down = core::find_thread(upright, region, no_lens);
+  const core::ThreadInImage across =
+      core::find_thread(upright.t(), cv::Rect(region.y, region.x, region.height, region.width), no_lens);
+  CHECK(down.rows > 100);
+  CHECK(across.rows == down.rows);
+  REQUIRE(across.points.size() == down.points.size());
+  for (std::size_t k = 0; k < down.points.size(); ++k) {
+    const cv::Point2d swapped(across.points[k].y, across.points[k].x);
+    CHECK(cv::norm(swapped - down.points[k]) < 1e-6);  // the same arithmetic, but for rounding
+  }
+}
+
 TEST_CASE("a region without a thread, or outside the image, is an error that names the file") {
   const tests::TempDir dir;
   cv::imwrite((dir / "plumb.png").string(), image_of(0.25, 0.0, 0.6, 20.0, 1));
