@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text/number_text.h"
+#include "core/result/quantity.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
@@ -43,7 +44,7 @@ std::string found_text(const EverydayTarget& target) {
 
 std::string limits_text(const EverydayTarget& target) {
   const auto text = [&](double limit) {
-    return target.value ? base::number_text(limit, 2) : fmt::format("{:.0f} %", 100.0 * limit);
+    return target.number ? base::number_text(limit, 2) : fmt::format("{:.0f} %", 100.0 * limit);
   };
   if (target.low > 0.0 && target.high < 1.0) return text(target.low) + " to " + text(target.high);
   return target.low > 0.0 ? "at least " + text(target.low) : "at most " + text(target.high);
@@ -105,7 +106,8 @@ TextRows number_rows(const EverydayScore& score) {
   }
   for (const auto& [kind, by_quantity] : score.covered) {
     for (const auto& [key, share] : by_quantity) {
-      rows.push_back({"interval of " + key + " holds the truth", words_of_class(kind), share_and_interval(share)});
+      rows.push_back({"interval of " + core::symbol_of(key) + " holds the truth", words_of_class(kind),
+                      share_and_interval(share)});
     }
   }
   for (const auto& [kind, of] : score.calibration) {
@@ -254,11 +256,12 @@ std::vector<EverydayTarget> everyday_targets(const EverydayScore& score) {
        0.05},
       {"off the list: a wrong name above 0.8", sum_of(diagnosis.wrong_name), {}, 0.0, 0.03},
       {"recovered intervals hold the truth", all_covered(score, ""), {}, 0.90, 0.98}};
-  EverydayTarget shares{"rms error of the shares of named causes", {}, {}, 0.0, 0.1};
+  EverydayTarget shares{"rms error of the shares of named causes", {}, {}, 0.0, 0.1, true};
   if (diagnosis.share_error.of > 0) shares.value = diagnosis.share_error.rms();
   targets.push_back(std::move(shares));
   for (const char* kind : {"one", "two", "dirt", "outside"}) {
-    EverydayTarget calibration{"expected calibration error, " + words_of_class(kind), {}, {}, 0.0, kWantedCalibration};
+    EverydayTarget calibration{
+        "expected calibration error, " + words_of_class(kind), {}, {}, 0.0, kWantedCalibration, true};
     const auto found = score.calibration.find(kind);
     if (found != score.calibration.end()) calibration.value = found->second.error;
     targets.push_back(std::move(calibration));

@@ -14,6 +14,7 @@ struct EverydayTarget {
   validate::BlindShare share;   ///< if the target is a share; of no cases otherwise
   std::optional<double> value;  ///< if the target is not a share; empty if no case bears on it
   double low = 0.0, high = 1.0;
+  bool number = false;  ///< not a share: its limits are no percentages
 };
 std::vector<EverydayTarget> everyday_targets(const validate::EverydayScore& score);
 

@@ -113,7 +113,7 @@ MotionSetup read_clip(const TomlTable& table, Names& clip_names) {
 }
 
 ConfigurationSetup read_configuration(const TomlTable& table, double gravity_m_s2, Names& names, Names& clip_names) {
-  const base::Range incline = base::between(-30.0, 60.0);
+  const base::Range incline = base::between(-90.0, 90.0);
   ConfigurationSetup setup;
   setup.name = read_unique_name(table, names);
   setup.group = table.has("group") ? read_name(table, "group") : setup.name;

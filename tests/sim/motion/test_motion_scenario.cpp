@@ -110,6 +110,15 @@ TEST_CASE("a scenario's motions are read with units converted") {
   CHECK(setup.motions[1].launched == sim::Launched::down);
 }
 
+TEST_CASE("a name has letters, digits, a hyphen, an underscore and a full stop, and does not begin with one") {
+  for (const char* const good : {"a", "Z9", "m-1", "m_1", "m.1", "_a"}) {
+    CHECK(read(with_line(4, "name = \"" + std::string(good) + "\"")).configurations.at(0).name == good);
+  }
+  for (const char* const bad : {"", ".a", "a b", "a/b", "a:b", "\xC3\xA4"}) {
+    check_error(with_line(4, "name = \"" + std::string(bad) + "\""), "4: configuration[1].name: found text");
+  }
+}
+
 TEST_CASE("what may be left out has the default that the documentation states") {
   const sim::MotionScenario scenario = read(R"(format = 1
 name = "least"
@@ -190,8 +199,8 @@ TEST_CASE("every wrong key is one error with file, line and key") {
   check_error(with_line(1, "format = 2"), "1: format: found 2");
   check_error(with_line(2, "name = \"s\"\ngravity_m_s2 = -9.8"), "3: gravity_m_s2: found -9.8");
   check_error(with_line(5, "mass_kg = 0"), "5: configuration[1].mass_kg: found 0");
-  check_error(with_line(6, "incline_deg = 61"), "6: configuration[1].incline_deg: found 61");
-  check_error(with_line(7, "stated_incline_deg = -31"), "7: configuration[1].stated_incline_deg: found -31");
+  check_error(with_line(6, "incline_deg = 91"), "6: configuration[1].incline_deg: found 91");
+  check_error(with_line(7, "stated_incline_deg = -91"), "7: configuration[1].stated_incline_deg: found -91");
   check_error(with_line(8, "stated_incline_sd_deg = -0.1"), "8: configuration[1].stated_incline_sd_deg: found -0.1");
   check_error(with_line(12, "k_over_m_1_s = -2"), "12: configuration[1].force[1].k_over_m_1_s: found -2");
   check_error(with_line(15, "mu = -0.01"), "15: configuration[1].force[2].mu: found -0.01");

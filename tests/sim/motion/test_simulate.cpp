@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "sim/oracle/closed_forms.h"
@@ -71,6 +72,14 @@ TEST_CASE("equation (8) agrees with its closed form: position within 1e-9 m over
     }
   }
   CHECK(reversals > 80);  // the spread holds both kinds
+}
+
+TEST_CASE("a body that falls at 90 degrees falls as a drag alone lets it, whatever friction it would have") {
+  const double k = 4.0, v_lim = kGravity / k;
+  const Body cup = body(0.002, 0.5 * std::numbers::pi, laws::viscous().with({k * 0.002}), laws::coulomb().with({0.3}));
+  for (const State& state : simulate(cup, 0.1, 0.0, times(3.0, 0.02)).states) {
+    CHECK(std::abs(state.x_m - (0.1 + v_lim * (state.t_s - (1.0 - std::exp(-k * state.t_s)) / k))) < 1e-9);
+  }
 }
 
 TEST_CASE("tightening the tolerance reduces the error") {

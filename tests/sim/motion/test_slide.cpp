@@ -67,6 +67,11 @@ TEST_CASE("the variable is a speed both ways") {
   }
 }
 
+TEST_CASE("a step beyond the end of a power of the speed is rest") {
+  const Body glider = body(0.3, 0.0, laws::power_law().with({0.4, 0.5}));
+  for (const int direction : {-1, +1}) CHECK(Slide(glider, direction, kLeast).speed_m_s(-1e-3) == 0.0);
+}
+
 TEST_CASE("whether a slide stops follows from the force at v -> 0") {
   CHECK(Slide(body(0.3, 0.05, laws::viscous().with({0.9})), -1, kLeast).stops());
   CHECK_FALSE(Slide(body(0.3, 0.05, laws::viscous().with({0.9})), +1, kLeast).stops());

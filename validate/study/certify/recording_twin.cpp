@@ -335,20 +335,28 @@ MadeTracks simulated(const RecordingTwin& twin, const TwinChange& change, const 
 
 namespace {
 
-/// The body of one clip, with inclination and friction changed by these accelerations and drag by this fraction.
+/// The body of one clip, with inclination and friction changed by these accelerations and drag by this fraction. A body
+/// that falls has no load that a coefficient of friction or a change of its inclination could act on: a constant force
+/// changes it instead.
 sim::Body scattered(sim::Body body, double incline_m_s2, double friction_m_s2, double drag) {
+  constexpr double kFalls = 0.01;  // of gravity, perpendicular to the motion
   const double normal_m_s2 = body.gravity_m_s2 * std::cos(body.incline_rad);
+  const bool falls = normal_m_s2 < kFalls * body.gravity_m_s2;
   for (auto& term : body.forces) {
     const std::optional<sim::LinearShare> share = term->linear();
     if (!share) continue;
-    if (share->mu > 0.0) {
+    if (share->mu > 0.0 && !falls) {
       term = sim::laws::coulomb().with({std::max(0.0, share->mu - friction_m_s2 / normal_m_s2)});
       friction_m_s2 = 0.0;
     } else if (share->k_n_s_m > 0.0) {
       term = sim::laws::viscous().with({share->k_n_s_m * std::max(0.0, 1.0 - drag)});
     }
   }
-  body.incline_rad += incline_m_s2 / normal_m_s2;
+  if (falls) {
+    body.forces.push_back(sim::laws::constant().with({body.mass_kg * (incline_m_s2 + friction_m_s2)}));
+  } else {
+    body.incline_rad += incline_m_s2 / normal_m_s2;
+  }
   return body;
 }
 
