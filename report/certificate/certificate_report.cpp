@@ -35,7 +35,9 @@ std::string share_text(const validate::RunShare& share) {
   return share.of == 0 ? "–" : percent_text(share.share, share.low, share.high);
 }
 
+/// A percentage; beyond twice the error its multiple.
 std::string fall_text(const validate::RunFall& fall) {
+  if (fall.value < -1.0) return base::number_text(1.0 - fall.value, 2) + " times the error";
   return percent_text(fall.value, fall.low, fall.high);
 }
 
