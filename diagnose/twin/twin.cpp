@@ -185,6 +185,13 @@ std::string head(const Twin& twin, const std::vector<std::string>& assumed, cons
   return text;
 }
 
+/// Beyond the vertical a track is as steep as one as far before it: a fall's inclination is 90 degrees only to within
+/// its uncertainty.
+double incline_deg(double alpha_rad) {
+  const double deg = alpha_rad * base::kDegreesPerRad;
+  return std::abs(deg) <= 90.0 ? deg : std::copysign(180.0, deg) - deg;
+}
+
 std::string configuration(const TrackSet& set, const MotionFit& fit, const Place& place,
                           const std::vector<std::size_t>& motions, const std::vector<std::string>& names, double from_m,
                           double readout_s) {
@@ -194,7 +201,7 @@ std::string configuration(const TrackSet& set, const MotionFit& fit, const Place
       "\n[[configuration]]\nname = \"g{}-m{}\"\nmass_kg = {:.9g}\nincline_deg = {:.12g}\nstated_incline_deg = "
       "{:.9g}\n"
       "group = \"{}\"\n",
-      place.group + 1, place.mass + 1, model.mass_kg, model.alpha_rad * base::kDegreesPerRad,
+      place.group + 1, place.mass + 1, model.mass_kg, incline_deg(model.alpha_rad),
       group.stated_rad * base::kDegreesPerRad, twin_name(group.name));
   for (const InclineStatement& statement : group.statements) {
     if (statement.against == Against::stated)
