@@ -88,7 +88,7 @@ TEST_CASE("several groups have their plumb angles under their names, several fol
 TEST_CASE("names that hold quotes, tags or broken UTF-8 still make valid JSON") {
   core::AnalysisResults results = tests::made_results();
   results.clips[0].name = "a \"quoted\" <clip>\n";
-  results.clips[1].notes = {core::AboutFile{"broken \xff byte"}};
+  results.clips[1].notes = {core::HeightTaken{"broken \xff byte"}};
   const json document = json::parse(report::results_json(results));
   CHECK(document.at("clips").at(0).at("name") == "a \"quoted\" <clip>\n");
 }

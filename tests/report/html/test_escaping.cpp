@@ -35,7 +35,11 @@ namespace {
 std::vector<core::Note> evil_notes() {
   core::InclineContradiction contradiction;
   contradiction.stated.by = kEvil;
-  return {core::AboutFile{kEvil},
+  return {core::ColumnsTaken{kEvil, kEvil, kEvil},
+          core::UnitAssumed{kEvil, "metres"},
+          core::HeightTaken{kEvil},
+          core::ForceUnused{kEvil},
+          core::PointMassTaken{kEvil, "+X"},
           core::OutlyingView{kEvil, 1.0, true},
           core::NoPatternInSight{{kEvil, kEvil}},
           core::PlaneViewsDisagree{kEvil, 1.0, 0.1, 2},
