@@ -11,6 +11,7 @@
 
 #include "core/result/analysis_note.h"
 #include "core/result/strength.h"
+#include "core/result/strength_choice.h"
 
 namespace glidelab::core {
 
@@ -186,7 +187,7 @@ struct ClipResult {
   std::size_t detected = 0;
   double frame_rate_hz = 0.0;  ///< nominal; of a track, the median
   double bandwidth_s = 0.0;
-  std::string bandwidth_method;
+  StrengthChoice bandwidth_method;                 ///< how the bandwidth was chosen, or what takes its place
   std::optional<SmoothingStrength> strength = {};  ///< of a smoother without a bandwidth
   double position_noise_m = 0.0;
   std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points

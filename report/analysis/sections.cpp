@@ -13,6 +13,7 @@
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/result_files.h"
+#include "report/analysis/strength_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -94,12 +95,13 @@ std::string noise_text(double noise_mm, std::size_t points) {
 /// How the clip was smoothed, and how strongly.
 std::string smoothing_text(const core::ClipResult& clip) {
   if (!clip.strength) {
-    return fmt::format("Bandwidth {} ms{}{}", base::number_text(clip.bandwidth_s * 1e3, 3),
-                       clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method));
+    const std::string method = strength_words(clip.bandwidth_method);
+    return fmt::format("Bandwidth {} ms{}{}", base::number_text(clip.bandwidth_s * 1e3, 3), method.empty() ? "" : ", ",
+                       escape(method));
   }
   const core::SmoothingStrength& strength = *clip.strength;
   std::string text = fmt::format("Smoother {}: smoothing time {} ms, by {}", escape(strength.smoother),
-                                 base::number_text(strength.time_s * 1e3, 3), escape(strength.method));
+                                 base::number_text(strength.time_s * 1e3, 3), escape(strength_words(strength.method)));
   if (!strength.breaks_s.empty()) {
     text +=
         fmt::format("; a may jump at {} turn{}", strength.breaks_s.size(), strength.breaks_s.size() == 1 ? "" : "s");

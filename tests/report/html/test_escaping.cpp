@@ -50,7 +50,8 @@ std::vector<core::Note> evil_notes() {
 core::AnalysisResults evil_results() {
   core::AnalysisResults results = tests::made_results();
   for (core::ClipResult& clip : results.clips) {
-    clip.name = clip.experiment = clip.bandwidth_method = kEvil;
+    clip.name = clip.experiment = kEvil;
+    clip.bandwidth_method = core::chosen_by::FirstSmoothing{kEvil};
     clip.notes = evil_notes();
   }
   for (core::ConfigurationResult& configuration : results.configurations) {
