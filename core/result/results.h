@@ -12,6 +12,7 @@
 #include "core/result/analysis_note.h"
 #include "core/result/strength.h"
 #include "core/result/strength_choice.h"
+#include "core/result/why_unknown.h"
 
 namespace glidelab::core {
 
@@ -37,7 +38,7 @@ struct Estimate {
 /// A quantity that the data determine, or the reason why they do not.
 struct Quantity {
   std::optional<Estimate> estimate;
-  std::string why;  ///< empty if there is an estimate
+  std::optional<WhyUnknown> why = {};  ///< empty if there is an estimate
   /// The correction for the kernel's bias of a line (line_law.h) that the estimate contains; without one, the value
   /// comes from the lines as fitted.
   std::optional<double> smoothing_correction = {};
@@ -176,9 +177,6 @@ struct FreeBlock {
   std::vector<std::vector<double>> shared_m;  ///< as in TrackData, of these points
   RecordedForce force;                        ///< over these points; empty if none was recorded
 };
-
-/// "motion towards +x before 0.542 s is left out as the hand's: the launch was towards -x"
-std::string sentence(const AgainstLaunch& against);
 
 struct ClipResult {
   std::string name;

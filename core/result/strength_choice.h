@@ -34,7 +34,7 @@ struct FirstSmoothing {
 /// A rule of core/motion/bandwidth/bandwidth_rule.h. What it found is worded by the rule itself, as its name is: a
 /// pattern of fmt with a place for each number, "rms x'''' of {:.3g} m/s^4".
 struct Rule {
-  enum class Edge { none, narrowest, widest };  ///< of the bandwidths tried
+  enum class Edge { none, narrowest, widest, only };  ///< of the bandwidths tried
   std::string_view found;
   std::vector<double> numbers = {};
   Edge edge = Edge::none;  ///< at which the choice lies

@@ -52,8 +52,8 @@ std::vector<DiagnosedParameter> parameters_of(const LineExplanation& explanation
       {cause.terms.front().key, explanation.solution.size[at], explanation.solution.sd[at]}};
   if (cause.id == ids::smoothing_bias) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    parameters.push_back({"bandwidth_s", kNan, kNan,
-                          "a table says neither how wide the kernel was nor which stretch each line was fitted to"});
+    parameters.push_back(
+        {.key = "bandwidth_s", .value = kNan, .sd = kNan, .why = core::WhyUnknown{core::unknown::KernelNotStated{}}});
   }
   return parameters;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
+#include "core/result/why_words.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
@@ -22,7 +23,7 @@ namespace {
 
 /// "2.7791 ± 0.0062", or a dash that shows the reason as a tooltip. HTML.
 std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
-  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
+  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(core::why_words(quantity.why)));
   return base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
 }
 
@@ -220,7 +221,7 @@ Html camera_section(const core::AnalysisResults& results) {
     HtmlTable table({"group", "inclination against the plumb line"});
     for (const core::PlumbResult& plumb : results.plumbs) {
       std::string cell = quantity_html(plumb.plumb_deg, "°");
-      if (!plumb.plumb_deg.estimate) cell += fmt::format(" {}", escape(plumb.plumb_deg.why));
+      if (!plumb.plumb_deg.estimate) cell += fmt::format(" {}", escape(core::why_words(plumb.plumb_deg.why)));
       table.row({escape(plumb.group), cell});
     }
     text += table.str();
@@ -272,7 +273,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (quantity->estimate) continue;
       reasons += fmt::format("<li>{}: {} is not determined: {}</li>\n", escape(configuration_name(results, c)),
-                             name.symbol, escape(quantity->why));
+                             name.symbol, escape(core::why_words(quantity->why)));
     }
   }
   std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();

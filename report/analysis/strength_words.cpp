@@ -34,6 +34,7 @@ struct ChoiceSentence {
     return fmt::vformat(fmt::string_view(of.found.data(), of.found.size()), numbers) +
            (of.edge == Edge::narrowest ? " (the narrowest tried)"
             : of.edge == Edge::widest  ? " (the widest tried)"
+            : of.edge == Edge::only    ? " (the only one tried)"
                                        : "") +
            (of.converted ? ", converted for a" : "");
   }

@@ -8,7 +8,7 @@
 namespace glidelab::tests {
 
 inline core::Quantity known(double value, double sd) {
-  return {core::Estimate{value, sd, value - 1.96 * sd, value + 1.96 * sd}, ""};
+  return {core::Estimate{value, sd, value - 1.96 * sd, value + 1.96 * sd}, {}};
 }
 
 inline core::LineFit made_line(int direction, double k_over_m, double a0) {

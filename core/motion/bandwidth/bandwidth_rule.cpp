@@ -108,6 +108,7 @@ std::optional<std::size_t> widest_local_least(const std::vector<double>& criteri
 }
 
 chosen_by::Rule::Edge edge_of(const std::vector<double>& grid, std::size_t choice) {
+  if (grid.size() == 1) return chosen_by::Rule::Edge::only;
   if (choice == 0) return chosen_by::Rule::Edge::narrowest;
   if (choice + 1 == grid.size()) return chosen_by::Rule::Edge::widest;
   return chosen_by::Rule::Edge::none;

@@ -79,8 +79,8 @@ std::optional<BandwidthPick> by_empirical_bias(const BandwidthProblem& problem) 
   pick.bandwidth_s = grid[*best];
   pick.by = found_by_rule("empirical bias: noise and bias of a together {:.2g} m/s^2",
                           std::sqrt(criterion[*best] / static_cast<double>(scan.probes().size())));
-  if (*best == kEachSide) pick.by.edge = chosen_by::Rule::Edge::narrowest;
-  if (*best + kEachSide + 1 == grid.size()) pick.by.edge = chosen_by::Rule::Edge::widest;
+  const std::vector<double> judged(grid.begin() + kEachSide, grid.end() - kEachSide);
+  pick.by.edge = edge_of(judged, *best - kEachSide);
   return pick;
 }
 

@@ -26,6 +26,7 @@ TEST_CASE("every way to choose a bandwidth or a strength has words, with its num
       {by::Rule{"{:.1f} ms for x", {30.0}, Edge::narrowest, true},
        "30.0 ms for x (the narrowest tried), converted for a"},
       {by::Rule{"{:.1f} ms", {30.0}, Edge::widest, false}, "30.0 ms (the widest tried)"},
+      {by::Rule{"{:.1f} ms", {30.0}, Edge::only, false}, "30.0 ms (the only one tried)"},
       {by::Truth{}, "the least error of a(t), by the truth"},
       {by::Likelihood{}, "maximum marginal likelihood"},
       {by::CrossValidation{}, "minimum generalised cross-validation"},

@@ -118,7 +118,7 @@ TEST_CASE("results without any usable point still make a page that says so") {
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.lines.clear();
     configuration.k_over_m_1_s = configuration.mu = configuration.alpha_deg =
-        configuration.v_lim_m_s = {std::nullopt, "no free motion was found"};
+        configuration.v_lim_m_s = {std::nullopt, core::WhyUnknown{core::unknown::Told{"no free motion was found"}}};
   }
   const std::string page = report::analysis_report("nothing", results, {}).html;
   CHECK(page.find("no free motion was found") != std::string::npos);

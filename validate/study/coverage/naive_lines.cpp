@@ -60,7 +60,7 @@ core::Quantity interval(double value, double variance) {
 }
 
 core::Quantity nothing(const char* why) {
-  return {std::nullopt, why};
+  return {std::nullopt, core::WhyUnknown{core::unknown::Told{why}}};
 }
 
 core::Quantity limit_of(const std::optional<Line>& line) {

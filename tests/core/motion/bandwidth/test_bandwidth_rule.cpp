@@ -257,6 +257,14 @@ TEST_CASE("a rule that judges x says which bandwidth it found for x, of which it
   }
 }
 
+TEST_CASE("a choice at an end of the bandwidths tried says at which, and one without an alternative says that") {
+  using Edge = chosen_by::Rule::Edge;
+  CHECK(edge_of({0.01, 0.02, 0.03}, 0) == Edge::narrowest);
+  CHECK(edge_of({0.01, 0.02, 0.03}, 1) == Edge::none);
+  CHECK(edge_of({0.01, 0.02, 0.03}, 2) == Edge::widest);
+  CHECK(edge_of({0.01}, 0) == Edge::only);
+}
+
 TEST_CASE("where x'''' drowns in the noise the plug-in rule says so and takes the widest") {
   Case of = sliding(1e-2, 60.0);
   for (double& x : of.x) x = 0.0;
