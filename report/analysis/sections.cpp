@@ -81,8 +81,11 @@ std::string images(const core::ClipResult& clip, const core::Preview& preview) {
         frame.frame, escape(clip.name), data_uri("image/jpeg", frame.jpeg), frame.t_s);
   }
   if (!text.empty()) text = fmt::format("<div class=\"figures\">\n{}</div>\n", text);
-  if (!preview.why_no_video.empty()) {
-    text += fmt::format("<p class=\"soft\">No video: {}.</p>\n", escape(preview.why_no_video));
+  if (preview.no_video) {
+    const auto& bytes = preview.no_video->bytes;
+    text += fmt::format("<p class=\"soft\">No video: {}.</p>\n",
+                        bytes ? fmt::format("it would take {:.1f} MB", static_cast<double>(*bytes) * 1e-6)
+                              : "no H.264 encoder is installed");
   }
   return text;
 }

@@ -75,7 +75,7 @@ core::AnalysisResults evil_results() {
 }
 
 std::vector<core::Preview> evil_previews() {
-  const core::Preview preview{{{0, 0.0, "jpeg"}}, "", 1.0, kEvil};
+  const core::Preview preview{{{0, 0.0, "jpeg"}}, "", 1.0, {}};
   return {preview, preview};
 }
 
