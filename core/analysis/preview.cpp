@@ -1,7 +1,5 @@
 #include "core/analysis/preview.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
@@ -103,13 +101,13 @@ class VideoFile {
     writer_.write(image);
   }
   /// The file's bytes, or the reason why there are none.
-  std::pair<std::string, std::string> finish() {
+  std::pair<std::string, std::optional<NoVideo>> finish() {
     writer_.release();
     std::error_code error;
     const auto size = fs::file_size(file(), error);
-    if (failed_ || error || size == 0) return {"", "no H.264 encoder is installed"};
-    if (size > kMostBytes) return {"", fmt::format("it would take {:.1f} MB", static_cast<double>(size) * 1e-6)};
-    return {base::read_file(file()), ""};
+    if (failed_ || error || size == 0) return {"", NoVideo{}};
+    if (size > kMostBytes) return {"", NoVideo{size}};
+    return {base::read_file(file()), std::nullopt};
   }
 
  private:
@@ -157,7 +155,7 @@ Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const
     if (!video && next_shown == shown.size()) break;
   }
   if (video) {
-    std::tie(preview.mp4, preview.why_no_video) = video->finish();
+    std::tie(preview.mp4, preview.no_video) = video->finish();
     preview.slow_motion = experiment.camera->frame_rate_hz / (kPlaybackHz * static_cast<double>(step));
   }
   return preview;

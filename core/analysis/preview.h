@@ -3,7 +3,9 @@
 /// The clip is read again, frame by frame, after the analysis; the preview does not enter any result.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,11 +25,17 @@ struct PreviewFrame {
   std::string jpeg;  ///< the file's bytes
 };
 
+/// Why a requested video is missing.
+struct NoVideo {
+  std::optional<std::uintmax_t>
+      bytes;  ///< it would take so many, too many for a page; empty: there is no H.264 encoder
+};
+
 struct Preview {
   std::vector<PreviewFrame> frames;  ///< the marker circled, its path dotted
   std::string mp4;                   ///< H.264, playable in a browser; empty if there is none
   double slow_motion = 1.0;          ///< how many times longer the video takes than the motion
-  std::string why_no_video;          ///< empty if there is one, or if none was requested
+  std::optional<NoVideo> no_video;   ///< empty if there is one, or if none was requested
 };
 
 struct PreviewOptions {
@@ -37,7 +45,7 @@ struct PreviewOptions {
 };
 
 /// Reads the clip of `setup` again. A clip that is a track has no images: an empty preview. A missing encoder is not an
-/// error; `why_no_video` says so. InputError if the clip cannot be read (any more).
+/// error; `no_video` says so. InputError if the clip cannot be read (any more).
 Preview make_preview(const Experiment& experiment, const ClipSetup& setup, const ClipResult& result,
                      const PreviewOptions& options = {});
 

@@ -159,8 +159,8 @@ BandwidthChoice by_rule(const std::string& name, const Motion& motion, const Fre
   const BandwidthRule* rule = find_bandwidth_rule(name);
   assert(rule);
   const auto pick = rule->choose(problem);
-  if (pick) return {pick->bandwidth_s, pick->method, 0.0};
-  return {free.pilot_bandwidth_s, "that of the first smoothing: the motion is too short for the rule " + name, 0.0};
+  if (pick) return {pick->bandwidth_s, pick->by};
+  return {free.pilot_bandwidth_s, chosen_by::FirstSmoothing{name}};
 }
 
 /// InputError if the given bandwidth smooths over more than the clip.
@@ -175,7 +175,7 @@ void check_bandwidth(const MotionOptions& options, const std::string& clip, cons
 
 /// The bandwidth given in the options, or chosen by their rule.
 BandwidthChoice bandwidth_of(const Motion& motion, const FreeMotion& free, const MotionOptions& options) {
-  if (options.bandwidth_s) return {*options.bandwidth_s, "given", 0.0};
+  if (options.bandwidth_s) return {*options.bandwidth_s, chosen_by::User{}};
   const PositionNoise noise = noise_at(motion, free.stretches, free.pilot_bandwidth_s);
   return options.bandwidth_rule.empty() ? choose_bandwidth(motion, free.stretches, noise, free.pilot_bandwidth_s)
                                         : by_rule(options.bandwidth_rule, motion, free, noise);

@@ -1,7 +1,5 @@
 #include "core/motion/join_configurations.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -165,7 +163,7 @@ double degrees_of(double rad) {
 /// and Laird 1986 add it at any distance; two correct lines would then state 1.2 times their standard deviation on
 /// average.) This evens out the weights, and the standard deviation grows with the spread.
 Quantity mean_k(const std::vector<LineFit>& lines) {
-  if (lines.empty()) return undetermined("no line: neither direction has enough points that count");
+  if (lines.empty()) return undetermined(unknown::NoLine{});
   double between = 0.0;
   if (lines.size() == 2) {
     const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
@@ -215,8 +213,7 @@ void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, doubl
   const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
   const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);
   if (std::abs(mean) >= gravity_m_s2) {
-    const std::string why = fmt::format("the mean of a0 is {:.4g} m/s², which is gravity or more", mean);
-    result.alpha_deg = result.mu = undetermined(why);
+    result.alpha_deg = result.mu = undetermined(unknown::MeanBeyondGravity{mean});
     return;
   }
   const double alpha = std::asin(mean / gravity_m_s2);
@@ -235,11 +232,8 @@ void recover(const std::vector<LineFit>& lines, double gravity_m_s2, Configurati
     mu_and_alpha_of_intercepts(lines[0], lines[1], gravity_m_s2, result);
     return;
   }
-  const std::string missing = lines.empty()                  ? "v < 0 and none for v > 0"
-                              : lines.front().direction == 1 ? "v < 0"
-                                                             : "v > 0";
-  result.alpha_deg = result.mu =
-      undetermined("no line for " + missing + ": friction and slope can be told apart only with both directions");
+  result.alpha_deg = result.mu = undetermined(unknown::NotBothLines{
+      .minus = lines.empty() || lines.front().direction == 1, .plus = lines.empty() || lines.front().direction == -1});
 }
 
 void set_correction(const Quantity& as_fitted, Quantity& recovered) {
@@ -247,9 +241,9 @@ void set_correction(const Quantity& as_fitted, Quantity& recovered) {
   recovered.smoothing_correction = recovered.estimate->value - as_fitted.estimate->value;
 }
 
-/// Adds a note if a line is missing because the motion that it needs went against the stated launch.
+/// Adds to the reasons that a line is missing because the motion that it needs went against the stated launch.
 void tell_launch(const std::vector<MemberClip>& members, ConfigurationResult& result) {
-  std::string told, told_of_limit;
+  std::vector<ClipAgainstLaunch> told, told_of_limit;
   for (const MemberClip& member : members) {
     const std::optional<AgainstLaunch>& against = member.clip->against_launch;
     if (!against || !against->until_s) continue;
@@ -257,15 +251,13 @@ void tell_launch(const std::vector<MemberClip>& members, ConfigurationResult& re
                     [&](const LineFit& line) { return line.direction == against->direction; })) {
       continue;
     }
-    const std::string of_clip = fmt::format("; {}: {} (as launched and downhill in experiment.toml say)",
-                                            member.clip->name, sentence(*against));
-    told += of_clip;
-    if (against->direction > 0) told_of_limit += of_clip;
+    told.push_back({member.clip->name, *against});
+    if (against->direction > 0) told_of_limit.push_back(told.back());
   }
-  if (!result.mu.estimate) result.mu.why += told;
-  if (!result.alpha_deg.estimate) result.alpha_deg.why += told;
-  if (!result.v_lim_m_s.estimate) result.v_lim_m_s.why += told_of_limit;
-  if (!result.k_over_m_1_s.estimate) result.k_over_m_1_s.why += told;
+  if (result.mu.why) result.mu.why->against_launch = told;
+  if (result.alpha_deg.why) result.alpha_deg.why->against_launch = told;
+  if (result.v_lim_m_s.why) result.v_lim_m_s.why->against_launch = told_of_limit;
+  if (result.k_over_m_1_s.why) result.k_over_m_1_s.why->against_launch = told;
 }
 
 ConfigurationResult join_members(const std::vector<MemberClip>& members, double gravity_m_s2, LineMethod lines) {

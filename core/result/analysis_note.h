@@ -14,11 +14,26 @@
 
 namespace glidelab::core {
 
-// About a file, as it was read.
+// About a video or a folder of frames, as it was read.
 
-/// A remark of a file's reader about the file's own words: its columns, units, rates. Worded where the file is read.
-struct AboutFile {
-  std::string text;
+/// Files in a folder of frames that are not images.
+struct FilesSkipped {
+  std::size_t files = 0;
+};
+
+/// The container's rate differs from that of experiment.toml.
+struct ContainerOfOtherRate {
+  double container_hz = 0.0, stated_hz = 0.0;
+  bool by_rate = true;  ///< the times are those of the stated rate; otherwise the container's time stamps
+};
+
+/// They are left out, since the times are the container's.
+struct LastFramesUnstamped {};
+
+struct IrregularStamps {
+  std::size_t irregular = 0, steps = 0;
+  double median_step_s = 0.0, longest_step_s = 0.0;
+  bool by_rate = true;  ///< as above
 };
 
 /// Frames that are identical to the previous one, bit by bit.
@@ -32,7 +47,84 @@ struct EvenStamps {
   double half_width_s = 0.0;  ///< of the steps that would explain them
 };
 
-/// A file on its own does not state these.
+// About a table of positions, as it was read. Columns are named by their headers, as in the file.
+
+/// The columns read as positions and times, of a table that has others.
+struct ColumnsTaken {
+  std::string x, t;
+  std::string run;  ///< the run that they belong to, if the name of x does not contain it
+};
+
+/// A column without a unit is read in SI units.
+struct UnitAssumed {
+  std::string column;
+  std::string_view unit;  ///< "metres", "seconds"
+};
+
+struct HeightTaken {
+  std::string column;
+};
+
+struct ForceUnused {
+  std::string column;
+};
+
+/// A path in (x, y) whose y is taken, because it covers more of the motion.
+struct MotionAlongY {
+  double y_m = 0.0, x_m = 0.0;  ///< ranges
+};
+
+/// A path in (x, y) at an angle to the axis along which it is read.
+struct SlantedPath {
+  double off_deg = 0.0;
+  double stretch = 1.0;  ///< distances along the path over those along the axis
+  bool along_y = false;
+};
+
+/// Heights whose sign is changed, so that x rises along the motion.
+struct CountedAlongMotion {};
+
+/// Rows between others that lack a time or a position.
+struct RowsIncomplete {
+  std::size_t rows = 0;
+};
+
+/// Rounded times of a table that are explained by evenly spaced frames.
+struct RoundedTimes {
+  double tick_s = 0.0, step_s = 0.0;
+};
+
+// About a Tracker project, as it was read.
+
+struct NoLengthUnit {};
+
+/// The point mass and the coordinate that are read as x.
+struct PointMassTaken {
+  std::string mass;
+  std::string towards;    ///< the positive direction of x: "+X", "-Y"
+  bool along_y = false;   ///< otherwise along X
+  bool as_stated = true;  ///< otherwise the coordinate of larger extent
+};
+
+/// The line of the positions makes an angle with the coordinate that is read as x.
+struct MassMovesAslant {
+  double off_deg = 0.0;
+  double short_by = 0.0;  ///< fraction of the distance that x lacks
+  bool along_y = false;
+};
+
+struct PositionsOutsideClip {
+  std::size_t positions = 0;
+};
+
+/// Positions that Tracker interpolated between two marks.
+struct PositionsFilledIn {
+  std::size_t positions = 0;
+};
+
+// About a file on its own.
+
+/// It does not state these.
 struct AssumedStatements {
   std::optional<double> mass_kg;  ///< the assumed mass; empty if it is stated
   bool level = false;             ///< an inclination of 0 is assumed
@@ -230,13 +322,15 @@ struct FitScatters {
 };
 
 using AnyNote =
-    std::variant<AboutFile, RepeatedFrames, EvenStamps, AssumedStatements, AssumedMass, OutlyingView, NoPatternInSight,
-                 UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree,
-                 MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain,
-                 PixelsAnswerLeft, DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale,
-                 CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,
-                 NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams,
-                 InclineContradiction, RobustFit, FitScatters>;
+    std::variant<FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps,
+                 ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath, CountedAlongMotion,
+                 RowsIncomplete, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant, PositionsOutsideClip,
+                 PositionsFilledIn, AssumedStatements, AssumedMass, OutlyingView, NoPatternInSight, UnrefinedCorners,
+                 CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
+                 MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, DarkMarker,
+                 DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing,
+                 OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine,
+                 NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, RobustFit, FitScatters>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

@@ -1,7 +1,5 @@
 #include "core/result/estimate.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,17 +32,14 @@ Quantity determined(const Estimate& estimate, std::optional<double> noise_sd) {
   return quantity;
 }
 
-Quantity undetermined(std::string why) {
-  return {std::nullopt, std::move(why)};
+Quantity undetermined(AnyReason why) {
+  return {std::nullopt, WhyUnknown{std::move(why)}};
 }
 
-std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view k_is, const Estimate& a0_m_s2) {
-  if (k_over_m_1_s.value - kNormal95 * k_over_m_1_s.sd <= 0.0) {
-    return fmt::format("{} is not above zero by more than its uncertainty", k_is);
-  }
-  if (a0_m_s2.value - kNormal95 * a0_m_s2.sd <= 0.0) {
-    return "a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0";
-  }
+std::optional<AnyReason> why_no_limit_velocity(const Estimate& k_over_m_1_s, unknown::RateNotPositive rate,
+                                               const Estimate& a0_m_s2) {
+  if (k_over_m_1_s.value - kNormal95 * k_over_m_1_s.sd <= 0.0) return rate;
+  if (a0_m_s2.value - kNormal95 * a0_m_s2.sd <= 0.0) return unknown::InterceptNotPositive{};
   return {};
 }
 

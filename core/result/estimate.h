@@ -3,12 +3,11 @@
 
 #include <functional>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/result/analysis_note.h"
 #include "core/result/results.h"
+#include "core/result/why_unknown.h"
 
 namespace glidelab::core {
 
@@ -25,11 +24,12 @@ double chi2_ratio_limit(double degrees);
 
 /// `noise_sd`: the random part of the estimate's standard deviation (Quantity).
 Quantity determined(const Estimate& estimate, std::optional<double> noise_sd = {});
-Quantity undetermined(std::string why);
+Quantity undetermined(AnyReason why);
 
 /// Why a line a = a0 - (K/m) v of v > 0 has no terminal velocity a0/(K/m); empty if it has one: both coefficients are
-/// above zero by 1.96 standard deviations. `k_is` begins the sentence: "K/m".
-std::string why_no_limit_velocity(const Estimate& k_over_m_1_s, std::string_view k_is, const Estimate& a0_m_s2);
+/// above zero by 1.96 standard deviations. `rate` is the reason if K/m is not.
+std::optional<AnyReason> why_no_limit_velocity(const Estimate& k_over_m_1_s, unknown::RateNotPositive rate,
+                                               const Estimate& a0_m_s2);
 
 /// Laboratory gliders are lighter; masses given in grams instead of kilograms are not.
 inline constexpr double kLargestMass_kg = 20.0;

@@ -1,7 +1,5 @@
 #include "core/result/results.h"
 
-#include <fmt/format.h>
-
 #include <cassert>
 
 namespace glidelab::core {
@@ -35,14 +33,6 @@ std::string describe(LeftOut reason) {
   }
   assert(false);
   return "";
-}
-
-std::string sentence(const AgainstLaunch& against) {
-  const std::string moving = against.direction > 0 ? "+x" : "-x", launch = against.direction > 0 ? "-x" : "+x";
-  if (!against.until_s) return fmt::format("it moves towards {} only: the launch was towards {}", moving, launch);
-  return fmt::format(
-      "motion towards {} before {:.3f} s is attributed to the hand and excluded, since the launch was towards {}",
-      moving, *against.until_s, launch);
 }
 
 }  // namespace glidelab::core

@@ -11,6 +11,8 @@
 
 #include "core/result/analysis_note.h"
 #include "core/result/strength.h"
+#include "core/result/strength_choice.h"
+#include "core/result/why_unknown.h"
 
 namespace glidelab::core {
 
@@ -36,7 +38,7 @@ struct Estimate {
 /// A quantity that the data determine, or the reason why they do not.
 struct Quantity {
   std::optional<Estimate> estimate;
-  std::string why;  ///< empty if there is an estimate
+  std::optional<WhyUnknown> why = {};  ///< empty if there is an estimate
   /// The correction for the kernel's bias of a line (line_law.h) that the estimate contains; without one, the value
   /// comes from the lines as fitted.
   std::optional<double> smoothing_correction = {};
@@ -176,9 +178,6 @@ struct FreeBlock {
   RecordedForce force;                        ///< over these points; empty if none was recorded
 };
 
-/// "motion towards +x before 0.542 s is left out as the hand's: the launch was towards -x"
-std::string sentence(const AgainstLaunch& against);
-
 struct ClipResult {
   std::string name;
   std::string experiment;  ///< name of the folder it comes from
@@ -186,7 +185,7 @@ struct ClipResult {
   std::size_t detected = 0;
   double frame_rate_hz = 0.0;  ///< nominal; of a track, the median
   double bandwidth_s = 0.0;
-  std::string bandwidth_method;
+  StrengthChoice bandwidth_method;                 ///< how the bandwidth was chosen, or what takes its place
   std::optional<SmoothingStrength> strength = {};  ///< of a smoother without a bandwidth
   double position_noise_m = 0.0;
   std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points

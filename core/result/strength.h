@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "core/result/strength_choice.h"
+
 namespace glidelab::core {
 
 /// What a smoother (core/motion/smoothing/smoother.h) chose.
 struct SmoothingStrength {
   std::string smoother = "local-polynomial";
-  std::string method;        ///< one line for the reader: how it was chosen
+  StrengthChoice method;     ///< how it was chosen
   int order = 0;             ///< N of the process (wiener_chain.h); 0 if there is none
   double rate_1_s = 0.0;     ///< k, at which its last derivative decays
   double bandwidth_s = 0.0;  ///< of the local cubic; otherwise of the local cubic with the same noise in a, far from

@@ -144,18 +144,10 @@ std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, s
   }
   const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
   const bool upright = range_y > kOtherAxis * range_x;
-  if (upright) {
-    notes.emplace_back(
-        AboutFile{fmt::format("y covers {:.3g} m and x only {:.2g} m: the motion is taken along y (--column says "
-                              "otherwise)",
-                              range_y, range_x)});
-  }
+  if (upright) notes.emplace_back(MotionAlongY{range_y, range_x});
   const double off_deg = upright ? 90.0 - slant_deg(path) : slant_deg(path);
   if (off_deg > kSlanted_deg) {
-    notes.emplace_back(
-        AboutFile{fmt::format("the path runs at {:.1f}° to the {} axis: along it distances are {:.3g} times as long. "
-                              "Turn the axes along the track and export again",
-                              off_deg, upright ? "y" : "x", 1.0 / std::cos(off_deg / base::kDegreesPerRad))});
+    notes.emplace_back(SlantedPath{off_deg, 1.0 / std::cos(off_deg / base::kDegreesPerRad), upright});
   }
   return upright ? y : x;
 }
@@ -217,7 +209,7 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),
                  const char* kind, const char* standard, std::vector<Note>& notes) {
   if (column.unit.empty()) {
-    notes.emplace_back(AboutFile{fmt::format("\"{}\" states no unit and is taken as {}", column.text, standard)});
+    notes.emplace_back(UnitAssumed{column.text, standard});
     return 1.0;
   }
   const auto value = factor(column.unit);
@@ -233,16 +225,11 @@ ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked,
   chosen.time = time_column(table, chosen.place);
   chosen.is_height = asked.empty() && is_height_column(table.columns[chosen.place]);
   if (chosen.is_height) {
-    notes.emplace_back(
-        AboutFile{fmt::format("x is \"{}\", a height: state an inclination of 90° if this is a fall (--incline 90)",
-                              table.columns[chosen.place].text)});
+    notes.emplace_back(HeightTaken{table.columns[chosen.place].text});
   }
   for (const TableColumn& column : table.columns) {
     if (column.unit != "N" && lower(column.name) != "force") continue;
-    notes.emplace_back(
-        AboutFile{fmt::format("\"{}\" is not used: a force along x that was recorded with it stands under force_n in a "
-                              "table with the header t_s,x_m,force_n",
-                              column.text)});
+    notes.emplace_back(ForceUnused{column.text});
     break;
   }
   return chosen;

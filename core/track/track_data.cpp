@@ -34,8 +34,7 @@ void put_even(TrackData& track) {
   const std::optional<EvenTimes> even = even_times(track.t_s, StampSource::table);
   if (!even) return;
   if (even->tick_s > kNotableTick * even->step_s) {
-    track.notes.emplace_back(AboutFile{fmt::format(
-        "the times are whole multiples of {:.2g} s and taken as even, {:.6g} s apart", even->tick_s, even->step_s)});
+    track.notes.emplace_back(RoundedTimes{even->tick_s, even->step_s});
   }
   double start_s = 0.0;
   for (std::size_t i = 0; i < track.t_s.size(); ++i) start_s += track.t_s[i] - even->t_s[i];
@@ -132,7 +131,7 @@ void count_along_motion(TrackData& track) {
   if (!(displacement < 0.0)) return;
   for (double& x : track.x_m) x = -x;
   for (double& force : track.force_n) force = -force;
-  track.notes.emplace_back(AboutFile{"x is counted along the motion: its values are taken with the other sign"});
+  track.notes.emplace_back(CountedAlongMotion{});
 }
 
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill) {
@@ -144,9 +143,8 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   const double metres = downhill.value_or(1) * metres_of(table, x, track.notes);
   const double seconds = seconds_of(table, t, track.notes);
   if (table.columns.size() > 2) {
-    track.notes.emplace_back(
-        AboutFile{fmt::format("x is \"{}\", its time \"{}\"{}", x.text, t.text,
-                              x.run.empty() || x.text.find(x.run) != std::string::npos ? "" : ", " + x.run)});
+    const bool run_apart = !x.run.empty() && x.text.find(x.run) == std::string::npos;
+    track.notes.emplace_back(ColumnsTaken{x.text, t.text, run_apart ? x.run : ""});
   }
   if (!rises_mostly(t)) {
     throw base::InputError(
@@ -189,9 +187,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   }
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
   if (chosen.is_height && !downhill) count_along_motion(track);
-  if (missing > 0)
-    track.notes.emplace_back(
-        AboutFile{fmt::format("{} rows between others lack a time or x and are left out", missing)});
+  if (missing > 0) track.notes.emplace_back(RowsIncomplete{missing});
   take_rows_as_frames(track);
   return track;
 }

@@ -198,12 +198,10 @@ std::vector<Place> places_of(const TrackerProject& project, const TrackerMass& m
     places.push_back({since / project.step, metres * (u * cosine + w * sine), metres * (w * cosine - u * sine)});
   }
   if (outside > 0) {
-    notes.emplace_back(AboutFile{
-        fmt::format("{} positions that are not among the steps of the project's clip are left out", outside)});
+    notes.emplace_back(PositionsOutsideClip{outside});
   }
   if (filled > 0) {
-    notes.emplace_back(AboutFile{
-        fmt::format("{} positions that Tracker filled in on a straight line between two marks are left out", filled)});
+    notes.emplace_back(PositionsFilledIn{filled});
   }
   return places;
 }
@@ -243,7 +241,7 @@ double angle_to_line(const std::vector<Place>& places, bool along_y) {
 
 double metres_of(const fs::path& file, const TrackerProject& project, std::vector<Note>& notes) {
   if (project.length_unit.empty()) {
-    notes.emplace_back(AboutFile{"the project states no unit of length: metres are assumed"});
+    notes.emplace_back(NoLengthUnit{});
     return 1.0;
   }
   if (const auto metres = metres_per(project.length_unit)) return *metres;
@@ -302,19 +300,10 @@ TrackData read_tracker_project(const fs::path& file, std::optional<Downhill> dow
   const double sign = sign_of(down);
   for (const Place& place : places) track.x_m.push_back(sign * (along_y ? place.Y : place.X));
   take_steps_as_frames(project, places, track);
-  const char axis = along_y ? 'Y' : 'X';
-  track.notes.emplace_back(
-      AboutFile{fmt::format("x is the {} of point mass \"{}\" in the project's axes, positive towards {}{}", axis,
-                            chosen.full_name, name_of(down),
-                            downhill  ? ""
-                            : along_y ? ": it moves most along Y, and that is down in the image"
-                                      : ": it moves most along X, and downhill is not stated")});
+  track.notes.emplace_back(PointMassTaken{chosen.full_name, name_of(down), along_y, downhill.has_value()});
   const double off = angle_to_line(places, along_y);
   if (off > kSlantedRad) {
-    track.notes.emplace_back(
-        AboutFile{fmt::format("the mass moves along a line that makes {:.0f} degrees with {}, so x is {:.1f} % short: "
-                              "turn the axes in Tracker to lie along the motion",
-                              off * base::kDegreesPerRad, axis, 100.0 * (1.0 - std::cos(off)))});
+    track.notes.emplace_back(MassMovesAslant{off * base::kDegreesPerRad, 1.0 - std::cos(off), along_y});
   }
   return track;
 }

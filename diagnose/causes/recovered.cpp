@@ -21,8 +21,6 @@ constexpr double kUnknownAngle_rad = 0.1, kUnknownMu = kUnknownAngle_rad, kUnkno
 constexpr double kNoLoad = 0.02;        // cos(alpha) below which there is no normal force to speak of
 constexpr double kInstant_s = 1e-4;     // time step over which an acceleration is taken
 constexpr double kFastest_m_s = 100.0;  // upper limit of a terminal velocity
-const char* const kWhyTogether = "these motions do not tell it apart from the other quantities";
-const char* const kWhyApart = "the likely explanations differ too much in it";
 
 /// The standard deviation from which K/m counts as not known: 1/s or, if larger, K/m itself.
 double unknown_rate(double rate_1_s) {
@@ -69,7 +67,7 @@ std::optional<double> terminal_velocity(const TrackModel& model) {
 struct Recovered {
   double value = 0.0, sd = 0.0, degrees = 0.0;
   bool known = false;
-  const char* why = kWhyTogether;
+  core::AnyReason why = core::unknown::NotToldApart{};
 };
 
 struct RecoveredSet {
@@ -140,7 +138,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     one.mu.known &= one.mu.sd < kUnknownMu;
     if (!(std::cos(alpha(at)) > kNoLoad)) {
       one.mu.known = false;
-      one.mu.why = "a fall has no normal force, and so no friction";
+      one.mu.why = core::unknown::FreeFall{};
     }
     one.alpha_rad = found(alpha(at), gradient(alpha), 1.0);
     one.alpha_rad.known &= one.alpha_rad.sd < kUnknownAngle_rad;
@@ -153,7 +151,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
       one.v_lim_m_s = found(*v, gradient(there), 1.0 / std::abs(slope));
       one.v_lim_m_s.known &= one.v_lim_m_s.sd < *v;
     } else {
-      one.v_lim_m_s.why = "the forces balance at no speed downhill";
+      one.v_lim_m_s.why = core::unknown::NoBalance{};
     }
     all.push_back(one);
   }
@@ -173,7 +171,7 @@ core::Quantity mixed(const Recovered& own, double probability, const std::vector
     square += p * (other.sd * other.sd + off * off);
   }
   const double sd = std::sqrt(square / sum);
-  if (!(sd < unknown_sd)) return core::undetermined(kWhyApart);
+  if (!(sd < unknown_sd)) return core::undetermined(core::unknown::ExplanationsDiffer{});
   return core::determined(core::estimate(own.value / unit, sd / unit, own.degrees));
 }
 

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/result/why_unknown.h"
 #include "diagnose/effects/effect_list.h"
 #include "diagnose/result/gap_place.h"
 
@@ -278,9 +279,9 @@ struct OnLines {
   std::string_view key = {};
   double largest = 0.0;  ///< in the unit of the key
   OwnOfLines own = OwnOfLines::nothing;
-  std::string_view same_as = {};      ///< the effect that changes lines in the same way to first order
-  std::string_view unknown_key = {};  ///< of a second size, which no table determines,
-  std::string_view why_unknown = {};  ///< and why
+  std::string_view same_as = {};                     ///< the effect that changes lines in the same way to first order
+  std::string_view unknown_key = {};                 ///< of a second size, which no table determines,
+  std::optional<core::WhyUnknown> why_unknown = {};  ///< and why
 };
 
 /// An effect earlier in the list that no experiment with tracks can tell from this one.

@@ -20,9 +20,9 @@ namespace glidelab::diagnose {
 struct DiagnosedParameter {
   std::string key;  ///< with its unit, as in the list of effects
   double value = 0.0;
-  double sd = 0.0;        ///< 0: not fitted
-  std::string text = {};  ///< a word (a codec's name) instead of value and sd
-  std::string why = {};   ///< why the data do not determine it; its value is then not a number
+  double sd = 0.0;                           ///< 0: not fitted
+  std::string text = {};                     ///< a word (a codec's name) instead of value and sd
+  std::optional<core::WhyUnknown> why = {};  ///< why the data do not determine it; its value is then not a number
 };
 
 /// One of several effects that would look the same.

@@ -66,19 +66,20 @@ std::optional<double> number_in(const json& object, const std::string& key, cons
 }
 
 /// The reason that the object's `why` gives for a quantity.
-std::string reason_in(const json& configuration, const std::string& key, const std::string& where, Findings& findings) {
-  const std::string unsaid = "the estimator gave none and did not say why";
+core::AnyReason reason_in(const json& configuration, const std::string& key, const std::string& where,
+                          Findings& findings) {
+  const core::unknown::NotTold not_told;
   const auto why = configuration.find("why");
-  if (why == configuration.end()) return unsaid;
+  if (why == configuration.end()) return not_told;
   if (!why->is_object()) {
     findings.add(where + "why", shown(*why), "an object with a text for each quantity that is null");
-    return unsaid;
+    return not_told;
   }
   const auto reason = why->find(key);
-  if (reason == why->end()) return unsaid;
-  if (reason->is_string()) return reason->get<std::string>();
+  if (reason == why->end()) return not_told;
+  if (reason->is_string()) return core::unknown::Told{reason->get<std::string>()};
   findings.add(where + "why." + key, shown(*reason), "a text");
-  return unsaid;
+  return not_told;
 }
 
 core::Quantity quantity_in(const json& configuration, const std::string& key, const std::string& where,
@@ -170,7 +171,7 @@ void read_configuration(const json& configuration, const std::string& where, cor
 }  // namespace
 
 core::AnalysisResults undetermined_results(const std::vector<core::ClipSetup>& clips, const std::string& estimator,
-                                           const std::string& why) {
+                                           const core::AnyReason& why) {
   core::AnalysisResults results;
   results.estimator = estimator;
   std::vector<const core::ClipSetup*> firsts;  // the first clip of each configuration
@@ -199,8 +200,7 @@ core::AnalysisResults undetermined_results(const std::vector<core::ClipSetup>& c
 
 core::AnalysisResults read_estimator_results(std::string_view text, const std::filesystem::path& file,
                                              const std::vector<core::ClipSetup>& clips, const std::string& estimator) {
-  core::AnalysisResults results =
-      undetermined_results(clips, estimator, "the estimator's results.json has no such configuration");
+  core::AnalysisResults results = undetermined_results(clips, estimator, core::unknown::NotAnswered{});
   Findings findings(file);
   json document;
   try {

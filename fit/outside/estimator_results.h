@@ -24,7 +24,7 @@ namespace glidelab::fit {
 /// The configurations of these clips, in the order of their first clips. All quantities are undetermined, for the
 /// reason `why`.
 core::AnalysisResults undetermined_results(const std::vector<core::ClipSetup>& clips, const std::string& estimator,
-                                           const std::string& why);
+                                           const core::AnyReason& why);
 
 /// The same, filled with what the text says. InputError with everything that is wrong: not JSON, a key that is missing
 /// or of the wrong type, a number that is not finite, an interval that does not contain the value, a clip that the

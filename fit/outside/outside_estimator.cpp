@@ -162,7 +162,7 @@ OutsideOutcome run_outside(const OutsideEstimator& estimator, const fs::path& fo
       outcome.json.clear();
     }
   }
-  outcome.results = undetermined_results(clips, estimator.name, why_of(outcome.run));
+  outcome.results = undetermined_results(clips, estimator.name, core::unknown::Told{why_of(outcome.run)});
   return outcome;
 }
 

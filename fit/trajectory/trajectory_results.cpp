@@ -1,12 +1,9 @@
 #include "fit/trajectory/trajectory_results.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/math/angles.h"
-#include "base/text/number_text.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
 
@@ -22,10 +19,11 @@ core::Quantity quantity_of(const TrajectoryFit& fit, double value, const Eigen::
 
 core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k, double a0,
                               const Eigen::VectorXd& by_a0) {
-  if (fit.direction < 0) return core::undetermined("no motion with v > 0");
+  if (fit.direction < 0) return core::undetermined(core::unknown::NoDownhillMotion{});
   const core::Estimate intercept = *quantity_of(fit, a0, by_a0).estimate;
-  const std::string why_not = core::why_no_limit_velocity(k, "K/m", intercept);
-  if (!why_not.empty()) return core::undetermined(why_not);
+  if (const auto why_not = core::why_no_limit_velocity(k, {.of_line = false}, intercept)) {
+    return core::undetermined(*why_not);
+  }
   Eigen::VectorXd gradient = by_a0 / k.value;
   gradient[0] = -a0 / (k.value * k.value);
   return quantity_of(fit, a0 / k.value, gradient);
@@ -40,19 +38,14 @@ void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResu
   if (fit.direction != 0) {
     Eigen::VectorXd by_a0 = Eigen::Vector2d(0.0, 1.0);
     const core::Estimate a0 = *quantity_of(fit, fit.parameters[1], by_a0).estimate;
-    const std::string why = fmt::format(
-        "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not the two "
-        "apart",
-        fit.direction > 0 ? ">" : "<", fit.direction > 0 ? "-" : "+", a0.value, a0.sd);
-    result.alpha_deg = result.mu = core::undetermined(why);
+    result.alpha_deg = result.mu = core::undetermined(core::unknown::OneDirection{fit.direction, a0.value, a0.sd});
     result.v_lim_m_s = limit_velocity(fit, k_estimate, a0.value, by_a0);
     return;
   }
   const double drive = fit.parameters[1], friction = fit.parameters[2];
   result.v_lim_m_s = limit_velocity(fit, k_estimate, drive - friction, Eigen::Vector3d(0.0, 1.0, -1.0));
   if (!(std::abs(drive) < gravity_m_s2)) {
-    result.alpha_deg = result.mu =
-        core::undetermined("the acceleration without friction exceeds gravity: no inclination gives that");
+    result.alpha_deg = result.mu = core::undetermined(core::unknown::DriveBeyondGravity{});
     return;
   }
   const double cosine = std::sqrt(1.0 - std::pow(drive / gravity_m_s2, 2));
@@ -88,7 +81,7 @@ void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::
   }
 }
 
-void leave_out(const std::string& why, core::ConfigurationResult& result) {
+void leave_out(const core::AnyReason& why, core::ConfigurationResult& result) {
   result.k_over_m_1_s = result.mu = result.alpha_deg = result.v_lim_m_s = core::undetermined(why);
 }
 
@@ -108,13 +101,12 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
       }
     }
     if (blocks.empty()) {
-      leave_out("no free motion", configuration);
+      leave_out(core::unknown::NoFreeMotion{}, configuration);
       continue;
     }
     const auto fit = fit_trajectories(blocks, start_of(configuration), options);
     if (!fit) {
-      leave_out("the fit of the whole motion does not converge, or the motion does not determine its parameters",
-                configuration);
+      leave_out(core::unknown::NoFit{}, configuration);
       continue;
     }
     fill(*fit, results.gravity_m_s2, configuration);

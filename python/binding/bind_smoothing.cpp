@@ -18,6 +18,7 @@
 #include "core/motion/smoothing/smoother_list.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
+#include "report/analysis/strength_words.h"
 
 namespace glidelab::python {
 
@@ -188,8 +189,9 @@ py::tuple smooth_by(const std::string& name, const Vector& times, const Vector& 
     for (std::size_t row = 0; row < column.size(); ++row) out[row * n + i] = column[row];
   }
   const core::SmoothingStrength& strength = series.strength;
-  return py::make_tuple(std::move(values), strength.bandwidth_s, strength.method, strength.time_s, strength.noise_sd_m,
-                        vector_of(strength.breaks_s), strength.jump_sd_m_s2, strength.simultaneous_a.value());
+  return py::make_tuple(std::move(values), strength.bandwidth_s, report::strength_words(strength.method),
+                        strength.time_s, strength.noise_sd_m, vector_of(strength.breaks_s), strength.jump_sd_m_s2,
+                        strength.simultaneous_a.value());
 }
 
 /// The rule's choice for one stretch of motion: (bandwidth, method, times and bandwidths of a local rule), or None if
@@ -224,7 +226,7 @@ py::object choose_bandwidth(const Vector& times, const Vector& positions, const 
     at_s.push_back(one.t_s);
     local_s.push_back(one.bandwidth_s);
   }
-  return py::make_tuple(pick->bandwidth_s, pick->method, vector_of(at_s), vector_of(local_s));
+  return py::make_tuple(pick->bandwidth_s, report::strength_words(pick->by), vector_of(at_s), vector_of(local_s));
 }
 
 py::list rules() {

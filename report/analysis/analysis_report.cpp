@@ -8,6 +8,7 @@
 
 #include "base/math/distributions.h"
 #include "base/text/number_text.h"
+#include "core/result/why_words.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/fitted_curve.h"
 #include "report/analysis/motion_plots.h"
@@ -178,7 +179,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate) {
         reasons += fmt::format("{}: no {}: {}\n", printable(configuration_name(results, c)), name.symbol,
-                               printable(quantity->why));
+                               printable(core::why_words(quantity->why)));
       }
     }
   }

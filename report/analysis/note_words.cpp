@@ -8,6 +8,7 @@
 
 #include "base/text/number_text.h"
 #include "core/result/results.h"
+#include "core/result/why_words.h"
 
 namespace glidelab::report {
 namespace {
@@ -22,7 +23,25 @@ std::string with_sd(double deg, double sd_deg) {
 
 /// A sentence for every kind; a kind without one does not compile.
 struct AnalysisSentence {
-  std::string operator()(const core::AboutFile& of) const { return of.text; }
+  std::string operator()(const core::FilesSkipped& of) const {
+    if (of.files == 1) return "one file in the folder of frames is not an image and is skipped";
+    return fmt::format("{} files in the folder of frames are not images and are skipped", of.files);
+  }
+  std::string operator()(const core::ContainerOfOtherRate& of) const {
+    return fmt::format(
+        "the container states {:.6g} frames per second, experiment.toml {:.6g}; {}", of.container_hz, of.stated_hz,
+        of.by_rate ? "the rate in experiment.toml is used" : "the container's time stamps are used, as requested");
+  }
+  std::string operator()(const core::LastFramesUnstamped&) const {
+    return "the last frames have no time stamp and are left out";
+  }
+  std::string operator()(const core::IrregularStamps& of) const {
+    return fmt::format(
+        "the container's time stamps are irregular: {} of {} steps differ from the median step of {:.4g} ms, the "
+        "longest is {:.4g} ms{}",
+        of.irregular, of.steps, of.median_step_s * 1e3, of.longest_step_s * 1e3,
+        of.by_rate ? " (frames may be missing; the rate in experiment.toml is used)" : "");
+  }
   std::string operator()(const core::RepeatedFrames& of) const {
     return fmt::format(
         "{} of {} frames are identical to the frame before: duplicates (a camera or converter that repeats frames), or "
@@ -35,6 +54,73 @@ struct AnalysisSentence {
         "{:.0f} parts in a million) explain them all: those times are used",
         of.tick_s * 1e3, of.step_s * 1e3, std::ceil(of.half_width_s / of.step_s * 1e6));
   }
+
+  std::string operator()(const core::ColumnsTaken& of) const {
+    return fmt::format("x is \"{}\", its time \"{}\"{}{}", of.x, of.t, of.run.empty() ? "" : ", ", of.run);
+  }
+  std::string operator()(const core::UnitAssumed& of) const {
+    return fmt::format("\"{}\" states no unit and is taken as {}", of.column, of.unit);
+  }
+  std::string operator()(const core::HeightTaken& of) const {
+    return fmt::format("x is \"{}\", a height: state an inclination of 90° if this is a fall (--incline 90)",
+                       of.column);
+  }
+  std::string operator()(const core::ForceUnused& of) const {
+    return fmt::format(
+        "\"{}\" is not used: a force along x that was recorded with it stands under force_n in a table with the header "
+        "t_s,x_m,force_n",
+        of.column);
+  }
+  std::string operator()(const core::MotionAlongY& of) const {
+    return fmt::format("y covers {:.3g} m and x only {:.2g} m: the motion is taken along y (--column says otherwise)",
+                       of.y_m, of.x_m);
+  }
+  std::string operator()(const core::SlantedPath& of) const {
+    return fmt::format(
+        "the path runs at {:.1f}° to the {} axis: along it distances are {:.3g} times as long. Turn the axes along the "
+        "track and export again",
+        of.off_deg, of.along_y ? "y" : "x", of.stretch);
+  }
+  std::string operator()(const core::CountedAlongMotion&) const {
+    return "x is counted along the motion: its values are taken with the other sign";
+  }
+  std::string operator()(const core::RowsIncomplete& of) const {
+    if (of.rows == 1) return "one row between others lacks a time or x and is left out";
+    return fmt::format("{} rows between others lack a time or x and are left out", of.rows);
+  }
+  std::string operator()(const core::RoundedTimes& of) const {
+    return fmt::format("the times are whole multiples of {:.2g} s and taken as even, {:.6g} s apart", of.tick_s,
+                       of.step_s);
+  }
+
+  std::string operator()(const core::NoLengthUnit&) const {
+    return "the project states no unit of length: metres are assumed";
+  }
+  std::string operator()(const core::PointMassTaken& of) const {
+    return fmt::format("x is the {} of point mass \"{}\" in the project's axes, positive towards {}{}",
+                       of.along_y ? "Y" : "X", of.mass, of.towards,
+                       of.as_stated ? ""
+                       : of.along_y ? ": it moves most along Y, and that is down in the image"
+                                    : ": it moves most along X, and downhill is not stated");
+  }
+  std::string operator()(const core::MassMovesAslant& of) const {
+    return fmt::format(
+        "the mass moves along a line that makes {:.0f} degrees with {}, so x is {:.1f} % short: turn the axes in "
+        "Tracker to lie along the motion",
+        of.off_deg, of.along_y ? "Y" : "X", 100.0 * of.short_by);
+  }
+  std::string operator()(const core::PositionsOutsideClip& of) const {
+    if (of.positions == 1) return "one position that is not among the steps of the project's clip is left out";
+    return fmt::format("{} positions that are not among the steps of the project's clip are left out", of.positions);
+  }
+  std::string operator()(const core::PositionsFilledIn& of) const {
+    if (of.positions == 1) {
+      return "one position that Tracker filled in on a straight line between two marks is left out";
+    }
+    return fmt::format("{} positions that Tracker filled in on a straight line between two marks are left out",
+                       of.positions);
+  }
+
   std::string operator()(const core::AssumedStatements& of) const {
     const std::string mass = fmt::format("a mass of {:g} kg", of.mass_kg.value_or(0.0));
     const std::string level = "an inclination of 0°";
@@ -195,7 +281,7 @@ struct AnalysisSentence {
     return fmt::format("v {} 0: the generalised least squares did not converge; there is no line",
                        sign_of(of.direction));
   }
-  std::string operator()(const core::AgainstLaunch& of) const { return core::sentence(of); }
+  std::string operator()(const core::AgainstLaunch& of) const { return core::launch_words(of); }
 
   std::string operator()(const core::MassInGrams& of) const {
     if (of.lightest_kg) {

@@ -14,6 +14,7 @@
 #include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
+#include "report/analysis/strength_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
@@ -117,7 +118,7 @@ Json lines_json(const std::vector<core::LineFit>& lines) {
 Json strength_json(const core::SmoothingStrength& strength) {
   Json object;
   object["smoother"] = strength.smoother;
-  object["method"] = strength.method;
+  object["method"] = strength_words(strength.method);
   if (strength.order > 0) {
     object["order"] = strength.order;
     put(object, "rate_1_s", strength.rate_1_s);
@@ -146,7 +147,7 @@ Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
   object["detected"] = clip.detected;
   put(object, "frame_rate_hz", clip.frame_rate_hz);
   put(object, "bandwidth_s", clip.bandwidth_s);
-  object["bandwidth_method"] = clip.bandwidth_method;
+  object["bandwidth_method"] = strength_words(clip.bandwidth_method);
   if (clip.strength) object["smoothing"] = strength_json(*clip.strength);
   put(object, "position_noise_m", clip.position_noise_m);
   if (clip.rounding_m) put(object, "rounding_m", *clip.rounding_m);

@@ -8,11 +8,13 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
+#include "core/result/why_words.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/result_files.h"
+#include "report/analysis/strength_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -21,7 +23,7 @@ namespace {
 
 /// "2.7791 ± 0.0062", or a dash that shows the reason as a tooltip. HTML.
 std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
-  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(quantity.why));
+  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(core::why_words(quantity.why)));
   return base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
 }
 
@@ -79,8 +81,11 @@ std::string images(const core::ClipResult& clip, const core::Preview& preview) {
         frame.frame, escape(clip.name), data_uri("image/jpeg", frame.jpeg), frame.t_s);
   }
   if (!text.empty()) text = fmt::format("<div class=\"figures\">\n{}</div>\n", text);
-  if (!preview.why_no_video.empty()) {
-    text += fmt::format("<p class=\"soft\">No video: {}.</p>\n", escape(preview.why_no_video));
+  if (preview.no_video) {
+    const auto& bytes = preview.no_video->bytes;
+    text += fmt::format("<p class=\"soft\">No video: {}.</p>\n",
+                        bytes ? fmt::format("it would take {:.1f} MB", static_cast<double>(*bytes) * 1e-6)
+                              : "no H.264 encoder is installed");
   }
   return text;
 }
@@ -94,12 +99,13 @@ std::string noise_text(double noise_mm, std::size_t points) {
 /// How the clip was smoothed, and how strongly.
 std::string smoothing_text(const core::ClipResult& clip) {
   if (!clip.strength) {
-    return fmt::format("Bandwidth {} ms{}{}", base::number_text(clip.bandwidth_s * 1e3, 3),
-                       clip.bandwidth_method.empty() ? "" : ", ", escape(clip.bandwidth_method));
+    const std::string method = strength_words(clip.bandwidth_method);
+    return fmt::format("Bandwidth {} ms{}{}", base::number_text(clip.bandwidth_s * 1e3, 3), method.empty() ? "" : ", ",
+                       escape(method));
   }
   const core::SmoothingStrength& strength = *clip.strength;
   std::string text = fmt::format("Smoother {}: smoothing time {} ms, by {}", escape(strength.smoother),
-                                 base::number_text(strength.time_s * 1e3, 3), escape(strength.method));
+                                 base::number_text(strength.time_s * 1e3, 3), escape(strength_words(strength.method)));
   if (!strength.breaks_s.empty()) {
     text +=
         fmt::format("; a may jump at {} turn{}", strength.breaks_s.size(), strength.breaks_s.size() == 1 ? "" : "s");
@@ -218,7 +224,7 @@ Html camera_section(const core::AnalysisResults& results) {
     HtmlTable table({"group", "inclination against the plumb line"});
     for (const core::PlumbResult& plumb : results.plumbs) {
       std::string cell = quantity_html(plumb.plumb_deg, "°");
-      if (!plumb.plumb_deg.estimate) cell += fmt::format(" {}", escape(plumb.plumb_deg.why));
+      if (!plumb.plumb_deg.estimate) cell += fmt::format(" {}", escape(core::why_words(plumb.plumb_deg.why)));
       table.row({escape(plumb.group), cell});
     }
     text += table.str();
@@ -270,7 +276,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (quantity->estimate) continue;
       reasons += fmt::format("<li>{}: {} is not determined: {}</li>\n", escape(configuration_name(results, c)),
-                             name.symbol, escape(quantity->why));
+                             name.symbol, escape(core::why_words(quantity->why)));
     }
   }
   std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();

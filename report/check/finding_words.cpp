@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "core/result/results.h"
+#include "core/result/why_words.h"
 #include "report/analysis/note_words.h"
 
 namespace glidelab::report {
@@ -240,7 +241,7 @@ struct FindingSentence {
         fmt::format("launched = \"{}\" and {}", of.launched,
                     of.downhill ? fmt::format("downhill = \"{}\"", *of.downhill) : "no stated downhill");
     using Stated = found::AgainstStatedLaunch::Stated;
-    return {fmt::format("{}{}, as {} say; that is {} of its free motion", whose, core::sentence(of.motion), keys,
+    return {fmt::format("{}{}, as {} say; that is {} of its free motion", whose, core::launch_words(of.motion), keys,
                         percent_text(of.motion.share)),
             fmt::format("check which of the two is wrong: launched of {}, or downhill in {}; if neither is, state in "
                         "start_s when the hand lets go",

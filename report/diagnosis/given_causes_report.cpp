@@ -8,6 +8,7 @@
 
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
+#include "core/result/why_words.h"
 #include "report/analysis/doubts.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
@@ -65,14 +66,14 @@ BothColumns both_columns(const core::AnalysisResults& results, const diagnose::G
     const std::string name = configuration_name(results, configuration);
     const diagnose::RecoveredConfiguration* with = counterpart_of(configuration, given);
     for (const QuantityName& quantity : kQuantities) {
-      const core::Quantity none{{}, "its clips hold too little free motion"};
       const core::Quantity& before = core::value_of(configuration, quantity.which);
-      const core::Quantity& after = with != nullptr ? core::value_of(*with, quantity.which) : none;
+      const core::Quantity after = with != nullptr ? core::value_of(*with, quantity.which) : core::Quantity{};
       both.rows.push_back(
           {name, heading_of(quantity.key), value_of_quantity(before), value_of_quantity(after), interval_of(after)});
       if (after.estimate) continue;
-      both.why.push_back(fmt::format("{}: no {} with {}: {}", name, quantity.symbol,
-                                     given.causes.size() == 1 ? "the effect" : "the effects", after.why));
+      both.why.push_back(fmt::format(
+          "{}: no {} with {}: {}", name, quantity.symbol, given.causes.size() == 1 ? "the effect" : "the effects",
+          with != nullptr ? core::why_words(after.why) : "its clips hold too little free motion"));
     }
   }
   return both;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
+#include "core/result/why_words.h"
 #include "diagnose/effects/effect_library.h"
 #include "fit/estimators.h"
 #include "report/html/html.h"
@@ -137,7 +138,7 @@ std::string parameter_text(std::string_view key, double value, double sd) {
 
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
   if (!parameter.text.empty()) return fmt::format("{} = {}", parameter.key, parameter.text);
-  if (!parameter.why.empty()) return fmt::format("{}: not known: {}", parameter.key, parameter.why);
+  if (parameter.why) return fmt::format("{}: not known: {}", parameter.key, core::why_words(parameter.why));
   return parameter_text(parameter.key, parameter.value, parameter.sd);
 }
 

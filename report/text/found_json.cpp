@@ -14,11 +14,11 @@ Json parameters_json(const std::vector<diagnose::DiagnosedParameter>& parameters
     Json value;
     if (!parameter.text.empty()) {
       value["value"] = parameter.text;
-    } else if (parameter.why.empty()) {
+    } else if (!parameter.why) {
       put(value, "value", parameter.value);
       put(value, "sd", parameter.sd);
     } else {
-      put(value, "value", std::optional<double>(), parameter.why);
+      put(value, "value", std::optional<double>(), core::why_words(parameter.why));
       value["sd"] = nullptr;
     }
     object[parameter.key] = std::move(value);

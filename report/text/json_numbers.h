@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/result/results.h"
+#include "core/result/why_words.h"
 
 namespace glidelab::report {
 
@@ -56,7 +57,8 @@ inline void put(Json& object, const std::string& key, const core::Quantity& quan
     return;
   }
   object[key] = nullptr;
-  object["why"][key] = quantity.why.empty() ? "the data do not determine it" : quantity.why;
+  const std::string why = core::why_words(quantity.why);
+  object["why"][key] = why.empty() ? "the data do not determine it" : why;
 }
 
 /// The text of a file: indented, one newline at the end, and invalid UTF-8 replaced.

@@ -1,12 +1,11 @@
-/// Notes of an analysis by their kind.
+/// Notes of an analysis, and reasons for missing quantities, by their kind.
 #pragma once
 
-#include <algorithm>
-#include <string>
 #include <variant>
 #include <vector>
 
 #include "core/result/analysis_note.h"
+#include "core/result/results.h"
 
 namespace glidelab::tests {
 
@@ -19,12 +18,10 @@ const Kind* note_of(const std::vector<core::Note>& notes) {
   return nullptr;
 }
 
-/// Whether the reader of a file says so.
-inline bool says_of_file(const std::vector<core::Note>& notes, const std::string& part) {
-  return std::any_of(notes.begin(), notes.end(), [&](const core::Note& note) {
-    const auto* const said = std::get_if<core::AboutFile>(&note);
-    return said != nullptr && said->text.find(part) != std::string::npos;
-  });
+/// The reason that the quantity has no estimate, if it is of this kind; null otherwise. The quantity outlives it.
+template <class Kind>
+const Kind* reason_of(const core::Quantity& quantity) {
+  return quantity.why ? std::get_if<Kind>(&quantity.why->reason) : nullptr;
 }
 
 }  // namespace glidelab::tests

@@ -78,7 +78,8 @@ inline diagnose::Diagnosis two_causes() {
   of.levels = diagnose::GapLevels{5.3, 5.28, 5.1, false};
   of.recovered = {made_recovered("slope", 0.335, {"quadratic_drag", "rotational_inertia"}),
                   made_recovered("slope", 0.435, {"quadratic_drag", "rotational_inertia"})};
-  of.recovered.back().v_lim_m_s = {std::nullopt, "the clips hold no motion downhill"};
+  of.recovered.back().v_lim_m_s = {std::nullopt,
+                                   core::WhyUnknown{core::unknown::Told{"the clips hold no motion downhill"}}};
   of.next = diagnose::Routine::start_later;
   of.residuals = {{"m1-up",
                    {0.0, 1.0, 2.0},

@@ -8,7 +8,7 @@
 namespace glidelab::tests {
 
 inline core::Quantity known(double value, double sd) {
-  return {core::Estimate{value, sd, value - 1.96 * sd, value + 1.96 * sd}, ""};
+  return {core::Estimate{value, sd, value - 1.96 * sd, value + 1.96 * sd}, {}};
 }
 
 inline core::LineFit made_line(int direction, double k_over_m, double a0) {
@@ -34,7 +34,7 @@ inline core::ClipResult made_clip(const std::string& name, double k_over_m, doub
   clip.detected = frames - 1;
   clip.frame_rate_hz = 200.0;
   clip.bandwidth_s = 0.043;
-  clip.bandwidth_method = "given";
+  clip.bandwidth_method = core::chosen_by::User{};
   clip.position_noise_m = 2.1e-5;
   clip.segments = {made_line(-1, k_over_m, a0_up), made_line(1, k_over_m, a0_down)};
   clip.v_lim_m_s = known(a0_down / k_over_m, 0.0004);

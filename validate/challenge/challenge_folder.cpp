@@ -233,7 +233,7 @@ ChallengeEntrant read_entrant(const fs::path& results, const fs::path& folder, c
       run.failure = fit::OutsideFailure::no_output;
       run.what = "no results.json";
     }
-    entrant.cases.push_back(fit::undetermined_results(clips, entrant.name, fit::why_of(run)));
+    entrant.cases.push_back(fit::undetermined_results(clips, entrant.name, core::unknown::Told{fit::why_of(run)}));
   }
   if (answers == 0 && !entrant.timed) {
     refuse(results, "", "no answer", fmt::format("{}/{} and others", case_name(0), kResultsFile));

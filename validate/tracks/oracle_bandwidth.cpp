@@ -77,7 +77,7 @@ core::AnalysisResults with_best_bandwidths(const MadeTracks& made) {
     if (!best) throw base::NumericalError("clip \"" + truth.name + "\": too short for a best possible bandwidth");
     core::ClipResult clip =
         core::analyze_motion(made.setups[c], made.tracks[c], core::MotionOptions{.bandwidth_s = best->bandwidth_s});
-    clip.bandwidth_method = "the least error of a(t), by the truth";
+    clip.bandwidth_method = core::chosen_by::Truth{};
     results.clips.push_back(std::move(clip));
   }
   results.configurations = core::join_configurations(made.setups, results.clips, made.gravity_m_s2);

@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "core/result/quantity.h"
+#include "core/result/why_words.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
@@ -18,7 +19,7 @@ QuantityComparison compare_quantity(std::string name, const std::optional<double
   QuantityComparison compared;
   compared.quantity = std::move(name);
   compared.truth = truth;
-  compared.why = quantity.why;
+  compared.why = core::why_words(quantity.why);
   if (!quantity.estimate) return compared;
   compared.value = quantity.estimate->value;
   compared.sd = quantity.estimate->sd;

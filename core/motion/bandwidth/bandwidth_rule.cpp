@@ -107,10 +107,11 @@ std::optional<std::size_t> widest_local_least(const std::vector<double>& criteri
   return last;
 }
 
-std::string at_edge(const std::vector<double>& grid, std::size_t chosen) {
-  if (chosen == 0) return " (the narrowest tried)";
-  if (chosen + 1 == grid.size()) return " (the widest tried)";
-  return "";
+chosen_by::Rule::Edge edge_of(const std::vector<double>& grid, std::size_t choice) {
+  if (grid.size() == 1) return chosen_by::Rule::Edge::only;
+  if (choice == 0) return chosen_by::Rule::Edge::narrowest;
+  if (choice + 1 == grid.size()) return chosen_by::Rule::Edge::widest;
+  return chosen_by::Rule::Edge::none;
 }
 
 }  // namespace glidelab::core

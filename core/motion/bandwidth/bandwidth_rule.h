@@ -10,6 +10,8 @@
 /// To add a rule: rule_<name>.cpp, which defines its BandwidthRule, and one line in bandwidth_rule.cpp.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -19,6 +21,7 @@
 
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
+#include "core/result/strength_choice.h"
 
 namespace glidelab::core {
 
@@ -40,10 +43,18 @@ struct LocalBandwidth {
 };
 
 struct BandwidthPick {
-  double bandwidth_s = 0.0;           ///< one for all points; for a local rule the median
-  std::string method;                 ///< one line for a reader
-  std::vector<LocalBandwidth> local;  ///< for a local rule only
+  double bandwidth_s = 0.0;                ///< one for all points; for a local rule the median
+  chosen_by::Rule by;                      ///< what the rule found: found_by_rule()
+  std::vector<LocalBandwidth> local = {};  ///< for a local rule only
 };
+
+/// What a rule found, in its own words: "rms x'''' of {:.3g} m/s^4" and its number. Numbers that do not fit the pattern
+/// do not compile.
+template <class... Numbers>
+chosen_by::Rule found_by_rule(fmt::format_string<const Numbers&...> pattern, const Numbers&... numbers) {
+  const fmt::string_view found = pattern;
+  return {{found.data(), found.size()}, {static_cast<double>(numbers)...}};
+}
 
 struct BandwidthRule {
   std::string_view name;     ///< in options and files
@@ -108,7 +119,7 @@ std::optional<std::size_t> least(const std::vector<double>& criterion);
 /// with correlated noise; the widest is the better one (Hall and Marron 1991, J. R. Stat. Soc. B 53, 245).
 std::optional<std::size_t> widest_local_least(const std::vector<double>& criterion);
 
-/// " (the widest tried)" or similar, if a choice lies at an end of the grid.
-std::string at_edge(const std::vector<double>& grid, std::size_t chosen);
+/// At which end of the grid a choice lies, if at one.
+chosen_by::Rule::Edge edge_of(const std::vector<double>& grid, std::size_t choice);
 
 }  // namespace glidelab::core

@@ -10,8 +10,6 @@
 //                  neighbours', the residual sum of squares is least at about the right h even if the noise of
 //                  neighbours is correlated; that h times 1.0143 is the Gaussian kernel's (De Brabanter, De Brabanter,
 //                  Suykens, De Moor 2011, JMLR 12, 1955-1976).
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 
@@ -42,7 +40,7 @@ std::optional<Residuals> residuals_at(const BandwidthScan& scan, double bandwidt
 
 template <typename Criterion>
 std::optional<BandwidthPick> choose_by(const BandwidthProblem& problem, Kernel kernel, const KernelConstants& constants,
-                                       const char* name, Criterion criterion) {
+                                       fmt::format_string<const double&> found, Criterion criterion) {
   const BandwidthScan scan(problem);
   std::vector<double> values;
   for (const double h : scan.grid()) {
@@ -54,7 +52,9 @@ std::optional<BandwidthPick> choose_by(const BandwidthProblem& problem, Kernel k
   const double of_x = scan.grid()[*best];
   BandwidthPick pick;
   pick.bandwidth_s = convert_bandwidth(of_x, constants, kGaussianA);
-  pick.method = fmt::format("{}: {:.1f} ms for x{}, converted for a", name, 1e3 * of_x, at_edge(scan.grid(), *best));
+  pick.by = found_by_rule(found, 1e3 * of_x);
+  pick.by.edge = edge_of(scan.grid(), *best);
+  pick.by.converted = true;
   return pick;
 }
 
@@ -65,23 +65,27 @@ double mean_of_squares(const std::vector<double>& values) {
 }
 
 std::optional<BandwidthPick> leave_one_out(const BandwidthProblem& problem) {
-  return choose_by(problem, Kernel::gaussian, kGaussianX, "leave-one-out cross-validation", [](const Residuals& of) {
-    std::vector<double> predicted;
-    for (std::size_t i = 0; i < of.residual.size(); ++i) predicted.push_back(of.residual[i] / (1.0 - of.own_weight[i]));
-    return mean_of_squares(predicted);
-  });
+  return choose_by(problem, Kernel::gaussian, kGaussianX, "leave-one-out cross-validation: {:.1f} ms for x",
+                   [](const Residuals& of) {
+                     std::vector<double> predicted;
+                     for (std::size_t i = 0; i < of.residual.size(); ++i)
+                       predicted.push_back(of.residual[i] / (1.0 - of.own_weight[i]));
+                     return mean_of_squares(predicted);
+                   });
 }
 
 std::optional<BandwidthPick> generalised_cross_validation(const BandwidthProblem& problem) {
-  return choose_by(problem, Kernel::gaussian, kGaussianX, "generalised cross-validation", [](const Residuals& of) {
-    double own = 0.0;
-    for (const double weight : of.own_weight) own += weight / static_cast<double>(of.own_weight.size());
-    return mean_of_squares(of.residual) / std::pow(1.0 - own, 2);
-  });
+  return choose_by(problem, Kernel::gaussian, kGaussianX, "generalised cross-validation: {:.1f} ms for x",
+                   [](const Residuals& of) {
+                     double own = 0.0;
+                     for (const double weight : of.own_weight)
+                       own += weight / static_cast<double>(of.own_weight.size());
+                     return mean_of_squares(of.residual) / std::pow(1.0 - own, 2);
+                   });
 }
 
 std::optional<BandwidthPick> correlated_cross_validation(const BandwidthProblem& problem) {
-  return choose_by(problem, Kernel::bimodal, kBimodalX, "cross-validation for correlated noise",
+  return choose_by(problem, Kernel::bimodal, kBimodalX, "cross-validation for correlated noise: {:.1f} ms for x",
                    [](const Residuals& of) { return mean_of_squares(of.residual); });
 }
 

@@ -9,8 +9,6 @@
 //         the best h is sqrt(5)/2) the intervals, apart from their noise, separate at the best h for a width of 0.17,
 //         and at 1.6 times it for 1.25; but narrow ones separate by chance long before. 1.25 was chosen on a glider
 //         that slows down (tests/core/motion/bandwidth/test_bandwidth_rule.cpp), and serves the other motions there.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -79,10 +77,10 @@ std::optional<BandwidthPick> by_empirical_bias(const BandwidthProblem& problem) 
   if (!best) return {};
   BandwidthPick pick;
   pick.bandwidth_s = grid[*best];
-  pick.method = fmt::format("empirical bias: noise and bias of a together {:.2g} m/s^2",
-                            std::sqrt(criterion[*best] / static_cast<double>(scan.probes().size())));
-  if (*best == kEachSide) pick.method += " (the narrowest tried)";
-  if (*best + kEachSide + 1 == grid.size()) pick.method += " (the widest tried)";
+  pick.by = found_by_rule("empirical bias: noise and bias of a together {:.2g} m/s^2",
+                          std::sqrt(criterion[*best] / static_cast<double>(scan.probes().size())));
+  const std::vector<double> judged(grid.begin() + kEachSide, grid.end() - kEachSide);
+  pick.by.edge = edge_of(judged, *best - kEachSide);
   return pick;
 }
 
@@ -92,7 +90,7 @@ std::optional<BandwidthPick> by_intersection(const BandwidthProblem& problem) {
   if (grid.empty() || scan.probes().empty()) return {};
   const Estimates estimates = estimates_of(scan);
   BandwidthPick pick;
-  std::vector<double> chosen;
+  std::vector<double> taken_s;
   std::size_t widest = 0;
   for (std::size_t p = 0; p < scan.probes().size(); ++p) {
     double low = -std::numeric_limits<double>::infinity(), high = -low;
@@ -106,13 +104,13 @@ std::optional<BandwidthPick> by_intersection(const BandwidthProblem& problem) {
     }
     if (taken + 1 == grid.size()) ++widest;
     pick.local.push_back({scan.time(scan.probes()[p]), grid[taken]});
-    chosen.push_back(grid[taken]);
+    taken_s.push_back(grid[taken]);
   }
-  pick.bandwidth_s = quantile(chosen, 0.5);
-  const auto [low, high] = std::minmax_element(chosen.begin(), chosen.end());
-  pick.method =
-      fmt::format("intersection of confidence intervals: median of {:.1f} to {:.1f} ms", 1e3 * *low, 1e3 * *high);
-  if (2 * widest > chosen.size()) pick.method += " (the widest tried)";
+  pick.bandwidth_s = quantile(taken_s, 0.5);
+  const auto [low, high] = std::minmax_element(taken_s.begin(), taken_s.end());
+  pick.by =
+      found_by_rule("intersection of confidence intervals: median of {:.1f} to {:.1f} ms", 1e3 * *low, 1e3 * *high);
+  if (2 * widest > taken_s.size()) pick.by.edge = chosen_by::Rule::Edge::widest;
   return pick;
 }
 

@@ -1,13 +1,10 @@
 #include "core/motion/bandwidth/rule_lines.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "base/text/number_text.h"
 #include "core/math/least_squares.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/lines/line_fit.h"
@@ -179,7 +176,7 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
                                  const PositionNoise& noise, double pilot_bandwidth_s) {
   BandwidthChoice choice;
   choice.bandwidth_s = pilot_bandwidth_s;
-  choice.method = "that of the first smoothing: no bandwidth gives a line";
+  choice.method = chosen_by::FirstSmoothing{};
   if (stretches.empty()) return choice;
   Scan scan(motion, stretches, noise, pilot_bandwidth_s);
   std::vector<Errors> tried;
@@ -199,14 +196,10 @@ BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStr
          std::next(taken)->bias_share <= kBiasAllowed && std::next(taken)->random <= kNoiseAllowed * best->random) {
     ++taken;
   }
-  choice.line_s = best->bandwidth_s;
   choice.bandwidth_s = taken->bandwidth_s;
-  choice.method = fmt::format("smallest mean squared error of the lines ({:.1f} ms)", 1e3 * choice.line_s);
-  if (taken != best) {
-    choice.method +=
-        fmt::format(", raised for quieter points (the noise of a is {} % of its spread; the lines are biased by {} %)",
-                    base::digits_text(100.0 * taken->noise_share, 2), base::digits_text(100.0 * taken->bias_share, 2));
-  }
+  chosen_by::LinesRule found{best->bandwidth_s, {}};
+  if (taken != best) found.raised = {taken->noise_share, taken->bias_share};
+  choice.method = found;
   return choice;
 }
 

@@ -21,19 +21,18 @@
 /// reference [15] and does not state it; this rule is not claimed to be it.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/motion/free/free_motion.h"
 #include "core/motion/free/motion.h"
 #include "core/motion/smoothing/noise.h"
+#include "core/result/strength_choice.h"
 
 namespace glidelab::core {
 
 struct BandwidthChoice {
   double bandwidth_s = 0.0;
-  std::string method;   ///< one line for a reader
-  double line_s = 0.0;  ///< of smallest E
+  StrengthChoice method;
 };
 
 /// f(v(t)) at every point of the stretches (0 elsewhere): f is the line of each direction, v(t) is smoothed at
@@ -45,7 +44,7 @@ std::vector<double> pilot_law(const Motion& motion, const std::vector<FreeStretc
 
 double law_bandwidth(const Motion& motion, double pilot_bandwidth_s);
 
-/// If no bandwidth gives a line, the pilot's is used, and the method says so.
+/// If no bandwidth gives a line, the pilot's is used (chosen_by::FirstSmoothing).
 BandwidthChoice choose_bandwidth(const Motion& motion, const std::vector<FreeStretch>& stretches,
                                  const PositionNoise& noise, double pilot_bandwidth_s);
 

@@ -2,9 +2,7 @@
 // error of a with one h for all points. x'''' comes from one polynomial of order 6 through each part (order p + 3: Fan
 // and Gijbels 1996, section 4.2; Ruppert, Sheather and Wand 1995 fit it in blocks); the noise's share of its square is
 // subtracted. If x'''' does not rise above the noise by two standard deviations of its mean square, the widest
-// bandwidth is taken, and the method says so. Correlated noise enters by its sum over all lags.
-#include <fmt/format.h>
-
+// bandwidth is taken, and the result says so. Correlated noise enters by its sum over all lags.
 #include <algorithm>
 #include <cmath>
 
@@ -84,16 +82,21 @@ std::optional<BandwidthPick> by_plug_in(const BandwidthProblem& problem) {
   const double narrowest = scan.grid().front(), widest = scan.grid().back();
   if (signal <= kCurvatureSeen * std::sqrt(all.variance)) {
     pick.bandwidth_s = widest;
-    pick.method = "plug-in: x'''' does not rise above the noise; the widest tried";
+    pick.by = found_by_rule("plug-in: x'''' does not rise above the noise; the widest tried");
     return pick;
   }
   const double mean_square = signal / static_cast<double>(all.points);
   const double ideal = std::pow(kGaussianA.best_h9() * white * problem.step_s / mean_square, 1.0 / 9.0);
   pick.bandwidth_s = std::clamp(ideal, narrowest, widest);
-  pick.method = fmt::format("plug-in: rms x'''' of {:.3g} m/s^4", std::sqrt(mean_square));
-  if (pick.bandwidth_s != ideal) {
-    pick.method += fmt::format(" asks for {:.1f} ms, {}", 1e3 * ideal,
-                               ideal < narrowest ? "narrower than the frames allow" : "wider than the motion allows");
+  const double rms = std::sqrt(mean_square), ideal_ms = 1e3 * ideal;
+  if (ideal < narrowest) {
+    pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4 asks for {:.1f} ms, narrower than the frames allow",
+                            rms, ideal_ms);
+  } else if (ideal > widest) {
+    pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4 asks for {:.1f} ms, wider than the motion allows", rms,
+                            ideal_ms);
+  } else {
+    pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4", rms);
   }
   return pick;
 }

@@ -3,8 +3,6 @@
 //     RSC(t; h) = s^2(t) (1 + 4 V),   s^2(t) = sum K_i r_i^2 / tr(K - K X (X'KX)^-1 X'K),   V = sum w_i^2,
 //
 // with r the residuals of the local cubic about t and w its weights for x; its minimum times 0.829 is the h for a.
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 
@@ -67,8 +65,9 @@ std::optional<BandwidthPick> by_residual_squares(const BandwidthProblem& problem
   const double found = scan.grid()[*best];
   BandwidthPick pick;
   pick.bandwidth_s = found * std::pow(kGaussianA.best_h9() / kResidualSquaresH9, 1.0 / 9.0);
-  pick.method = fmt::format("residual squares criterion: minimum at {:.1f} ms{}, converted for a", 1e3 * found,
-                            at_edge(scan.grid(), *best));
+  pick.by = found_by_rule("residual squares criterion: minimum at {:.1f} ms", 1e3 * found);
+  pick.by.edge = edge_of(scan.grid(), *best);
+  pick.by.converted = true;
   return pick;
 }
 

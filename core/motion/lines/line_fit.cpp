@@ -230,9 +230,10 @@ void complete_line(LineFit& line) {
 
 Quantity limit_velocity(const std::vector<LineFit>& lines) {
   const auto found = std::find_if(lines.begin(), lines.end(), [](const LineFit& line) { return line.direction > 0; });
-  if (found == lines.end()) return undetermined("no line for v > 0");
-  const std::string why_not = why_no_limit_velocity(found->k_over_m_1_s, "K/m for v > 0", found->a0_m_s2);
-  if (!why_not.empty()) return undetermined(why_not);
+  if (found == lines.end()) return undetermined(unknown::NoDownhillLine{});
+  if (const auto why_not = why_no_limit_velocity(found->k_over_m_1_s, {.of_line = true}, found->a0_m_s2)) {
+    return undetermined(*why_not);
+  }
   const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
   const LineUncertainty& parts = found->parts;

@@ -19,7 +19,7 @@ class LocalCubicSmoother final : public Smoother {
     assert(input.bandwidth_s && *input.bandwidth_s > 0.0 && input.t_s.size() == input.x_m.size());
     SmoothedSeries made;
     made.strength.smoother = name();
-    made.strength.method = "given";
+    made.strength.method = chosen_by::User{};
     made.strength.bandwidth_s = *input.bandwidth_s;
     made.strength.noise_sd_m = input.noise_sd_m ? *input.noise_sd_m : pilot_noise(input.t_s, input.x_m);
     made.points.resize(input.t_s.size());

@@ -262,7 +262,7 @@ class WienerSmoother final : public Smoother {
     }
     MotionParts parts(input);
     if (parts.parts.empty()) {
-      made.strength.method = "no part of the motion is long enough to be smoothed";
+      made.strength.method = chosen_by::Nothing{};
       return made;
     }
     std::vector<Choice> orders = search(parts, {0.0});
@@ -334,8 +334,11 @@ class WienerSmoother final : public Smoother {
     const double variance =
         by_ == StrengthBy::likelihood || parts.input.noise_sd_m ? motion.noise_variance(fit) : sums.noise_variance();
     SmoothingStrength& strength = made.strength;
-    strength.method =
-        by_ == StrengthBy::likelihood ? "maximum marginal likelihood" : "minimum generalised cross-validation";
+    if (by_ == StrengthBy::likelihood) {
+      strength.method = chosen_by::Likelihood{};
+    } else {
+      strength.method = chosen_by::CrossValidation{};
+    }
     strength.noise_sd_m = std::sqrt(variance);
     strength.order = N;
     strength.rate_1_s = chosen.at.how.rate_1_s;

@@ -264,7 +264,7 @@ Quantity plumb_angle(const PlumbSetup& setup, const Restitution& restitution, co
     centres.push_back(restitution.centre_pixel(*place));
   }
   if (places.size() < kFewestPlaces) fail("no thin straight line in the region", "a dark or bright thread");
-  if (!std::isfinite(axis.line().sd_angle_rad)) return undetermined("the marker does not move, so its line is unknown");
+  if (!std::isfinite(axis.line().sd_angle_rad)) return undetermined(unknown::NoLineOfMotion{});
   const auto [top, bottom] =
       std::minmax_element(centres.begin(), centres.end(), [](cv::Point2d a, cv::Point2d b) { return a.y < b.y; });
   const auto first = static_cast<std::size_t>(top - centres.begin());

@@ -110,7 +110,7 @@ class FolderFrames final : public FrameSource {
 
   std::vector<Note> notes() const override {
     if (others_ == 0) return {};
-    return {AboutFile{fmt::format("{} files in the folder of frames are not images and are skipped", others_)}};
+    return {FilesSkipped{others_}};
   }
 
  private:
@@ -203,22 +203,16 @@ class VideoFrames final : public FrameSource {
   std::vector<Note> notes() const override {
     std::vector<Note> notes;
     if (stated_rate_hz_ > 0.0 && std::abs(stated_rate_hz_ / camera_.frame_rate_hz - 1.0) > kRateRounding) {
-      notes.emplace_back(AboutFile{
-          fmt::format("the container states {:.6g} frames per second, experiment.toml {:.6g}; {}", stated_rate_hz_,
-                      camera_.frame_rate_hz,
-                      camera_.time == TimeSource::rate ? "the rate in experiment.toml is used"
-                                                       : "the container's time stamps are used, as requested")});
+      notes.emplace_back(
+          ContainerOfOtherRate{stated_rate_hz_, camera_.frame_rate_hz, camera_.time == TimeSource::rate});
     }
     if (unstamped_ > 0 && camera_.time == TimeSource::container) {
-      notes.emplace_back(AboutFile{"the last frames have no time stamp and are left out"});
+      notes.emplace_back(LastFramesUnstamped{});
     }
     repeats_.tell(notes);
     if (irregular_ > 0) {
-      notes.emplace_back(AboutFile{fmt::format(
-          "the container's time stamps are irregular: {} of {} steps differ from the median step of {:.4g} ms, the "
-          "longest is {:.4g} ms{}",
-          irregular_, stamps_s_.size() - 1, median_step_s_ * 1e3, longest_step_s_ * 1e3,
-          camera_.time == TimeSource::rate ? " (frames may be missing; the rate in experiment.toml is used)" : "")});
+      notes.emplace_back(IrregularStamps{irregular_, stamps_s_.size() - 1, median_step_s_, longest_step_s_,
+                                         camera_.time == TimeSource::rate});
     }
     return notes;
   }

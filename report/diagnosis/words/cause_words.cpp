@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/text/number_text.h"
+#include "core/result/why_words.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
 
@@ -50,7 +51,7 @@ std::string sizes_aside(const diagnose::Diagnosis& diagnosis, const std::string&
   if (effect == nullptr) return {};
   std::vector<std::string> sizes;
   for (const diagnose::DiagnosedParameter& parameter : effect->parameters) {
-    const bool told = !parameter.text.empty() || (parameter.why.empty() && parameter.sd > 0.0);
+    const bool told = !parameter.text.empty() || (!parameter.why && parameter.sd > 0.0);
     if (told && parameter.key.find('.') == std::string::npos && sizes.size() < kSizesTold) {
       sizes.push_back(parameter_text(parameter));
     }
@@ -329,9 +330,9 @@ std::vector<RecoveredTable> recovered_tables(const diagnose::Diagnosis& diagnosi
     for (const QuantityName& name : kQuantities) {
       const core::Quantity& quantity = core::value_of(of, name.which);
       row.push_back(quantity.estimate ? base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) : "–");
-      if (!quantity.estimate && !quantity.why.empty()) {
+      if (quantity.why) {
         reasons[static_cast<std::size_t>(table - tables.begin())].push_back(
-            {std::string(name.symbol), quantity.why, {label}});
+            {std::string(name.symbol), core::why_words(quantity.why), {label}});
       }
     }
     table->rows.push_back(std::move(row));
@@ -367,7 +368,7 @@ std::vector<std::vector<std::string>> member_rows(const diagnose::DiagnosedEffec
       const auto found =
           std::find_if(effect.parameters.begin(), effect.parameters.end(),
                        [&](const diagnose::DiagnosedParameter& one) { return one.key == key + "." + name; });
-      const bool known = found != effect.parameters.end() && found->why.empty();
+      const bool known = found != effect.parameters.end() && !found->why;
       row.push_back(known ? base::value_and_sd_text(found->value, found->sd) : "–");
     }
     rows.push_back(std::move(row));

@@ -167,7 +167,7 @@ TEST_CASE("what is found is said once, and in the words of the folder that it is
   clip.jumps = 1;
   clip.repeated = 20;
   clip.marker_px = 16.0;
-  clip.notes = {core::RepeatedFrames{20, 264}, core::MarkerOfOtherSize{1.33}, core::AboutFile{"something else"}};
+  clip.notes = {core::RepeatedFrames{20, 264}, core::MarkerOfOtherSize{1.33}, core::LastFramesUnstamped{}};
   const std::vector<core::Finding> all = findings(clip);
   CHECK(std::count_if(all.begin(), all.end(),
                       [](const core::Finding& finding) { return finding.severity == core::Severity::note; }) == 1);

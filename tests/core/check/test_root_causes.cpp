@@ -148,7 +148,7 @@ TEST_CASE("a frame rate that makes the inclination right is the cause, and the i
   found.clips = {"m1"};
   found.incline_deg = 4.3;
   // Twice the rate is four times the acceleration: sin(alpha) = 4 sin(4.3°).
-  found.alpha_deg = {core::Estimate{17.45, 0.01, 17.43, 17.47}, ""};
+  found.alpha_deg = {core::Estimate{17.45, 0.01, 17.43, 17.47}, {}};
   check.configurations = {found};
   const std::vector<Finding> findings = core::with_root_causes(
       experiment, check, {{Severity::unusable, kOne, core::found::InclineOff{}, Topic::incline}});

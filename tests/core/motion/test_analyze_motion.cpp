@@ -229,7 +229,7 @@ TEST_CASE("tracks at the edge of what can be smoothed end in nulls with reasons,
   const Analysis few = analyse(tests::clip_setup(Launched::down, 4.0), short_track);
   CHECK(few.clip.motion.size() == 10);
   CHECK_FALSE(few.configuration.mu.estimate);
-  CHECK_FALSE(few.configuration.mu.why.empty());
+  CHECK(few.configuration.mu.why);
   const Analysis narrow = analyse(kUp, turning_track({}), 0.001);  // a kernel of less than a frame
   CHECK(narrow.clip.segments.empty());
   CHECK_FALSE(narrow.configuration.k_over_m_1_s.estimate);

@@ -8,6 +8,7 @@
 #include "core/motion/join_configurations.h"
 #include "core/motion/lines/line_fit.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
 
 using namespace glidelab;
@@ -104,16 +105,30 @@ TEST_CASE("a configuration of one direction has K/m, and null for mu and alpha w
   CHECK(result.v_lim_m_s.estimate);
   CHECK_FALSE(result.mu.estimate);
   CHECK_FALSE(result.alpha_deg.estimate);
-  CHECK_THAT(result.mu.why, Catch::Matchers::Contains("v < 0"));
+  const auto* const one_way = tests::reason_of<unknown::NotBothLines>(result.mu);
+  REQUIRE(one_way != nullptr);
+  CHECK(one_way->minus);
+  CHECK_FALSE(one_way->plus);
+  const auto uphill = join({kUp}, {clip_on({{-1, 2.0, 0.6, 0.01, 0.002}})});
+  const auto* const other_way = tests::reason_of<unknown::NotBothLines>(uphill.alpha_deg);
+  REQUIRE(other_way != nullptr);
+  CHECK_FALSE(other_way->minus);
+  CHECK(other_way->plus);
   const auto none = join({kDown}, {ClipResult{}});
   CHECK_FALSE(none.k_over_m_1_s.estimate);
+  CHECK(tests::reason_of<unknown::NoLine>(none.k_over_m_1_s) != nullptr);
   CHECK_FALSE(none.v_lim_m_s.estimate);
+  CHECK(tests::reason_of<unknown::NoDownhillLine>(none.v_lim_m_s) != nullptr);
+  const auto* const neither = tests::reason_of<unknown::NotBothLines>(none.mu);
+  REQUIRE(neither != nullptr);
+  CHECK(neither->minus);
+  CHECK(neither->plus);
 }
 
 TEST_CASE("an inclination stated as not known, with more than 90 degrees, keeps its standard deviation") {
-  ClipSetup unknown = kDown;
-  unknown.incline_sd_rad = 120.0 / kDegrees;
-  const auto result = join({unknown}, {clip_on({{1, 2.0, 0.6, 0.01, 0.002}})});
+  ClipSetup vague = kDown;
+  vague.incline_sd_rad = 120.0 / kDegrees;
+  const auto result = join({vague}, {clip_on({{1, 2.0, 0.6, 0.01, 0.002}})});
   REQUIRE(result.incline_sd_deg);
   CHECK(*result.incline_sd_deg == Approx(120.0).epsilon(1e-12));  // degrees to radians and back
 }
@@ -123,13 +138,17 @@ TEST_CASE("a line that is missing because the motion went against the stated lau
   clip.against_launch = AgainstLaunch{1, 0.542, 0.4, true};
   const auto result = join({kUp}, {clip});
   for (const Quantity* quantity : {&result.mu, &result.alpha_deg, &result.v_lim_m_s}) {
-    CHECK_THAT(quantity->why,
-               Catch::Matchers::Contains(
-                   "clip: motion towards +x before 0.542 s is attributed to the hand and excluded, since the "
-                   "launch was towards -x (as launched and downhill"));
+    REQUIRE(quantity->why);
+    REQUIRE(quantity->why->against_launch.size() == 1);
+    CHECK(quantity->why->against_launch[0].clip == "clip");
+    CHECK(quantity->why->against_launch[0].motion.direction == 1);
+    CHECK(quantity->why->against_launch[0].motion.until_s == 0.542);
   }
-  clip.against_launch->direction = -1;  // of which there is a line: that is not why
-  CHECK_THAT(join({kUp}, {clip}).mu.why, !Catch::Matchers::Contains("hand"));
+  CHECK_FALSE(result.k_over_m_1_s.why);  // the other line has it
+  clip.against_launch->direction = -1;   // of which there is a line: that is not why
+  const auto there = join({kUp}, {clip});
+  REQUIRE(there.mu.why);
+  CHECK(there.mu.why->against_launch.empty());
 }
 
 TEST_CASE("a configuration a hundred times as heavy as the lightest has a note, one ninety times has none") {
@@ -150,7 +169,9 @@ TEST_CASE("the friction of a negative jump comes out negative, and intercepts be
   CHECK(join({kUp}, {clip_on({{-1, 2.0, 0.60, 0.01, 0.002}, {1, 2.0, 0.62, 0.01, 0.002}})}).mu.estimate->value < 0.0);
   const auto steep = join({kUp}, {clip_on({{-1, 2.0, 11.0, 0.01, 0.002}, {1, 2.0, 10.0, 0.01, 0.002}})});
   CHECK_FALSE(steep.alpha_deg.estimate);
-  CHECK_THAT(steep.alpha_deg.why, Catch::Matchers::Contains("gravity"));
+  const auto* const beyond = tests::reason_of<unknown::MeanBeyondGravity>(steep.alpha_deg);
+  REQUIRE(beyond != nullptr);
+  CHECK(beyond->mean_m_s2 == Approx(10.5).epsilon(1e-12));
 }
 
 TEST_CASE("the joint line of two clips is least squares through the points of both") {

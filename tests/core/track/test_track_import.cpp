@@ -40,17 +40,16 @@ void check_motion(const core::TrackData& track) {
   CHECK(track.frame_rate_hz == Approx(10.0).epsilon(1e-9));
 }
 
-bool has_note(const core::TrackData& track, const std::string& part) {
-  return tests::says_of_file(track.notes, part);
-}
-
 }  // namespace
 
 TEST_CASE("Tracker's table: tabs, a title, names without units, y beside x") {
   const Made made("mass A\nt\tx\ty\n" + rows("0.{0}00E0\t{1}E-2\t0.5\n"));
   const core::TrackData track = made.read();
   check_motion(track);
-  CHECK(has_note(track, "no unit"));
+  const auto* const unit = tests::note_of<core::UnitAssumed>(track.notes);
+  REQUIRE(unit != nullptr);
+  CHECK(unit->column == "x");
+  CHECK(unit->unit == "metres");
 }
 
 TEST_CASE("Tracker's table in a country of decimal commas: semicolons") {
@@ -83,7 +82,9 @@ TEST_CASE("Vernier's text: title lines, runs, names, short names and units in li
       rows("9.{0}\t7.5\t0\t{0}00\t{1}0\t0.3\n"));
   const core::TrackData track = made.read("Latest: Position");
   check_motion(track);
-  CHECK(has_note(track, "Latest"));
+  const auto* const taken = tests::note_of<core::ColumnsTaken>(track.notes);
+  REQUIRE(taken != nullptr);
+  CHECK(taken->run == "Latest");
   CHECK(made.read("2").x_m[0] == 7.5);
 }
 
@@ -98,10 +99,12 @@ TEST_CASE("phyphox: quotes, semicolons, decimal commas, scientific notation, NaN
   const core::TrackData track =
       Made("\"Time (s)\";\"Position (cm)\"\n" + rows("{0},0E-1;{1},0E0\n") + "0,95;NaN\n").read();
   check_motion(track);
-  CHECK_FALSE(has_note(track, "left out"));  // it is the last row
+  CHECK(tests::note_of<core::RowsIncomplete>(track.notes) == nullptr);  // it is the last row
   const core::TrackData gap = Made("Time (s),x (m)\n" + rows("{0},{1}\n") + "10.5,NaN\n11,5\n").read();
   CHECK(gap.t_s.size() == 11);
-  CHECK(has_note(gap, "1 rows between others"));
+  const auto* const incomplete = tests::note_of<core::RowsIncomplete>(gap.notes);
+  REQUIRE(incomplete != nullptr);
+  CHECK(incomplete->rows == 1);
 }
 
 TEST_CASE("two columns without a header are time and place, and a byte-order mark and CRLF do not matter") {
@@ -186,7 +189,7 @@ TEST_CASE("a height alone is x, counted along the motion where nobody states its
   const std::string fall = "t (s)\ty (m)\n" + rows("0.{0}\t-{1}e-2\n");
   const core::TrackData down = core::read_track_csv(Made(fall).file, std::nullopt);
   check_motion(down);
-  CHECK(has_note(down, "counted along the motion"));
+  CHECK(tests::note_of<core::CountedAlongMotion>(down.notes) != nullptr);
   CHECK(core::read_track_csv(Made(fall).file, 1).x_m[3] == Approx(-0.09));
   // Thrown upwards and caught: it turns, and accelerates downwards.
   std::string text = "t,height\n";
@@ -202,11 +205,18 @@ TEST_CASE("of x and y the one along which the body moves is x, a slanted path is
   };
   const core::TrackData upright = plane("0.{0}\t0.5\t{1}e-2\n");
   check_motion(upright);
-  CHECK(has_note(upright, "along y"));
-  CHECK_FALSE(has_note(upright, "runs at"));
+  const auto* const along_y = tests::note_of<core::MotionAlongY>(upright.notes);
+  REQUIRE(along_y != nullptr);
+  CHECK(along_y->x_m == 0.0);
+  CHECK(along_y->y_m > 0.63);  // 0.01 n² for n up to 9, of which the outermost may count as outliers: 0.64 or 0.81
+  CHECK(along_y->y_m < 0.82);
+  CHECK(tests::note_of<core::SlantedPath>(upright.notes) == nullptr);
   const core::TrackData slanted = plane("0.{0}\t{1}e-2\t{1}e-2\n");
-  CHECK(has_note(slanted, "45.0° to the x axis"));
-  CHECK(has_note(slanted, "1.41 times"));
+  const auto* const path = tests::note_of<core::SlantedPath>(slanted.notes);
+  REQUIRE(path != nullptr);
+  CHECK(path->off_deg == Approx(45.0).epsilon(1e-9));
+  CHECK(path->stretch == Approx(std::sqrt(2.0)).epsilon(1e-9));
+  CHECK_FALSE(path->along_y);
   // y = x²: with x 0 to 9 and y 0 to 81 the path's sagitta is 81²/4/(9² + 81²)... of its length, far from straight.
   CHECK_THROWS_WITH(plane("0.{0}\t{0}e-1\t{1}e-2\n"), Contains("a curved path"));
   const Made flight("t\tx\ty\n" + rows("0.{0}\t{0}e-1\t{1}e-2\n"));
@@ -246,7 +256,7 @@ TEST_CASE("a delimiter at the end of each line is no column, and a table that a 
 TEST_CASE("units are also words, in several languages") {
   const auto with = [](const std::string& header) {
     const core::TrackData track = Made(header + "\n" + rows("0.{0},{1}E-2\n")).read();
-    CHECK_FALSE(has_note(track, "no unit"));
+    CHECK(tests::note_of<core::UnitAssumed>(track.notes) == nullptr);
     return track;
   };
   check_motion(with("Time (seconds),Distance (meters)"));
@@ -272,13 +282,19 @@ TEST_CASE("Scandinavian and Dutch names of times and places, and h for a height"
   check_motion(Made("tijd,afstand\n" + rows("0.{0},{1}E-2\n")).read());
   const core::TrackData fall = Made("t,h,h_err\n" + rows("0.{0},{1}E-2,0.001\n")).read();
   check_motion(fall);
-  CHECK(has_note(fall, "a height"));
+  const auto* const height = tests::note_of<core::HeightTaken>(fall.notes);
+  REQUIRE(height != nullptr);
+  CHECK(height->column == "h");
 }
 
 TEST_CASE("of columns without a known name the only one with a unit of length is x") {
   const core::TrackData track = Made("t (s),s (m),v (m/s)\n" + rows("0.{0},{1}E-2,7\n")).read();
   check_motion(track);
-  CHECK(has_note(track, "x is \"s (m)\""));
+  const auto* const taken = tests::note_of<core::ColumnsTaken>(track.notes);
+  REQUIRE(taken != nullptr);
+  CHECK(taken->x == "s (m)");
+  CHECK(taken->t == "t (s)");
+  CHECK(taken->run.empty());
   CHECK_THROWS_WITH(Made("t (s),a (m),b (m)\n" + rows("0.{0},{1}E-2,7\n")).read(), Contains("called x"));
 }
 

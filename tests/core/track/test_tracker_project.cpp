@@ -48,8 +48,11 @@ struct Folder {
   }
 };
 
-bool has_note(const core::TrackData& track, const std::string& part) {
-  return tests::says_of_file(track.notes, part);
+/// The point mass and the coordinate that are read as x.
+core::PointMassTaken taken_of(const core::TrackData& track) {
+  const auto* const taken = tests::note_of<core::PointMassTaken>(track.notes);
+  REQUIRE(taken != nullptr);
+  return *taken;
 }
 
 }  // namespace
@@ -66,11 +69,13 @@ TEST_CASE("a project's positions are in its scale, from its origin, at its times
     CHECK(std::abs(track.t_s[i] - 0.004 * static_cast<double>(i)) < 1e-12);
   }
   CHECK(track.frame_rate_hz == Approx(250.0));
-  CHECK(has_note(track, "x is the X of point mass \"mass A\""));
+  CHECK(taken_of(track).mass == "mass A");
+  CHECK_FALSE(taken_of(track).along_y);
+  CHECK(tests::note_of<core::NoLengthUnit>(track.notes) == nullptr);
   project.unit = "cm";
   CHECK(std::abs(folder.read(project).x_m[3] - 0.01 * (40.0 + travelled(3)) / 250.0) < 1e-12);
   project.unit = "";
-  CHECK(has_note(folder.read(project), "no unit of length"));
+  CHECK(tests::note_of<core::NoLengthUnit>(folder.read(project).notes) != nullptr);
   CHECK(std::abs(folder.read(project, core::Downhill::minus_x).x_m[3] + (40.0 + travelled(3)) / 250.0) < 1e-12);
 }
 
@@ -79,14 +84,17 @@ TEST_CASE("what falls in the image is positive downwards along Y, unless downhil
   MadeProject project{{kDown}};
   const core::TrackData down = folder.read(project);
   CHECK(std::abs(down.x_m[5] - down.x_m[0] - travelled(5) / 100.0) < 1e-12);
-  CHECK(has_note(down, "positive towards -Y: it moves most along Y"));
+  CHECK(taken_of(down).towards == "-Y");
+  CHECK(taken_of(down).along_y);
+  CHECK_FALSE(taken_of(down).as_stated);
   const core::TrackData up = folder.read(project, core::Downhill::plus_y);
   CHECK(std::abs(up.x_m[5] - up.x_m[0] + travelled(5) / 100.0) < 1e-12);
+  CHECK(taken_of(up).as_stated);
   // Axes turned by half a turn: +Y is down.
   project.axes = {{0, 0.0, 0.0, 180.0, 100.0}};
   const core::TrackData turned = folder.read(project);
   CHECK(std::abs(turned.x_m[5] - turned.x_m[0] - travelled(5) / 100.0) < 1e-12);
-  CHECK(has_note(turned, "positive towards +Y"));
+  CHECK(taken_of(turned).towards == "+Y");
 }
 
 TEST_CASE("axes along an inclined track give the whole distance, level ones less by the cosine, with a note") {
@@ -99,11 +107,15 @@ TEST_CASE("axes along an inclined track give the whole distance, level ones less
   project.axes = {{0, 100.0, 300.0, 20.0, 100.0}};
   const core::TrackData along = folder.read(project);
   for (std::size_t i = 0; i < 12; ++i) CHECK(std::abs(along.x_m[i] - travelled(i) / 100.0) < 1e-12);
-  CHECK_FALSE(has_note(along, "degrees with"));
+  CHECK(tests::note_of<core::MassMovesAslant>(along.notes) == nullptr);
   project.axes = {{0, 100.0, 300.0, 0.0, 100.0}};
   const core::TrackData level = folder.read(project);
   CHECK(std::abs(level.x_m[9] - std::cos(angle) * travelled(9) / 100.0) < 1e-12);
-  CHECK(has_note(level, "makes 20 degrees with X, so x is 6.0 % short"));
+  const auto* const aslant = tests::note_of<core::MassMovesAslant>(level.notes);
+  REQUIRE(aslant != nullptr);
+  CHECK(aslant->off_deg == Approx(20.0).epsilon(1e-9));
+  CHECK(aslant->short_by == Approx(1.0 - std::cos(angle)).epsilon(1e-9));
+  CHECK_FALSE(aslant->along_y);
 }
 
 TEST_CASE("axes that change from frame to frame hold from their key frame on, where they are not fixed") {
@@ -135,7 +147,9 @@ TEST_CASE("positions count in the steps of the clip, at starttime and step by st
   CHECK(std::abs(track.t_s[0] - 0.5) < 1e-12);
   CHECK(std::abs(track.t_s[2] - 0.56) < 1e-12);
   CHECK(std::abs(track.x_m[2] - 1.0) < 1e-12);
-  CHECK(has_note(track, "31 positions that are not among the steps"));
+  const auto* const outside = tests::note_of<core::PositionsOutsideClip>(track.notes);
+  REQUIRE(outside != nullptr);
+  CHECK(outside->positions == 31);
 }
 
 TEST_CASE("steps without a mark are frames without a sighting, and what Tracker filled in is left out") {
@@ -154,7 +168,10 @@ TEST_CASE("steps without a mark are frames without a sighting, and what Tracker 
   points[5].second.first = from + 2.0 * (to - from) / 3.0;
   filled.masses[0].key_frames = "{0,1,2,3,6,7,8,9,10,11}";
   CHECK(folder.read(filled).x_m.size() == 10);
-  CHECK(has_note(folder.read(filled), "2 positions that Tracker filled in"));
+  const core::TrackData without = folder.read(filled);
+  const auto* const filled_in = tests::note_of<core::PositionsFilledIn>(without.notes);
+  REQUIRE(filled_in != nullptr);
+  CHECK(filled_in->positions == 2);
   filled.masses[0].key_frames = "";
   CHECK(folder.read(filled).x_m.size() == 12);
 }
@@ -162,9 +179,9 @@ TEST_CASE("steps without a mark are frames without a sighting, and what Tracker 
 TEST_CASE("a point mass is asked for by name or number, and what there is is named") {
   const Folder folder;
   MadeProject project{{kAlong, kDown}};
-  CHECK(has_note(folder.read(project, {}, "ball"), "\"ball\""));
-  CHECK(has_note(folder.read(project, {}, "Mass a"), "\"mass A\""));
-  CHECK(has_note(folder.read(project, {}, "2"), "\"ball\""));
+  CHECK(taken_of(folder.read(project, {}, "ball")).mass == "ball");
+  CHECK(taken_of(folder.read(project, {}, "Mass a")).mass == "mass A");
+  CHECK(taken_of(folder.read(project, {}, "2")).mass == "ball");
   CHECK_THAT(folder.refusal(project),
              Contains("column: found point masses 1 \"mass A\", 2 \"ball\"") && Contains("--column"));
   CHECK_THAT(folder.refusal(project, "cart"),
@@ -187,8 +204,8 @@ TEST_CASE("a project in an archive is read, of several the one that has the mass
   CHECK(in({{"videos/a.jpg", "no image"}, {"cups.trk", one.text()}}, "").x_m.size() == 12);
   // Apple's archiver adds its own; a name that leads out of the folder stays a name.
   CHECK(in({{"__MACOSX/._cups.trk", "?"}, {"../../cups.TRK", one.text()}}, "mass A").x_m.size() == 12);
-  CHECK(has_note(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "ball"), "\"b.trk: ball\""));
-  CHECK(has_note(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "b.trk: mass A"), "\"b.trk: mass A\""));
+  CHECK(taken_of(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "ball")).mass == "b.trk: ball");
+  CHECK(taken_of(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "b.trk: mass A")).mass == "b.trk: mass A");
   CHECK_THROWS_WITH(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "mass A"), Contains("several of the name"));
   CHECK_THROWS_WITH(in({{"xl/workbook.xml", "<x/>"}}, ""), Contains("0 Tracker projects") && Contains("CSV"));
   CHECK_THROWS_WITH(in({{"a.trk", "no XML"}}, ""), Contains("made.trz: a.trk"));
@@ -258,7 +275,7 @@ TEST_CASE("Tracker's own example of falling cups is where an independent look at
     const core::TrackData marked = core::read_track(archive, {}, fmt::format("cup {}", cup));
     const core::TrackData found = core::read_track_csv(archive.parent_path() / fmt::format("cup-{}.csv", cup), 1);
     CHECK(marked.x_m.size() == 9);
-    CHECK(has_note(marked, "positive towards -Y"));
+    CHECK(taken_of(marked).towards == "-Y");
     // Hand marks are good to a pixel or two, 11 mm each; the origins differ.
     double mean = 0.0, square = 0.0;
     int both = 0;

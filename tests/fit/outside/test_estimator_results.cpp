@@ -12,6 +12,7 @@
 #include "base/math/normal95.h"
 #include "test_paths.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -110,12 +111,14 @@ TEST_CASE("an outside result fills the configuration of its clips, and the other
   // To rounding.
   CHECK(light.k_over_m_1_s.estimate->high95 - 2.5 == Approx(base::kNormal95 * 0.25).epsilon(1e-9));
   CHECK_FALSE(light.mu.estimate);
-  CHECK_FALSE(light.mu.why.empty());
+  CHECK(tests::reason_of<core::unknown::NotTold>(light.mu) != nullptr);
   CHECK_FALSE(results.configurations[1].k_over_m_1_s.estimate);
-  CHECK(results.configurations[1].k_over_m_1_s.why.find("no such configuration") != std::string::npos);
+  CHECK(tests::reason_of<core::unknown::NotAnswered>(results.configurations[1].k_over_m_1_s) != nullptr);
   const core::AnalysisResults wide = read(good_documents().back());
   CHECK(wide.configurations[1].k_over_m_1_s.estimate->high95 == 3.5);
-  CHECK(wide.configurations[1].mu.why == "one way only");
+  const auto* const told = tests::reason_of<core::unknown::Told>(wide.configurations[1].mu);
+  REQUIRE(told != nullptr);
+  CHECK(told->text == "one way only");
 }
 
 TEST_CASE("what is wrong with an outside result is named by its key") {

@@ -7,6 +7,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -90,7 +91,9 @@ TEST_CASE("each way in which an estimator's program fails is told apart, with wh
     CHECK(outcome.json.empty());
     REQUIRE(outcome.results.configurations.size() == 1);
     CHECK_FALSE(outcome.results.configurations[0].mu.estimate);
-    CHECK(outcome.results.configurations[0].mu.why == fit::why_of(outcome.run));
+    const auto* const told = tests::reason_of<core::unknown::Told>(outcome.results.configurations[0].mu);
+    REQUIRE(told != nullptr);
+    CHECK(told->text == fit::why_of(outcome.run));
     CHECK(fit::why_of(outcome.run).starts_with(fit::why_begins(way.failure)));
   }
 }

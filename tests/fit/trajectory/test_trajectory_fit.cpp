@@ -6,6 +6,7 @@
 #include "fit/trajectory/trajectory_results.h"
 #include "sim/oracle/closed_forms.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 
 using namespace glidelab;
 
@@ -120,7 +121,11 @@ TEST_CASE("motion in one direction determines K/m and the intercept, and says th
   CHECK(std::abs(found.v_lim_m_s.estimate->value - (kLaw[1] - kLaw[2]) / kLaw[0]) < 5.0 * found.v_lim_m_s.estimate->sd);
   CHECK_FALSE(found.mu.estimate);
   CHECK_FALSE(found.alpha_deg.estimate);
-  CHECK(found.mu.why.find("0.68") != std::string::npos);  // 0.735 - 0.048 m/s², to 1e-3
+  const auto* const one_way = tests::reason_of<core::unknown::OneDirection>(found.mu);
+  REQUIRE(one_way != nullptr);
+  CHECK(one_way->direction == 1);
+  CHECK(std::abs(one_way->a0_m_s2 - (kLaw[1] - kLaw[2])) < 5.0 * one_way->sd_m_s2);
+  CHECK(one_way->sd_m_s2 < 1e-3);
 }
 
 namespace {
@@ -171,7 +176,8 @@ TEST_CASE("a clip without free motion is not fitted, and says so") {
   core::ConfigurationResult configuration;
   configuration.clips = {"motor"};
   results.configurations = {configuration};
-  CHECK(fit::with_trajectory_fits(results).configurations[0].k_over_m_1_s.why == "no free motion");
+  const core::AnalysisResults fitted = fit::with_trajectory_fits(results);
+  CHECK(tests::reason_of<core::unknown::NoFreeMotion>(fitted.configurations[0].k_over_m_1_s) != nullptr);
 }
 
 TEST_CASE("what is stated wrong is noted beside the fit of the whole motion as it is beside lines") {

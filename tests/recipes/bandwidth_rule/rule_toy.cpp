@@ -11,7 +11,9 @@ std::optional<BandwidthPick> between_two(const BandwidthProblem& problem) {
   const auto one = find_bandwidth_rule("plug-in")->choose(problem);
   const auto other = find_bandwidth_rule("ebbs")->choose(problem);
   if (!one || !other) return {};
-  return BandwidthPick{std::sqrt(one->bandwidth_s * other->bandwidth_s), "mean of plug-in and ebbs", {}};
+  return BandwidthPick{std::sqrt(one->bandwidth_s * other->bandwidth_s),
+                       found_by_rule("mean of {:.1f} ms (plug-in) and {:.1f} ms (ebbs)", 1e3 * one->bandwidth_s,
+                                     1e3 * other->bandwidth_s)};
 }
 
 }  // namespace

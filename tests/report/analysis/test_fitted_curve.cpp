@@ -38,7 +38,7 @@ core::AnalysisResults moving(double k, double v0, double off_m) {
   configuration.k_over_m_1_s = tests::known(k, 0.01);
   configuration.mu = tests::known(kMu, 0.001);
   configuration.alpha_deg = tests::known(kAlpha_deg, 0.01);
-  configuration.v_lim_m_s = core::Quantity{{}, "no equilibrium"};
+  configuration.v_lim_m_s = core::Quantity{{}, core::WhyUnknown{core::unknown::InterceptNotPositive{}}};
   core::AnalysisResults results;
   results.gravity_m_s2 = kG;
   results.clips = {clip};
@@ -75,7 +75,7 @@ TEST_CASE("a clip under a known force has no fitted curve, nor one without a law
   CHECK(report::fitted_plots(results, 4).empty());
   results.clips[0].forced = false;
   CHECK(report::fitted_plots(results, 4).size() == 1);
-  results.configurations[0].mu = core::Quantity{{}, "one direction only"};
+  results.configurations[0].mu = core::Quantity{{}, core::WhyUnknown{core::unknown::NotBothLines{true, false}}};
   CHECK(report::fitted_plots(results, 4).empty());
   results.configurations[0].lines = {tests::made_line(1, 2.7, 0.6)};
   CHECK(report::fitted_plots(results, 4).size() == 1);

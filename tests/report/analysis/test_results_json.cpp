@@ -56,7 +56,7 @@ TEST_CASE("results.json says in words what the law cannot explain") {
 
 TEST_CASE("a quantity that the data do not determine is null, with the reason beside it") {
   core::AnalysisResults results = tests::made_results();
-  results.configurations[0].mu = {std::nullopt, "all clips move one way"};
+  results.configurations[0].mu = {std::nullopt, core::WhyUnknown{core::unknown::Told{"all clips move one way"}}};
   results.clips[0].segments[0].r2 = std::numeric_limits<double>::quiet_NaN();
   results.calibrations.clear();
   const json document = json::parse(report::results_json(results));
@@ -73,7 +73,8 @@ TEST_CASE("a quantity that the data do not determine is null, with the reason be
 TEST_CASE("several groups have their plumb angles under their names, several folders their calibrations in a list") {
   core::AnalysisResults results = tests::made_results();
   results.configurations[1].group = "tilted";
-  results.plumbs = {{"flat", tests::known(0.1, 0.2)}, {"tilted", {std::nullopt, "no line in the region"}}};
+  results.plumbs = {{"flat", tests::known(0.1, 0.2)},
+                    {"tilted", {std::nullopt, core::WhyUnknown{core::unknown::Told{"no line in the region"}}}}};
   results.calibrations.push_back(results.calibrations.front());
   results.calibrations.back().experiment = "another";
   const json document = json::parse(report::results_json(results));
@@ -88,7 +89,7 @@ TEST_CASE("several groups have their plumb angles under their names, several fol
 TEST_CASE("names that hold quotes, tags or broken UTF-8 still make valid JSON") {
   core::AnalysisResults results = tests::made_results();
   results.clips[0].name = "a \"quoted\" <clip>\n";
-  results.clips[1].notes = {core::AboutFile{"broken \xff byte"}};
+  results.clips[1].notes = {core::HeightTaken{"broken \xff byte"}};
   const json document = json::parse(report::results_json(results));
   CHECK(document.at("clips").at(0).at("name") == "a \"quoted\" <clip>\n");
 }

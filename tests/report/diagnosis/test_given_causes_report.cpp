@@ -19,7 +19,7 @@ diagnose::GivenCauses made_given() {
   diagnose::GivenCauses given;
   given.causes = {{"quadratic_drag", {{"c_kg_m", 0.0031, 0.0002}}}};
   given.recovered = {tests::made_recovered("flat", 0.335, {"quadratic_drag"})};
-  given.recovered[0].v_lim_m_s = core::Quantity{{}, "the forces balance at no speed downhill"};
+  given.recovered[0].v_lim_m_s = core::Quantity{{}, core::WhyUnknown{core::unknown::NoBalance{}}};
   given.gap_before = 5.3;
   given.gap_after = 1.02;
   given.standard_error = 0.04;

@@ -35,7 +35,11 @@ namespace {
 std::vector<core::Note> evil_notes() {
   core::InclineContradiction contradiction;
   contradiction.stated.by = kEvil;
-  return {core::AboutFile{kEvil},
+  return {core::ColumnsTaken{kEvil, kEvil, kEvil},
+          core::UnitAssumed{kEvil, "metres"},
+          core::HeightTaken{kEvil},
+          core::ForceUnused{kEvil},
+          core::PointMassTaken{kEvil, "+X"},
           core::OutlyingView{kEvil, 1.0, true},
           core::NoPatternInSight{{kEvil, kEvil}},
           core::PlaneViewsDisagree{kEvil, 1.0, 0.1, 2},
@@ -46,13 +50,14 @@ std::vector<core::Note> evil_notes() {
 core::AnalysisResults evil_results() {
   core::AnalysisResults results = tests::made_results();
   for (core::ClipResult& clip : results.clips) {
-    clip.name = clip.experiment = clip.bandwidth_method = kEvil;
+    clip.name = clip.experiment = kEvil;
+    clip.bandwidth_method = core::chosen_by::FirstSmoothing{kEvil};
     clip.notes = evil_notes();
   }
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.group = kEvil;
     configuration.clips = {kEvil};
-    configuration.mu = {std::nullopt, kEvil};
+    configuration.mu = {std::nullopt, core::WhyUnknown{core::unknown::Told{kEvil}}};
     configuration.notes = evil_notes();
   }
   core::CalibrationResult& calibration = results.calibrations[0];
@@ -62,14 +67,15 @@ core::AnalysisResults evil_results() {
   calibration.rests = {800, 600, {{100.0, 100.0, 0.01, 0.02, 0.01, 9}, {500.0, 300.0, 0.01, 0.02, 0.01, 9}}, 0.01, 1.2};
   results.calibrations.push_back(calibration);  // of two folders each is named beside its plot
   core::PlumbResult plumb;
-  plumb.group = plumb.experiment = plumb.plumb_deg.why = kEvil;
+  plumb.group = plumb.experiment = kEvil;
+  plumb.plumb_deg.why = core::WhyUnknown{core::unknown::NoLine{}, {{kEvil, core::AgainstLaunch{1, 0.5}}}};
   results.plumbs.push_back(plumb);
   results.estimator = kEvil;
   return results;
 }
 
 std::vector<core::Preview> evil_previews() {
-  const core::Preview preview{{{0, 0.0, "jpeg"}}, "", 1.0, kEvil};
+  const core::Preview preview{{{0, 0.0, "jpeg"}}, "", 1.0, {}};
   return {preview, preview};
 }
 
@@ -82,7 +88,7 @@ diagnose::Diagnosis evil_diagnosis() {
                  kEvil,
                  0.9,
                  {kEvil},
-                 {{kEvil, 1.0, 0.1, "", ""}, {"codec", 0.0, 0.0, kEvil, ""}},
+                 {{kEvil, 1.0, 0.1}, {"codec", 0.0, 0.0, kEvil}},
                  0.95,
                  {{kEvil, kEvil, 0.5}}}};
   of.ranking = {{{{kEvil}}, 0.9, 10.0, 12.0, 1, 1.0, {}},
@@ -93,13 +99,14 @@ diagnose::Diagnosis evil_diagnosis() {
   of.next = diagnose::RecordForEffect{kEvil, diagnose::Alternative{{{kEvil}}, {{kEvil}}}};
   of.regions = {
       {diagnose::GapVariable::time, 0.0, 1.0, 5.0, 1e-3, kEvil, diagnose::GapKind::force, kEvil, {}, 1e-4, 0, 0.5}};
-  of.effects.front().parameters.push_back({"mu." + kEvil, 1.0, 0.1, "", ""});
-  of.effects.front().parameters.push_back({"mu.2" + kEvil, 1.0, 0.1, "", ""});
+  of.effects.front().parameters.push_back({"mu." + kEvil, 1.0, 0.1});
+  of.effects.front().parameters.push_back({"mu.2" + kEvil, 1.0, 0.1});
   of.explained = {{kEvil, 0.9, diagnose::GapInterval{0.8, 0.95}, 1.2}};
   of.remainder = diagnose::GapRemainder{0.1, 1.2, 1e-3, 1e-3, 0.01, of.regions};
   of.traces = {kEvil};
-  of.recovered = {{kEvil, 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}},
-                  {"other", 0.3, 4.0, {kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}, {{}, kEvil}}};
+  const core::Quantity unknown{{}, core::WhyUnknown{core::unknown::Told{kEvil}}};
+  of.recovered = {{kEvil, 0.3, 4.0, {kEvil}, unknown, unknown, unknown, unknown},
+                  {"other", 0.3, 4.0, {kEvil}, unknown, unknown, unknown, unknown}};
   of.limits.contradicted = {{kEvil, diagnose::Against::plumb, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
   of.notes = {diagnose::NoFreeMotion{kEvil, 12},
               diagnose::StatementsDisagree{kEvil, diagnose::Against::plumb, diagnose::Against::stated, 7.0},
@@ -113,7 +120,7 @@ diagnose::Diagnosis evil_diagnosis() {
                 true,
                 3.0,
                 false,
-                {{kEvil, 1.0, 0.1, "", ""}},
+                {{kEvil, 1.0, 0.1}},
                 diagnose::image::Compression{true, kEvil, 0.1, {}}}};
   of.image_curves = {{"brightness", kEvil, {0.0, 1.0}, {0.0, 0.01}, {}, {}, {}}};
   of.residuals = {{kEvil,
@@ -134,7 +141,7 @@ diagnose::Diagnosis evil_diagnosis() {
   gap.after_by_clip = {1.0, 1.1};
   gap.interval95.too_few = 1;
   gap.parameters = {
-      {kEvil, diagnose::Against::plumb, kEvil, 4.0, 0.3, diagnose::DiagnosedParameter{kEvil, 1.0, 0.1, "", ""}, {}}};
+      {kEvil, diagnose::Against::plumb, kEvil, 4.0, 0.3, diagnose::DiagnosedParameter{kEvil, 1.0, 0.1}, {}}};
   gap.domains = {{diagnose::GapDomainKind::positions, 5.0, 1.0}};
   of.gap = gap;
   return of;

@@ -118,10 +118,21 @@ TEST_CASE("results without any usable point still make a page that says so") {
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.lines.clear();
     configuration.k_over_m_1_s = configuration.mu = configuration.alpha_deg =
-        configuration.v_lim_m_s = {std::nullopt, "no free motion was found"};
+        configuration.v_lim_m_s = {std::nullopt, core::WhyUnknown{core::unknown::Told{"no free motion was found"}}};
   }
   const std::string page = report::analysis_report("nothing", results, {}).html;
   CHECK(page.find("no free motion was found") != std::string::npos);
+}
+
+TEST_CASE("a page says why a clip has no video") {
+  const core::AnalysisResults results = tests::made_results();
+  std::vector<core::Preview> previews(results.clips.size());
+  CHECK(report::analysis_report("clips", results, previews).html.find("No video") == std::string::npos);
+  previews[0].no_video = core::NoVideo{};
+  previews[1].no_video = core::NoVideo{2'340'000};
+  const std::string page = report::analysis_report("clips", results, previews).html;
+  CHECK(page.find("No video: no H.264 encoder is installed.") != std::string::npos);
+  CHECK(page.find("No video: it would take 2.3 MB.") != std::string::npos);
 }
 
 TEST_CASE("the detail near v = 0 promises the terminal velocity only where it shows a line that crosses a = 0") {

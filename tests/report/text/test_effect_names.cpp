@@ -35,7 +35,7 @@ TEST_CASE("every effect with a size says what the letters of its size mean, on t
   of.verdict = diagnose::Verdict::effect;
   diagnose::DiagnosedEffect effect{};
   effect.id = "eddy_rolloff";
-  effect.parameters = {{"v_c_m_s", 2.0, 0.1, "", ""}};
+  effect.parameters = {{"v_c_m_s", 2.0, 0.1}};
   of.effects = {effect};
   const std::string words = "K v becomes K v / (1 + (v / v<sub>c</sub>)²)";
   CHECK(report::diagnosis_report("d", of, {}).html.find(words) != std::string::npos);

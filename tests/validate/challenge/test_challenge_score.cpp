@@ -37,8 +37,8 @@ ChallengeEntrant entrant(const std::string& name, double sd, double stated, std:
     results.configurations[0].clips = {"up"};
     const double value = 2.0 + deviate(engine);
     const bool no_answer = silent > 0 && c % silent == 0;
-    results.configurations[0].k_over_m_1_s =
-        no_answer ? core::undetermined("silent") : core::determined(core::estimate(value, stated, INFINITY));
+    results.configurations[0].k_over_m_1_s = no_answer ? core::undetermined(core::unknown::Told{"silent"})
+                                                       : core::determined(core::estimate(value, stated, INFINITY));
     made.cases.push_back(results);
     made.runs.emplace_back();
   }

@@ -10,7 +10,7 @@ using namespace glidelab;
 namespace {
 
 core::Quantity known(double value, double sd) {
-  return {core::Estimate{value, sd, value - 1.96 * sd, value + 1.96 * sd}, ""};
+  return {core::Estimate{value, sd, value - 1.96 * sd, value + 1.96 * sd}, {}};
 }
 
 /// One clip of 100 frames at constant speed, on a track whose reference point lies 0.3 m beyond the analysis' origin.
@@ -62,7 +62,7 @@ core::AnalysisResults perfect(const validate::Truth& truth) {
     configuration.clips = expected.clips;
     configuration.k_over_m_1_s = known(*expected.k_over_m_1_s, 0.006);
     configuration.alpha_deg = known(*expected.alpha_deg, 0.01);
-    configuration.mu = {std::nullopt, "one direction only"};
+    configuration.mu = {std::nullopt, core::WhyUnknown{core::unknown::Told{"one direction only"}}};
     if (expected.v_lim_m_s) configuration.v_lim_m_s = known(*expected.v_lim_m_s, 0.001);
     if (!expected.v_lim_m_s) configuration.v_lim_m_s = known(0.3, 0.001);
     results.configurations.push_back(configuration);

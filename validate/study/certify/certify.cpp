@@ -16,6 +16,7 @@
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
+#include "core/result/why_words.h"
 #include "diagnose/lines/line_model.h"
 #include "diagnose/verdict/diagnose.h"
 #include "validate/random_use.h"
@@ -87,7 +88,8 @@ TwinOutcome outcome_of(const Twins& twins, const TwinChange& change, std::uint64
     const core::ConfigurationResult* result = result_of(results, truth);
     for (std::size_t q = 0; q < kQuantityCount; ++q) {
       of[q].truth = core::value_of(truth, core::kQuantities[q].which);
-      of[q].found = result ? core::value_of(*result, core::kQuantities[q].which) : core::undetermined(why);
+      of[q].found =
+          result ? core::value_of(*result, core::kQuantities[q].which) : core::undetermined(core::unknown::Told{why});
     }
   }
   return outcome;
@@ -140,7 +142,7 @@ CertifiedQuantity certified(const Outcomes& outcomes, std::size_t quantity,
     ++result.asked;
     if (!one.found.estimate) {
       ++result.failed;
-      result.why = one.found.why;
+      result.why = core::why_words(one.found.why);
       return;
     }
     const double error = one.found.estimate->value - *one.truth, sd = one.found.estimate->sd;

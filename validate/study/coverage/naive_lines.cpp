@@ -60,7 +60,7 @@ core::Quantity interval(double value, double variance) {
 }
 
 core::Quantity nothing(const char* why) {
-  return {std::nullopt, why};
+  return {std::nullopt, core::WhyUnknown{core::unknown::Told{why}}};
 }
 
 core::Quantity limit_of(const std::optional<Line>& line) {
@@ -112,7 +112,7 @@ core::AnalysisResults lines_through_all_points(const MadeTracks& made, double ba
     clip.detected = track.t_s.size();
     clip.frame_rate_hz = track.frame_rate_hz;
     clip.bandwidth_s = bandwidth_s;
-    clip.bandwidth_method = "given";
+    clip.bandwidth_method = core::chosen_by::User{};
     clip.motion.resize(clip.frames);
     for (core::MotionPoint& point : clip.motion) point.left_out = core::LeftOut::no_marker;
     const core::LocalCubic cubic(track.t_s, bandwidth_s);

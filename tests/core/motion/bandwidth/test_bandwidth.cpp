@@ -39,7 +39,7 @@ double true_error(double noise_m, double rate_hz, std::optional<double> bandwidt
 TEST_CASE("a given bandwidth is used as it is") {
   const auto clip = analyze(1e-5, 200.0, 1, 0.043);
   CHECK(clip.bandwidth_s == 0.043);
-  CHECK(clip.bandwidth_method == "given");
+  CHECK(std::holds_alternative<core::chosen_by::User>(clip.bandwidth_method));
 }
 
 TEST_CASE("where noise rules, the bandwidth found is nearly as good as the best one that knows the truth") {
@@ -60,6 +60,11 @@ TEST_CASE("where noise is low, points become quiet at the price of a bias below 
   for (const double noise_m : {5e-6, 1e-5}) {
     const auto clip = analyze(noise_m, 200.0, 3);
     REQUIRE(clip.segments.size() == 2);
+    const auto& rule = std::get<core::chosen_by::LinesRule>(clip.bandwidth_method);
+    CHECK(rule.line_s < clip.bandwidth_s);
+    REQUIRE(rule.raised);
+    CHECK(rule.raised->noise_share > 0.0);
+    CHECK(rule.raised->bias_share <= 0.0035);  // as far as it is raised (rule_lines.h)
     for (const core::LineFit& line : clip.segments) {
       INFO("noise " << noise_m << " h " << clip.bandwidth_s << " R2 " << line.r2);
       CHECK(std::abs(line.k_over_m_1_s.value / kInclined.k_1_s - 1.0) < 0.005);

@@ -243,12 +243,35 @@ TEST_CASE("a motion that is too short for any bandwidth gets none, and unknown n
   CHECK_FALSE(find_bandwidth_rule("silverman"));
 }
 
+TEST_CASE("a rule that judges x says which bandwidth it found for x, of which its own is the conversion") {
+  const Case of = sliding(1e-4, 200.0);
+  const std::vector<double> x = noisy(of, 3);
+  for (const auto& [rule, constants] :
+       {std::pair{"cv", kGaussianX}, std::pair{"gcv", kGaussianX}, std::pair{"cv-correlated", kBimodalX}}) {
+    INFO(rule);
+    const auto pick = find_bandwidth_rule(rule)->choose(problem_of(of, x));
+    REQUIRE(pick);
+    REQUIRE(pick->by.numbers.size() == 1);
+    CHECK(pick->by.converted);
+    CHECK(pick->bandwidth_s == Approx(convert_bandwidth(1e-3 * pick->by.numbers[0], constants, kGaussianA)));
+  }
+}
+
+TEST_CASE("a choice at an end of the bandwidths tried says at which, and one without an alternative says that") {
+  using Edge = chosen_by::Rule::Edge;
+  CHECK(edge_of({0.01, 0.02, 0.03}, 0) == Edge::narrowest);
+  CHECK(edge_of({0.01, 0.02, 0.03}, 1) == Edge::none);
+  CHECK(edge_of({0.01, 0.02, 0.03}, 2) == Edge::widest);
+  CHECK(edge_of({0.01}, 0) == Edge::only);
+}
+
 TEST_CASE("where x'''' drowns in the noise the plug-in rule says so and takes the widest") {
   Case of = sliding(1e-2, 60.0);
   for (double& x : of.x) x = 0.0;
   const auto pick = find_bandwidth_rule("plug-in")->choose(problem_of(of, noisy(of, 2)));
   REQUIRE(pick);
-  CHECK(pick->method.find("does not rise above") != std::string::npos);
+  CHECK(pick->by.found.find("does not rise above") != std::string_view::npos);
+  CHECK(pick->by.numbers.empty());
 }
 
 TEST_CASE("every rule states what it does and assumes, is found by its name, and has its row in the guide") {

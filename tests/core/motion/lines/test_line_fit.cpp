@@ -8,6 +8,7 @@
 #include "core/motion/bandwidth/rule_lines.h"
 #include "core/result/estimate.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
 
 using namespace glidelab;
@@ -320,13 +321,16 @@ TEST_CASE("the terminal velocity is a0 over K/m, and null where the data do not 
   line.a0_m_s2.value = -0.07;
   complete_line(line);
   CHECK_FALSE(limit_velocity({line}).estimate);
-  CHECK_THAT(limit_velocity({line}).why, Catch::Matchers::Contains("a0"));
+  CHECK(tests::reason_of<unknown::InterceptNotPositive>(limit_velocity({line})) != nullptr);
   line.a0_m_s2.value = 0.6;
   line.k_over_m_1_s.value = 0.01;
   complete_line(line);
-  CHECK_THAT(limit_velocity({line}).why, Catch::Matchers::Contains("K/m"));
+  const Quantity level = limit_velocity({line});
+  const auto* const rate = tests::reason_of<unknown::RateNotPositive>(level);
+  REQUIRE(rate != nullptr);
+  CHECK(rate->of_line);
   line.direction = -1;
-  CHECK(limit_velocity({line}).why == "no line for v > 0");
+  CHECK(tests::reason_of<unknown::NoDownhillLine>(limit_velocity({line})) != nullptr);
 }
 
 TEST_CASE("too few points or points of one v give no line") {

@@ -58,6 +58,8 @@ TEST_CASE("a turn is found to a fraction of a step, and a on both sides of its j
   for (const Smoother* smoother : kOwnStrength) {
     CAPTURE(smoother->name());
     const SmoothedSeries series = smoother->smooth(turning(3e-6));
+    CHECK(std::holds_alternative<chosen_by::Likelihood>(series.strength.method) == (smoother->name() == "kalman"));
+    CHECK(std::holds_alternative<chosen_by::CrossValidation>(series.strength.method) == (smoother->name() == "spline"));
     REQUIRE(series.strength.breaks_s.size() == 1);
     // sd of v there is some 0.05 mm/s and a is 1 m/s^2: 0.05 ms; a step is 6 ms.
     CHECK(std::abs(series.strength.breaks_s[0] - kTurn) < 3e-4);
@@ -156,7 +158,9 @@ TEST_CASE("a part with fewer points than a smoother needs is left as it is") {
   input.x_m.resize(kFewestSmoothed - 1);
   input.starts.clear();
   input.breaks_s.clear();
-  CHECK_FALSE(kalman_smoother().smooth(input).points.front());
+  const SmoothedSeries none = kalman_smoother().smooth(input);
+  CHECK_FALSE(none.points.front());
+  CHECK(std::holds_alternative<chosen_by::Nothing>(none.strength.method));
 }
 
 TEST_CASE("bands of a hold nearly 95 % of signals of the prior, at single times and at all times together", "[slow]") {

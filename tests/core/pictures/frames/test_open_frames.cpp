@@ -116,8 +116,11 @@ TEST_CASE("a folder of 16-bit frames comes out bit by bit in the order that peop
     CHECK(frame->grey.at<std::uint16_t>(3, 3) == 4000 + k);
   }
   CHECK_FALSE(source->next());
-  REQUIRE(source->notes().size() == 1);
-  CHECK(tests::says_of_file(source->notes(), "1 files"));
+  const std::vector<core::Note> notes = source->notes();
+  REQUIRE(notes.size() == 1);
+  const auto* const skipped = tests::note_of<core::FilesSkipped>(notes);
+  REQUIRE(skipped != nullptr);
+  CHECK(skipped->files == 1);
 }
 
 TEST_CASE("names are ordered as people number files") {
@@ -137,9 +140,13 @@ TEST_CASE("a container that plays at another rate is noted, and the stated rate 
   CHECK(source->next()->t_s == 1.0 / kRate);
   while (source->next()) {
   }
-  REQUIRE(source->notes().size() == 1);
-  CHECK(tests::says_of_file(source->notes(), "29.97"));
-  CHECK(tests::says_of_file(source->notes(), "200"));
+  const std::vector<core::Note> notes = source->notes();
+  REQUIRE(notes.size() == 1);
+  const auto* const other = tests::note_of<core::ContainerOfOtherRate>(notes);
+  REQUIRE(other != nullptr);
+  CHECK(other->container_hz == Approx(29.97).epsilon(1e-3));  // a fraction of whole numbers
+  CHECK(other->stated_hz == 200.0);
+  CHECK(other->by_rate);
 }
 
 TEST_CASE("the container's time stamps count where that is asked") {
@@ -199,12 +206,14 @@ TEST_CASE("stamps with dropped frames give their own times, and are reported") {
     expected = static_cast<double>(n) / 50.0;
     CHECK(std::abs(times[k] - expected) < 1.1e-3);  // Matroska's millisecond
   }
-  bool told = false;
-  for (const core::Note& note : source->notes()) {
-    const auto* const said = std::get_if<core::AboutFile>(&note);
-    told |= said != nullptr && contains(said->text, "irregular") && contains(said->text, "2 of ");
-  }
-  CHECK(told);
+  const std::vector<core::Note> notes = source->notes();
+  const auto* const irregular = tests::note_of<core::IrregularStamps>(notes);
+  REQUIRE(irregular != nullptr);
+  CHECK(irregular->irregular == 2);
+  CHECK(irregular->steps == times.size() - 1);
+  CHECK(std::abs(irregular->median_step_s - 0.020) < 1.1e-3);  // Matroska's millisecond
+  CHECK(std::abs(irregular->longest_step_s - 0.060) < 1.1e-3);
+  CHECK_FALSE(irregular->by_rate);
 }
 
 TEST_CASE("clips that cannot be used are errors that name the file and the frame") {

@@ -42,8 +42,9 @@ TEST_CASE("the answer says how much each cause explains, with its size, and what
 
 TEST_CASE("a cause is told without what was not fitted, of each set-up by itself, or not found") {
   diagnose::Diagnosis of = tests::two_causes();
-  of.effects.front().parameters = {
-      {"x_mid_m", 0.4, 0.0}, {"x_mid_m.slope", 0.4, 0.01}, {"n", 0.0, 0.0, "", "no speeds"}};
+  of.effects.front().parameters = {{"x_mid_m", 0.4, 0.0},
+                                   {"x_mid_m.slope", 0.4, 0.01},
+                                   {"n", 0.0, 0.0, "", core::WhyUnknown{core::unknown::Told{"no speeds"}}}};
   CHECK(report::sequence_words(of).starts_with("Quadratic drag explains 91 %"));
   of.remainder.reset();
   CHECK(report::sequence_words(of).ends_with("explains another 6 % (2 to 10 %)."));
@@ -195,8 +196,8 @@ TEST_CASE("a reason that several configurations share is told once") {
     one.group = "fall";
     one.mass_kg = mass_kg;
     one.incline_deg = 90.0;
-    one.mu = {.estimate = {}, .why = "a fall has no normal force"};
-    if (mass_kg < 0.0025) one.v_lim_m_s = {.estimate = {}, .why = "too short"};
+    one.mu = {.estimate = {}, .why = core::WhyUnknown{core::unknown::Told{"a fall has no normal force"}}};
+    if (mass_kg < 0.0025) one.v_lim_m_s = {.estimate = {}, .why = core::WhyUnknown{core::unknown::Told{"too short"}}};
     of.recovered.push_back(one);
   }
   const auto tables = report::recovered_tables(of);

@@ -1,0 +1,115 @@
+/// Why the data do not determine a quantity, as data: one struct for each reason, with its numbers. why_words.h puts it
+/// into words.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/result/analysis_note.h"
+
+namespace glidelab::core {
+
+namespace unknown {
+
+/// In the words of an estimator written elsewhere, or of the error that ended an analysis.
+struct Told {
+  std::string text;
+};
+
+// From the lines of the phase diagram.
+
+/// Neither direction has a line.
+struct NoLine {};
+
+/// The terminal velocity follows from the line for v > 0.
+struct NoDownhillLine {};
+
+/// mu and alpha follow from the lines of both directions.
+struct NotBothLines {
+  bool minus = false, plus = false;  ///< those that are missing
+};
+
+/// The mean of the lines' a0 exceeds gravity.
+struct MeanBeyondGravity {
+  double mean_m_s2 = 0.0;
+};
+
+// The terminal velocity a0/(K/m) requires both above zero.
+
+struct RateNotPositive {
+  bool of_line = false;  ///< for v > 0; otherwise of the whole motion
+};
+
+struct InterceptNotPositive {};
+
+// From the fit of the whole motion.
+
+struct NoFreeMotion {};
+
+/// The fit does not converge, or the motion does not determine its parameters.
+struct NoFit {};
+
+/// Motion in one direction determines g (sin(alpha) -+ mu cos(alpha)) alone.
+struct OneDirection {
+  int direction = 0;
+  double a0_m_s2 = 0.0, sd_m_s2 = 0.0;
+};
+
+struct NoDownhillMotion {};
+
+/// The acceleration without friction exceeds gravity.
+struct DriveBeyondGravity {};
+
+// From an estimator written elsewhere.
+
+/// It gave no value and no reason.
+struct NotTold {};
+
+/// Its results lack the configuration.
+struct NotAnswered {};
+
+// From a plumb line.
+
+/// The marker does not move, so its line is unknown.
+struct NoLineOfMotion {};
+
+// From a diagnosis.
+
+/// The motions do not tell it apart from the other quantities.
+struct NotToldApart {};
+
+/// The likely explanations differ too much in it.
+struct ExplanationsDiffer {};
+
+/// A fall has no normal force, and so no friction.
+struct FreeFall {};
+
+/// The forces balance at no speed downhill.
+struct NoBalance {};
+
+/// A table of lines does not state how they were smoothed.
+struct KernelNotStated {};
+
+}  // namespace unknown
+
+using AnyReason = std::variant<unknown::Told, unknown::NoLine, unknown::NoDownhillLine, unknown::NotBothLines,
+                               unknown::MeanBeyondGravity, unknown::RateNotPositive, unknown::InterceptNotPositive,
+                               unknown::NoFreeMotion, unknown::NoFit, unknown::OneDirection, unknown::NoDownhillMotion,
+                               unknown::DriveBeyondGravity, unknown::NotTold, unknown::NotAnswered,
+                               unknown::NoLineOfMotion, unknown::NotToldApart, unknown::ExplanationsDiffer,
+                               unknown::FreeFall, unknown::NoBalance, unknown::KernelNotStated>;
+
+/// A clip whose motion in a direction without a line is attributed to the hand.
+struct ClipAgainstLaunch {
+  std::string clip;
+  AgainstLaunch motion;
+};
+
+struct WhyUnknown {
+  AnyReason reason;
+  std::vector<ClipAgainstLaunch> against_launch = {};  ///< of these clips, if that is why a line is missing
+};
+
+}  // namespace glidelab::core

@@ -1,0 +1,94 @@
+#include "core/result/why_words.h"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+namespace glidelab::core {
+namespace {
+
+/// Words for every reason; a reason without them does not compile.
+struct ReasonWords {
+  std::string operator()(const unknown::Told& of) const { return of.text; }
+
+  std::string operator()(const unknown::NoLine&) const {
+    return "no line: neither direction has enough points that count";
+  }
+  std::string operator()(const unknown::NoDownhillLine&) const { return "no line for v > 0"; }
+  std::string operator()(const unknown::NotBothLines& of) const {
+    return fmt::format("no line for {}: friction and slope can be told apart only with both directions",
+                       of.minus && of.plus ? "v < 0 and none for v > 0"
+                       : of.minus          ? "v < 0"
+                                           : "v > 0");
+  }
+  std::string operator()(const unknown::MeanBeyondGravity& of) const {
+    return fmt::format("the mean of a0 is {:.4g} m/s², which is gravity or more", of.mean_m_s2);
+  }
+
+  std::string operator()(const unknown::RateNotPositive& of) const {
+    return fmt::format("K/m{} is not above zero by more than its uncertainty", of.of_line ? " for v > 0" : "");
+  }
+  std::string operator()(const unknown::InterceptNotPositive&) const {
+    return "a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0";
+  }
+
+  std::string operator()(const unknown::NoFreeMotion&) const { return "no free motion"; }
+  std::string operator()(const unknown::NoFit&) const {
+    return "the fit of the whole motion does not converge, or the motion does not determine its parameters";
+  }
+  std::string operator()(const unknown::OneDirection& of) const {
+    const bool plus = of.direction > 0;
+    return fmt::format(
+        "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not the two "
+        "apart",
+        plus ? ">" : "<", plus ? "-" : "+", of.a0_m_s2, of.sd_m_s2);
+  }
+  std::string operator()(const unknown::NoDownhillMotion&) const { return "no motion with v > 0"; }
+  std::string operator()(const unknown::DriveBeyondGravity&) const {
+    return "the acceleration without friction exceeds gravity: no inclination gives that";
+  }
+
+  std::string operator()(const unknown::NotTold&) const { return "the estimator gave none and did not say why"; }
+  std::string operator()(const unknown::NotAnswered&) const {
+    return "the estimator's results.json has no such configuration";
+  }
+
+  std::string operator()(const unknown::NoLineOfMotion&) const {
+    return "the marker does not move, so its line is unknown";
+  }
+
+  std::string operator()(const unknown::NotToldApart&) const {
+    return "these motions do not tell it apart from the other quantities";
+  }
+  std::string operator()(const unknown::ExplanationsDiffer&) const {
+    return "the likely explanations differ too much in it";
+  }
+  std::string operator()(const unknown::FreeFall&) const { return "a fall has no normal force, and so no friction"; }
+  std::string operator()(const unknown::NoBalance&) const { return "the forces balance at no speed downhill"; }
+  std::string operator()(const unknown::KernelNotStated&) const {
+    return "a table says neither how wide the kernel was nor which stretch each line was fitted to";
+  }
+};
+
+}  // namespace
+
+std::string why_words(const std::optional<WhyUnknown>& why) {
+  if (!why) return "";
+  std::string text = std::visit(ReasonWords{}, why->reason);
+  for (const ClipAgainstLaunch& one : why->against_launch) {
+    text +=
+        fmt::format("; {}: {} (as launched and downhill in experiment.toml say)", one.clip, launch_words(one.motion));
+  }
+  return text;
+}
+
+std::string launch_words(const AgainstLaunch& against) {
+  const char* const moving = against.direction > 0 ? "+x" : "-x";
+  const char* const launch = against.direction > 0 ? "-x" : "+x";
+  if (!against.until_s) return fmt::format("it moves towards {} only: the launch was towards {}", moving, launch);
+  return fmt::format(
+      "motion towards {} before {:.3f} s is attributed to the hand and excluded, since the launch was towards {}",
+      moving, *against.until_s, launch);
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,60 @@
+#include "core/result/why_words.h"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "tests/catch.h"
+
+using namespace glidelab::core;
+
+TEST_CASE("every reason for a missing quantity has words, with its numbers") {
+  const std::vector<std::pair<AnyReason, std::string>> reasons = {
+      {unknown::Told{"not done after 60 s"}, "not done after 60 s"},
+      {unknown::NoLine{}, "no line: neither direction"},
+      {unknown::NoDownhillLine{}, "no line for v > 0"},
+      {unknown::NotBothLines{true, false}, "no line for v < 0: friction and slope"},
+      {unknown::NotBothLines{false, true}, "no line for v > 0: friction and slope"},
+      {unknown::NotBothLines{true, true}, "no line for v < 0 and none for v > 0: friction and slope"},
+      {unknown::MeanBeyondGravity{10.5}, "the mean of a0 is 10.5 m/s², which is gravity or more"},
+      {unknown::RateNotPositive{true}, "K/m for v > 0 is not above zero"},
+      {unknown::RateNotPositive{false}, "K/m is not above zero"},
+      {unknown::InterceptNotPositive{}, "a0 for v > 0 is not above zero"},
+      {unknown::NoFreeMotion{}, "no free motion"},
+      {unknown::NoFit{}, "does not converge"},
+      {unknown::OneDirection{1, 0.6874, 0.0012},
+       "motion with v > 0 only: it determines g (sin(alpha) - mu cos(alpha)) = 0.6874 ± 0.0012 m/s²"},
+      {unknown::OneDirection{-1, 0.7, 0.01}, "v < 0 only: it determines g (sin(alpha) + mu cos(alpha))"},
+      {unknown::NoDownhillMotion{}, "no motion with v > 0"},
+      {unknown::DriveBeyondGravity{}, "exceeds gravity"},
+      {unknown::NotTold{}, "did not say why"},
+      {unknown::NotAnswered{}, "no such configuration"},
+      {unknown::NoLineOfMotion{}, "does not move"},
+      {unknown::NotToldApart{}, "do not tell it apart"},
+      {unknown::ExplanationsDiffer{}, "differ too much"},
+      {unknown::FreeFall{}, "no normal force"},
+      {unknown::NoBalance{}, "no speed downhill"},
+      {unknown::KernelNotStated{}, "neither how wide the kernel was"}};
+  std::vector<bool> seen(std::variant_size_v<AnyReason>, false);
+  for (const auto& [reason, part] : reasons) {
+    const std::string words = why_words(WhyUnknown{reason});
+    INFO(words);
+    CHECK(words.find(part) != std::string::npos);
+    seen[reason.index()] = true;
+  }
+  for (std::size_t kind = 0; kind < seen.size(); ++kind) {
+    INFO("kind " << kind);
+    CHECK(seen[kind]);
+  }
+  CHECK(why_words({}).empty());
+}
+
+TEST_CASE("a reason names the clips whose motion went against the launch, and when the launch begins") {
+  const AgainstLaunch turning{1, 0.542, 0.4, true}, whole{-1, {}, 1.0, false};
+  CHECK(why_words(WhyUnknown{unknown::NoDownhillLine{}, {{"up", turning}, {"down", whole}}}) ==
+        "no line for v > 0; up: motion towards +x before 0.542 s is attributed to the hand and excluded, since the "
+        "launch was towards -x (as launched and downhill in experiment.toml say); down: it moves towards -x only: the "
+        "launch was towards +x (as launched and downhill in experiment.toml say)");
+}
