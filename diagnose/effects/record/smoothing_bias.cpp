@@ -29,8 +29,7 @@ EffectInfo smoothing_bias() {
                 .key = "intercept_s2_m_s2",
                 .largest = 1.0,
                 .unknown_key = "bandwidth_s",
-                .why_unknown =
-                    "a table says neither how wide the kernel was nor which stretch each line was fitted to"},
+                .why_unknown = core::WhyUnknown{core::unknown::KernelNotStated{}}},
       .twin = EffectTwin::none("a table of lines has no motion to simulate"),
       .in_images = std::nullopt,
       .next =
