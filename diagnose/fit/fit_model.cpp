@@ -114,6 +114,7 @@ void ParameterLayout::add_common(const TrackSet& set) {
   globals_.push_back({Kind::k});
   globals_.push_back({Kind::mu});
   for (std::size_t g = 0; g < set.groups.size(); ++g) globals_.push_back({Kind::alpha, g});
+  if (gravity_matters(set)) globals_.push_back({Kind::gravity});
   for (std::size_t m = 0; m < set.masses.size(); ++m) {
     if (set.masses[m].sd_kg > 0.0) globals_.push_back({Kind::mass, m});
   }
@@ -194,6 +195,7 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
     if (global.kind == Global::Kind::k) model.k_n_s_m = value;
     if (global.kind == Global::Kind::mu) model.mu = value;
     if (global.kind == Global::Kind::alpha) model.alpha_rad = value;
+    if (global.kind == Global::Kind::gravity) model.gravity_m_s2 += value * set.gravity_sd_m_s2;
     if (global.kind == Global::Kind::mass) model.mass_kg += value * set.masses[global.index].sd_kg;
     if (global.kind == Global::Kind::effect) model.effects[global.parameter->slot] = value;
   }

@@ -77,7 +77,7 @@ class ParameterLayout {
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like);
 
   struct Global {
-    enum class Kind { k, mu, alpha, mass, mode, scale, effect } kind;
+    enum class Kind { k, mu, alpha, gravity, mass, mode, scale, effect } kind;
     std::size_t index = 0;  ///< of the group, mass, mode, or clip
     const EffectParameter* parameter = nullptr;
     std::size_t effect = 0;

@@ -62,6 +62,7 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
       case Global::Kind::mu:
         if (only_falls(set)) statements.push_back({g, 0.0, kFallFriction, {}, false});
         break;
+      case Global::Kind::gravity:
       case Global::Kind::mass:
       case Global::Kind::mode:
       case Global::Kind::scale:

@@ -10,6 +10,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kMostPositions = 30000;  // of all motions
+constexpr double kNearlyAsCertain = 2.0;       // relative error of sin(alpha) over that of g
 
 }  // namespace
 
@@ -19,6 +20,16 @@ bool is_fall(const TrackGroup& group) {
 
 bool only_falls(const TrackSet& set) {
   return !set.groups.empty() && std::all_of(set.groups.begin(), set.groups.end(), is_fall);
+}
+
+bool gravity_matters(const TrackSet& set) {
+  if (!(set.gravity_sd_m_s2 > 0.0)) return false;
+  const double part = kNearlyAsCertain * set.gravity_sd_m_s2 / set.gravity_m_s2;
+  return std::any_of(set.groups.begin(), set.groups.end(), [part](const TrackGroup& group) {
+    return is_fall(group) || std::any_of(group.statements.begin(), group.statements.end(), [part](const auto& stated) {
+             return stated.sd_rad < part * std::abs(std::tan(stated.alpha_rad));
+           });
+  });
 }
 
 bool is_driven(const TrackSet& set) {

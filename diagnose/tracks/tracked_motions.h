@@ -102,6 +102,7 @@ struct TrackedClip {
 
 struct TrackSet {
   double gravity_m_s2 = 9.80665;
+  double gravity_sd_m_s2 = 0.0;  ///< 0: exact
   std::vector<TrackedClip> clips;
   std::vector<TrackGroup> groups;
   std::vector<TrackedMass> masses;
@@ -123,6 +124,10 @@ struct TrackSet {
 
 /// Whether only falls were recorded.
 bool only_falls(const TrackSet& set);
+
+/// Whether the uncertainty of g counts in these motions: some set-up is a fall, or has an inclination alpha that is
+/// known so well that the relative error of sin(alpha) is at most twice that of g. Elsewhere alpha takes it up.
+bool gravity_matters(const TrackSet& set);
 
 /// Whether a recorded force drives any of the motions: the next clip is then not a launch.
 bool is_driven(const TrackSet& set);
