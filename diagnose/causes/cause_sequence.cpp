@@ -162,13 +162,19 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     }
     return best;
   };
+  // What of the excess a cause is measured by, to be worth a name. A fall without any drag lies so far off that nothing
+  // would be worth a name beside the drag. Beside it, what the drag leaves is the measure.
+  const auto whole = [&]() -> const Step& {
+    const bool beside_drag = set.no_drag && !steps.empty() && is_above_floor(steps.front().second);
+    return beside_drag ? steps.front().second : first;
+  };
   while (!left.empty()) {
     // Laws that all clips have in common come first: sizes of each clip's own would absorb what these explain.
     std::optional<std::pair<std::size_t, Step>> best;
     for (const bool laws_only : {true, false}) {
       best = best_of(laws_only);
       if (!best) continue;
-      const double share = cause_of(left[best->first], first, here, best->second, is_one_clip(set)).share;
+      const double share = cause_of(left[best->first], whole(), here, best->second, is_one_clip(set)).share;
       if (share > (steps.empty() ? kLeastShare : least_named)) break;
       best.reset();
       if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
@@ -185,7 +191,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   while (steps.size() < kMostCauses && is_above_floor(here)) {
     auto next = next_cause(set, with, here, without);
     if (!next) break;
-    if (!is_worth(cause_of(next->first, first, here, next->second, is_one_clip(set)))) break;
+    if (!is_worth(cause_of(next->first, whole(), here, next->second, is_one_clip(set)))) break;
     here = next->second;
     steps.push_back(std::move(*next));
   }

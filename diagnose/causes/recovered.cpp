@@ -11,6 +11,7 @@
 #include "base/math/dense.h"
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -22,6 +23,7 @@ constexpr double kNoLoad = 0.02;        // cos(alpha) below which there is no no
 constexpr double kInstant_s = 1e-4;     // time step over which an acceleration is taken
 constexpr double kFastest_m_s = 100.0;  // upper limit of a terminal velocity
 const char* const kWhyTogether = "these motions do not tell it apart from the other quantities";
+const char* const kWhyNotViscous = "the drag is not viscous: it grows with the square of the speed";
 const char* const kWhyApart = "the likely explanations differ too much in it";
 
 /// The standard deviation from which K/m counts as not known: 1/s or, if larger, K/m itself.
@@ -136,6 +138,10 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     one.of = of;
     one.k_over_m_1_s = found(rate(at), gradient(rate), 1.0);
     one.k_over_m_1_s.known &= one.k_over_m_1_s.sd < unknown_rate(rate(at));
+    if (holds_drag(set, fit.effects)) {
+      one.k_over_m_1_s.known = false;
+      one.k_over_m_1_s.why = kWhyNotViscous;
+    }
     one.mu = found(mu(at), gradient(mu), 1.0);
     one.mu.known &= one.mu.sd < kUnknownMu;
     if (!(std::cos(alpha(at)) > kNoLoad)) {

@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/fit/integrated_start.h"
 
@@ -49,6 +50,9 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
     switch (global.kind) {
+      case Global::Kind::k:
+        if (holds_drag(set, layout.effects())) statements.push_back({g, 0.0, kStokesDrag_n_s_m, {}, false});
+        break;
       case Global::Kind::alpha:
         for (const InclineStatement& s : set.groups[global.index].statements) {
           statements.push_back({g, s.alpha_rad, s.sd_rad, s.against, true});
@@ -303,6 +307,24 @@ FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t eff
 
 }  // namespace
 
+namespace {
+
+/// The coefficient c of a quadratic drag that takes as much energy from the motions as K does in a fit; `least` if K is
+/// not positive.
+double drag_of_air_like(const MotionFit& fit, double least) {
+  double squares = 0.0, cubes = 0.0;  // of the speed: the power is K v², or c v³
+  for (const FitMotion& motion : fit.motions) {
+    for (const double v : motion.v_m_s) {
+      squares += v * v;
+      cubes += std::abs(v) * v * v;
+    }
+  }
+  const double like = fit.at.global[0] * squares / cubes;
+  return like > least ? like : least;
+}
+
+}  // namespace
+
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late) {
   return fit_from(set, effects, start, late, descent_options());
@@ -322,6 +344,8 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
   std::vector<std::size_t> effects = base.effects;
   effects.push_back(effect);
   MotionFit best = fit_motions(set, effects, start, base.late);
+  // A quadratic drag in place of K is another model than `base`, and need not fit better.
+  if (takes_place_of_drag(set, base.effects, effect)) return best;
   // A size from a linear estimate far from the minimum may be wrong by decades.
   const auto size = base.at.global.size();
   const bool has_size = effect_list()[effect].law.size == 0 &&
@@ -409,6 +433,10 @@ FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effe
   point.global.head(fit.at.global.size()) = fit.at.global;  // effects come last, and the new one is the last of them
   for (std::size_t v = 0; v < values.size(); ++v) {
     point.global[fit.at.global.size() + static_cast<Eigen::Index>(v)] = values[v];
+  }
+  if (!values.empty() && takes_place_of_drag(set, fit.effects, effect)) {
+    point.global[fit.at.global.size()] = drag_of_air_like(fit, values.front());
+    point.global[0] = 0.0;
   }
   for (std::size_t i = 0; i < fit.at.own.size(); ++i) {
     Eigen::VectorXd extended = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 + layout.own().size()));

@@ -421,6 +421,7 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
   }
   set.x_mid_m = 0.5 * (lowest + highest);
   add_statements(results, setups, set);
+  set.through_air = falls_through_air(set);
   return set;
 }
 

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/unnamed/unnamed.h"
+#include "diagnose/weigh/air_odds.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
+#include "diagnose/weigh/unknown_noise.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -96,6 +99,7 @@ void give_trifles_to_their_effects(Comparison& comparison) {
 
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
+  set_air_odds(set, comparison);
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
     const bool tracked =
@@ -106,14 +110,17 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   }
   const double one = std::log(kPriorOne / std::max(1.0, seen));
   const double two = std::log(kPriorTwo / std::max(1.0, 0.5 * seen * (seen - 1.0)));
+  const std::optional<FewPositions> few = few_positions(set);
+  const double chi2 = comparison.fits.front().cost;
   std::vector<double> logs;
   for (const Hypothesis& hypothesis : comparison.all) {
+    const double less = few ? hypothesis.gain - gain_with_unknown_noise(*few, chi2, hypothesis.gain) : 0.0;
     const std::size_t many = hypothesis.effects.size();
     double prior = many == 0   ? std::log(kPriorNone)
                    : many == 1 ? one
                                : two + static_cast<double>(many - 2) * (two - one);
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
-    logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence);
+    logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence - less);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
   double sum = 0.0;
@@ -147,6 +154,13 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
 
   const Hypothesis nothing = comparison.all.front();
   fit_best(set, nominal, best_of(comparison.scans, kFitted), nothing, work.at(0.2), comparison);
+  if (const std::size_t air = effect_index(ids::quadratic_drag);
+      set.through_air && !left_out.contains(air) && find(comparison, {air}) == nullptr) {
+    // In place of K it is fitted even if it does not show beside K.
+    EffectScan scan = comparison.scans[air];
+    if (scan.values.empty()) scan.values = {effect_list()[air].parameters.front().step};
+    add(comparison, fit_more(set, nominal, scan, nothing));
+  }
   for (const EffectScan& scan : comparison.scans) {
     const bool fitted = std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& h) {
       return h.effects == std::vector<std::size_t>{scan.effect};

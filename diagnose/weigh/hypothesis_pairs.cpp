@@ -53,7 +53,7 @@ Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan&
   found.hypothesis.effects = found.fit.effects;
   found.hypothesis.gain = leader.hypothesis.gain + gain;
   found.hypothesis.log_evidence =
-      leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + (std::isfinite(gain) ? gain : 0.0);
+      leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, std::isfinite(gain) ? gain : 0.0);
   return found;
 }
 
@@ -104,7 +104,7 @@ Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison)
   const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = {both.effects.back(), both.effects.front()};
   found.hypothesis.gain = leader.hypothesis.gain + gain;
-  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + gain;
+  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, gain);
   return found;
 }
 
@@ -153,9 +153,16 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
   std::vector<Hypothesis> leaders = leaders_of(comparison, 1, kMostLeaders + 1);
   std::erase_if(leaders, [](const Hypothesis& one) { return differs_between_clips(one.effects.front()); });
   leaders.resize(std::min(leaders.size(), kMostLeaders));
+  // In a fall the quadratic drag leads, even if another drag imitates it and what else acts.
+  const std::size_t air = effect_index(ids::quadratic_drag);
+  const Hypothesis* through_air = set.through_air ? find(comparison, {air}) : nullptr;
+  if (through_air != nullptr &&
+      std::none_of(leaders.begin(), leaders.end(), [&](const Hypothesis& one) { return one.effects.front() == air; })) {
+    leaders.push_back(*through_air);
+  }
   double best_one = 0.0;
   for (const Hypothesis& leader : leaders) {
-    if (leader.log_evidence < 0.0) continue;
+    if (leader.log_evidence < 0.0 && !(set.through_air && leader.effects.front() == air)) continue;
     best_one = std::max(best_one, leader.log_evidence);
     add_seconds(set, leader, left_out, work, comparison);
   }
