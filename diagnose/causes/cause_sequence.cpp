@@ -149,10 +149,14 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   std::vector<std::size_t> left = named.effects;
   if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
   // The best of `left` beside the causes so far, and its index.
+  const std::size_t air = effect_index(ids::quadratic_drag);
   const auto best_of = [&](bool laws_only) {
     std::optional<std::pair<std::size_t, Step>> best;
+    // Without its drag a fall is so far off that whatever else acts could only imitate the drag.
+    const bool drag_first = set.no_drag && std::find(left.begin(), left.end(), air) != left.end();
     for (std::size_t k = 0; k < left.size(); ++k) {
       if (laws_only && differs_between_clips(left[k])) continue;
+      if (drag_first && left[k] != air) continue;
       std::vector<std::size_t> effects = here.fit.effects;
       if (left[k] != dropped) effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);

@@ -208,7 +208,7 @@ const Hypothesis* pure_of(const Comparison& comparison, int fit) {
 }
 
 /// Indices of the fits that are weighed anew: the nominal fit and those of the likeliest explanations.
-std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
+std::vector<std::size_t> worth_profiling(const TrackSet& set, const Comparison& comparison) {
   std::vector<Hypothesis> fitted;
   for (const Hypothesis& one : comparison.all) {
     if (one.fit > 0 && !one.unnamed) fitted.push_back(one);
@@ -219,7 +219,7 @@ std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
   for (const Hypothesis& one : fitted) {
     const auto fit = static_cast<std::size_t>(one.fit);
     // Single effects are always weighed: a remainder of their own may suit them better than the common one.
-    if (worth.size() >= kProfiled && one.effects.size() > 1) continue;
+    if (worth.size() >= kProfiled && one.effects.size() > 1 && !is_fall_through_air(set, one.effects)) continue;
     if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
   }
   return worth;
@@ -360,7 +360,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   // Each fit gets a remainder of its own.
   std::vector<MotionFit> noise_alone(comparison.fits.size());
   profiles.assign(comparison.fits.size(), {});
-  std::vector<std::size_t> worth = worth_profiling(comparison);
+  std::vector<std::size_t> worth = worth_profiling(set, comparison);
   for (const int fit : also) {
     const auto f = static_cast<std::size_t>(fit);
     if (std::find(worth.begin(), worth.end(), f) == worth.end()) worth.push_back(f);

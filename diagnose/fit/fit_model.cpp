@@ -7,11 +7,15 @@
 #include <span>
 #include <utility>
 
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
 
+// The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
+// m/s.
+constexpr double kMostAir = 10.0;
 constexpr double kFewestTurns = 2.0;    // periods in the longest motion: anything slower is a drift, which has other
                                         // causes too
 constexpr double kFastest = 0.48;       // as a fraction of the frame rate
@@ -67,6 +71,11 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
     for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
     range.high *= heaviest_kg;
   }
+  if (set.through_air && parameter.slot == slot_of(ids::rotational_inertia)) {
+    double lightest_kg = std::numeric_limits<double>::infinity();
+    for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
+    range.high = std::min(range.high, kMostAir * lightest_kg);
+  }
   return range;
 }
 
@@ -75,6 +84,21 @@ namespace {
 using Global = ParameterLayout::Global;
 
 }  // namespace
+
+std::size_t free_parameters(const TrackSet& set, const std::vector<std::size_t>& effects) {
+  std::size_t count = only_falls(set) ? 1 : 2 + set.groups.size();
+  count += 2 * std::max<std::size_t>(1, set.motions.size());
+  if (holds_drag(set, effects)) --count;
+  for (const std::size_t e : effects) {
+    for (const EffectParameter& parameter : effect_list()[e].parameters) {
+      if (parameter.only_filmed && !set.images) continue;
+      const bool one_kind = effect_list()[e].search == Search::spread;
+      count += parameter.each == Each::motion ? set.motions.size() : 1;
+      if (one_kind) break;
+    }
+  }
+  return count;
+}
 
 bool touches(const TrackSet& set, const Global& global, std::size_t motion) {
   const TrackedMotion& of = set.motions[motion];

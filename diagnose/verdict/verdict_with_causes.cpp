@@ -78,9 +78,11 @@ std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& 
   return rest.regions;
 }
 
-/// Puts the effects that a verdict names in order of falling share, and then those that no motion shows.
-void order_by_share(Diagnosis& diagnosis) {
+/// Puts the effects that a verdict names in order of falling share, and then those that no motion shows. In a fall
+/// through air the drag comes first: the other shares are what is left beside it.
+void order_by_share(bool drag_first, Diagnosis& diagnosis) {
   const auto share = [&](const DiagnosedEffect& effect) {
+    if (drag_first && effect.id == ids::quadratic_drag) return std::numeric_limits<double>::infinity();
     const auto of = std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
                                  [&](const ExplainedCause& cause) { return cause.id == effect.id; });
     return of != diagnosis.explained.end() ? of->share : -std::numeric_limits<double>::infinity();
@@ -290,7 +292,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   if (noise_is_rounding(set)) traces.emplace_back(ids::position_rounding);
   diagnosis.traces = std::move(traces);
   diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence.causes) : sequence.causes;
-  order_by_share(diagnosis);
+  order_by_share(by_air, diagnosis);
   // Without a gap there is no sequence, and the fit of the explanation itself contains the effect.
   const MotionFit& with_effect = sequence.is_gap ? sequence.named : fit;
   const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/gap/held_out.h"
@@ -10,7 +11,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kViscousOdds = 0.02;
+constexpr double kViscousOdds = 0.01, kDrivingOdds = 0.001;
 constexpr double kDecades = 9.2;    // ln 10^4
 constexpr double kLeastSeen = 2.0;  // standard deviations
 
@@ -22,10 +23,16 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
   };
   if (!set.through_air || has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag))) return 0.0;
   const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(0, 0)));
-  const double z = sd > 0.0 ? std::max(0.0, fit.at.global[0] / sd) : 0.0;
+  const double z = sd > 0.0 ? fit.at.global[0] / sd : 0.0;
   const double without =
-      kDecades * std::max(z, kLeastSeen) / std::sqrt(2.0 * std::numbers::pi) * std::exp(-0.5 * z * z);
-  return std::log(kViscousOdds + without);
+      kDecades * std::max(std::abs(z), kLeastSeen) / std::sqrt(2.0 * std::numbers::pi) * std::exp(-0.5 * z * z);
+  return std::log((z > 0.0 ? kViscousOdds : kDrivingOdds) + without);
+}
+
+bool is_fall_through_air(const TrackSet& set, const std::vector<std::size_t>& effects) {
+  return set.through_air && effects.size() == 2 &&
+         std::set(effects.begin(), effects.end()) ==
+             std::set{effect_index(ids::quadratic_drag), effect_index(ids::rotational_inertia)};
 }
 
 void set_air_odds(const TrackSet& set, Comparison& comparison) {

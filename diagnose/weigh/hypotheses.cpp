@@ -19,6 +19,8 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
+constexpr double kMovesAirAlong = 1.0 / 6.0;  // in a fall, relative to the drag alone: with the odds of both effects, a
+                                              // third
 constexpr std::size_t kFitted = 9;            // effects of the short list that are fitted in full
 constexpr double kLeastEvidenceBeside = 3.0;  // log evidence above which something else is weighed beside an effect
 constexpr double kNoLossSeen = -3.0;          // log evidence of lost frames if none is found
@@ -95,6 +97,17 @@ void give_trifles_to_their_effects(Comparison& comparison) {
   }
 }
 
+/// A gain counts less where few positions show the noise. A loss counts in full: it is that of the wrong drag in a
+/// fall.
+void allow_for_unknown_noise(const TrackSet& set, Comparison& comparison) {
+  const std::optional<FewPositions> few = few_positions(set);
+  if (!few) return;
+  const double chi2 = comparison.fits.front().cost;
+  for (Hypothesis& one : comparison.all) {
+    if (one.gain > 0.0) one.log_evidence -= one.gain - gain_with_unknown_noise(*few, chi2, one.gain);
+  }
+}
+
 }  // namespace
 
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
@@ -110,17 +123,15 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   }
   const double one = std::log(kPriorOne / std::max(1.0, seen));
   const double two = std::log(kPriorTwo / std::max(1.0, 0.5 * seen * (seen - 1.0)));
-  const std::optional<FewPositions> few = few_positions(set);
-  const double chi2 = comparison.fits.front().cost;
   std::vector<double> logs;
   for (const Hypothesis& hypothesis : comparison.all) {
-    const double less = few ? hypothesis.gain - gain_with_unknown_noise(*few, chi2, hypothesis.gain) : 0.0;
     const std::size_t many = hypothesis.effects.size();
     double prior = many == 0   ? std::log(kPriorNone)
                    : many == 1 ? one
                                : two + static_cast<double>(many - 2) * (two - one);
+    if (is_fall_through_air(set, hypothesis.effects)) prior = one + std::log(kMovesAirAlong);
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
-    logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence - less);
+    logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence);
   }
   const double most = *std::max_element(logs.begin(), logs.end());
   double sum = 0.0;
@@ -191,6 +202,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   }
   add_frame_effects(comparison);
   if (images != nullptr) join_images(set, *images, left_out, comparison);
+  allow_for_unknown_noise(set, comparison);
   weigh(set, left_out, comparison);
   return comparison;
 }

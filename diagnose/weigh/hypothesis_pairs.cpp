@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -159,6 +160,21 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
   if (through_air != nullptr &&
       std::none_of(leaders.begin(), leaders.end(), [&](const Hypothesis& one) { return one.effects.front() == air; })) {
     leaders.push_back(*through_air);
+  }
+  if (const std::size_t inertia = effect_index(ids::rotational_inertia);
+      through_air != nullptr && !without.contains(inertia)) {
+    // Air that weighs as much as the object is far from any linear estimate, so the pair is fitted however it shows.
+    const Hypothesis drag = *through_air;
+    const MotionFit base = comparison.fits[static_cast<std::size_t>(drag.fit)];
+    EffectScan scan = scan_effect(ScoreSpace(set, base), inertia);
+    if (scan.visible && !scan.values.empty()) {
+      double lightest_kg = std::numeric_limits<double>::infinity();
+      for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
+      Found beside = fit_more(set, base, scan, drag);
+      scan.values.front() = lightest_kg;
+      Found heavier = fit_more(set, base, scan, drag);
+      add(comparison, heavier.fit.cost < beside.fit.cost ? std::move(heavier) : std::move(beside));
+    }
   }
   double best_one = 0.0;
   for (const Hypothesis& leader : leaders) {
