@@ -150,10 +150,11 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
   // The best of `left` beside the causes so far, and its index.
   const std::size_t air = effect_index(ids::quadratic_drag);
+  // Without its drag a fall is so far off that whatever else acts could only imitate the drag. So the drag comes first,
+  // unless it takes its part only beside another cause.
+  bool drag_first = set.no_drag && std::find(left.begin(), left.end(), air) != left.end();
   const auto best_of = [&](bool laws_only) {
     std::optional<std::pair<std::size_t, Step>> best;
-    // Without its drag a fall is so far off that whatever else acts could only imitate the drag.
-    const bool drag_first = set.no_drag && std::find(left.begin(), left.end(), air) != left.end();
     for (std::size_t k = 0; k < left.size(); ++k) {
       if (laws_only && differs_between_clips(left[k])) continue;
       if (drag_first && left[k] != air) continue;
@@ -183,7 +184,9 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       best.reset();
       if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
     }
+    if (!best && std::exchange(drag_first, false)) continue;
     if (!best) break;
+    drag_first = false;
     const std::size_t which = best->first;
     here = std::move(best->second);
     steps.emplace_back(left[which], here);

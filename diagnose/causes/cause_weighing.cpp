@@ -89,7 +89,8 @@ struct Pushes {
 };
 
 /// Log prior density of the effects of a fit at its parameters, times sqrt(2 pi) for each parameter, which the
-/// likelihood leaves out. A quadratic drag in place of K has none, as K has none.
+/// likelihood leaves out. In a fall through air models differ in which drag they have, so K has a prior as well: that
+/// of the size of an effect, or Stokes' law where it is held.
 double log_prior(const TrackSet& set, const MotionFit& fit, const RemainderSpace::Solution& solution) {
   double log = 0.0;
   const double root = 0.5 * std::log(2.0 * std::numbers::pi);
@@ -99,11 +100,14 @@ double log_prior(const TrackSet& set, const MotionFit& fit, const RemainderSpace
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const auto& of = globals[g];
-    if (of.kind != ParameterLayout::Global::Kind::effect) continue;
     const auto at = static_cast<Eigen::Index>(g);
     const double sd = std::sqrt(std::max(0.0, solution.covariance(at, at)));
+    if (of.kind == ParameterLayout::Global::Kind::k && set.through_air) {
+      const double k = std::max(std::abs(fit.at.global[at] + solution.change[at]), kLeastSeen * sd);
+      log += holds_drag(set, fit.effects) ? -std::log(kStokesDrag_n_s_m) : root - std::log(k * kDecades);
+    }
+    if (of.kind != ParameterLayout::Global::Kind::effect) continue;
     const EffectInfo& info = effect_list()[of.effect];
-    if (holds_drag(set, fit.effects) && of.parameter->slot == slot_of(ids::quadratic_drag)) continue;
     const double fitted = fit.at.global[at] + solution.change[at];
     if (info.search == Search::spread) {
       // Bumps along the track are of one kind. So are the values of one parameter for the clips or configurations.

@@ -11,7 +11,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kViscousOdds = 0.01, kDrivingOdds = 0.001;
+constexpr double kViscousOdds = 0.02, kDrivingOdds = 0.001;
 constexpr double kDecades = 9.2;    // ln 10^4
 constexpr double kLeastSeen = 2.0;  // standard deviations
 
@@ -22,6 +22,12 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
     return std::find(fit.effects.begin(), fit.effects.end(), slot.effect) != fit.effects.end();
   };
   if (!set.through_air || has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag))) return 0.0;
+  // A drag of some other kind, or the air that moves along with what it does not brake.
+  for (const EffectSlot slot :
+       {slot_of(ids::rotational_inertia), slot_of(ids::eddy_rolloff), slot_of(ids::damping_gradient),
+        slot_of(ids::configuration_drag), slot_of(ids::direction_dependent_drag), slot_of(ids::clip_scatter)}) {
+    if (has_law(slot)) return std::log(kViscousOdds);
+  }
   const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(0, 0)));
   const double z = sd > 0.0 ? fit.at.global[0] / sd : 0.0;
   const double without =
