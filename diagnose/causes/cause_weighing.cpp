@@ -90,7 +90,8 @@ struct Pushes {
 
 /// Log prior density of the effects of a fit at its parameters, times sqrt(2 pi) for each parameter, which the
 /// likelihood leaves out. In a fall through air models differ in which drag they have, so K has a prior as well: that
-/// of the size of an effect, or Stokes' law where it is held.
+/// of the size of an effect, or Stokes' law where it is held. At the edge of a prior a K or a gravity is held there
+/// (motion_fit.cpp), at no cost.
 double log_prior(const TrackSet& set, const MotionFit& fit, const RemainderSpace::Solution& solution) {
   double log = 0.0;
   const double root = 0.5 * std::log(2.0 * std::numbers::pi);
@@ -104,8 +105,11 @@ double log_prior(const TrackSet& set, const MotionFit& fit, const RemainderSpace
     const double sd = std::sqrt(std::max(0.0, solution.covariance(at, at)));
     if (of.kind == ParameterLayout::Global::Kind::k && set.through_air) {
       const double k = std::max(std::abs(fit.at.global[at] + solution.change[at]), kLeastSeen * sd);
-      log += holds_drag(set, fit.effects) ? -std::log(kStokesDrag_n_s_m) : root - std::log(k * kDecades);
+      if (!holds_drag(set, fit.effects)) log += root - std::log(k * kDecades);
     }
+    const bool normal =
+        of.kind == ParameterLayout::Global::Kind::k || of.kind == ParameterLayout::Global::Kind::gravity;
+    for (const FitStatement& s : fit.statements) log -= normal && s.global == g ? std::log(s.sd) : 0.0;
     if (of.kind != ParameterLayout::Global::Kind::effect) continue;
     const EffectInfo& info = effect_list()[of.effect];
     const double fitted = fit.at.global[at] + solution.change[at];

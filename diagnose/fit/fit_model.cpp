@@ -13,6 +13,8 @@
 namespace glidelab::diagnose {
 namespace {
 
+// No misfit, however large, makes a K that Stokes' law excludes, or a gravity that no place on Earth has.
+constexpr double kMostStokes = 3.0, kMostGravity_sd = 2.0;
 // The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
 // m/s.
 constexpr double kMostAir = 10.0;
@@ -135,10 +137,14 @@ ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> e
 
 void ParameterLayout::add_common(const TrackSet& set) {
   using Kind = Global::Kind;
-  globals_.push_back({Kind::k});
+  const double open = std::numeric_limits<double>::infinity(),
+               held = set.no_drag ? 0.0 : kMostStokes * kStokesDrag_n_s_m;
+  globals_.push_back({Kind::k, 0, nullptr, 0, 0.0, {-open, open}});
+  if (holds_drag(set, effects_)) globals_.back().range = {0.0, held};
   globals_.push_back({Kind::mu});
   for (std::size_t g = 0; g < set.groups.size(); ++g) globals_.push_back({Kind::alpha, g});
-  if (gravity_matters(set)) globals_.push_back({Kind::gravity});
+  if (gravity_matters(set))
+    globals_.push_back({Kind::gravity, 0, nullptr, 0, 0.0, {-kMostGravity_sd, kMostGravity_sd}});
   for (std::size_t m = 0; m < set.masses.size(); ++m) {
     if (set.masses[m].sd_kg > 0.0) globals_.push_back({Kind::mass, m});
   }

@@ -30,6 +30,11 @@ constexpr double kSteepest_rad = 1.5, kBeyondStated_rad = 0.2;  // steepest incl
 constexpr double kSmallSteps = 1.0;  // initial damping: half the Newton step in directions that are well separated
 using Global = ParameterLayout::Global;
 
+/// Whether a parameter has limits that no misfit moves: effects, gravity, and a K that is held.
+bool has_range(const Global& global) {
+  return global.kind == Global::Kind::effect || global.kind == Global::Kind::k || global.kind == Global::Kind::gravity;
+}
+
 bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at) {
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
@@ -39,7 +44,7 @@ bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& 
       const double stated = std::abs(set.groups[global.index].stated_rad);
       if (std::abs(value) > std::max(kSteepest_rad, stated + kBeyondStated_rad)) return false;
     }
-    if (global.kind != Global::Kind::effect) continue;
+    if (!has_range(global)) continue;
     if (value < global.range.low || value > global.range.high) return false;
   }
   return true;
@@ -158,7 +163,7 @@ Eigen::VectorXd step_within(const MotionFit& fit, Eigen::MatrixXd a, Eigen::Vect
     stopped = false;
     for (Eigen::Index g = 0; g < y.size(); ++g) {
       const Global& global = globals[static_cast<std::size_t>(g)];
-      if (global.kind != Global::Kind::effect || held[static_cast<std::size_t>(g)]) continue;
+      if (!has_range(global) || held[static_cast<std::size_t>(g)]) continue;
       const double at = fit.at.global[g], next = at + scale[g] * y[g];
       if (!(next < global.range.low || next > global.range.high)) continue;
       const double to_edge = ((next < global.range.low ? global.range.low : global.range.high) - at) / scale[g];
@@ -179,7 +184,7 @@ void round_to_edges(const ParameterLayout& layout, Eigen::VectorXd& global) {
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& of = layout.globals()[g];
     double& value = global[static_cast<Eigen::Index>(g)];
-    if (of.kind == Global::Kind::effect) value = std::clamp(value, of.range.low, of.range.high);
+    if (has_range(of)) value = std::clamp(value, of.range.low, of.range.high);
   }
 }
 
@@ -239,6 +244,19 @@ FitPoint step_from(const MotionFit& fit, double damping) {
 
 namespace {
 
+/// A K or a gravity that stopped at an edge stays there in whatever is linear about the fit.
+void hold_at_edges(MotionFit& fit) {
+  constexpr double kHeld = 1e-4;  // of the prior's standard deviation
+  for (FitStatement& s : fit.statements) {
+    const Global& global = fit.layout->globals()[s.global];
+    if (global.kind != Global::Kind::k && global.kind != Global::Kind::gravity) continue;
+    const double at = fit.at.global[static_cast<Eigen::Index>(s.global)];
+    if (at > global.range.low && at < global.range.high) continue;
+    s.value = at;
+    s.sd *= kHeld;
+  }
+}
+
 MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                    const Lateness& late, const base::FitOptions& options) {
   MotionFit fit;
@@ -279,6 +297,7 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   here.fit.iterations = summary.iterations;
   // If no step descends, only rounding is left, or the fit is at the edge of what is allowed.
   here.fit.converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
+  hold_at_edges(here.fit);
   linearise_all(set, here.fit, Derivatives::central);
   return std::move(here.fit);
 }
