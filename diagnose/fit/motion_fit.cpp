@@ -268,6 +268,7 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   layout.widen_to(start.global);
   fit.layout = std::make_shared<const ParameterLayout>(std::move(layout));
   fit.at = start;
+  round_to_edges(*fit.layout, fit.at.global);  // K may come from a fit in which it was free
   fit.late = late;
   fit.statements = statements_of(set, *fit.layout);
   linearise_all(set, fit, Derivatives::none);

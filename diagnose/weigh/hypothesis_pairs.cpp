@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ constexpr int kExchanges = 3;                  // rounds in which each of the be
 void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, const Work& work,
                  Comparison& comparison) {
   const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
+  if (!std::isfinite(base.cost)) return;
   const ScoreSpace space(set, base);
   std::set<std::size_t> others = without;
   others.insert(leader.effects.begin(), leader.effects.end());
@@ -96,9 +98,10 @@ MotionFit without_one(const TrackSet& set, const MotionFit& both, std::size_t ke
 
 /// The same pair with the evidence of its first effect beside its second. The prior penalty of an effect by itself,
 /// where it has to compensate for the other, is not its penalty beside the other.
-Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison) {
+std::optional<Found> turned(const TrackSet& set, const MotionFit& both, Comparison& comparison) {
   const Found leader = alone(set, both.effects.back(), comparison);
   const MotionFit around = without_one(set, both, both.effects.back());
+  if (!std::isfinite(around.cost)) return std::nullopt;
   const EffectScan scan = scan_effect(ScoreSpace(set, around), both.effects.front());
   Found found;
   found.fit = no_worse_than(set, leader.fit, both.effects.front(), both);
@@ -122,6 +125,7 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
     for (const std::size_t kept : both.effects) {
       const Found leader = alone(set, kept, comparison);
       const MotionFit base = without_one(set, both, kept);
+      if (!std::isfinite(base.cost)) continue;  // without the drag of a fall the other effect may run away
       std::set<std::size_t> others = without;
       others.insert(both.effects.begin(), both.effects.end());
       work.look();
@@ -134,7 +138,8 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
       });
       for (const Found& one : found) {
         add(comparison, one);
-        if (one.hypothesis.gain > best.gain) add(comparison, turned(set, one.fit, comparison));
+        if (!(one.hypothesis.gain > best.gain)) continue;
+        if (std::optional<Found> other = turned(set, one.fit, comparison)) add(comparison, std::move(*other));
       }
     }
     if (leaders_of(comparison, 2, 1).front().effects == best.effects) return;
@@ -166,7 +171,8 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
     // Air that weighs as much as the object is far from any linear estimate, so the pair is fitted however it shows.
     const Hypothesis drag = *through_air;
     const MotionFit base = comparison.fits[static_cast<std::size_t>(drag.fit)];
-    EffectScan scan = scan_effect(ScoreSpace(set, base), inertia);
+    EffectScan scan;
+    if (std::isfinite(base.cost)) scan = scan_effect(ScoreSpace(set, base), inertia);
     if (scan.visible && !scan.values.empty()) {
       double lightest_kg = std::numeric_limits<double>::infinity();
       for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
