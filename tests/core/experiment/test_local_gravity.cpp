@@ -1,18 +1,16 @@
 #include "core/experiment/local_gravity.h"
 
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_floating_point.hpp>
-
 #include <cmath>
 
-using Catch::Matchers::WithinRel;
+#include "tests/catch.h"
+
 using glidelab::core::gravity_sd_m_s2;
 
 // A number rounded to a step q has a standard deviation of q/sqrt(12).
 TEST_CASE("a stated gravity is known to its last digit") {
-  CHECK_THAT(gravity_sd_m_s2(9.81), WithinRel(0.01 / std::sqrt(12.0), 1e-12));
-  CHECK_THAT(gravity_sd_m_s2(9.8123), WithinRel(0.0001 / std::sqrt(12.0), 1e-12));
-  CHECK_THAT(gravity_sd_m_s2(0.00001625), WithinRel(1e-8 / std::sqrt(12.0), 1e-12));
+  CHECK(gravity_sd_m_s2(9.81) == Approx(0.01 / std::sqrt(12.0)).epsilon(1e-12));
+  CHECK(gravity_sd_m_s2(9.8123) == Approx(0.0001 / std::sqrt(12.0)).epsilon(1e-12));
+  CHECK(gravity_sd_m_s2(0.00001625) == Approx(1e-8 / std::sqrt(12.0)).epsilon(1e-12));
 }
 
 TEST_CASE("the standard gravity, and one of a single decimal, are known as well as the latitude") {
