@@ -25,6 +25,7 @@ constexpr std::size_t kManyTurns = 6;
 constexpr double kHarmonic = 0.8;                         // of the variance of a
 constexpr double kSmoothPart = 1e-7;                      // of the range of x
 constexpr double kAboveGravity = 1.05;                    // of g: a fall has 1
+constexpr double kMedian = 2.0;                           // parabolas' sds by which the median of |a| is certain
 constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;    // of g, on an incline of less than 60 degrees
 constexpr double kSameGravity = 0.1;                      // of g
 constexpr double kMostBend = 0.08;                        // a wide lens bends a straight path by half of that
@@ -47,9 +48,9 @@ Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_
   return base::least_squares(design, Eigen::Map<const Eigen::VectorXd>(x_m.data(), design.rows()));
 }
 
-/// The median of |a| of parabolas through `size` points each; none where it is not above their noise.
-std::optional<double> typical_acceleration(std::span<const double> t_s, std::span<const double> x_m, std::size_t size,
-                                           double noise_m) {
+/// The median of |a| of parabolas through `size` points each, where it is above their noise.
+void find_acceleration(std::span<const double> t_s, std::span<const double> x_m, std::size_t size, double noise_m,
+                       MotionLook& look) {
   std::vector<double> sizes;
   double sd_m_s2 = 0.0;
   for (std::size_t from = 0; from + size <= x_m.size(); from += std::max<std::size_t>(1, size / 2)) {
@@ -60,7 +61,9 @@ std::optional<double> typical_acceleration(std::span<const double> t_s, std::spa
     sd_m_s2 = std::max(sd_m_s2, noise_m * std::sqrt(720.0 / static_cast<double>(size)) / (span * span));
   }
   const double typical = quantile(sizes, 0.5);
-  return typical > kOverNoise * sd_m_s2 ? std::optional(typical) : std::nullopt;
+  if (!(typical > kOverNoise * sd_m_s2)) return;
+  look.acceleration_m_s2 = typical;
+  look.acceleration_sd_m_s2 = sd_m_s2;
 }
 
 /// Whether one parabola passes through all points to within `off_m`: they then include neither a bounce nor a sensor's
@@ -164,9 +167,9 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   const double noise_m = pilot_noise(t_s, x_m);
   look.smooth = noise_m < kSmoothPart * look.distance_m;
   if (forced) return look;
-  look.acceleration_m_s2 = typical_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / kParts), noise_m);
+  find_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / kParts), noise_m, look);
   if (!look.acceleration_m_s2 && is_parabola(t_s, x_m, kOffWhole * look.distance_m)) {
-    look.acceleration_m_s2 = typical_acceleration(t_s, x_m, x_m.size(), noise_m);
+    find_acceleration(t_s, x_m, x_m.size(), noise_m, look);
   }
   look.turns = turns_in(x_m, std::max(kTurnOverNoise * noise_m, kTurnOverRange * look.distance_m));
   // Fine enough for a swing: eight parabolas between turns.
@@ -208,7 +211,7 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   const double a = look.acceleration_m_s2.value_or(0.0);
   if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});
-  } else if (a > kAboveGravity * gravity_m_s2) {
+  } else if (a - kMedian * look.acceleration_sd_m_s2 > kAboveGravity * gravity_m_s2) {
     book.add(Severity::unusable, beyond_gravity(a, gravity_m_s2), Topic::length);
   } else if (a > kFreeFall * gravity_m_s2 && std::abs(setup.incline_rad) < kShallow_rad) {
     book.add(Severity::unusable, found::FreeFall{a / gravity_m_s2, setup.incline_rad * base::kDegreesPerRad},

@@ -42,6 +42,7 @@ struct MotionLook {
   double distance_m = 0.0;
   double frame_s = 0.0;                     ///< mean time from one position to the next
   std::optional<double> acceleration_m_s2;  ///< typical size; none if noise hides it, or a force was recorded
+  double acceleration_sd_m_s2 = 0.0;        ///< of one of the parabolas that it is the median of
   std::size_t turns = 0;
   bool oscillates = false;
   double bend = 0.0;    ///< of the path in the image: sagitta over length

@@ -89,17 +89,21 @@ struct FreeFall {};
 /// The forces balance at no speed downhill.
 struct NoBalance {};
 
+/// A body that falls through air: its drag grows with the square of the speed.
+struct DragNotViscous {};
+
 /// A table of lines does not state how they were smoothed.
 struct KernelNotStated {};
 
 }  // namespace unknown
 
-using AnyReason = std::variant<unknown::Told, unknown::NoLine, unknown::NoDownhillLine, unknown::NotBothLines,
-                               unknown::MeanBeyondGravity, unknown::RateNotPositive, unknown::InterceptNotPositive,
-                               unknown::NoFreeMotion, unknown::NoFit, unknown::OneDirection, unknown::NoDownhillMotion,
-                               unknown::DriveBeyondGravity, unknown::NotTold, unknown::NotAnswered,
-                               unknown::NoLineOfMotion, unknown::NotToldApart, unknown::ExplanationsDiffer,
-                               unknown::FreeFall, unknown::NoBalance, unknown::KernelNotStated>;
+using AnyReason =
+    std::variant<unknown::Told, unknown::NoLine, unknown::NoDownhillLine, unknown::NotBothLines,
+                 unknown::MeanBeyondGravity, unknown::RateNotPositive, unknown::InterceptNotPositive,
+                 unknown::NoFreeMotion, unknown::NoFit, unknown::OneDirection, unknown::NoDownhillMotion,
+                 unknown::DriveBeyondGravity, unknown::NotTold, unknown::NotAnswered, unknown::NoLineOfMotion,
+                 unknown::NotToldApart, unknown::ExplanationsDiffer, unknown::FreeFall, unknown::NoBalance,
+                 unknown::DragNotViscous, unknown::KernelNotStated>;
 
 /// A clip whose motion in a direction without a line is attributed to the hand.
 struct ClipAgainstLaunch {

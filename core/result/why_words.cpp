@@ -65,6 +65,9 @@ struct ReasonWords {
   }
   std::string operator()(const unknown::FreeFall&) const { return "a fall has no normal force, and so no friction"; }
   std::string operator()(const unknown::NoBalance&) const { return "the forces balance at no speed downhill"; }
+  std::string operator()(const unknown::DragNotViscous&) const {
+    return "the drag is not viscous: it grows with the square of the speed";
+  }
   std::string operator()(const unknown::KernelNotStated&) const {
     return "a table says neither how wide the kernel was nor which stretch each line was fitted to";
   }

@@ -67,15 +67,17 @@ double tempered(double behind) {
 
 }  // namespace
 
-void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison) {
+void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
   std::vector<Hypothesis>& all = comparison.all;
   const std::vector<SameCauses> groups = by_causes(all);
   double best = -std::numeric_limits<double>::infinity();
   for (const SameCauses& group : groups) best = std::max(best, all[group.plain].log_evidence);
-  const bool no_noise = excess.front() > kLargestExcess;
-  const double named = kNameOdds + kExcessSlope * std::log(std::clamp(excess.front(), kLeastExcess, kMostExcess));
+  const std::vector<double>& left = excess.of_fits;
+  const bool no_noise = left.front() > kLargestExcess;
+  const double before = excess.before.value_or(left.front());
+  const double named = kNameOdds + kExcessSlope * std::log(std::clamp(before, kLeastExcess, kMostExcess));
   for (Hypothesis& one : all) {
-    one.left = part_left(one.fit > 0 ? excess[static_cast<std::size_t>(one.fit)] : excess.front(), excess.front());
+    one.left = part_left(one.fit > 0 ? left[static_cast<std::size_t>(one.fit)] : left.front(), before);
   }
   std::vector<double> logs;
   for (const SameCauses& group : groups) {
@@ -85,7 +87,7 @@ void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_ex
     if (no_noise) log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
     if (makes_a_gap(one)) log += named - kLeftSlope * *one.left;
     if (one.unnamed && one.effects.empty()) {
-      log += std::max(0.0, named - kAgainstUnnamedAlone - kLeftSlope * part_left(unnamed_excess, excess.front()));
+      log += std::max(0.0, named - kAgainstUnnamedAlone - kLeftSlope * part_left(excess.of_unnamed, before));
     }
     for (const std::size_t e : one.effects) log += effect_list()[e].log_odds_beside_remainder;
     log += log_prior_odds(comparison, one);

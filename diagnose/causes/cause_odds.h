@@ -28,6 +28,7 @@
 /// imitates a named cause, 0.08 of the probability of every named cause belongs to something without a name.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "diagnose/weigh/hypothesis.h"
@@ -38,11 +39,17 @@ namespace glidelab::diagnose {
 /// explanation leaves counts, less a log odds of 2 for each further cause.
 inline constexpr double kLargestExcess = 1e6;
 
+/// What explanations leave of the held-out excess g² - 1.
+struct LeftExcess {
+  std::vector<double> of_fits;  ///< of the comparison's fits, the nominal one first; NaN where it was not measured
+  double of_unnamed = 0.0;      ///< of the likeliest function without a name alone
+  std::optional<double> before = {};  ///< that of which they leave a part; none: the nominal model's
+};
+
 /// Sets the probability of each hypothesis, of `none` and `unknown` and of each effect, and the part of the excess that
-/// each hypothesis leaves (`left`). Hypotheses are then in order of falling probability. `excess` has g² - 1 of each of
-/// the comparison's fits, the nominal one first, NaN where it was not measured; `unnamed_excess` is that of the
-/// likeliest function without a name alone. A function without a name beside named causes counts towards these causes.
-/// Scatter of single positions alone counts towards `none`, because it makes no gap.
-void weigh_beside_remainder(const std::vector<double>& excess, double unnamed_excess, Comparison& comparison);
+/// each hypothesis leaves (`left`). Hypotheses are then in order of falling probability. A function without a name
+/// beside named causes counts towards these causes. Scatter of single positions alone counts towards `none`, because it
+/// makes no gap.
+void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison);
 
 }  // namespace glidelab::diagnose

@@ -149,10 +149,15 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   std::vector<std::size_t> left = named.effects;
   if (!named.late.empty() && nominal.late.empty()) left.push_back(dropped);
   // The best of `left` beside the causes so far, and its index.
+  const std::size_t air = effect_index(ids::quadratic_drag);
+  // Without its drag a fall is so far off that whatever else acts could only imitate the drag. So the drag comes first,
+  // unless it takes its part only beside another cause.
+  bool drag_first = set.no_drag && std::find(left.begin(), left.end(), air) != left.end();
   const auto best_of = [&](bool laws_only) {
     std::optional<std::pair<std::size_t, Step>> best;
     for (std::size_t k = 0; k < left.size(); ++k) {
       if (laws_only && differs_between_clips(left[k])) continue;
+      if (drag_first && left[k] != air) continue;
       std::vector<std::size_t> effects = here.fit.effects;
       if (left[k] != dropped) effects.push_back(left[k]);
       std::optional<MotionFit> fit = fit_with(set, named, effects, left[k] == dropped ? named.late : here.fit.late);
@@ -162,18 +167,26 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     }
     return best;
   };
+  // What of the excess a cause is measured by, to be worth a name. A fall without any drag lies so far off that nothing
+  // would be worth a name beside the drag. Beside it, what the drag leaves is the measure.
+  const auto whole = [&]() -> const Step& {
+    const bool beside_drag = set.no_drag && !steps.empty() && is_above_floor(steps.front().second);
+    return beside_drag ? steps.front().second : first;
+  };
   while (!left.empty()) {
     // Laws that all clips have in common come first: sizes of each clip's own would absorb what these explain.
     std::optional<std::pair<std::size_t, Step>> best;
     for (const bool laws_only : {true, false}) {
       best = best_of(laws_only);
       if (!best) continue;
-      const double share = cause_of(left[best->first], first, here, best->second, is_one_clip(set)).share;
+      const double share = cause_of(left[best->first], whole(), here, best->second, is_one_clip(set)).share;
       if (share > (steps.empty() ? kLeastShare : least_named)) break;
       best.reset();
       if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
     }
+    if (!best && std::exchange(drag_first, false)) continue;
     if (!best) break;
+    drag_first = false;
     const std::size_t which = best->first;
     here = std::move(best->second);
     steps.emplace_back(left[which], here);
@@ -185,7 +198,7 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
   while (steps.size() < kMostCauses && is_above_floor(here)) {
     auto next = next_cause(set, with, here, without);
     if (!next) break;
-    if (!is_worth(cause_of(next->first, first, here, next->second, is_one_clip(set)))) break;
+    if (!is_worth(cause_of(next->first, whole(), here, next->second, is_one_clip(set)))) break;
     here = next->second;
     steps.push_back(std::move(*next));
   }

@@ -18,8 +18,10 @@
 #include "diagnose/causes/scatter_beside.h"
 #include "diagnose/causes/spread_prior.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
+#include "diagnose/weigh/air_odds.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -87,8 +89,10 @@ struct Pushes {
 };
 
 /// Log prior density of the effects of a fit at its parameters, times sqrt(2 pi) for each parameter, which the
-/// likelihood leaves out.
-double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution) {
+/// likelihood leaves out. In a fall through air models differ in which drag they have, so K has a prior as well: that
+/// of the size of an effect, or Stokes' law where it is held. At the edge of a prior a K or a gravity is held there
+/// (motion_fit.cpp), at no cost.
+double log_prior(const TrackSet& set, const MotionFit& fit, const RemainderSpace::Solution& solution) {
   double log = 0.0;
   const double root = 0.5 * std::log(2.0 * std::numbers::pi);
   std::map<const EffectParameter*, std::size_t> kinds;
@@ -97,9 +101,16 @@ double log_prior(const MotionFit& fit, const RemainderSpace::Solution& solution)
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const auto& of = globals[g];
-    if (of.kind != ParameterLayout::Global::Kind::effect) continue;
     const auto at = static_cast<Eigen::Index>(g);
     const double sd = std::sqrt(std::max(0.0, solution.covariance(at, at)));
+    if (of.kind == ParameterLayout::Global::Kind::k && set.through_air) {
+      const double k = std::max(std::abs(fit.at.global[at] + solution.change[at]), kLeastSeen * sd);
+      if (!holds_drag(set, fit.effects)) log += root - std::log(k * kDecades);
+    }
+    const bool normal =
+        of.kind == ParameterLayout::Global::Kind::k || of.kind == ParameterLayout::Global::Kind::gravity;
+    for (const FitStatement& s : fit.statements) log -= normal && s.global == g ? std::log(s.sd) : 0.0;
+    if (of.kind != ParameterLayout::Global::Kind::effect) continue;
     const EffectInfo& info = effect_list()[of.effect];
     const double fitted = fit.at.global[at] + solution.change[at];
     if (info.search == Search::spread) {
@@ -153,7 +164,7 @@ Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const Rema
   if (!std::isfinite(noise_alone.cost)) return profile;
   const RemainderSpace space(set, noise_alone, extra);
   profile.best = space.likeliest(start);
-  profile.log_evidence = profile.best.log_likelihood + log_prior(noise_alone, space.solve(profile.best.sizes));
+  profile.log_evidence = profile.best.log_likelihood + log_prior(set, noise_alone, space.solve(profile.best.sizes));
   return profile;
 }
 
@@ -205,7 +216,7 @@ const Hypothesis* pure_of(const Comparison& comparison, int fit) {
 }
 
 /// Indices of the fits that are weighed anew: the nominal fit and those of the likeliest explanations.
-std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
+std::vector<std::size_t> worth_profiling(const TrackSet& set, const Comparison& comparison) {
   std::vector<Hypothesis> fitted;
   for (const Hypothesis& one : comparison.all) {
     if (one.fit > 0 && !one.unnamed) fitted.push_back(one);
@@ -216,7 +227,7 @@ std::vector<std::size_t> worth_profiling(const Comparison& comparison) {
   for (const Hypothesis& one : fitted) {
     const auto fit = static_cast<std::size_t>(one.fit);
     // Single effects are always weighed: a remainder of their own may suit them better than the common one.
-    if (worth.size() >= kProfiled && one.effects.size() > 1) continue;
+    if (worth.size() >= kProfiled && one.effects.size() > 1 && !is_fall_through_air(set, one.effects)) continue;
     if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
   }
   return worth;
@@ -250,7 +261,7 @@ std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) 
 /// the pair with the most evidence, and those that are nearly as likely as the likeliest. Of two explanations that do
 /// equally well, both must get the evidence of such a function, or the other falls behind. Scatter of single positions
 /// makes no gap, so a function beside it would only repeat the one beside the nominal model.
-std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<double>& excess, double unnamed_excess) {
+std::vector<Hypothesis> beside(const Comparison& comparison, const LeftExcess& excess) {
   std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
   for (const std::size_t many : {2, 1}) {
     std::size_t left = many;
@@ -263,7 +274,8 @@ std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<d
   Comparison so_far;
   so_far.all = comparison.all;
   so_far.odds = comparison.odds;
-  weigh_beside_remainder(excess, unnamed_excess, so_far);
+  so_far.air_odds = comparison.air_odds;
+  weigh_beside_remainder(excess, so_far);
   double likeliest = 0.0;
   for (const Hypothesis& one : so_far.all) {  // by falling probability
     if (one.fit <= 0 || one.unnamed || std::any_of(one.effects.begin(), one.effects.end(), is_scatter)) continue;
@@ -278,12 +290,12 @@ std::vector<Hypothesis> beside(const Comparison& comparison, const std::vector<d
 }
 
 /// Laws that all clips have in common and that leave much of the excess, by falling probability.
-std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const std::vector<double>& excess,
-                                             double unnamed_excess) {
+std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const LeftExcess& excess) {
   Comparison so_far;
   so_far.all = comparison.all;
   so_far.odds = comparison.odds;
-  weigh_beside_remainder(excess, unnamed_excess, so_far);
+  so_far.air_odds = comparison.air_odds;
+  weigh_beside_remainder(excess, so_far);
   std::vector<Hypothesis> laws;
   for (const Hypothesis& one : so_far.all) {  // by falling probability
     if (laws.size() == kWithScatter) break;
@@ -300,6 +312,14 @@ double unnamed_excess(const TrackSet& set, const Comparison& by_noise) {
   if (family == nullptr || set.clips.size() < 2) return std::numeric_limits<double>::quiet_NaN();
   const MotionFit& nominal = by_noise.fits.front();
   return held_out_excess(set, with_unnamed(set, nominal, *family));
+}
+
+/// The excess of which explanations leave a part: that of the nominal model. In a fall through air K imitates the drag
+/// of air, so there it is that of a fall without any drag, if that is more.
+double excess_before(const TrackSet& set, double nominal) {
+  if (!set.through_air) return nominal;
+  const TrackSet no_drag = without_drag(set);
+  return std::max(nominal, held_out_excess(no_drag, fit_nominal(no_drag)));
 }
 
 }  // namespace
@@ -348,12 +368,13 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   // Each fit gets a remainder of its own.
   std::vector<MotionFit> noise_alone(comparison.fits.size());
   profiles.assign(comparison.fits.size(), {});
-  std::vector<std::size_t> worth = worth_profiling(comparison);
+  std::vector<std::size_t> worth = worth_profiling(set, comparison);
   for (const int fit : also) {
     const auto f = static_cast<std::size_t>(fit);
     if (std::find(worth.begin(), worth.end(), f) == worth.end()) worth.push_back(f);
   }
-  std::vector<double> excess(comparison.fits.size(), std::numeric_limits<double>::quiet_NaN());
+  LeftExcess excess;
+  excess.of_fits.assign(comparison.fits.size(), std::numeric_limits<double>::quiet_NaN());
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
     const std::size_t f = worth[k];
     noise_alone[f] = linearise_again(set, comparison.fits[f]);
@@ -363,11 +384,11 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     const std::size_t f = worth[k];
     if (!std::isfinite(noise_alone[f].cost)) return;
     // A fit by the noise alone differs from one with a remainder. The one that leaves less counts.
-    excess[f] = held_out_excess(set, noise_alone[f]);
+    excess.of_fits[f] = held_out_excess(set, noise_alone[f]);
     if (f == 0 || !searched || also.contains(static_cast<int>(f))) return;
     const MotionFit anew = fit_motions(set, comparison.fits[f].effects, comparison.fits[f].at, comparison.fits[f].late);
     if (std::isfinite(anew.cost)) {
-      excess[f] = std::min(excess[f], held_out_excess(set, anew));
+      excess.of_fits[f] = std::min(excess.of_fits[f], held_out_excess(set, anew));
     }
   });
   done(0.9);
@@ -388,9 +409,11 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
                            : profile - nothing + std::exchange(one.unnamed_log_evidence, 0.0);
   }
   std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed; });
-  const double excess_beside_unnamed = unnamed_excess(set, first);
+  excess.of_unnamed = unnamed_excess(set, first);
+  excess.before = excess_before(set, excess.of_fits.front());
+  set_air_odds(weighed.set, comparison);
   if (const std::size_t scatter = effect_index(ids::clip_scatter); searched && !without.contains(scatter)) {
-    const std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess, excess_beside_unnamed);
+    const std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess);
     std::vector<std::optional<MotionFit>> found(laws.size());
     base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
       found[k] = with_clip_scatter(set, noise_alone[static_cast<std::size_t>(laws[k].fit)]);
@@ -398,10 +421,11 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     for (std::size_t k = 0; k < laws.size(); ++k) {
       if (!found[k]) continue;
       const auto law = static_cast<std::size_t>(laws[k].fit), fit = comparison.fits.size();
-      excess.push_back(held_out_excess(set, *found[k]));
+      excess.of_fits.push_back(held_out_excess(set, *found[k]));
       noise_alone.push_back(linearise_again(set, *found[k]));
       profiles.push_back(profile_of(set, noise_alone.back(), &profiles[law].best.sizes));
       comparison.fits.push_back(linearise_again(weighed.set, *found[k]));
+      set_air_odds(weighed.set, comparison);
       worth.push_back(fit);
       Hypothesis both = laws[k];
       both.effects.push_back(scatter);
@@ -416,7 +440,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       comparison.all.push_back(std::move(both));
     }
   }
-  const std::vector<Hypothesis> leaders = beside(comparison, excess, excess_beside_unnamed);
+  const std::vector<Hypothesis> leaders = beside(comparison, excess);
   std::vector<std::vector<UnnamedFamily>> found(leaders.size());
   std::vector<std::optional<double>> logs(leaders.size());
   base::for_each_parallel(leaders.size(), jobs, [&](std::size_t k) {
@@ -439,7 +463,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       comparison.unnamed_left = std::move(found[k]);
     }
   }
-  weigh_beside_remainder(excess, excess_beside_unnamed, comparison);
+  weigh_beside_remainder(excess, comparison);
   weighed.fits.resize(comparison.fits.size());
   for (const std::size_t f : worth) {
     if (std::isfinite(profiles[f].log_evidence)) {

@@ -11,6 +11,8 @@
 #include "base/math/dense.h"
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
+#include "diagnose/weigh/unknown_noise.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -90,10 +92,12 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
   FitPoint at = fit.at;
   at.global += solution.change;
   // The degrees of freedom of the scatter from motion to motion are the motions less one, those of the scores the clips
-  // less one.
+  // less one, those of the noise of few positions theirs.
   const bool scatters = sizes.force_m_s2 > 0.0 || sizes.drag > 0.0;
   const double of_motions =
       scatters ? std::max(1.0, static_cast<double>(set.motions.size()) - 1.0) : std::numeric_limits<double>::infinity();
+  const std::optional<FewPositions> few = few_positions(set);
+  const double of_noise = few ? few->degrees : std::numeric_limits<double>::infinity();
   const double of_clips = std::max(1.0, static_cast<double>(set.clips.size()) - 1.0);
   const auto root_of = [](const Eigen::MatrixXd& covariance, const Eigen::VectorXd& by) {
     const Eigen::VectorXd along = base::product(covariance, by);
@@ -122,7 +126,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
       const double model = root_of(solution.covariance, by), between = root_of(solution.between_clips, by);
       one.value = value;
       one.sd = std::max(model, between) * scale;
-      one.degrees = between > model ? of_clips : of_motions;
+      one.degrees = std::min(between > model ? of_clips : of_motions, of_noise);
       one.known = std::isfinite(one.value) && std::isfinite(one.sd);
       return one;
     };
@@ -134,6 +138,10 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     one.of = of;
     one.k_over_m_1_s = found(rate(at), gradient(rate), 1.0);
     one.k_over_m_1_s.known &= one.k_over_m_1_s.sd < unknown_rate(rate(at));
+    if (holds_drag(set, fit.effects)) {
+      one.k_over_m_1_s.known = false;
+      one.k_over_m_1_s.why = core::unknown::DragNotViscous{};
+    }
     one.mu = found(mu(at), gradient(mu), 1.0);
     one.mu.known &= one.mu.sd < kUnknownMu;
     if (!(std::cos(alpha(at)) > kNoLoad)) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/math/dense.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
@@ -20,7 +21,7 @@ constexpr double kRounding = 1e-13;
 /// The parts of a motion over which the acceleration is constant.
 struct Parts {
   Eigen::MatrixXd columns;  ///< response of x to a unit acceleration in each part, in units of the noise
-  Eigen::MatrixXd shapes;   ///< 1, sign(v) and (K/m) v of each part
+  Eigen::MatrixXd shapes;   ///< 1, sign(v) and (K/m) v of each part, or (c/m) v |v|
   double length_s = 0.0;
 };
 
@@ -37,9 +38,15 @@ double response(double t, double length, double k) {
   return step(t) - (t > length ? step(t - length) : 0.0);
 }
 
-double drag_rate(const TrackSet& set, const MotionFit& fit, std::size_t i) {
+/// The drag of a motion per mass, k v + c v |v|; c counts where it takes the place of K only (fit/drag_of_air.h).
+struct DragRate {
+  double k_1_s = 0.0, c_1_m = 0.0;
+};
+
+DragRate drag_rate(const TrackSet& set, const MotionFit& fit, std::size_t i) {
   const TrackModel model = model_of(set, *fit.layout, fit.at, i);
-  return model.k_n_s_m / model.mass_kg;
+  const double c = holds_drag(set, fit.effects) ? model.effects[slot_of(ids::quadratic_drag)] : 0.0;
+  return {model.k_n_s_m / model.mass_kg, c / model.mass_kg};
 }
 
 Parts parts_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
@@ -47,24 +54,30 @@ Parts parts_of(const TrackSet& set, const MotionFit& fit, std::size_t i) {
   const std::size_t n = data.t_s.size();
   const std::size_t parts = std::clamp(n / kPointsOfPart, kFewestParts, kMostParts);
   const double from = data.t_s.front(), length = (data.t_s.back() - from) / static_cast<double>(parts);
-  const double k = std::max(0.0, drag_rate(set, fit, i));
+  const DragRate drag = drag_rate(set, fit, i);
   Parts result;
   result.length_s = length;
   Eigen::MatrixXd over_sd = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(parts));
   result.shapes = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(parts), 3);
   const std::vector<double>& v = fit.motions[i].v_m_s;
+  double mean_speed = 0.0;
+  for (const double one : v) mean_speed += std::abs(one) / static_cast<double>(n);
+  // A small change of the speed is braked at the rate k + 2 c |v|.
+  const double k = std::max(0.0, drag.k_1_s + 2.0 * drag.c_1_m * mean_speed);
   std::size_t first = 0;
   for (std::size_t j = 0; j < parts; ++j) {
     const double start = from + length * static_cast<double>(j);
-    double speed = 0.0, sign = 0.0, count = 0.0;
+    double speed = 0.0, square = 0.0, sign = 0.0, count = 0.0;
     for (; first < n && (j + 1 == parts || data.t_s[first] < start + length); ++first) {
       speed += v[first];
+      square += v[first] * std::abs(v[first]);
       sign += v[first] > 0.0 ? 1.0 : -1.0;
       count += 1.0;
     }
     const auto row = static_cast<Eigen::Index>(j);
     result.shapes(row, 1) = count > 0.0 ? sign / count : result.shapes(std::max<Eigen::Index>(0, row - 1), 1);
-    result.shapes(row, 2) = count > 0.0 ? k * speed / count : result.shapes(std::max<Eigen::Index>(0, row - 1), 2);
+    result.shapes(row, 2) = count > 0.0 ? (std::max(0.0, drag.k_1_s) * speed + drag.c_1_m * square) / count
+                                        : result.shapes(std::max<Eigen::Index>(0, row - 1), 2);
     for (std::size_t p = 0; p < n; ++p) {
       if (data.outlier[p]) continue;
       over_sd(static_cast<Eigen::Index>(p), row) = response(data.t_s[p] - start, length, k) / data.sd_of(p);

@@ -300,7 +300,8 @@ struct InImages {
 /// What the prior odds of an effect depend on.
 struct Circumstances {
   std::size_t clips = 0;
-  bool only_falls = false;  ///< every inclination is 80 degrees or more
+  bool only_falls = false;   ///< every inclination is 80 degrees or more
+  bool through_air = false;  ///< falls faster than any viscous drag allows (tracks/tracked_motions.h)
 };
 
 /// What the program knows about one effect: its names and words, its parameters and their ranges, its law, its change

@@ -7,11 +7,18 @@
 #include <span>
 #include <utility>
 
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {
 namespace {
 
+// No misfit, however large, makes a K that Stokes' law excludes, a gravity that no place on Earth has, or a slope of a
+// fall.
+constexpr double kMostStokes = 3.0, kMostGravity_sd = 2.0, kMostFall_sd = 3.0;
+// The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
+// m/s.
+constexpr double kMostAir = 10.0;
 constexpr double kFewestTurns = 2.0;    // periods in the longest motion: anything slower is a drift, which has other
                                         // causes too
 constexpr double kFastest = 0.48;       // as a fraction of the frame rate
@@ -67,6 +74,11 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
     for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
     range.high *= heaviest_kg;
   }
+  if (set.through_air && parameter.slot == slot_of(ids::rotational_inertia)) {
+    double lightest_kg = std::numeric_limits<double>::infinity();
+    for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
+    range.high = std::min(range.high, kMostAir * lightest_kg);
+  }
   return range;
 }
 
@@ -75,6 +87,21 @@ namespace {
 using Global = ParameterLayout::Global;
 
 }  // namespace
+
+std::size_t free_parameters(const TrackSet& set, const std::vector<std::size_t>& effects) {
+  std::size_t count = only_falls(set) ? 1 : 2 + set.groups.size();
+  count += 2 * std::max<std::size_t>(1, set.motions.size());
+  if (holds_drag(set, effects)) --count;
+  for (const std::size_t e : effects) {
+    for (const EffectParameter& parameter : effect_list()[e].parameters) {
+      if (parameter.only_filmed && !set.images) continue;
+      const bool one_kind = effect_list()[e].search == Search::spread;
+      count += parameter.each == Each::motion ? set.motions.size() : 1;
+      if (one_kind) break;
+    }
+  }
+  return count;
+}
 
 bool touches(const TrackSet& set, const Global& global, std::size_t motion) {
   const TrackedMotion& of = set.motions[motion];
@@ -111,9 +138,21 @@ ParameterLayout::ParameterLayout(const TrackSet& set, std::vector<std::size_t> e
 
 void ParameterLayout::add_common(const TrackSet& set) {
   using Kind = Global::Kind;
-  globals_.push_back({Kind::k});
+  const double open = std::numeric_limits<double>::infinity(),
+               held = set.no_drag ? 0.0 : kMostStokes * kStokesDrag_n_s_m;
+  globals_.push_back({Kind::k, 0, nullptr, 0, 0.0, {-open, open}});
+  if (holds_drag(set, effects_)) globals_.back().range = {0.0, held};
   globals_.push_back({Kind::mu});
-  for (std::size_t g = 0; g < set.groups.size(); ++g) globals_.push_back({Kind::alpha, g});
+  for (std::size_t g = 0; g < set.groups.size(); ++g) {
+    globals_.push_back({Kind::alpha, g, nullptr, 0, 0.0, {-open, open}});
+    if (!is_fall(set.groups[g])) continue;
+    double sd_rad = kFallInclination_rad;
+    for (const InclineStatement& s : set.groups[g].statements) sd_rad = std::max(sd_rad, s.sd_rad);
+    globals_.back().range = {set.groups[g].stated_rad - kMostFall_sd * sd_rad,
+                             set.groups[g].stated_rad + kMostFall_sd * sd_rad};
+  }
+  if (gravity_matters(set))
+    globals_.push_back({Kind::gravity, 0, nullptr, 0, 0.0, {-kMostGravity_sd, kMostGravity_sd}});
   for (std::size_t m = 0; m < set.masses.size(); ++m) {
     if (set.masses[m].sd_kg > 0.0) globals_.push_back({Kind::mass, m});
   }
@@ -194,6 +233,7 @@ TrackModel model_of(const TrackSet& set, const ParameterLayout& layout, const Fi
     if (global.kind == Global::Kind::k) model.k_n_s_m = value;
     if (global.kind == Global::Kind::mu) model.mu = value;
     if (global.kind == Global::Kind::alpha) model.alpha_rad = value;
+    if (global.kind == Global::Kind::gravity) model.gravity_m_s2 += value * set.gravity_sd_m_s2;
     if (global.kind == Global::Kind::mass) model.mass_kg += value * set.masses[global.index].sd_kg;
     if (global.kind == Global::Kind::effect) model.effects[global.parameter->slot] = value;
   }

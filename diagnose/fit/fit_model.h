@@ -31,6 +31,14 @@ inline constexpr double kFallInclination_rad = 0.0175, kFallFriction = 1e-4;
 /// Log evidence above which a finding is acted upon without being weighed against anything else.
 inline constexpr double kBeyondDoubt = 5.0;
 
+/// Positions in excess of the free parameters, the fewest that show whether a model fits.
+inline constexpr std::size_t kFewestSpare = 6;
+
+/// The parameters that only the positions determine, of the nominal model with these effects: K, or the quadratic drag
+/// in its place; the starts of all motions; mu and the inclinations, except in a fall; those of the effects, of which
+/// many sizes of one kind count as one.
+std::size_t free_parameters(const TrackSet& set, const std::vector<std::size_t>& effects);
+
 /// The fewest points at which the shape of a scatter is informative.
 inline constexpr std::size_t kFewestScatter = 50;
 
@@ -49,7 +57,8 @@ struct ParameterRange {
 /// Sizes are as the effects state them; those proportional to the mass are for the heaviest glider. A location lies
 /// within the range of positions. A frequency makes at least two periods in the longest motion. A release comes after
 /// four frames, and within half a second and the first two fifths of the longest motion. A Stribeck speed lies above
-/// the speed up to which a codec may hold the marker in place (TrackSet::held_m_s).
+/// the speed up to which a codec may hold the marker in place (TrackSet::held_m_s). In a fall through air, what moves
+/// along has at most ten times the mass of the lightest object.
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter);
 
 /// From the smallest to the largest position.
@@ -77,7 +86,7 @@ class ParameterLayout {
   ParameterLayout(const TrackSet& set, std::vector<std::size_t> effects, const ParameterLayout& like);
 
   struct Global {
-    enum class Kind { k, mu, alpha, mass, mode, scale, effect } kind;
+    enum class Kind { k, mu, alpha, gravity, mass, mode, scale, effect } kind;
     std::size_t index = 0;  ///< of the group, mass, mode, or clip
     const EffectParameter* parameter = nullptr;
     std::size_t effect = 0;

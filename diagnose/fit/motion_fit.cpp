@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/fit/integrated_start.h"
 
@@ -29,6 +30,14 @@ constexpr double kSteepest_rad = 1.5, kBeyondStated_rad = 0.2;  // steepest incl
 constexpr double kSmallSteps = 1.0;  // initial damping: half the Newton step in directions that are well separated
 using Global = ParameterLayout::Global;
 
+/// Whether a parameter has limits that no misfit moves: effects, and of a fall gravity, the inclination and a K that is
+/// held.
+bool has_range(const Global& global) {
+  using Kind = Global::Kind;
+  return global.kind == Kind::effect || global.kind == Kind::k || global.kind == Kind::alpha ||
+         global.kind == Kind::gravity;
+}
+
 bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at) {
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
@@ -38,7 +47,7 @@ bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& 
       const double stated = std::abs(set.groups[global.index].stated_rad);
       if (std::abs(value) > std::max(kSteepest_rad, stated + kBeyondStated_rad)) return false;
     }
-    if (global.kind != Global::Kind::effect) continue;
+    if (!has_range(global)) continue;
     if (value < global.range.low || value > global.range.high) return false;
   }
   return true;
@@ -49,6 +58,9 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
     switch (global.kind) {
+      case Global::Kind::k:
+        if (holds_drag(set, layout.effects())) statements.push_back({g, 0.0, kStokesDrag_n_s_m, {}, false});
+        break;
       case Global::Kind::alpha:
         for (const InclineStatement& s : set.groups[global.index].statements) {
           statements.push_back({g, s.alpha_rad, s.sd_rad, s.against, true});
@@ -62,6 +74,7 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
       case Global::Kind::mu:
         if (only_falls(set)) statements.push_back({g, 0.0, kFallFriction, {}, false});
         break;
+      case Global::Kind::gravity:
       case Global::Kind::mass:
       case Global::Kind::mode:
       case Global::Kind::scale:
@@ -153,7 +166,7 @@ Eigen::VectorXd step_within(const MotionFit& fit, Eigen::MatrixXd a, Eigen::Vect
     stopped = false;
     for (Eigen::Index g = 0; g < y.size(); ++g) {
       const Global& global = globals[static_cast<std::size_t>(g)];
-      if (global.kind != Global::Kind::effect || held[static_cast<std::size_t>(g)]) continue;
+      if (!has_range(global) || held[static_cast<std::size_t>(g)]) continue;
       const double at = fit.at.global[g], next = at + scale[g] * y[g];
       if (!(next < global.range.low || next > global.range.high)) continue;
       const double to_edge = ((next < global.range.low ? global.range.low : global.range.high) - at) / scale[g];
@@ -174,7 +187,7 @@ void round_to_edges(const ParameterLayout& layout, Eigen::VectorXd& global) {
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& of = layout.globals()[g];
     double& value = global[static_cast<Eigen::Index>(g)];
-    if (of.kind == Global::Kind::effect) value = std::clamp(value, of.range.low, of.range.high);
+    if (has_range(of)) value = std::clamp(value, of.range.low, of.range.high);
   }
 }
 
@@ -234,6 +247,19 @@ FitPoint step_from(const MotionFit& fit, double damping) {
 
 namespace {
 
+/// A K, a gravity or an inclination that stopped at an edge stays there in whatever is linear about the fit.
+void hold_at_edges(MotionFit& fit) {
+  constexpr double kHeld = 1e-4;  // of the prior's standard deviation
+  for (FitStatement& s : fit.statements) {
+    const Global& global = fit.layout->globals()[s.global];
+    if (global.kind == Global::Kind::effect || !has_range(global) || s.against) continue;
+    const double at = fit.at.global[static_cast<Eigen::Index>(s.global)];
+    if (at > global.range.low && at < global.range.high) continue;
+    s.value = at;
+    s.sd *= kHeld;
+  }
+}
+
 MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                    const Lateness& late, const base::FitOptions& options) {
   MotionFit fit;
@@ -242,6 +268,7 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   layout.widen_to(start.global);
   fit.layout = std::make_shared<const ParameterLayout>(std::move(layout));
   fit.at = start;
+  round_to_edges(*fit.layout, fit.at.global);  // K may come from a fit in which it was free
   fit.late = late;
   fit.statements = statements_of(set, *fit.layout);
   linearise_all(set, fit, Derivatives::none);
@@ -274,6 +301,7 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   here.fit.iterations = summary.iterations;
   // If no step descends, only rounding is left, or the fit is at the edge of what is allowed.
   here.fit.converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
+  hold_at_edges(here.fit);
   linearise_all(set, here.fit, Derivatives::central);
   return std::move(here.fit);
 }
@@ -302,6 +330,24 @@ FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t eff
 
 }  // namespace
 
+namespace {
+
+/// The coefficient c of a quadratic drag that takes as much energy from the motions as K does in a fit; `least` if K is
+/// not positive.
+double drag_of_air_like(const MotionFit& fit, double least) {
+  double squares = 0.0, cubes = 0.0;  // of the speed: the power is K v², or c v³
+  for (const FitMotion& motion : fit.motions) {
+    for (const double v : motion.v_m_s) {
+      squares += v * v;
+      cubes += std::abs(v) * v * v;
+    }
+  }
+  const double like = fit.at.global[0] * squares / cubes;
+  return like > least ? like : least;
+}
+
+}  // namespace
+
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late) {
   return fit_from(set, effects, start, late, descent_options());
@@ -321,6 +367,8 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
   std::vector<std::size_t> effects = base.effects;
   effects.push_back(effect);
   MotionFit best = fit_motions(set, effects, start, base.late);
+  // A quadratic drag in place of K is another model than `base`, and need not fit better.
+  if (takes_place_of_drag(set, base.effects, effect)) return best;
   // A size from a linear estimate far from the minimum may be wrong by decades.
   const auto size = base.at.global.size();
   const bool has_size = effect_list()[effect].law.size == 0 &&
@@ -408,6 +456,10 @@ FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effe
   point.global.head(fit.at.global.size()) = fit.at.global;  // effects come last, and the new one is the last of them
   for (std::size_t v = 0; v < values.size(); ++v) {
     point.global[fit.at.global.size() + static_cast<Eigen::Index>(v)] = values[v];
+  }
+  if (!values.empty() && takes_place_of_drag(set, fit.effects, effect)) {
+    point.global[fit.at.global.size()] = drag_of_air_like(fit, values.front());
+    point.global[0] = 0.0;
   }
   for (std::size_t i = 0; i < fit.at.own.size(); ++i) {
     Eigen::VectorXd extended = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 + layout.own().size()));

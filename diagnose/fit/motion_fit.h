@@ -63,7 +63,8 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
 MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit);
 
 /// The parameters of a fit in the layout with one more effect, which is absent except for `values` (in the order of its
-/// global parameters).
+/// global parameters). A quadratic drag that takes the place of K has the size that brakes as K does in the fit
+/// (drag_of_air.h).
 FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effect, const std::vector<double>& values,
                      const std::vector<std::vector<double>>& own);
 

@@ -13,7 +13,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kStretches = 4;      // of a single clip
+constexpr std::size_t kStretches = 4, kFewestStretches = 3;  // of a single clip
 constexpr std::size_t kMotionsForAll = 3;  // motions of a single clip from which on each is held out: fewer may all go
                                            // in one direction
 constexpr std::size_t kFewest = 8;         // points of a stretch, or to smooth
@@ -66,9 +66,10 @@ HeldOutGap gap_over(std::vector<ClipGap> clips) {
   return gap;
 }
 
-/// The number of stretches in which a motion of this many points is held out.
-std::size_t stretches_of(std::size_t points) {
-  return std::clamp<std::size_t>(points / kFewest, 1, kStretches);
+/// The number of stretches in which a motion of this many points is held out. The only motion is held out in three at
+/// least, so that the others tell its parameters.
+std::size_t stretches_of(std::size_t points, bool only) {
+  return std::clamp<std::size_t>(points / kFewest, only ? kFewestStretches : 1, kStretches);
 }
 
 /// The stretches of a single clip's motions, each predicted from all the others, with the motion's own start and speed
@@ -95,7 +96,7 @@ HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
     others.add(projected[i], -1.0);
     Eigen::MatrixXd normal = base::transposed_product(columns, columns);
     normal.topLeftCorner(common, common) += others.matrix;
-    const std::size_t points = data.t_s.size(), stretches = stretches_of(points);
+    const std::size_t points = data.t_s.size(), stretches = stretches_of(points, fit.motions.size() == 1);
     for (std::size_t k = 0; k < stretches; ++k) {
       const std::size_t from = points * k / stretches, to = points * (k + 1) / stretches;
       ClipGap clip{fmt::format("{}, {:.2f} to {:.2f} s", set.clips[data.clip].name, data.t_s[from], data.t_s[to - 1])};

@@ -21,7 +21,7 @@ constexpr int kMostTurns = 20;           // reversals within one step; more is c
 constexpr double kNoSpeed_m_s = 1e-300;  // has a direction but causes no motion
 constexpr int kMostLeaving = 40;         // iterations to find the instant at which static friction gives way,
 constexpr double kSameTime_s = 1e-13;    // to within this
-constexpr double kMostSteps = 2500.0, kMostOfFrame = 24.0;  // most steps of a motion: a constant plus so many a frame
+constexpr double kMostSteps = 2500.0, kMostOfFrame = 60.0;  // most steps of a motion: a constant plus so many a frame
 constexpr std::size_t kMostWork = 2000;                     // most steps a position, including those spent at turns;
 constexpr std::size_t kFewTimes = 100;                      // fewer positions than this count as this many
 

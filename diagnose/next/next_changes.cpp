@@ -263,6 +263,7 @@ TrackSet with_clip(const TrackSet& set, const Change& change) {
   const NextClip& clip = *change.clip;
   TrackSet one;
   one.gravity_m_s2 = set.gravity_m_s2;
+  one.gravity_sd_m_s2 = gravity_matters(set) ? set.gravity_sd_m_s2 : 0.0;  // the same parameters as so far
   one.groups = set.groups;
   one.masses = set.masses;
   one.x_mid_m = set.x_mid_m;

@@ -73,6 +73,10 @@ struct NoInclination {
 /// Only falls were recorded: friction on a track is not determined.
 struct OnlyFalls {};
 
+/// A fall is faster than any viscous drag allows, and its drag is quadratic: K is held at 0, and the gap is that of a
+/// fall without any drag.
+struct FallsThroughAir {};
+
 /// Clips of one set-up state different inclinations.
 struct SplitSetUps {
   std::vector<std::string> groups;
@@ -128,7 +132,7 @@ struct TableOfLines {
 using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside,
                              PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
                              SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
-                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls>;
+                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

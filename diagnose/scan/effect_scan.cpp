@@ -124,11 +124,26 @@ double seen_square(const ScoreSpace& space, const ScoreColumn& column) {
 
 double prior_odds(const TrackSet& set, std::size_t effect) {
   const auto odds = effect_list()[effect].odds;
-  return odds == nullptr ? 1.0 : odds({.clips = set.clips.size(), .only_falls = only_falls(set)});
+  return odds == nullptr
+             ? 1.0
+             : odds({.clips = set.clips.size(), .only_falls = only_falls(set), .through_air = set.through_air});
 }
 
+namespace {
+
+/// Whether these are enough positions to show one more effect than the fit has.
+bool are_enough(const ScoreSpace& space, std::size_t effect) {
+  std::size_t positions = 0;
+  for (const TrackedMotion& motion : space.set().motions) positions += motion.t_s.size();
+  std::vector<std::size_t> effects = space.fit().effects;
+  effects.push_back(effect);
+  return positions >= free_parameters(space.set(), effects) + kFewestSpare;
+}
+
+}  // namespace
+
 EffectScan scan_effect(const ScoreSpace& space, std::size_t effect) {
-  if (!(prior_odds(space.set(), effect) > 0.0)) {
+  if (!(prior_odds(space.set(), effect) > 0.0) || !are_enough(space, effect)) {
     EffectScan nothing;
     nothing.effect = effect;
     return nothing;
@@ -172,7 +187,8 @@ std::vector<EffectScan> scan_effects(const ScoreSpace& space, const std::set<std
     }
   });
   for (std::size_t e = 0; e < list.size(); ++e) {
-    if (!without.contains(e) && list[e].search == Search::wave) scans[e] = scan_waves(space, e, wave);
+    const bool is_wave = !without.contains(e) && list[e].search == Search::wave;
+    if (is_wave && are_enough(space, e)) scans[e] = scan_waves(space, e, wave);
   }
   return scans;
 }

@@ -10,6 +10,8 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kMostPositions = 30000;  // of all motions
+constexpr double kFasterThanStokes_m_s = 0.5;
+constexpr double kNearlyAsCertain = 2.0;  // relative error of sin(alpha) over that of g
 
 }  // namespace
 
@@ -19,6 +21,28 @@ bool is_fall(const TrackGroup& group) {
 
 bool only_falls(const TrackSet& set) {
   return !set.groups.empty() && std::all_of(set.groups.begin(), set.groups.end(), is_fall);
+}
+
+bool falls_through_air(const TrackSet& set) {
+  if (!only_falls(set) || is_driven(set)) return false;
+  return std::any_of(set.motions.begin(), set.motions.end(), [](const TrackedMotion& motion) {
+    const std::size_t last = motion.t_s.size() - 1, quarter = std::max<std::size_t>(2, last / 4);
+    for (std::size_t p = quarter; p <= last; ++p) {
+      const double displacement = motion.x_m[p] - motion.x_m[p - quarter];
+      if (std::abs(displacement) > kFasterThanStokes_m_s * (motion.t_s[p] - motion.t_s[p - quarter])) return true;
+    }
+    return false;
+  });
+}
+
+bool gravity_matters(const TrackSet& set) {
+  if (!(set.gravity_sd_m_s2 > 0.0)) return false;
+  const double part = kNearlyAsCertain * set.gravity_sd_m_s2 / set.gravity_m_s2;
+  return std::any_of(set.groups.begin(), set.groups.end(), [part](const TrackGroup& group) {
+    return is_fall(group) || std::any_of(group.statements.begin(), group.statements.end(), [part](const auto& stated) {
+             return stated.sd_rad < part * std::abs(std::tan(stated.alpha_rad));
+           });
+  });
 }
 
 bool is_driven(const TrackSet& set) {

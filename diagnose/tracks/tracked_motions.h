@@ -102,6 +102,7 @@ struct TrackedClip {
 
 struct TrackSet {
   double gravity_m_s2 = 9.80665;
+  double gravity_sd_m_s2 = 0.0;  ///< 0: exact
   std::vector<TrackedClip> clips;
   std::vector<TrackGroup> groups;
   std::vector<TrackedMass> masses;
@@ -114,6 +115,8 @@ struct TrackSet {
   bool handed_on = false;  ///< and one through a codec that predicts images from earlier ones:
   double held_m_s = 0.0;   ///< below this speed such a codec may hold the marker in place (0: none does)
   std::optional<PositionNoise> position_noise;
+  bool through_air = false;  ///< falls_through_air(); K then gives way to a quadratic drag (fit/drag_of_air.h)
+  bool no_drag = false;      ///< K is held at 0 whatever acts: for what a fall without any drag would do
   std::vector<Note> notes;
   /// Frames that the analysis took for a hand or a stop and that could belong to a motion.
   std::size_t disputed = 0;
@@ -123,6 +126,20 @@ struct TrackSet {
 
 /// Whether only falls were recorded.
 bool only_falls(const TrackSet& set);
+
+/// Whether the motions are falls at speeds at which no drag is viscous: only falls were recorded, no force drives them,
+/// and the mean speed over some quarter of a motion is above 0.5 m/s.
+///
+/// Stokes drag needs a Reynolds number of about 1 or less. A sphere of radius r and density rho_s that falls at its
+/// terminal velocity v = 2/9 (rho_s/rho - 1) g r²/nu with 2 r v = nu has v = (nu g (rho_s/rho - 1)/18)^(1/3): 0.2 m/s
+/// for water drops in air (nu = 1.5e-5 m²/s), 0.15 m/s for steel in glycerine (1e-3 m²/s), 0.3 m/s for steel in a
+/// syrup ten times as thick. Faster than 0.5 m/s nothing that falls freely is in Stokes flow, whatever it falls
+/// through.
+bool falls_through_air(const TrackSet& set);
+
+/// Whether the uncertainty of g counts in these motions: some set-up is a fall, or has an inclination alpha that is
+/// known so well that the relative error of sin(alpha) is at most twice that of g. Elsewhere alpha takes it up.
+bool gravity_matters(const TrackSet& set);
 
 /// Whether a recorded force drives any of the motions: the next clip is then not a launch.
 bool is_driven(const TrackSet& set);

@@ -298,7 +298,7 @@ Twin twin_of(const TrackSet& set, const MotionFit& fit, const std::vector<Diagno
   twin.toml = head(twin, assumed, seen.notes);
   twin.toml += fmt::format(
       "format = 1\nname = \"twin\"\ngravity_m_s2 = {:.9g}\n\n[camera]\nframe_rate_hz = {:.9g}\nexposure_s = {:.9g}\n",
-      set.gravity_m_s2, rate_hz, seen.exposure_s);
+      first.gravity_m_s2, rate_hz, seen.exposure_s);
   twin.toml += camera_keys(filming, view) + seen.sections + scene_sections(filming, view);
   const std::vector<std::string> names = clip_names_of(set);
   for (const auto& [place, motions] : places) {

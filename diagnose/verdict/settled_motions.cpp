@@ -23,13 +23,13 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestPositions = 25;  // of all clips together: with four parameters, fewer allow no verdict
-constexpr std::size_t kFewestPoints = 12;     // of a piece of a driven motion
-constexpr double kContradiction = 5.0;        // standard deviations between two statements
-constexpr double kLatestLaunch_s = 0.2;       // a motion that starts later is not the launch
-constexpr std::size_t kFirstPoints = 8;       // which show the direction of the launch,
-constexpr double kOpposite_sd = 10.0;         // by a displacement of so many standard deviations of a position
-constexpr double kMisfit = 1.5;               // chi² per position above which the motion counts as not explained
+constexpr std::size_t kFewestWithoutHand = 25;  // positions that are left: fewer are better kept whole
+constexpr std::size_t kFewestPoints = 12;       // of a piece of a driven motion
+constexpr double kContradiction = 5.0;          // standard deviations between two statements
+constexpr double kLatestLaunch_s = 0.2;         // a motion that starts later is not the launch
+constexpr std::size_t kFirstPoints = 8;         // which show the direction of the launch,
+constexpr double kOpposite_sd = 10.0;           // by a displacement of so many standard deviations of a position
+constexpr double kMisfit = 1.5;                 // chi² per position above which the motion counts as not explained
 
 std::size_t points_of(const TrackSet& set) {
   std::size_t points = 0;
@@ -39,7 +39,8 @@ std::size_t points_of(const TrackSet& set) {
 
 /// InputError with an issue for each clip if all of them together have too little motion.
 void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
-  if (points_of(set) >= kFewestPositions) return;
+  const std::size_t parameters = free_parameters(set, {}), fewest = parameters + kFewestSpare;
+  if (points_of(set) >= fewest) return;
   std::vector<std::size_t> of_clip(set.clips.size(), 0);
   for (const TrackedMotion& motion : set.motions) of_clip[motion.clip] += motion.t_s.size();
   std::vector<base::Issue> issues;
@@ -48,7 +49,7 @@ void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
         {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
          fmt::format("clip \"{}\"", set.clips[c].name),
          of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
-         fmt::format("at least {} in all clips together: fewer support no verdict", kFewestPositions)});
+         fmt::format("at least {} in all clips together: the model has {} parameters", fewest, parameters)});
   }
   throw base::InputError(std::move(issues));
 }
@@ -208,7 +209,7 @@ TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<c
 std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& results,
                                              const std::vector<core::ClipSetup>& setups, std::size_t disputed) {
   TrackSet set = track_set(results, setups, false);
-  if (points_of(set) < kFewestPositions) return {};
+  if (points_of(set) < kFewestWithoutHand) return {};
   note_limits(setups, set);
   note_readings(results, set);
   cut_driven_motions(set, kFewestPoints);

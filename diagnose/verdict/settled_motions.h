@@ -19,8 +19,8 @@ namespace glidelab::diagnose {
 
 /// The motions including what the analysis took for a hand or a stop. Driven motions are cut into pieces, and notes say
 /// what a reader should know of the data. `setups` are the clips of all folders in the order of the results. InputError
-/// if there is too little motion for a fit (fewer than 25 positions in all), or none that could be that of a glider
-/// (tracks/usable_motions.h).
+/// if there is too little motion for a fit (fewer positions in all than the model's parameters and six more), or none
+/// that could be that of a glider (tracks/usable_motions.h).
 TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups);
 
 /// The same without the `disputed` frames that the analysis took for a hand or a stop. Empty if too little is left.

@@ -15,6 +15,7 @@
 #include "diagnose/causes/recovered.h"
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
@@ -77,9 +78,11 @@ std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& 
   return rest.regions;
 }
 
-/// Puts the effects that a verdict names in order of falling share, and then those that no motion shows.
-void order_by_share(Diagnosis& diagnosis) {
+/// Puts the effects that a verdict names in order of falling share, and then those that no motion shows. In a fall
+/// through air the drag comes first: the other shares are what is left beside it.
+void order_by_share(bool drag_first, Diagnosis& diagnosis) {
   const auto share = [&](const DiagnosedEffect& effect) {
+    if (drag_first && effect.id == ids::quadratic_drag) return std::numeric_limits<double>::infinity();
     const auto of = std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
                                  [&](const ExplainedCause& cause) { return cause.id == effect.id; });
     return of != diagnosis.explained.end() ? of->share : -std::numeric_limits<double>::infinity();
@@ -221,9 +224,13 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
     return names ? by.fits[static_cast<std::size_t>(one.fit)] : nominal;
   };
   const double least_named = weighed ? kLeastNamed : kLeastShare;
-  CauseSequence sequence = sequence_of(set, nominal, with, fit_of(best), without, least_named);
+  // K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
+  const bool by_air = set.through_air && claims && names && has(best, effect_index(ids::quadratic_drag));
+  const TrackSet gap_set = by_air ? without_drag(set) : set, gap_with = by_air ? without_drag(with) : with;
+  const MotionFit gap_nominal = by_air ? fit_nominal(gap_set) : nominal;
+  CauseSequence sequence = sequence_of(gap_set, gap_nominal, gap_with, fit_of(best), without, least_named);
   if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.images, best, sequence) : nullptr) {
-    CauseSequence likelier = sequence_of(set, nominal, with, fit_of(*alone), without, least_named);
+    CauseSequence likelier = sequence_of(gap_set, gap_nominal, gap_with, fit_of(*alone), without, least_named);
     if (may_displace(likelier, sequence)) {
       best = *alone;
       sequence = std::move(likelier);
@@ -243,7 +250,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
     set_unknown(std::max(by.unknown, kJustUnknown), weighed->comparison);
   }
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
-    const NoiseAlone noise_alone{set, nominal, sequence.named};
+    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named};
     diagnosis = verdict_of(with, by, std::move(images), &noise_alone);
   } else {
     // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
@@ -275,16 +282,17 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
         for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
       }
     }
-    diagnosis = verdict_of(set, first, std::move(images));
+    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named};
+    diagnosis = verdict_of(set, first, std::move(images), by_air && sequence.is_gap ? &noise_alone : nullptr);
     if (weighed && sequence.is_gap && !in_images) {
-      const NoiseAlone noise_alone{set, nominal, nominal};
-      diagnosis.ranking = ranking_of(with, by, &noise_alone);
+      const NoiseAlone noise{set, nominal, nominal};
+      diagnosis.ranking = ranking_of(with, by, &noise);
     }
   }
   if (noise_is_rounding(set)) traces.emplace_back(ids::position_rounding);
   diagnosis.traces = std::move(traces);
   diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence.causes) : sequence.causes;
-  order_by_share(diagnosis);
+  order_by_share(by_air, diagnosis);
   // Without a gap there is no sequence, and the fit of the explanation itself contains the effect.
   const MotionFit& with_effect = sequence.is_gap ? sequence.named : fit;
   const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;
@@ -295,7 +303,8 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
     diagnosis.remainder->regions =
         diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence, jobs) : diagnosis.regions;
   }
-  diagnosis.levels = levels_of(set, nominal, jobs);
+  diagnosis.levels = levels_of(gap_set, gap_nominal, jobs);
+  if (by_air && diagnosis.verdict == Verdict::effect) diagnosis.notes.emplace_back(FallsThroughAir{});
   Explanations explanations{{&reported, sizes, 1.0}};
   if (weighed) {
     const bool with_names = diagnosis.verdict == Verdict::effect;

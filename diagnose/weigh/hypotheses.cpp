@@ -4,18 +4,23 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/unnamed/unnamed.h"
+#include "diagnose/weigh/air_odds.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
+#include "diagnose/weigh/unknown_noise.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
+constexpr double kMovesAirAlong = 1.0 / 6.0;  // in a fall, relative to the drag alone: with the odds of both effects, a
+                                              // third
 constexpr std::size_t kFitted = 9;            // effects of the short list that are fitted in full
 constexpr double kLeastEvidenceBeside = 3.0;  // log evidence above which something else is weighed beside an effect
 constexpr double kNoLossSeen = -3.0;          // log evidence of lost frames if none is found
@@ -92,10 +97,22 @@ void give_trifles_to_their_effects(Comparison& comparison) {
   }
 }
 
+/// A gain counts less where few positions show the noise. A loss counts in full: it is that of the wrong drag in a
+/// fall.
+void allow_for_unknown_noise(const TrackSet& set, Comparison& comparison) {
+  const std::optional<FewPositions> few = few_positions(set);
+  if (!few) return;
+  const double chi2 = comparison.fits.front().cost;
+  for (Hypothesis& one : comparison.all) {
+    if (one.gain > 0.0) one.log_evidence -= one.gain - gain_with_unknown_noise(*few, chi2, one.gain);
+  }
+}
+
 }  // namespace
 
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
+  set_air_odds(set, comparison);
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
     const bool tracked =
@@ -112,6 +129,7 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
     double prior = many == 0   ? std::log(kPriorNone)
                    : many == 1 ? one
                                : two + static_cast<double>(many - 2) * (two - one);
+    if (is_fall_through_air(set, hypothesis.effects)) prior = one + std::log(kMovesAirAlong);
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
     logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence);
   }
@@ -147,6 +165,13 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
 
   const Hypothesis nothing = comparison.all.front();
   fit_best(set, nominal, best_of(comparison.scans, kFitted), nothing, work.at(0.2), comparison);
+  if (const std::size_t air = effect_index(ids::quadratic_drag);
+      set.through_air && !left_out.contains(air) && find(comparison, {air}) == nullptr) {
+    // In place of K it is fitted even if it does not show beside K.
+    EffectScan scan = comparison.scans[air];
+    if (scan.values.empty()) scan.values = {effect_list()[air].parameters.front().step};
+    add(comparison, fit_more(set, nominal, scan, nothing));
+  }
   for (const EffectScan& scan : comparison.scans) {
     const bool fitted = std::any_of(comparison.all.begin(), comparison.all.end(), [&](const Hypothesis& h) {
       return h.effects == std::vector<std::size_t>{scan.effect};
@@ -177,6 +202,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   }
   add_frame_effects(comparison);
   if (images != nullptr) join_images(set, *images, left_out, comparison);
+  allow_for_unknown_noise(set, comparison);
   weigh(set, left_out, comparison);
   return comparison;
 }

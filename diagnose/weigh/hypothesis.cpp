@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/long_work.h"
+#include "diagnose/fit/drag_of_air.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -20,6 +21,11 @@ std::size_t alike_of(const Comparison& comparison, std::size_t effect, bool film
 
 }  // namespace
 
+double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double gain) {
+  if (!std::isfinite(gain)) return std::min(0.0, scan.log_evidence - scan.gain);
+  return takes_place_of_drag(set, base.effects, scan.effect) ? gain : scan.log_evidence - scan.gain + gain;
+}
+
 Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside) {
   Found found;
   found.fit = fit_with_effect(set, base, scan.effect, with_effect(set, base, scan.effect, scan.values, scan.own));
@@ -27,8 +33,7 @@ Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& sca
   found.hypothesis.effects = beside.effects;  // missing frames are in the fit's times, not among its effects
   found.hypothesis.effects.push_back(scan.effect);
   found.hypothesis.gain = beside.gain + gain;
-  found.hypothesis.log_evidence =
-      beside.log_evidence + scan.log_evidence + (std::isfinite(gain) ? gain - scan.gain : -scan.gain);
+  found.hypothesis.log_evidence = beside.log_evidence + log_evidence_beyond(set, base, scan, gain);
   return found;
 }
 
@@ -139,8 +144,11 @@ double probability_of_any(const Comparison& comparison, const std::vector<std::s
 }
 
 double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis) {
-  if (comparison.odds.empty()) return 0.0;
   double log = 0.0;
+  if (!comparison.air_odds.empty()) {  // an effect without a fit is one beside the nominal drag
+    log += comparison.air_odds[static_cast<std::size_t>(std::max(0, hypothesis.fit))];
+  }
+  if (comparison.odds.empty()) return log;
   for (const std::size_t e : hypothesis.effects) log += std::log(comparison.odds[e]);
   return log;
 }

@@ -43,7 +43,8 @@ struct Comparison {
   /// For each of effect_list(), the first effect that these data cannot tell from it (alike_in()); empty:
   /// first_alike().
   std::vector<std::size_t> alike;
-  std::vector<double> odds;  ///< of each of effect_list(), before the data (prior_odds()); empty: 1
+  std::vector<double> odds;      ///< of each of effect_list(), before the data (prior_odds()); empty: 1
+  std::vector<double> air_odds;  ///< of each of `fits`, log (air_odds.h); empty: 0
 };
 
 /// How many fits run at a time, and a callback for the progress of the comparison; an exception from it ends the
@@ -61,6 +62,11 @@ struct Found {
   Hypothesis hypothesis;
   MotionFit fit;
 };
+
+/// The log evidence of one more effect than a fit has, which gains this much log likelihood in full: that of the scan
+/// with the gain of the full fit in place of the linear one. A quadratic drag that takes the place of K is not charged
+/// for its size, as K is not.
+double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double gain);
 
 /// The full fit of one more effect, and its evidence.
 Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside);
@@ -89,7 +95,7 @@ bool has(const Hypothesis& hypothesis, std::size_t effect);
 /// without a name.
 double probability_of_any(const Comparison& comparison, const std::vector<std::size_t>& effects);
 
-/// Log of the prior odds of a hypothesis' effects, against as many others.
+/// Log of the prior odds of a hypothesis' effects, against as many others, and of its drag in a fall through air.
 double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis);
 
 /// The fitted explanation by exactly these effects; null: none.

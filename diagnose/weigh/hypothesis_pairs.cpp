@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,7 @@ constexpr int kExchanges = 3;                  // rounds in which each of the be
 void add_seconds(const TrackSet& set, const Hypothesis& leader, const std::set<std::size_t>& without, const Work& work,
                  Comparison& comparison) {
   const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
+  if (!std::isfinite(base.cost)) return;
   const ScoreSpace space(set, base);
   std::set<std::size_t> others = without;
   others.insert(leader.effects.begin(), leader.effects.end());
@@ -53,7 +56,7 @@ Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan&
   found.hypothesis.effects = found.fit.effects;
   found.hypothesis.gain = leader.hypothesis.gain + gain;
   found.hypothesis.log_evidence =
-      leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + (std::isfinite(gain) ? gain : 0.0);
+      leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, std::isfinite(gain) ? gain : 0.0);
   return found;
 }
 
@@ -95,16 +98,17 @@ MotionFit without_one(const TrackSet& set, const MotionFit& both, std::size_t ke
 
 /// The same pair with the evidence of its first effect beside its second. The prior penalty of an effect by itself,
 /// where it has to compensate for the other, is not its penalty beside the other.
-Found turned(const TrackSet& set, const MotionFit& both, Comparison& comparison) {
+std::optional<Found> turned(const TrackSet& set, const MotionFit& both, Comparison& comparison) {
   const Found leader = alone(set, both.effects.back(), comparison);
   const MotionFit around = without_one(set, both, both.effects.back());
+  if (!std::isfinite(around.cost)) return std::nullopt;
   const EffectScan scan = scan_effect(ScoreSpace(set, around), both.effects.front());
   Found found;
   found.fit = no_worse_than(set, leader.fit, both.effects.front(), both);
   const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = {both.effects.back(), both.effects.front()};
   found.hypothesis.gain = leader.hypothesis.gain + gain;
-  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + scan.log_evidence - scan.gain + gain;
+  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, gain);
   return found;
 }
 
@@ -121,6 +125,7 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
     for (const std::size_t kept : both.effects) {
       const Found leader = alone(set, kept, comparison);
       const MotionFit base = without_one(set, both, kept);
+      if (!std::isfinite(base.cost)) continue;  // without the drag of a fall the other effect may run away
       std::set<std::size_t> others = without;
       others.insert(both.effects.begin(), both.effects.end());
       work.look();
@@ -133,7 +138,8 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
       });
       for (const Found& one : found) {
         add(comparison, one);
-        if (one.hypothesis.gain > best.gain) add(comparison, turned(set, one.fit, comparison));
+        if (!(one.hypothesis.gain > best.gain)) continue;
+        if (std::optional<Found> other = turned(set, one.fit, comparison)) add(comparison, std::move(*other));
       }
     }
     if (leaders_of(comparison, 2, 1).front().effects == best.effects) return;
@@ -153,9 +159,32 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
   std::vector<Hypothesis> leaders = leaders_of(comparison, 1, kMostLeaders + 1);
   std::erase_if(leaders, [](const Hypothesis& one) { return differs_between_clips(one.effects.front()); });
   leaders.resize(std::min(leaders.size(), kMostLeaders));
+  // In a fall the quadratic drag leads, even if another drag imitates it and what else acts.
+  const std::size_t air = effect_index(ids::quadratic_drag);
+  const Hypothesis* through_air = set.through_air ? find(comparison, {air}) : nullptr;
+  if (through_air != nullptr &&
+      std::none_of(leaders.begin(), leaders.end(), [&](const Hypothesis& one) { return one.effects.front() == air; })) {
+    leaders.push_back(*through_air);
+  }
+  if (const std::size_t inertia = effect_index(ids::rotational_inertia);
+      through_air != nullptr && !without.contains(inertia)) {
+    // Air that weighs as much as the object is far from any linear estimate, so the pair is fitted however it shows.
+    const Hypothesis drag = *through_air;
+    const MotionFit base = comparison.fits[static_cast<std::size_t>(drag.fit)];
+    EffectScan scan;
+    if (std::isfinite(base.cost)) scan = scan_effect(ScoreSpace(set, base), inertia);
+    if (scan.visible && !scan.values.empty()) {
+      double lightest_kg = std::numeric_limits<double>::infinity();
+      for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
+      Found beside = fit_more(set, base, scan, drag);
+      scan.values.front() = lightest_kg;
+      Found heavier = fit_more(set, base, scan, drag);
+      add(comparison, heavier.fit.cost < beside.fit.cost ? std::move(heavier) : std::move(beside));
+    }
+  }
   double best_one = 0.0;
   for (const Hypothesis& leader : leaders) {
-    if (leader.log_evidence < 0.0) continue;
+    if (leader.log_evidence < 0.0 && !(set.through_air && leader.effects.front() == air)) continue;
     best_one = std::max(best_one, leader.log_evidence);
     add_seconds(set, leader, left_out, work, comparison);
   }

@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/math/dense.h"
 #include "base/text/number_text.h"
+#include "core/pictures/camera/left_out_terms.h"
 
 namespace glidelab::core {
 
@@ -131,49 +132,11 @@ struct Term {
   double of_extent;                  // and over lenses of one extent, relative to it
 };
 
-/// A term that was left out: its value and covariance in the last fit that had it.
-struct LeftOut {
-  Term term;
-  Eigen::VectorXd value;
-  Eigen::MatrixXd own, with_others;  // covariance of the term, and of all terms with it
-};
-
 /// The relative displacement of an image's corner by a radial term of 1.
 double at_corner(const Term& term, const OpenCvCalibration& found, cv::Size size) {
   const double u = 0.5 * size.width / found.matrix.at<double>(0, 0);
   const double v = 0.5 * size.height / found.matrix.at<double>(1, 1);
   return std::pow(u * u + v * v, term.power);
-}
-
-/// The part of a size that is left where sizes are N(0, usual²): usual² / (usual² + sd²).
-double believed(double usual, double sd) {
-  return usual * usual / (usual * usual + sd * sd);
-}
-
-/// What the terms that were left out may still do: see calibrate_camera().
-Eigen::Matrix<double, 9, 9> effect_of(const std::vector<LeftOut>& all, const OpenCvCalibration& found, cv::Size size,
-                                      double kept_at_corner) {
-  constexpr double kWithin = 2.0;  // standard deviations
-  double extent = kept_at_corner;
-  for (const LeftOut& one : all) {
-    if (one.term.power != 1) continue;
-    extent += at_corner(one.term, found, size) * (std::abs(one.value[0]) + kWithin * std::sqrt(one.own(0, 0)));
-  }
-  Eigen::Matrix<double, 9, 9> effect = Eigen::Matrix<double, 9, 9>::Zero();
-  for (const LeftOut& one : all) {
-    double part = 1.0;
-    if (one.term.power > 0) {
-      const double usual = std::min(one.term.usual, one.term.of_extent * extent);
-      part = believed(usual, at_corner(one.term, found, size) * std::sqrt(one.own(0, 0)));
-    }
-    const Eigen::VectorXd weighted = base::solve_positive(one.own, one.value);
-    const double statistic = part * one.value.dot(weighted);
-    const double real = std::max(0.0, 1.0 - static_cast<double>(one.value.size()) / std::max(statistic, 1e-300));
-    const Eigen::VectorXd moved = part * base::product(one.with_others, weighted);
-    effect += part * base::product(one.with_others, base::solve_positive(one.own, one.with_others.transpose())) +
-              real * base::product(moved, moved.transpose());
-  }
-  return effect;
 }
 
 struct SupportedFit {
@@ -192,7 +155,7 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
   SupportedFit fit;
   fit.found = run_opencv(views, size, square_m, flags);
   fit.uncertainty = uncertainty_of(fit.found, views, square_m);
-  std::vector<LeftOut> left_out;
+  std::vector<LeftOutTerm> left_out;
   double kept_at_corner = 0.0;
   bool radial = true;  // the next radial term may be tested
   for (const Term& term : terms) {
@@ -212,7 +175,8 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
       if (is_radial) radial = false;
       continue;
     }
-    left_out.push_back({term, value, own, fit.uncertainty.covariance(Eigen::all, term.places)});
+    left_out.push_back({term.power, term.usual, term.of_extent, at_corner(term, fit.found, size), value, own,
+                        fit.uncertainty.covariance(Eigen::all, term.places)});
     flags |= term.fixing;
     fit.found = run_opencv(views, size, square_m, flags);
     fit.uncertainty = uncertainty_of(fit.found, views, square_m);
@@ -224,7 +188,7 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
     const double value = fit.found.distortion.at<double>(static_cast<int>(term.places.front()) - 4);
     kept_at_corner += at_corner(term, fit.found, size) * std::abs(value);
   }
-  fit.uncertainty.covariance += effect_of(left_out, fit.found, size, kept_at_corner);
+  fit.uncertainty.covariance += effect_of(left_out, kept_at_corner);
   return fit;
 }
 
@@ -337,11 +301,10 @@ std::optional<Fit> run_opencv(const std::vector<const BoardView*>& views, cv::Si
   return fit;
 }
 
-/// As believed() above, of the fisheye's k1 (1) to k4.
+/// As believed(), of the fisheye's k1 (1) to k4.
 double believed_fisheye(int term, double variance, const CameraModel& camera) {
   const double angle = std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy);
-  const double at_corner = std::pow(angle, 2 * term), usual = kUsualFisheye[static_cast<std::size_t>(term - 1)];
-  return usual * usual / (usual * usual + variance * at_corner * at_corner);
+  return believed(kUsualFisheye[static_cast<std::size_t>(term - 1)], std::pow(angle, 2 * term) * std::sqrt(variance));
 }
 
 /// Pixels of the pattern's corners, u and v of each.

@@ -72,14 +72,9 @@ std::vector<Note> notes_on_views(const BoardViews& boards, const std::vector<con
 /// at the corner, v' C^-1 v and the term's value times usual² / (usual² + s²). What the views know ten times better
 /// loses 1 %; noise that would bend the image's sides by half is no term.
 ///
-/// A term that was left out may still be real, and the fit without it then errs by more than its own covariance. So the
-/// effect of its uncertainty on all terms, C_a C^-1 C_a' (C_a the covariance of all terms with it, to the extent that
-/// the term is believed), and the part of its value beyond noise, (1 - q / (v' C^-1 v)) for q terms, are added to the
-/// covariance. Leaving terms out thus makes no result look more certain. Here a radial term is believed the less the
-/// straighter the lens: its part at the corner is N(0, (2 e)²) for k2 and N(0, e²) for k3, if that is less than the
-/// above, e the lens's extent: the sum of the sizes of the parts that were kept, or what k1 may be if it was left out
-/// (its size and two standard deviations). In the three measured
-/// calibrations k2 has 0.6 to 2 times the part of k1.
+/// What a term that was left out may still do is added to the covariance (left_out_terms.h), so that leaving terms out
+/// makes no result look more certain. There k2 of a lens of extent e is N(0, (2 e)²) at the corner and k3 N(0, e²); in
+/// the three measured calibrations k2 has 0.6 to 2 times the part of k1.
 ///
 /// Needs at least three views with a visible board; otherwise InputError, naming the images without one. A view whose
 /// error is above 0.2 px and five times the median is left out (with a note).

@@ -15,9 +15,10 @@ void power_twin(const double* p, TwinForces& forces) {
                       scenario_force("power_law", {{"k_n_s_m", forces.k_n_s_m}, {"n", 1.0 + p[0]}}));
 }
 
-/// An arbitrary power of the speed is less likely than a law with a physical reason.
-double of_any_power(const Circumstances&) {
-  return 0.4;
+/// An arbitrary power of the speed is less likely than a law with a physical reason. In a fall too fast for a viscous
+/// drag the power is 2.
+double of_any_power(const Circumstances& of) {
+  return of.through_air ? 0.05 : 0.4;
 }
 
 }  // namespace

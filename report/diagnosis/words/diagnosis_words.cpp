@@ -143,6 +143,11 @@ struct Sentence {
     return "The motions are falls, with an inclination of 80 degrees or more: there is almost no normal force, and µ "
            "is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 degree.";
   }
+  std::string operator()(const diagnose::FallsThroughAir&) const {
+    return "What falls faster than 0.5 m/s is not braked in proportion to its speed, whatever it falls through. The "
+           "gap "
+           "is therefore measured from a fall without any drag, and K/m is not determined.";
+  }
   std::string operator()(const diagnose::SplitSetUps& of) const {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",
                        ups(of.groups));

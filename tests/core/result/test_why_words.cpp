@@ -36,6 +36,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::ExplanationsDiffer{}, "differ too much"},
       {unknown::FreeFall{}, "no normal force"},
       {unknown::NoBalance{}, "no speed downhill"},
+      {unknown::DragNotViscous{}, "square of the speed"},
       {unknown::KernelNotStated{}, "neither how wide the kernel was"}};
   std::vector<bool> seen(std::variant_size_v<AnyReason>, false);
   for (const auto& [reason, part] : reasons) {

@@ -33,7 +33,7 @@ double probability_of(const diagnose::Comparison& comparison, std::string_view i
 
 TEST_CASE("of two causes with the same evidence the one that leaves less of the gap is likelier") {
   diagnose::Comparison comparison = comparison_of(20.0, 20.0, 20.0);
-  diagnose::weigh_beside_remainder({10.0, 0.5, 5.0}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{10.0, 0.5, 5.0}, kNotMeasured}, comparison);
   double sum = 0.0;
   for (const diagnose::Hypothesis& one : comparison.all) sum += one.probability;
   CHECK(sum == Approx(1.0).epsilon(1e-12));
@@ -48,7 +48,7 @@ TEST_CASE("of two causes with the same evidence the one that leaves less of the 
 TEST_CASE("log odds are linear in what is left") {
   const auto log_odds = [](double left) {
     diagnose::Comparison comparison = comparison_of(-30.0, 0.0, 0.0);
-    diagnose::weigh_beside_remainder({10.0, 0.0, 10.0 * left}, kNotMeasured, comparison);
+    diagnose::weigh_beside_remainder({{10.0, 0.0, 10.0 * left}, kNotMeasured}, comparison);
     return std::log(probability_of(comparison, diagnose::ids::quadratic_drag) /
                     probability_of(comparison, diagnose::ids::track_bow));
   };
@@ -61,14 +61,14 @@ TEST_CASE("log odds are linear in what is left") {
 TEST_CASE("evidence beside a remainder gives no certainty") {
   // 60 more in log evidence: 1e26 to one by the noise alone.
   diagnose::Comparison comparison = comparison_of(-1000.0, 60.0, 0.0);
-  diagnose::weigh_beside_remainder({10.0, 2.0, 2.0}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{10.0, 2.0, 2.0}, kNotMeasured}, comparison);
   const double behind = probability_of(comparison, diagnose::ids::track_bow);
   CHECK(behind > 1e-6);
   CHECK(behind < 0.05);
   // The odds fall with a power of the difference in evidence: from 1e3 to 1e4, and from 1e4 to 1e5, by the same factor.
   const auto odds = [](double ahead) {
     diagnose::Comparison far = comparison_of(-1000.0, ahead, 0.0);
-    diagnose::weigh_beside_remainder({10.0, 2.0, 2.0}, kNotMeasured, far);
+    diagnose::weigh_beside_remainder({{10.0, 2.0, 2.0}, kNotMeasured}, far);
     return probability_of(far, diagnose::ids::track_bow) / probability_of(far, diagnose::ids::quadratic_drag);
   };
   CHECK(odds(1e5) / odds(1e4) == Approx(odds(1e4) / odds(1e3)).epsilon(0.03));
@@ -76,17 +76,17 @@ TEST_CASE("evidence beside a remainder gives no certainty") {
 
 TEST_CASE("if a cause leaves nothing, a function without a name needs much more evidence than that cause") {
   diagnose::Comparison comparison = comparison_of(30.0, 20.0, 0.0);
-  diagnose::weigh_beside_remainder({10.0, 0.3, 8.0}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{10.0, 0.3, 8.0}, kNotMeasured}, comparison);
   CHECK(comparison.unknown < 0.4);
   diagnose::Comparison far = comparison_of(3000.0, 20.0, 0.0);
-  diagnose::weigh_beside_remainder({10.0, 3.0, 8.0}, kNotMeasured, far);
+  diagnose::weigh_beside_remainder({{10.0, 3.0, 8.0}, kNotMeasured}, far);
   CHECK(far.unknown > 0.9);
 }
 
 TEST_CASE("a function without a name that leaves less than any cause is the likeliest") {
   const auto unknown = [](double left) {
     diagnose::Comparison comparison = comparison_of(40.0, 20.0, 0.0);
-    diagnose::weigh_beside_remainder({10.0, 3.0, 8.0}, left, comparison);
+    diagnose::weigh_beside_remainder({{10.0, 3.0, 8.0}, left}, comparison);
     return comparison.unknown;
   };
   CHECK(unknown(0.2) > 0.9);
@@ -100,7 +100,7 @@ TEST_CASE("a function without a name beside a cause counts towards the cause") {
   with.unnamed = true;
   with.log_evidence = 40.0;
   comparison.all.push_back(with);
-  diagnose::weigh_beside_remainder({10.0, 0.5, 8.0}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{10.0, 0.5, 8.0}, kNotMeasured}, comparison);
   CHECK(comparison.unknown < 0.1);
   CHECK(probability_of(comparison, diagnose::ids::quadratic_drag) > 0.8);
 }
@@ -109,7 +109,7 @@ TEST_CASE("a hand that lets go late has odds against it, since it follows each c
   const auto with_second = [](std::string_view id) {
     diagnose::Comparison comparison = comparison_of(0.0, 20.0, 20.0);
     comparison.all.back().effects = {diagnose::effect_index(id)};
-    diagnose::weigh_beside_remainder({10.0, 1.0, 1.0}, kNotMeasured, comparison);
+    diagnose::weigh_beside_remainder({{10.0, 1.0, 1.0}, kNotMeasured}, comparison);
     return probability_of(comparison, id) / probability_of(comparison, diagnose::ids::quadratic_drag);
   };
   CHECK(with_second(diagnose::ids::track_bow) == Approx(1.0).epsilon(1e-9));
@@ -119,7 +119,7 @@ TEST_CASE("a hand that lets go late has odds against it, since it follows each c
 TEST_CASE("scatter of single positions is no other explanation of a gap, however strong its evidence") {
   const diagnose::Comparison pure = [] {
     diagnose::Comparison comparison = comparison_of(0.0, 20.0, 15.0);
-    diagnose::weigh_beside_remainder({10.0, 0.5, 2.0}, kNotMeasured, comparison);
+    diagnose::weigh_beside_remainder({{10.0, 0.5, 2.0}, kNotMeasured}, comparison);
     return comparison;
   }();
   // Outliers were sought only beside nothing and beside the second effect.
@@ -131,7 +131,7 @@ TEST_CASE("scatter of single positions is no other explanation of a gap, however
     with.log_evidence += 140.0;
     comparison.all.push_back(with);
   }
-  diagnose::weigh_beside_remainder({10.0, 0.5, 2.0}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{10.0, 0.5, 2.0}, kNotMeasured}, comparison);
   for (const char* id : {diagnose::ids::quadratic_drag, diagnose::ids::track_bow}) {
     CHECK(probability_of(comparison, id) == Approx(probability_of(pure, id)).epsilon(1e-9));
   }
@@ -140,27 +140,27 @@ TEST_CASE("scatter of single positions is no other explanation of a gap, however
   // The second effect has its outliers.
   CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) > 0.9 * probability_of(pure, "track_bow"));
   // Beside the gap of an encoder the noise is negligible, and so is the evidence of its tails.
-  diagnose::weigh_beside_remainder({1e8, 5e6, 2e7}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{1e8, 5e6, 2e7}, kNotMeasured}, comparison);
   CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) <
         0.2 * probability_of(comparison, diagnose::ids::track_bow));
 }
 
 TEST_CASE("a cause on the list may be imitated by one that is not: no name is certain") {
   diagnose::Comparison comparison = comparison_of(0.0, 1e6, 0.0);
-  diagnose::weigh_beside_remainder({100.0, 0.0, 90.0}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{100.0, 0.0, 90.0}, kNotMeasured}, comparison);
   // Prior odds of 0.2 to 0.5, and a fifth of it imitated.
   CHECK(probability_of(comparison, diagnose::ids::quadratic_drag) == Approx(1.0 - 0.2 * 0.2 / 0.5).margin(1e-4));
   CHECK(comparison.unknown == Approx(0.2 * 0.2 / 0.5).margin(1e-4));
   // The same where no function without a name was weighed.
   diagnose::Comparison without = comparison_of(0.0, 1e6, 0.0);
   without.all.erase(without.all.begin() + 1);
-  diagnose::weigh_beside_remainder({100.0, 0.0, 90.0}, kNotMeasured, without);
+  diagnose::weigh_beside_remainder({{100.0, 0.0, 90.0}, kNotMeasured}, without);
   CHECK(without.unknown == Approx(0.2 * 0.2 / 0.5).margin(1e-4));
 }
 
 TEST_CASE("each explanation says which part of the excess it leaves") {
   diagnose::Comparison comparison = comparison_of(0.0, 20.0, 20.0);
-  diagnose::weigh_beside_remainder({10.0, 2.5, 40.0}, kNotMeasured, comparison);
+  diagnose::weigh_beside_remainder({{10.0, 2.5, 40.0}, kNotMeasured}, comparison);
   for (const diagnose::Hypothesis& one : comparison.all) {
     REQUIRE(one.left);
     CHECK(*one.left == Approx(one.fit == 1 ? 0.25 : 1.0));

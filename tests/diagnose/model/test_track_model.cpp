@@ -130,7 +130,7 @@ TEST_CASE("frames that are far apart cost a few steps each, and the motion stays
 
 TEST_CASE("no motion takes more work than its positions are worth, however it turns or decays") {
   // Forces are asked for 4 times in each of 2000 steps for each time and, in one interval that was begun, at
-  // most 500 parts (the limit of 2500 steps and 24 a time leaves fewer), each of 20 turns with 7 steps, which ask up to
+  // most 500 parts (the limit of 2500 steps and 60 a time leaves fewer), each of 20 turns with 7 steps, which ask up to
   // 45 times besides.
   const std::size_t most = 5 * (2000 * times(100.0).size() + 500 * 20 * (7 + 45));
   std::mt19937_64 random(11);

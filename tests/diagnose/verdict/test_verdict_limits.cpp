@@ -192,7 +192,7 @@ TEST_CASE("if a fifth of the motion is set aside, the reader is told how much") 
 }
 
 TEST_CASE("too little motion is reported clip by clip, with the files") {
-  tests::MadeExperiment made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-5, 20);
+  tests::MadeExperiment made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, {}, 1, 3e-5, 10);
   const tests::MadeEffect held = {{}, [](double, double) { return 0.25; }};
   const tests::MadeExperiment still = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}}, held, 1, 0.0);
   made.results.clips.push_back(still.results.clips.front());
@@ -201,15 +201,15 @@ TEST_CASE("too little motion is reported clip by clip, with the files") {
   made.setups.back().track = "still.csv";
   try {
     diagnosed(made);
-    FAIL("twenty positions support no verdict");
+    FAIL("ten positions show no noise beside five parameters");
   } catch (const base::InputError& error) {
     REQUIRE(error.issues().size() == 2);
     CHECK(error.issues()[0].file == "none.csv");
     CHECK(error.issues()[0].key == "clip \"clip0\"");
-    CHECK(error.issues()[0].found == "20 positions of free motion");
+    CHECK(error.issues()[0].found == "10 positions of free motion");
     CHECK(error.issues()[1].file == "still.csv");
     CHECK(error.issues()[1].found == "nothing that moves freely");
-    CHECK(contains(error.issues()[1].expected, "at least 25"));
+    CHECK(contains(error.issues()[1].expected, "at least 11"));
   }
 }
 

@@ -54,7 +54,8 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::BeyondGravity{4.0, 12.7, 9.81}, "12.7 m/s², more than gravity"},
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "stated at 4° corresponds to an inclination of 3.900°"},
       {diagnose::TableOfLines{12}, "The table of 12 lines"},
-      {diagnose::OnlyFalls{}, "not determined"}};
+      {diagnose::OnlyFalls{}, "not determined"},
+      {diagnose::FallsThroughAir{}, "without any drag"}};
   std::vector<bool> seen(std::variant_size_v<diagnose::AnyNote>, false);
   for (const auto& [note, part] : notes) {
     const std::string words = report::note_words(note);

@@ -1,0 +1,19 @@
+/// How well the acceleration of gravity of an experiment is known.
+#pragma once
+
+namespace glidelab::core {
+
+/// The standard value, which is taken where nothing is stated. It is that of no particular place.
+inline constexpr double kStandardGravity_m_s2 = 9.80665;
+
+/// Standard deviation of the local gravity about the standard value. At sea level the normal gravity lies between
+/// 9.780 m/s² (equator) and 9.832 m/s² (poles) (Somigliana's formula, GRS80); evenly spread over that range it has a
+/// standard deviation of 0.052/sqrt(12) = 0.015 m/s².
+inline constexpr double kLocalGravity_sd_m_s2 = 0.015;
+
+/// Standard deviation of a value of gravity in an experiment's file, in m/s². The standard value says nothing of the
+/// place, so it has the spread over the Earth. Any other value is that of the place, rounded to its last digit: half
+/// a unit of it over sqrt(3), but at most the spread over the Earth. 9.81 has 0.0029, 9.8123 has 0.000029.
+double gravity_sd_m_s2(double gravity_m_s2);
+
+}  // namespace glidelab::core

@@ -1,0 +1,50 @@
+#include "diagnose/weigh/air_odds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/gap/held_out.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kViscousOdds = 0.02, kDrivingOdds = 0.001;
+constexpr double kDecades = 9.2;    // ln 10^4
+constexpr double kLeastSeen = 2.0;  // standard deviations
+
+}  // namespace
+
+double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
+  const auto has_law = [&](EffectSlot slot) {
+    return std::find(fit.effects.begin(), fit.effects.end(), slot.effect) != fit.effects.end();
+  };
+  if (!set.through_air || has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag))) return 0.0;
+  // A drag of some other kind, or the air that moves along with what it does not brake.
+  for (const EffectSlot slot :
+       {slot_of(ids::rotational_inertia), slot_of(ids::eddy_rolloff), slot_of(ids::damping_gradient),
+        slot_of(ids::configuration_drag), slot_of(ids::direction_dependent_drag), slot_of(ids::clip_scatter)}) {
+    if (has_law(slot)) return std::log(kViscousOdds);
+  }
+  const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(0, 0)));
+  const double z = sd > 0.0 ? fit.at.global[0] / sd : 0.0;
+  const double without =
+      kDecades * std::max(std::abs(z), kLeastSeen) / std::sqrt(2.0 * std::numbers::pi) * std::exp(-0.5 * z * z);
+  return std::log((z > 0.0 ? kViscousOdds : kDrivingOdds) + without);
+}
+
+bool is_fall_through_air(const TrackSet& set, const std::vector<std::size_t>& effects) {
+  return set.through_air && effects.size() == 2 &&
+         std::set(effects.begin(), effects.end()) ==
+             std::set{effect_index(ids::quadratic_drag), effect_index(ids::rotational_inertia)};
+}
+
+void set_air_odds(const TrackSet& set, Comparison& comparison) {
+  comparison.air_odds.clear();
+  if (!set.through_air) return;
+  for (const MotionFit& fit : comparison.fits) comparison.air_odds.push_back(log_odds_without_air(set, fit));
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,31 @@
+/// The prior odds of explanations of a fall through air that have no quadratic drag.
+///
+/// At the speeds of such a fall no drag is viscous (falls_through_air()), so that an explanation in which braking shows
+/// and is viscous has the odds of one in fifty: a magnet in a copper pipe, or made data. An explanation without any
+/// drag is as likely as it was. With K = z standard deviations off 0, a fall without drag is likelier than one with a
+/// viscous drag of any size (uniform in its logarithm over four decades, 9.2 = ln 10^4) by the factor
+///
+///     B = 9.2 max(|z|, 2)/sqrt(2 pi) exp(-z²/2),     odds = 0.02 + B, or 0.001 + B for a K below 0, which drives.
+///
+/// Effects that change the viscous drag need one, and air moves along only with what it brakes: both have its odds.
+///
+/// In an explanation with a quadratic drag, that drag takes the place of K (fit/drag_of_air.h). Both then have the same
+/// kind of prior for the size of their one drag, and neither is charged for it.
+#pragma once
+
+#include "diagnose/weigh/hypothesis.h"
+
+namespace glidelab::diagnose {
+
+/// Log of these odds for the model of a fit; 0 for one with a quadratic drag or a power law of the drag, and where
+/// nothing falls through air.
+double log_odds_without_air(const TrackSet& set, const MotionFit& fit);
+
+/// Whether these effects are a quadratic drag and the inertia of air that moves along, in a fall through air. Both come
+/// from the same air, so they are one explanation rather than two that coincide, and always weighed.
+bool is_fall_through_air(const TrackSet& set, const std::vector<std::size_t>& effects);
+
+/// Sets Comparison::air_odds.
+void set_air_odds(const TrackSet& set, Comparison& comparison);
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,28 @@
+#include "diagnose/weigh/unknown_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kDegreesOfPosition = 0.38;  // 2/(4 * 1.32)
+constexpr double kKnown = 30.0;
+
+}  // namespace
+
+std::optional<FewPositions> few_positions(const TrackSet& set) {
+  FewPositions few;
+  for (const TrackedMotion& motion : set.motions) {
+    few.positions += static_cast<double>(std::count(motion.outlier.begin(), motion.outlier.end(), char{0}));
+  }
+  few.degrees = kDegreesOfPosition * few.positions;
+  return few.degrees < kKnown ? std::optional(few) : std::nullopt;
+}
+
+double gain_with_unknown_noise(const FewPositions& of, double chi2, double gain) {
+  const double after = std::max(0.0, chi2 - 2.0 * gain);
+  return 0.5 * (of.degrees + of.positions) * std::log((of.degrees + chi2) / (of.degrees + after));
+}
+
+}  // namespace glidelab::diagnose

@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
+#include "diagnose/fit/motion_fit.h"
+#include "diagnose/tracks/track_set.h"
+#include "diagnose/verdict/diagnose.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// Falls from rest, at 90 degrees: forces per clip, mass by mass, and added inertia over the mass.
+struct Fall {
+  double gravity_m_s2 = 9.80665;
+  double k_n_s_m = 0.0, c_kg_m = 0.0, added_kg = 0.0;
+  std::vector<double> masses_kg = {0.05};
+  double noise_m = 5e-4, rate_hz = 120.0;
+  std::size_t frames = 60;
+};
+
+tests::MadeExperiment fallen(const Fall& fall, unsigned seed) {
+  std::vector<tests::MadeLaunch> launches;
+  for (const double mass : fall.masses_kg) {
+    launches.push_back({mass, 90.0, 0.0, 0.02, 0.0, 0.0, 1.0 + fall.added_kg / mass});
+  }
+  tests::MadeEffect drag;
+  drag.force = [&fall](double, double, double v, double) { return -fall.c_kg_m * v * std::abs(v); };
+  tests::MadeExperiment made =
+      tests::made_experiment(launches, drag, seed, fall.noise_m, fall.frames, fall.rate_hz, 0.0, 0.0,
+                             {.k_n_s_m = fall.k_n_s_m, .mu = 0.0, .gravity_m_s2 = fall.gravity_m_s2});
+  made.results.gravity_m_s2 = 9.80665;  // as where none is stated
+  return made;
+}
+
+diagnose::Diagnosis diagnosed(const tests::MadeExperiment& made) {
+  return diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+}
+
+std::vector<std::string> names(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::string> ids;
+  for (const auto& effect : diagnosis.effects) ids.push_back(effect.id);
+  return ids;
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("the local gravity alone is no effect, from the equator to the poles") {
+  for (const double gravity : {9.78, 9.79, 9.81, 9.832}) {
+    CAPTURE(gravity);
+    Fall fall;
+    fall.gravity_m_s2 = gravity;
+    fall.masses_kg = {0.05, 0.05, 0.05, 0.12};
+    fall.noise_m = 1e-4;
+    const diagnose::Diagnosis diagnosis = diagnosed(fallen(fall, 11));
+    CHECK(diagnosis.verdict == diagnose::Verdict::none);
+    CHECK(names(diagnosis) == Names{});
+  }
+}
+
+TEST_CASE("at another gravity than the standard one a fall's quadratic drag is named alone") {
+  for (const double gravity : {9.78, 9.832}) {
+    CAPTURE(gravity);
+    Fall fall;
+    fall.gravity_m_s2 = gravity;
+    fall.c_kg_m = 0.004;
+    fall.masses_kg = {0.05, 0.05, 0.12};
+    fall.noise_m = 2e-4;
+    const Names named = names(diagnosed(fallen(fall, 12)));
+    REQUIRE_FALSE(named.empty());
+    CHECK(named.front() == "quadratic_drag");
+    // What single positions scatter is read off the nominal fit, which is far off.
+    if (named.size() > 1) CHECK(named == Names{"quadratic_drag", "heavy_tailed_noise"});
+  }
+}
+
+TEST_CASE("the g of a drag-free fall is that of a parabola and the spread over the Earth") {
+  Fall fall;
+  fall.gravity_m_s2 = 9.83;
+  const tests::MadeExperiment made = fallen(fall, 3);
+  const diagnose::TrackSet set = diagnose::without_drag(diagnose::track_set(made.results, made.setups, true));
+  REQUIRE(set.motions.size() == 1);
+  const diagnose::TrackedMotion& motion = set.motions.front();
+  // x = x0 + v0 t + g t²/2 by weighted least squares, with g = 9.80665 +- 0.015 as one more datum.
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(motion.t_s.size()) + 1, 3);
+  Eigen::VectorXd x(design.rows());
+  for (Eigen::Index i = 0; i + 1 < design.rows(); ++i) {
+    const auto p = static_cast<std::size_t>(i);
+    const double t = motion.t_s[p] - motion.t_s.front(), w = 1.0 / motion.sd_of(p);
+    design.row(i) << w, w * t, 0.5 * w * t * t;
+    x[i] = w * motion.x_m[p];
+  }
+  design.bottomRows(1) << 0.0, 0.0, 1.0 / 0.015;
+  x[design.rows() - 1] = 9.80665 / 0.015;
+  const Eigen::Vector3d parabola = (design.transpose() * design).ldlt().solve(design.transpose() * x);
+  const diagnose::MotionFit fit = diagnose::fit_nominal(set);
+  const double g = diagnose::model_of(set, *fit.layout, fit.at, 0).gravity_m_s2;
+  // The inclination is known to a degree: g (1 - sin(89°)) = 1.5e-3.
+  CHECK(std::abs(g - parabola[2]) < 3e-3);
+  CHECK(std::abs(g - 9.80665) > 5e-3);  // the prior alone does not make it
+}
+
+TEST_CASE("of coffee filters the quadratic drag comes first and the air that moves along second") {
+  Fall fall;
+  fall.c_kg_m = 0.0075;
+  fall.added_kg = 1.2e-3;
+  fall.masses_kg = {1e-3, 1e-3, 2e-3, 3e-3};
+  fall.noise_m = 1e-3;
+  fall.rate_hz = 60.0;
+  fall.frames = 45;
+  const diagnose::Diagnosis diagnosis = diagnosed(fallen(fall, 5));
+  CHECK(names(diagnosis) == Names{"quadratic_drag", "rotational_inertia"});
+  REQUIRE(diagnosis.explained.size() >= 2);
+  CHECK(diagnosis.explained[0].id == "quadratic_drag");
+  CHECK(diagnosis.explained[0].share > 0.5);  // of what a fall without any drag would leave
+  REQUIRE(diagnosis.recovered.size() == 3);
+  for (const auto& one : diagnosis.recovered) {
+    CHECK_FALSE(one.k_over_m_1_s.estimate);
+    REQUIRE(one.v_lim_m_s.estimate);
+    const double terminal = std::sqrt(one.mass_kg * 9.80665 / fall.c_kg_m);
+    CHECK(std::abs(one.v_lim_m_s.estimate->value - terminal) < 4.0 * one.v_lim_m_s.estimate->sd);
+  }
+}
+
+TEST_CASE("of fifteen positions of a paper cup the drag is quadratic, since no other is") {
+  Fall fall;
+  fall.masses_kg = {2e-3};
+  fall.c_kg_m = 2e-3 * 9.80665 / (2.2 * 2.2);
+  fall.noise_m = 2e-3;
+  fall.rate_hz = 25.0;
+  fall.frames = 15;
+  const diagnose::Diagnosis diagnosis = diagnosed(fallen(fall, 9));
+  CHECK(names(diagnosis) == Names{"quadratic_drag"});
+  CHECK(diagnosis.points == 15);
+}
+
+TEST_CASE("a bead in oil has a viscous drag, and nothing is missing") {
+  Fall fall;
+  fall.masses_kg = {1e-3, 1e-3, 3e-3};
+  fall.k_n_s_m = 1e-3 * 9.80665 / 0.06;
+  fall.noise_m = 3e-4;
+  fall.rate_hz = 60.0;
+  fall.frames = 120;
+  const tests::MadeExperiment made = fallen(fall, 6);
+  CHECK_FALSE(diagnose::track_set(made.results, made.setups, true).through_air);
+  const diagnose::Diagnosis diagnosis = diagnosed(made);
+  CHECK(diagnosis.verdict == diagnose::Verdict::none);
+  REQUIRE(diagnosis.recovered.front().k_over_m_1_s.estimate);
+}
+
+TEST_CASE("a fast fall whose drag is viscous beyond doubt, as that of a magnet in a pipe, keeps its K") {
+  Fall fall;
+  fall.masses_kg = {0.01, 0.01, 0.02};
+  fall.k_n_s_m = 0.01 * 9.80665 / 1.5;
+  fall.noise_m = 5e-4;
+  const tests::MadeExperiment made = fallen(fall, 7);
+  CHECK(diagnose::track_set(made.results, made.setups, true).through_air);
+  const diagnose::Diagnosis diagnosis = diagnosed(made);
+  CHECK(diagnosis.verdict == diagnose::Verdict::none);
+  REQUIRE(diagnosis.recovered.front().k_over_m_1_s.estimate);
+  const core::Estimate& k = *diagnosis.recovered.front().k_over_m_1_s.estimate;
+  CHECK(std::abs(k.value - 9.80665 / 1.5) < 4.0 * k.sd);
+}
+
+TEST_CASE("a fall without visible drag lacks nothing") {
+  Fall fall;
+  fall.masses_kg = {0.2, 0.2};
+  fall.noise_m = 2e-3;
+  fall.rate_hz = 30.0;
+  fall.frames = 14;
+  CHECK(diagnosed(fallen(fall, 8)).verdict == diagnose::Verdict::none);
+}
