@@ -74,10 +74,14 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
   for (const SameCauses& group : groups) best = std::max(best, all[group.plain].log_evidence);
   const std::vector<double>& left = excess.of_fits;
   const bool no_noise = left.front() > kLargestExcess;
-  const double before = excess.before.value_or(left.front());
-  const double named = kNameOdds + kExcessSlope * std::log(std::clamp(before, kLeastExcess, kMostExcess));
+  const auto before = [&](const Hypothesis& one) {
+    return has(one, effect_index(ids::quadratic_drag)) ? excess.without_drag.value_or(left.front()) : left.front();
+  };
+  const auto named = [](double of) {
+    return kNameOdds + kExcessSlope * std::log(std::clamp(of, kLeastExcess, kMostExcess));
+  };
   for (Hypothesis& one : all) {
-    one.left = part_left(one.fit > 0 ? left[static_cast<std::size_t>(one.fit)] : left.front(), before);
+    one.left = part_left(one.fit > 0 ? left[static_cast<std::size_t>(one.fit)] : left.front(), before(one));
   }
   std::vector<double> logs;
   for (const SameCauses& group : groups) {
@@ -85,9 +89,10 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = tempered(best - evidence);
     if (no_noise) log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
-    if (makes_a_gap(one)) log += named - kLeftSlope * *one.left;
+    if (makes_a_gap(one)) log += named(before(one)) - kLeftSlope * *one.left;
     if (one.unnamed && one.effects.empty()) {
-      log += std::max(0.0, named - kAgainstUnnamedAlone - kLeftSlope * part_left(excess.of_unnamed, before));
+      log += std::max(
+          0.0, named(left.front()) - kAgainstUnnamedAlone - kLeftSlope * part_left(excess.of_unnamed, left.front()));
     }
     for (const std::size_t e : one.effects) log += effect_list()[e].log_odds_beside_remainder;
     log += log_prior_odds(comparison, one);

@@ -43,7 +43,9 @@ inline constexpr double kLargestExcess = 1e6;
 struct LeftExcess {
   std::vector<double> of_fits;  ///< of the comparison's fits, the nominal one first; NaN where it was not measured
   double of_unnamed = 0.0;      ///< of the likeliest function without a name alone
-  std::optional<double> before = {};  ///< that of which they leave a part; none: the nominal model's
+  /// Of a fall through air without any drag. An explanation in which a quadratic drag takes the place of K leaves a
+  /// part of this one; all others, and all where there is none, leave a part of the nominal model's.
+  std::optional<double> without_drag = {};
 };
 
 /// Sets the probability of each hypothesis, of `none` and `unknown` and of each effect, and the part of the excess that

@@ -227,7 +227,8 @@ std::vector<std::size_t> worth_profiling(const TrackSet& set, const Comparison& 
   for (const Hypothesis& one : fitted) {
     const auto fit = static_cast<std::size_t>(one.fit);
     // Single effects are always weighed: a remainder of their own may suit them better than the common one.
-    if (worth.size() >= kProfiled && one.effects.size() > 1 && !is_fall_through_air(set, one.effects)) continue;
+    if (worth.size() >= kProfiled && one.effects.size() > 1 && !(set.through_air && is_drag_with_its_air(one.effects)))
+      continue;
     if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
   }
   return worth;
@@ -314,10 +315,10 @@ double unnamed_excess(const TrackSet& set, const Comparison& by_noise) {
   return held_out_excess(set, with_unnamed(set, nominal, *family));
 }
 
-/// The excess of which explanations leave a part: that of the nominal model. In a fall through air K imitates the drag
-/// of air, so there it is that of a fall without any drag, if that is more.
-double excess_before(const TrackSet& set, double nominal) {
-  if (!set.through_air) return nominal;
+/// The excess of a fall through air without any drag, if it is more than the nominal model's, whose K imitates the
+/// drag.
+std::optional<double> excess_without_drag(const TrackSet& set, double nominal) {
+  if (!set.through_air) return {};
   const TrackSet no_drag = without_drag(set);
   return std::max(nominal, held_out_excess(no_drag, fit_nominal(no_drag)));
 }
@@ -410,7 +411,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   }
   std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed; });
   excess.of_unnamed = unnamed_excess(set, first);
-  excess.before = excess_before(set, excess.of_fits.front());
+  excess.without_drag = excess_without_drag(set, excess.of_fits.front());
   set_air_odds(weighed.set, comparison);
   if (const std::size_t scatter = effect_index(ids::clip_scatter); searched && !without.contains(scatter)) {
     const std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess);

@@ -1,6 +1,6 @@
 /// The drag of what falls through air.
 ///
-/// At the speeds of such falls (falls_through_air()) the drag of any medium grows with the square of the speed, and the
+/// At the speeds of such falls (falls_through_air()) the drag of air grows with the square of the speed, and the
 /// viscous K is bounded by Stokes' law:
 ///
 ///     K <= 6 pi eta r = 3.4e-5 N s/m     for r = 0.1 m in air, eta = 1.8e-5 Pa s.

@@ -15,7 +15,7 @@ namespace {
 
 // No misfit, however large, makes a K that Stokes' law excludes, a gravity that no place on Earth has, or a slope of a
 // fall.
-constexpr double kMostStokes = 3.0, kMostGravity_sd = 2.0, kMostFall_sd = 3.0;
+constexpr double kMostStokes = 3.0, kMostGravity_sd = 3.0, kMostFall_sd = 3.0;
 // The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
 // m/s.
 constexpr double kMostAir = 10.0;

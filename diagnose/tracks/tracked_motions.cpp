@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace glidelab::diagnose {
@@ -11,7 +12,8 @@ namespace {
 
 constexpr std::size_t kMostPositions = 30000;  // of all motions
 constexpr double kFasterThanStokes_m_s = 0.5;
-constexpr double kNearlyAsCertain = 2.0;  // relative error of sin(alpha) over that of g
+constexpr double kFree_rad = 88.0 * std::numbers::pi / 180.0;  // below it something guides the body
+constexpr double kNearlyAsCertain = 2.0;                       // relative error of sin(alpha) over that of g
 
 }  // namespace
 
@@ -24,7 +26,9 @@ bool only_falls(const TrackSet& set) {
 }
 
 bool falls_through_air(const TrackSet& set) {
-  if (!only_falls(set) || is_driven(set)) return false;
+  const bool free = std::all_of(set.groups.begin(), set.groups.end(),
+                                [](const TrackGroup& group) { return std::abs(group.stated_rad) >= kFree_rad; });
+  if (!only_falls(set) || !free || is_driven(set)) return false;
   return std::any_of(set.motions.begin(), set.motions.end(), [](const TrackedMotion& motion) {
     const std::size_t last = motion.t_s.size() - 1, quarter = std::max<std::size_t>(2, last / 4);
     for (std::size_t p = quarter; p <= last; ++p) {

@@ -127,14 +127,15 @@ struct TrackSet {
 /// Whether only falls were recorded.
 bool only_falls(const TrackSet& set);
 
-/// Whether the motions are falls at speeds at which no drag is viscous: only falls were recorded, no force drives them,
-/// and the mean speed over some quarter of a motion is above 0.5 m/s.
+/// Whether the motions are falls at speeds at which the drag of air is not viscous: only falls of 88 degrees and more
+/// were recorded (below, something guides the body), no force drives them, and the mean speed over some quarter of a
+/// motion is above 0.5 m/s.
 ///
 /// Stokes drag needs a Reynolds number of about 1 or less. A sphere of radius r and density rho_s that falls at its
 /// terminal velocity v = 2/9 (rho_s/rho - 1) g r²/nu with 2 r v = nu has v = (nu g (rho_s/rho - 1)/18)^(1/3): 0.2 m/s
-/// for water drops in air (nu = 1.5e-5 m²/s), 0.15 m/s for steel in glycerine (1e-3 m²/s), 0.3 m/s for steel in a
-/// syrup ten times as thick. Faster than 0.5 m/s nothing that falls freely is in Stokes flow, whatever it falls
-/// through.
+/// for water drops in air (nu = 1.5e-5 m²/s). What falls faster through air is braked by its density. A large bead in a
+/// thick liquid may be as fast at a Reynolds number of 10, with a power of the speed of 1.3: the size of the drag tells
+/// it (set_air_odds()).
 bool falls_through_air(const TrackSet& set);
 
 /// Whether the uncertainty of g counts in these motions: some set-up is a fall, or has an inclination alpha that is

@@ -14,6 +14,7 @@
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/settled_motions.h"
 #include "diagnose/verdict/verdict_with_causes.h"
+#include "diagnose/weigh/air_odds.h"
 #include "diagnose/weigh/hypotheses.h"
 
 namespace glidelab::diagnose {
@@ -73,14 +74,20 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   const auto weighed = [&](double from, double to) {
     return [&progress, from, to](double part) { progress("weighing explanations", from + part * (to - from)); };
   };
-  Comparison comparison = compare_hypotheses(set, without, options.jobs, &images, weighed(0.1, 0.5));
+  const auto compare = [&](double from, double to) {
+    Comparison made = compare_hypotheses(set, without, options.jobs, &images, weighed(from, to));
+    if (!set.through_air || !too_strong_for_air(made)) return made;
+    set.through_air = false;
+    return compare_hypotheses(set, without, options.jobs, &images, weighed(to, to));
+  };
+  Comparison comparison = compare(0.1, 0.5);
   if (set.disputed > 0 && (comparison.all.front().unnamed || is_misfit(set, best_fit(comparison)))) {
     // No effect on the list explains the motion with its hand and stops, so these are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, set.disputed)) {
       set = std::move(*trimmed);
       progress("weighing explanations", 0.5);
       settle_noise(images, set);
-      comparison = compare_hypotheses(set, without, options.jobs, &images, weighed(0.5, 0.9));
+      comparison = compare(0.5, 0.9);
     }
   }
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);

@@ -83,7 +83,8 @@ void move_minorities_to_unknown(Comparison& comparison) {
   sort_by_probability(comparison);
 }
 
-void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, Comparison& comparison) {
+void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, bool by_air,
+                   Comparison& comparison) {
   comparison.unknown += std::exchange(comparison.none, 0.0);
   const Hypothesis of{best};
   if (sequence.named_share < kHalfOfGap && shows_in_gap(of)) {
@@ -98,7 +99,8 @@ void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>
   if (sequence.named_share < kMostOfGap || comparison.unknown < 1.0 - kByShare) return;
   const std::size_t main = effect_index(sequence.causes.front().id);
   // Where the noise is negligible, any curve has the evidence of a certainty, and only the share counts.
-  const bool no_noise = sequence.gap_before * sequence.gap_before - 1.0 >= kLargestExcess;
+  // The gap of a fall without drag is no measure of the noise.
+  const bool no_noise = !by_air && sequence.gap_before * sequence.gap_before - 1.0 >= kLargestExcess;
   if (no_noise && !follows_each_clip(main)) trust(main, best, comparison);
 }
 

@@ -45,6 +45,8 @@ void move_minorities_to_unknown(Comparison& comparison);
 /// certainty, and only the share counts. A law common to all clips that takes kMostOfGap is then named with the
 /// probability kByShare, if the evidence gives it less. All explanations with this main cause share it in proportion to
 /// their probabilities, and everything else shares the rest.
-void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, Comparison& comparison);
+/// `by_air`: the gap is measured from a fall without drag.
+void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, bool by_air,
+                   Comparison& comparison);
 
 }  // namespace glidelab::diagnose

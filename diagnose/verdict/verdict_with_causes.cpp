@@ -245,7 +245,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   std::vector<std::string> traces;
   // Without a gap nothing remains, and an effect without a name shows best against the noise alone.
   const bool settled = weighed && sequence.is_gap && names;
-  if (settled) hold_to_share(sequence, best.effects, weighed->comparison);
+  if (settled) hold_to_share(sequence, best.effects, by_air, weighed->comparison);
   if (settled && !is_likelier_than_not(with, by, best)) {
     set_unknown(std::max(by.unknown, kJustUnknown), weighed->comparison);
   }
@@ -304,7 +304,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
         diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence, jobs) : diagnosis.regions;
   }
   diagnosis.levels = levels_of(gap_set, gap_nominal, jobs);
-  if (by_air && diagnosis.verdict == Verdict::effect) diagnosis.notes.emplace_back(FallsThroughAir{});
+  if (by_air) diagnosis.notes.emplace_back(FallsThroughAir{});
   Explanations explanations{{&reported, sizes, 1.0}};
   if (weighed) {
     const bool with_names = diagnosis.verdict == Verdict::effect;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
+#include <vector>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/gap/held_out.h"
@@ -35,10 +35,18 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
   return std::log((z > 0.0 ? kViscousOdds : kDrivingOdds) + without);
 }
 
-bool is_fall_through_air(const TrackSet& set, const std::vector<std::size_t>& effects) {
-  return set.through_air && effects.size() == 2 &&
-         std::set(effects.begin(), effects.end()) ==
-             std::set{effect_index(ids::quadratic_drag), effect_index(ids::rotational_inertia)};
+bool too_strong_for_air(const Comparison& comparison) {
+  constexpr double kMostOfAir_kg_m = 0.6;
+  const EffectSlot slot = slot_of(ids::quadratic_drag);
+  for (const MotionFit& fit : comparison.fits) {
+    if (fit.effects != std::vector<std::size_t>{slot.effect} || !fit.layout) continue;
+    const auto& globals = fit.layout->globals();
+    for (std::size_t g = 0; g < globals.size(); ++g) {
+      if (globals[g].parameter != nullptr && globals[g].effect == slot.effect)
+        return fit.at.global[static_cast<Eigen::Index>(g)] > kMostOfAir_kg_m;
+    }
+  }
+  return false;
 }
 
 void set_air_odds(const TrackSet& set, Comparison& comparison) {

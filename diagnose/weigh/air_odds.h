@@ -1,7 +1,8 @@
 /// The prior odds of explanations of a fall through air that have no quadratic drag.
 ///
-/// At the speeds of such a fall no drag is viscous (falls_through_air()), so that an explanation in which braking shows
-/// and is viscous has the odds of one in fifty: a magnet in a copper pipe, or made data. An explanation without any
+/// At the speeds of such a fall the drag of air is not viscous (falls_through_air()), so that an explanation in which
+/// braking shows and is viscous has the odds of one in fifty, a judgement: a liquid, a magnet in a copper pipe, or made
+/// data. An explanation without any
 /// drag is as likely as it was. With K = z standard deviations off 0, a fall without drag is likelier than one with a
 /// viscous drag of any size (uniform in its logarithm over four decades, 9.2 = ln 10^4) by the factor
 ///
@@ -21,9 +22,9 @@ namespace glidelab::diagnose {
 /// nothing falls through air.
 double log_odds_without_air(const TrackSet& set, const MotionFit& fit);
 
-/// Whether these effects are a quadratic drag and the inertia of air that moves along, in a fall through air. Both come
-/// from the same air, so they are one explanation rather than two that coincide, and always weighed.
-bool is_fall_through_air(const TrackSet& set, const std::vector<std::size_t>& effects);
+/// Whether the quadratic drag alone asks for more than air can do to a square metre: 0.6 kg/m, half the density of air
+/// times the area. Then a liquid or a magnet brakes.
+bool too_strong_for_air(const Comparison& comparison);
 
 /// Sets Comparison::air_odds.
 void set_air_odds(const TrackSet& set, Comparison& comparison);

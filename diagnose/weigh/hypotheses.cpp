@@ -19,8 +19,6 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
-constexpr double kMovesAirAlong = 1.0 / 6.0;  // in a fall, relative to the drag alone: with the odds of both effects, a
-                                              // third
 constexpr std::size_t kFitted = 9;            // effects of the short list that are fitted in full
 constexpr double kLeastEvidenceBeside = 3.0;  // log evidence above which something else is weighed beside an effect
 constexpr double kNoLossSeen = -3.0;          // log evidence of lost frames if none is found
@@ -129,7 +127,7 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
     double prior = many == 0   ? std::log(kPriorNone)
                    : many == 1 ? one
                                : two + static_cast<double>(many - 2) * (two - one);
-    if (is_fall_through_air(set, hypothesis.effects)) prior = one + std::log(kMovesAirAlong);
+    if (set.through_air && is_drag_with_its_air(hypothesis.effects)) prior = one;
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
     logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence);
   }

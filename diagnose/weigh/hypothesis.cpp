@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "base/long_work.h"
@@ -11,9 +12,11 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWorthFitting = 1.0;    // log likelihood that a scan must gain to be worth a full fit
-constexpr double kSameDirection = 1e-3;  // of sin²: above this it is another law, however small the effect
-constexpr double kSameGain = 0.5;        // log likelihood
+constexpr double kWorthFitting = 1.0;         // log likelihood that a scan must gain to be worth a full fit
+constexpr double kSameDirection = 1e-3;       // of sin²: above this it is another law, however small the effect
+constexpr double kSameGain = 0.5;             // log likelihood
+constexpr double kMovesAirAlong = 1.0 / 6.0;  // relative to the drag alone: with the odds of both effects, a third
+constexpr double kNoFit = 1e6;                // log evidence that an explanation without a fit lacks
 
 std::size_t alike_of(const Comparison& comparison, std::size_t effect, bool filmed) {
   return comparison.alike.empty() ? first_alike(effect, filmed) : comparison.alike[effect];
@@ -22,8 +25,9 @@ std::size_t alike_of(const Comparison& comparison, std::size_t effect, bool film
 }  // namespace
 
 double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double gain) {
-  if (!std::isfinite(gain)) return std::min(0.0, scan.log_evidence - scan.gain);
-  return takes_place_of_drag(set, base.effects, scan.effect) ? gain : scan.log_evidence - scan.gain + gain;
+  const bool in_place_of_k = takes_place_of_drag(set, base.effects, scan.effect);
+  if (!std::isfinite(gain)) return in_place_of_k ? -kNoFit : std::min(0.0, scan.log_evidence - scan.gain);
+  return in_place_of_k ? gain : scan.log_evidence - scan.gain + gain;
 }
 
 Found fit_more(const TrackSet& set, const MotionFit& base, const EffectScan& scan, const Hypothesis& beside) {
@@ -143,11 +147,17 @@ double probability_of_any(const Comparison& comparison, const std::vector<std::s
   return sum;
 }
 
+bool is_drag_with_its_air(const std::vector<std::size_t>& effects) {
+  return effects.size() == 2 && std::set(effects.begin(), effects.end()) ==
+                                    std::set{effect_index(ids::quadratic_drag), effect_index(ids::rotational_inertia)};
+}
+
 double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis) {
   double log = 0.0;
   if (!comparison.air_odds.empty()) {  // an effect without a fit is one beside the nominal drag
     log += comparison.air_odds[static_cast<std::size_t>(std::max(0, hypothesis.fit))];
   }
+  if (!comparison.air_odds.empty() && is_drag_with_its_air(hypothesis.effects)) log += std::log(kMovesAirAlong);
   if (comparison.odds.empty()) return log;
   for (const std::size_t e : hypothesis.effects) log += std::log(comparison.odds[e]);
   return log;

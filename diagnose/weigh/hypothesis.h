@@ -98,6 +98,11 @@ double probability_of_any(const Comparison& comparison, const std::vector<std::s
 /// Log of the prior odds of a hypothesis' effects, against as many others, and of its drag in a fall through air.
 double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis);
 
+/// Whether these effects are a quadratic drag and the inertia of air that moves along. In a fall through air both come
+/// from the same air, so they are one explanation rather than two that coincide, with a third of the odds of the drag
+/// alone, and always weighed.
+bool is_drag_with_its_air(const std::vector<std::size_t>& effects);
+
 /// The fitted explanation by exactly these effects; null: none.
 const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>& effects);
 

@@ -55,8 +55,7 @@ Found fit_beside(const TrackSet& set, const MotionFit& around, const EffectScan&
   const double gain = 0.5 * (leader.fit.cost - found.fit.cost);
   found.hypothesis.effects = found.fit.effects;
   found.hypothesis.gain = leader.hypothesis.gain + gain;
-  found.hypothesis.log_evidence =
-      leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, std::isfinite(gain) ? gain : 0.0);
+  found.hypothesis.log_evidence = leader.hypothesis.log_evidence + log_evidence_beyond(set, leader.fit, scan, gain);
   return found;
 }
 

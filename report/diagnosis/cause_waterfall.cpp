@@ -28,7 +28,7 @@ struct Row {
 
 std::vector<Row> rows_of(const diagnose::Diagnosis& diagnosis) {
   std::vector<Row> rows;
-  std::string before = "nominal model";
+  std::string before = is_measured_without_drag(diagnosis) ? "fall without drag" : "nominal model";
   if (diagnosis.gap) before += ": " + over_noise_text(diagnosis.gap->before);
   rows.push_back({before, {0.0, kAll, kAll, kAll}, kColors[1]});
   const std::vector<WaterfallBar> bars = waterfall_bars(diagnosis.explained);

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <variant>
 
 #include "base/text/number_text.h"
 #include "core/result/why_words.h"
@@ -13,6 +14,12 @@
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
+
+bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis) {
+  return std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const diagnose::Note& note) {
+    return std::holds_alternative<diagnose::FallsThroughAir>(note);
+  });
+}
 namespace {
 
 constexpr double kPercent = 100.0;
@@ -230,7 +237,8 @@ std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
 std::string levels_words(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.levels || (!diagnosis.levels->configuration && !diagnosis.levels->clip)) return {};
   const diagnose::GapLevels& levels = *diagnosis.levels;
-  const char* const gap = " separately, the nominal model has a gap of";
+  const char* const gap = is_measured_without_drag(diagnosis) ? " separately, a fall without drag has a gap of"
+                                                              : " separately, the nominal model has a gap of";
   std::string text = "Fitted to ";
   if (levels.clip) text += fmt::format("each clip{} {}; to ", gap, base::number_text(*levels.clip, 3));
   if (levels.configuration) {

@@ -11,6 +11,9 @@
 
 namespace glidelab::report {
 
+/// Whether the gap is measured from a fall without any drag, rather than from the nominal model.
+bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis);
+
 /// "91 %", "99.7 %" and "0.3 %" within 1 % of the ends, and its interval: "91 % (86 to 95 %)".
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval = {});
 

@@ -144,9 +144,9 @@ struct Sentence {
            "is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 degree.";
   }
   std::string operator()(const diagnose::FallsThroughAir&) const {
-    return "What falls faster than 0.5 m/s is not braked in proportion to its speed, whatever it falls through. The "
-           "gap "
-           "is therefore measured from a fall without any drag, and K/m is not determined.";
+    return "In air, what falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
+           "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, leave this "
+           "out (--without quadratic_drag).";
   }
   std::string operator()(const diagnose::SplitSetUps& of) const {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",

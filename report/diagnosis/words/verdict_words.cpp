@@ -258,10 +258,11 @@ std::string_view in_words(diagnose::GapVariable variable) {
 std::string clip_gap_words(const diagnose::Diagnosis& diagnosis, bool sequence = false) {
   if (!diagnosis.gap) return "";
   const diagnose::GapSizes& gap = *diagnosis.gap;
-  std::string text = fmt::format(
-      " Held-out clips lie {} times as far from the nominal model (drag proportional to the speed, dry friction, "
-      "gravity) as their noise explains",
-      times(gap.before));
+  std::string text =
+      fmt::format(" Held-out clips lie {} times as far from {} as their noise explains", times(gap.before),
+                  is_measured_without_drag(diagnosis)
+                      ? "a fall without any drag"
+                      : "the nominal model (drag proportional to the speed, dry friction, gravity)");
   if (sequence) return text + ".";
   if (diagnosis.verdict == diagnose::Verdict::effect && gap.shrink) {
     const bool one = diagnosis.effects.size() == 1;

@@ -61,7 +61,7 @@ TEST_CASE("the nominal fit of falls has the K of a search over the closed form, 
     CHECK(fit.converged);
     const double normal = std::cos(set.groups[0].stated_rad), slope = std::sin(set.groups[0].stated_rad);
     const double gravity = diagnose::model_of(set, *fit.layout, fit.at, 0).gravity_m_s2;
-    CHECK(std::abs(gravity - set.gravity_m_s2) < 2.0001 * set.gravity_sd_m_s2);
+    CHECK(std::abs(gravity - set.gravity_m_s2) < 3.0001 * set.gravity_sd_m_s2);
     const double driving = gravity * (slope - fit.at.global[1] * normal);
     double best = std::numeric_limits<double>::infinity(), k = 0.0;
     for (double tried = 1e-4; tried < 0.05; tried *= 1.0005) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,24 @@ TEST_CASE("at another gravity than the standard one a fall's quadratic drag is n
     // What single positions scatter is read off the nominal fit, which is far off.
     if (named.size() > 1) CHECK(named == Names{"quadratic_drag", "heavy_tailed_noise"});
   }
+}
+
+TEST_CASE("a fall that is braked harder than air can is judged as any other motion: a viscous drag is none") {
+  Fall fall;
+  fall.k_n_s_m = 1.5;  // 0.3 kg: a terminal velocity of 2 m/s, and a quadratic drag of 0.8 kg/m for the same force
+  fall.masses_kg = {0.3, 0.3};
+  CHECK(diagnosed(fallen(fall, 4)).verdict == diagnose::Verdict::none);
+}
+
+TEST_CASE("what runs down a track of 85 degrees does not fall freely") {
+  Fall fall;
+  fall.k_n_s_m = 0.3;
+  fall.masses_kg = {0.05, 0.05};
+  tests::MadeExperiment made = fallen(fall, 4);
+  const auto is_through_air = [&] { return diagnose::track_set(made.results, made.setups, true).through_air; };
+  CHECK(is_through_air());
+  for (core::ClipSetup& setup : made.setups) setup.incline_rad = 85.0 * std::numbers::pi / 180.0;
+  CHECK_FALSE(is_through_air());
 }
 
 TEST_CASE("the g of a drag-free fall is that of a parabola and the spread over the Earth") {

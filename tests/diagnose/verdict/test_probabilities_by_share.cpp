@@ -82,7 +82,7 @@ void check_sums(const Comparison& comparison) {
 
 TEST_CASE("a law that takes most of a gap without noise is named, and effects beside it keep their part") {
   Comparison comparison = comparison_of({{{kDrag}, 0.06}, {{kDrag, kInertia}, 0.02}, {{kPlace}, 0.12}});
-  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag, kInertia}, comparison);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag, kInertia}, false, comparison);
   check_sums(comparison);
   CHECK(comparison.effect_probability[kDrag] == Approx(0.8));
   CHECK(comparison.effect_probability[kInertia] == Approx(0.8 * 0.02 / 0.08));  // as likely beside the drag as before
@@ -95,7 +95,7 @@ TEST_CASE("a law that takes most of a gap without noise is named, and effects be
 
 TEST_CASE("a law that lost its probability to the unknown gets it back by its share") {
   Comparison comparison = comparison_of({{{kDrag}, 0.0}, {{kPlace}, 0.1}});
-  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag}, comparison);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.9, kNoNoise), {kDrag}, false, comparison);
   check_sums(comparison);
   CHECK(probability_of(comparison, {kDrag}) == Approx(0.8));
   CHECK(comparison.unknown == Approx(0.2 * 0.9));
@@ -105,7 +105,7 @@ TEST_CASE("a name by its share alone needs negligible noise, most of the gap, an
   const auto after = [](std::string_view main, double share, double gap, double probability) {
     const std::size_t effect = effect_index(main);
     Comparison comparison = comparison_of({{{effect}, probability}});
-    diagnose::hold_to_share(sequence_of(main, share, gap), {effect}, comparison);
+    diagnose::hold_to_share(sequence_of(main, share, gap), {effect}, false, comparison);
     check_sums(comparison);
     return comparison.effect_probability[effect];
   };
@@ -118,7 +118,7 @@ TEST_CASE("a name by its share alone needs negligible noise, most of the gap, an
 
 TEST_CASE("causes that take less than half of a gap are unknown, and no gap counts as none") {
   Comparison comparison = comparison_of({{{kDrag}, 0.7}, {{kPlace}, 0.1}}, 0.15);
-  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, comparison);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, false, comparison);
   check_sums(comparison);
   CHECK(comparison.none == 0.0);
   // 0.05 of the unknown, 0.15 of none, and the name's own 0.7.
@@ -126,7 +126,7 @@ TEST_CASE("causes that take less than half of a gap are unknown, and no gap coun
   CHECK(comparison.effect_probability[kDrag] == Approx(0.1 * 0.7 / 0.8));
 
   Comparison unlikely = comparison_of({{{kDrag}, 0.05}, {{kPlace}, 0.9}});
-  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, unlikely);
+  diagnose::hold_to_share(sequence_of(ids::quadratic_drag, 0.3, kPlain), {kDrag}, false, unlikely);
   check_sums(unlikely);
   CHECK(unlikely.unknown > 0.5);  // that is the verdict
 }
