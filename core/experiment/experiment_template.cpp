@@ -72,7 +72,7 @@ incline_deg = 4.0                  # of the track, as set; one reading for all c
 launched = "up"                    # "up" (towards -x), "down" (towards +x) or "released"
 #start_s = 0.2                     # the part of the clip in which the glider moves freely; ...
 #end_s = 1.8                       # ... without them the analysis finds it
-#start_px = [90, 120]              # where the marker is then, in place of that in [marker]
+#start_px = [90, 120]              # where the marker is at start_s, or in the first frame; replaces that of [marker]
 #group = "slope"                   # clips that share one inclination; default: those of equal incline_deg
 
 [[clip]]

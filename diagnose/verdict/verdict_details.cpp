@@ -5,7 +5,9 @@
 #include <limits>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
@@ -17,6 +19,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kSameScale = 1.05;
+constexpr std::string_view kLineTime = "line_s";
 
 /// For each set-up, the position at `share` of the distance from the set-up's own middle to the middle of all.
 std::vector<DiagnosedParameter> middles(const TrackSet& set, double share, double share_sd) {
@@ -53,7 +56,10 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
     if (shown_together(parameter->shown_as)) continue;
     const auto at = static_cast<Eigen::Index>(g);
     ShownValue value = shown(*parameter, fit.at.global[at]);
-    if (parameter->shown_as == ShownAs::beside_stated) value.value += stated_line_s;
+    if (parameter->shown_as == ShownAs::beside_stated) {
+      if (parameter->key != kLineTime) throw std::logic_error("only a line time is shown beside the stated one");
+      value.value += stated_line_s;
+    }
     parameters.push_back({std::string(parameter->key), value.value, uncertainty.sd(at) * std::abs(value.by_fitted)});
   }
   return parameters;

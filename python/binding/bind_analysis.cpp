@@ -7,7 +7,9 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/errors.h"
 #include "core/analysis/analyze.h"
@@ -15,6 +17,7 @@
 #include "core/motion/analyze_tracks.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/smoothing/smoother_list.h"
+#include "core/result/quantity.h"
 #include "fit/estimators.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
@@ -167,6 +170,11 @@ void bind_analysis(py::module_& module) {
   module.def("bandwidth_choices", &core::bandwidth_choices);
   module.def("smoother_names", &core::smoother_names);
   module.def("estimator_names", &fit::estimator_names);
+  module.def("quantities", [] {
+    std::vector<std::pair<std::string, std::string>> keys_and_units;
+    for (const core::QuantityName& one : core::kQuantities) keys_and_units.emplace_back(one.key, one.unit);
+    return keys_and_units;
+  });
 }
 
 }  // namespace glidelab::python

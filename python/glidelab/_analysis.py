@@ -19,7 +19,7 @@ from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, qu
 
 DEFAULT_ESTIMATOR = _glidelab.estimator_names()[0]
 
-QUANTITIES = {"k_over_m_1_s": "1/s", "mu": "", "alpha_deg": "°", "v_lim_m_s": "m/s"}
+QUANTITIES = dict(_glidelab.quantities())  # keys and their units
 
 
 @dataclass(frozen=True)

@@ -35,9 +35,12 @@ std::string share_text(const validate::RunShare& share) {
   return share.of == 0 ? "–" : percent_text(share.share, share.low, share.high);
 }
 
-/// A percentage; beyond twice the error its multiple.
+/// "94 % (90 to 97 %)" less; where the error more than doubles, the factor by which it grows: "× 240 (20 to 2900)".
 std::string fall_text(const validate::RunFall& fall) {
-  if (fall.value < -1.0) return base::number_text(1.0 - fall.value, 2) + " times the error";
+  if (fall.value < -1.0) {
+    return fmt::format("× {} ({} to {})", base::number_text(1.0 - fall.value, 2), base::number_text(1.0 - fall.high, 2),
+                       base::number_text(1.0 - fall.low, 2));
+  }
   return percent_text(fall.value, fall.low, fall.high);
 }
 
@@ -371,8 +374,9 @@ std::string limits_table(const Certificate& certificate) {
   return table.str() +
          fmt::format(
              "<p class=\"soft\">How much smaller the rms error becomes, with its 95 % interval, over the same "
-             "twins with one change each ({} of them); together: K/m, µ and α alike. Bold: above 0 by more than "
-             "chance, over all changes.</p>\n",
+             "twins with one change each ({} of them). Below 0 it becomes larger; if it more than doubles, × is the "
+             "factor by which it grows. Together: K/m, µ and α alike. Bold: above 0 by more than chance, over all "
+             "changes.</p>\n",
              certificate.changes.front().runs);
 }
 

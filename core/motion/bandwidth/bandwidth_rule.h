@@ -12,6 +12,7 @@
 
 #include <fmt/core.h>
 
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -48,12 +49,12 @@ struct BandwidthPick {
   std::vector<LocalBandwidth> local = {};  ///< for a local rule only
 };
 
-/// What a rule found, in its own words: "rms x'''' of {:.3g} m/s^4" and its number. Numbers that do not fit the pattern
-/// do not compile.
-template <class... Numbers>
+/// What a rule found, in its own words: the literal "rms x'''' of {:.3g} m/s^4" and its number. Numbers are double, as
+/// they are stored; a pattern that does not fit them does not compile.
+template <std::same_as<double>... Numbers>
 chosen_by::Rule found_by_rule(fmt::format_string<const Numbers&...> pattern, const Numbers&... numbers) {
   const fmt::string_view found = pattern;
-  return {{found.data(), found.size()}, {static_cast<double>(numbers)...}};
+  return {{found.data(), found.size()}, {numbers...}};
 }
 
 struct BandwidthRule {

@@ -82,7 +82,8 @@ std::optional<BandwidthPick> by_plug_in(const BandwidthProblem& problem) {
   const double narrowest = scan.grid().front(), widest = scan.grid().back();
   if (signal <= kCurvatureSeen * std::sqrt(all.variance)) {
     pick.bandwidth_s = widest;
-    pick.by = found_by_rule("plug-in: x'''' does not rise above the noise; the widest tried");
+    pick.by = found_by_rule("plug-in: x'''' does not rise above the noise");
+    pick.by.edge = edge_of(scan.grid(), scan.grid().size() - 1);
     return pick;
   }
   const double mean_square = signal / static_cast<double>(all.points);

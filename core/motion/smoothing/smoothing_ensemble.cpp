@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "base/math/distributions.h"
+#include "base/math/normal95.h"
 
 namespace glidelab::core {
 namespace {
-
-constexpr double kNormal = 1.959963984540054;  // its 97.5 % quantile
 
 /// exp(-u^2 / 2), or its mean over an estimated variance.
 double tail(double u2, double freedom) {
@@ -54,14 +53,14 @@ std::vector<EnsembleNode> nodes_of(const ChainPosterior<N>& posterior, double no
   return made;
 }
 
-/// The half width that holds 95 % of the members' mixture about the smoothed value, over kNormal.
+/// The half width that holds 95 % of the members' mixture about the smoothed value, over base::kNormal95.
 double standard_deviation(const SmoothingEnsemble& ensemble, std::size_t p, std::size_t k, int d) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (const EnsembleMember& member : ensemble.members) {
     const EnsembleNode& at = member.parts[p][k];
     const double off = std::abs(at.mean[d] - ensemble.smoothed[p][k][d]), sd = std::sqrt(at.variance[d]);
-    low = std::min(low, kNormal * sd);
-    high = std::max(high, off + kNormal * sd);
+    low = std::min(low, base::kNormal95 * sd);
+    high = std::max(high, off + base::kNormal95 * sd);
   }
   const auto outside = [&](double half) {
     double sum = 0.0;
@@ -73,16 +72,16 @@ double standard_deviation(const SmoothingEnsemble& ensemble, std::size_t p, std:
     }
     return std::log(sum / 0.05);
   };
-  if (!(high > low * (1.0 + 1e-6))) return low / kNormal;
+  if (!(high > low * (1.0 + 1e-6))) return low / base::kNormal95;
   std::uintmax_t most = 30;
   const auto found = boost::math::tools::toms748_solve(outside, 0.999 * low, 1.001 * high,
                                                        boost::math::tools::eps_tolerance<double>(10), most);
-  return 0.5 * (found.first + found.second) / kNormal;
+  return 0.5 * (found.first + found.second) / base::kNormal95;
 }
 
 std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnsemble& ensemble) {
   std::vector<std::vector<Eigen::Array3d>> made;
-  const double wider = base::student_t_quantile(ensemble.freedom, 0.975) / kNormal;
+  const double wider = base::student_t_quantile(ensemble.freedom, 0.975) / base::kNormal95;
   for (std::size_t p = 0; p < ensemble.nodes.size(); ++p) {
     const std::vector<ChainNode>& nodes = ensemble.nodes[p];
     std::vector<Eigen::Array3d> sd(nodes.size());
@@ -97,7 +96,7 @@ std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnse
       const double reach = kSide * sd[b][1] / std::max(0.5 * (std::abs(before) + std::abs(after)), 1e-300);
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         if (std::abs(nodes[k].t_s - nodes[b].t_s) < reach)
-          more[k] = std::max(more[k], std::abs(after - before) / kNormal);
+          more[k] = std::max(more[k], std::abs(after - before) / base::kNormal95);
       }
     }
     for (std::size_t k = 0; k < nodes.size(); ++k) sd[k][2] = std::hypot(sd[k][2], more[k]);

@@ -150,7 +150,7 @@ SupportedFit fit_supported_terms(const std::vector<const BoardView*>& views, cv:
   const std::vector<Term> terms = {{"k3", {8}, cv::CALIB_FIX_K3, 3, 0.1, 1.0},
                                    {kTangential, {6, 7}, cv::CALIB_ZERO_TANGENT_DIST, 0, 0.0, 0.0},
                                    {"k2", {5}, cv::CALIB_FIX_K2, 2, 0.2, 2.0},
-                                   {"k1", {4}, cv::CALIB_FIX_K1, 1, 0.3, 1.0}};
+                                   {"k1", {4}, cv::CALIB_FIX_K1, 1, 0.3, 0.0}};
   int flags = 0;
   SupportedFit fit;
   fit.found = run_opencv(views, size, square_m, flags);

@@ -73,8 +73,9 @@ std::vector<Note> notes_on_views(const BoardViews& boards, const std::vector<con
 /// loses 1 %; noise that would bend the image's sides by half is no term.
 ///
 /// What a term that was left out may still do is added to the covariance (left_out_terms.h), so that leaving terms out
-/// makes no result look more certain. There k2 of a lens of extent e is N(0, (2 e)²) at the corner and k3 N(0, e²); in
-/// the three measured calibrations k2 has 0.6 to 2 times the part of k1.
+/// makes no result look more certain; left_out_terms.h says for which lenses this does not hold. k2 of a lens of extent
+/// e is N(0, (2 e)²) at the corner and k3 N(0, e²); in the three measured calibrations k2 has 0.6 to 2 times the part
+/// of k1.
 ///
 /// Needs at least three views with a visible board; otherwise InputError, naming the images without one. A view whose
 /// error is above 0.2 px and five times the median is left out (with a note).
@@ -83,10 +84,10 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m);
 /// The camera with a fisheye lens (camera_model.h): cv::fisheye::calibrate, with uncertainties as in
 /// calibrate_camera(). Parameters: fx, fy, cx, cy always; k1 to k4 only if they are determined: from k4 down, a term
 /// is tested as the radial ones there, and fixed to zero and the rest fitted again, until the first that is
-/// significant; what is left out counts in the covariance as it does there. Fisheyes move the image's corner by a part
-/// of N(0, 0.15²) with k1, N(0, 0.3²), N(0, 0.5²), N(0, 0.5²) with the next: an assumption, about twice the larger of
-/// two profiles for k2 to k4 (docs/reference/cameras.md, S23). The rows of the covariance are fx, fy, cx, cy, k1, k2,
-/// k3, k4, and one of zeros. Nothing if OpenCV finds no such camera.
+/// significant; what is left out counts in the covariance as it does there, but without the lens's extent. Fisheyes
+/// move the image's corner by a part of N(0, 0.15²) with k1, N(0, 0.3²), N(0, 0.5²), N(0, 0.5²) with the next: an
+/// assumption, about twice the larger of two profiles for k2 to k4 (docs/reference/cameras.md, S23). The rows of the
+/// covariance are fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing if OpenCV finds no such camera.
 std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
 
 /// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.

@@ -21,7 +21,8 @@ Eigen::Matrix<double, 9, 9> effect_of(const std::vector<LeftOutTerm>& all, doubl
   for (const LeftOutTerm& one : all) {
     double part = 1.0;
     if (one.power > 0) {
-      const double usual = std::min(one.usual, one.of_extent * extent);
+      // The extent of a lens without k1 comes from k1 itself, which therefore says nothing about k1.
+      const double usual = one.power > 1 ? std::min(one.usual, one.of_extent * extent) : one.usual;
       part = believed(usual, one.at_corner * std::sqrt(one.own(0, 0)));
     }
     const Eigen::VectorXd weighted = base::solve_positive(one.own, one.value);

@@ -8,9 +8,12 @@
 ///
 /// the effect of its uncertainty, and the part of its value beyond noise (q numbers in v). b is how far the term is
 /// believed: 1 for p1, p2; usual² / (usual² + s²) for a radial term, whose part s at the image's corner is N(0, usual²)
-/// over lenses. A straight lens has small high terms: usual is at most `of_extent` times the lens's extent e, the sum
-/// of the sizes at the corner of the radial terms that were kept, or, where k1 was left out, what k1 may be (its size
-/// and two standard deviations).
+/// over lenses. A straight lens has small high terms: of k2 and k3, usual is at most `of_extent` times the lens's
+/// extent e, the sum of the sizes at the corner of the radial terms that were kept and, where k1 was left out, of what
+/// k1 may be (its size and two standard deviations). k1 is not bounded by the extent, which it makes.
+///
+/// High terms go with k1 in lenses as they are. They do not in images that a camera has straightened itself, or in a
+/// lens whose k1 happens to be near zero beside large k2 and k3: there the intervals may be too narrow.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +24,7 @@ namespace glidelab::core {
 
 struct LeftOutTerm {
   int power = 0;                        ///< of r², of a radial term; 0 for p1, p2
-  double usual = 0.0, of_extent = 0.0;  ///< of a radial term
+  double usual = 0.0, of_extent = 0.0;  ///< of a radial term; of_extent of k2 and k3 alone
   double at_corner = 0.0;               ///< relative displacement of the image's corner by a radial term of 1
   Eigen::VectorXd value;                ///< in the last fit that had it,
   Eigen::MatrixXd own, with_others;     ///< and its covariance, and that of all terms with it

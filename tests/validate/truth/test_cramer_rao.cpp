@@ -127,6 +127,18 @@ TEST_CASE("motion in one direction bounds K/m and v_lim, and leaves mu and alpha
   CHECK_FALSE(least.alpha_deg);
 }
 
+TEST_CASE("a fall that goes up and down again bounds K/m and v_lim, and neither mu nor alpha") {
+  for (const double deg : {80.0, 89.0, 90.0}) {
+    INFO(deg);
+    const Law fall{.k = 2.0, .mu = 0.0, .alpha_rad = deg * kRad};
+    const auto least = least_sds(truth_of(fall, {clip_of("thrown", fall, 0.5, -2.0, 0.8)}), {1e-5}, kGravity)[0];
+    CHECK(least.k_over_m_1_s);
+    CHECK(least.v_lim_m_s);
+    CHECK_FALSE(least.mu);
+    CHECK_FALSE(least.alpha_deg);
+  }
+}
+
 TEST_CASE("a law that is not equation (8) has no bound, and a noise of nothing is refused") {
   const Law law;
   Truth truth = truth_of(law, {clip_of("up", law, 0.5, -1.0, 2.0)});

@@ -13,9 +13,9 @@
 #include "core/motion/lines/line_fit.h"
 #include "diagnose/effects/effect_list.h"
 #include "diagnose/twin/twin.h"
-#include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 #include "validate/random_use.h"
+#include "validate/study/certify/scattered_body.h"
 
 namespace glidelab::validate {
 namespace {
@@ -335,33 +335,10 @@ MadeTracks simulated(const RecordingTwin& twin, const TwinChange& change, const 
 
 namespace {
 
-/// The body of one clip, with inclination and friction changed by these accelerations and drag by this fraction. A body
-/// that falls has no load that a coefficient of friction or a change of its inclination could act on: a constant force
-/// changes it instead.
-sim::Body scattered(sim::Body body, double incline_m_s2, double friction_m_s2, double drag) {
-  constexpr double kFalls = 0.01;  // of gravity, perpendicular to the motion
-  const double normal_m_s2 = body.gravity_m_s2 * std::cos(body.incline_rad);
-  const bool falls = normal_m_s2 < kFalls * body.gravity_m_s2;
-  for (auto& term : body.forces) {
-    const std::optional<sim::LinearShare> share = term->linear();
-    if (!share) continue;
-    if (share->mu > 0.0 && !falls) {
-      term = sim::laws::coulomb().with({std::max(0.0, share->mu - friction_m_s2 / normal_m_s2)});
-      friction_m_s2 = 0.0;
-    } else if (share->k_n_s_m > 0.0) {
-      term = sim::laws::viscous().with({share->k_n_s_m * std::max(0.0, 1.0 - drag)});
-    }
-  }
-  if (falls) {
-    body.forces.push_back(sim::laws::constant().with({body.mass_kg * (incline_m_s2 + friction_m_s2)}));
-  } else {
-    body.incline_rad += incline_m_s2 / normal_m_s2;
-  }
-  return body;
-}
-
-/// Displacements at these times due to a white acceleration of spectral density q, in a motion with drag k (1/s).
-std::vector<double> wander(const std::vector<double>& t_s, double q_m2_s3, double k_1_s, std::mt19937_64& engine) {
+/// Displacements at these times due to a white acceleration of spectral density q, in the motion of a body with these
+/// speeds, whose drag takes the additional speed away.
+std::vector<double> wander(const std::vector<double>& t_s, const sim::Trajectory& motion, const sim::Body& body,
+                           double q_m2_s3, std::mt19937_64& engine) {
   std::normal_distribution<double> deviate(0.0, 1.0);
   std::vector<double> x_m;
   double x = 0.0, v = 0.0;
@@ -370,18 +347,10 @@ std::vector<double> wander(const std::vector<double>& t_s, double q_m2_s3, doubl
     const double h = i > 0 ? t_s[i] - t_s[i - 1] : 0.0, root = std::sqrt(q_m2_s3 * h);
     const double a = deviate(engine), b = deviate(engine);
     x += v * h + root * h * (0.5 * a + b / std::sqrt(12.0));
-    v = v * std::exp(-k_1_s * h) + root * a;
+    v = v * std::exp(-drag_rate_1_s(body, motion.states[i].v_m_s) * h) + root * a;
     x_m.push_back(x);
   }
   return x_m;
-}
-
-double drag_1_s(const sim::Body& body) {
-  double k_n_s_m = 0.0;
-  for (const auto& term : body.forces) {
-    if (const auto share = term->linear()) k_n_s_m += share->k_n_s_m;
-  }
-  return k_n_s_m / body.mass_kg;
 }
 
 /// Adds to the positions the change in x due to the remainder.
@@ -393,14 +362,16 @@ void add_remainder(const TwinExplanation& explanation, const render::Scenario& s
     for (const sim::MotionSetup& motion : configuration.motions) {
       std::mt19937_64 engine = random_engine(RandomUse::twin_remainder, seed, c);
       std::normal_distribution<double> deviate(0.0, 1.0);
-      const double incline = explanation.force_m_s2 * deviate(engine);
-      const double friction = explanation.force_m_s2 * deviate(engine), drag = explanation.drag * deviate(engine);
+      ClipScatter by;
+      by.incline_m_s2 = explanation.force_m_s2 * deviate(engine);
+      by.friction_m_s2 = explanation.force_m_s2 * deviate(engine);
+      by.drag = explanation.drag * deviate(engine);
       const TrueClip& truth = made.truth.clips[c];
       std::vector<double> instants = truth.t_s;  // a duplicated frame has one instant
       instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
-      const sim::Body body = scattered(configuration.body, incline, friction, drag);
+      const sim::Body body = scattered(configuration.body, by);
       const sim::Trajectory trajectory = sim::simulate(body, motion.x0_m, motion.v0_m_s, instants);
-      std::vector<double> by_m = wander(instants, explanation.q_m2_s3, drag_1_s(configuration.body), engine);
+      std::vector<double> by_m = wander(instants, trajectory, body, explanation.q_m2_s3, engine);
       core::TrackData& track = made.tracks[c++];
       for (std::size_t i = 0; i < track.x_m.size(); ++i) {
         const auto frame = static_cast<std::size_t>(track.frame[i]);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/errors.h"
@@ -59,12 +60,14 @@ core::Quantity interval(double value, double variance) {
   return {core::Estimate{value, sd, value - core::kNormal95 * sd, value + core::kNormal95 * sd}, {}};
 }
 
-core::Quantity nothing(const char* why) {
-  return {std::nullopt, core::WhyUnknown{core::unknown::Told{why}}};
+core::Quantity nothing(core::AnyReason why) {
+  return {std::nullopt, core::WhyUnknown{std::move(why)}};
 }
 
 core::Quantity limit_of(const std::optional<Line>& line) {
-  if (!line || !(line->k > 0.0) || !(line->a0 > 0.0)) return nothing("no equilibrium at v > 0");
+  if (!line) return nothing(core::unknown::NoDownhillLine{});
+  if (!(line->k > 0.0)) return nothing(core::unknown::RateNotPositive{.of_line = true});
+  if (!(line->a0 > 0.0)) return nothing(core::unknown::InterceptNotPositive{});
   const double by_k = -line->a0 / (line->k * line->k), by_a0 = 1.0 / line->k;
   return interval(line->a0 / line->k,
                   by_k * by_k * line->var_k + by_a0 * by_a0 * line->var_a0 + 2.0 * by_k * by_a0 * line->cov);
@@ -78,13 +81,13 @@ core::AnalysisResults with_naive_lines(core::AnalysisResults results) {
   for (core::ConfigurationResult& configuration : results.configurations) {
     const std::optional<Line> minus = line_of(results.clips, configuration.clips, -1);
     const std::optional<Line> plus = line_of(results.clips, configuration.clips, 1);
-    configuration.k_over_m_1_s = configuration.mu = configuration.alpha_deg = nothing("no points");
+    configuration.k_over_m_1_s = configuration.mu = configuration.alpha_deg = nothing(core::unknown::NoLine{});
     configuration.v_lim_m_s = limit_of(plus);
     if (!minus && !plus) continue;
     if (!minus || !plus) {
       const Line& only = minus ? *minus : *plus;
       configuration.k_over_m_1_s = interval(only.k, only.var_k);
-      configuration.mu = configuration.alpha_deg = nothing("motion in one direction only");
+      configuration.mu = configuration.alpha_deg = nothing(core::unknown::NotBothLines{!minus, !plus});
       continue;
     }
     const double weight = 1.0 / minus->var_k + 1.0 / plus->var_k;
@@ -92,7 +95,10 @@ core::AnalysisResults with_naive_lines(core::AnalysisResults results) {
     // Equation (13): the half sum of the intercepts is g sin(alpha), the half difference mu g cos(alpha).
     const double drive = 0.5 * (minus->a0 + plus->a0), friction = 0.5 * (minus->a0 - plus->a0);
     const double variance = 0.25 * (minus->var_a0 + plus->var_a0);
-    if (!(std::abs(drive) < g)) continue;
+    if (!(std::abs(drive) < g)) {
+      configuration.mu = configuration.alpha_deg = nothing(core::unknown::MeanBeyondGravity{drive});
+      continue;
+    }
     const double level = std::sqrt(g * g - drive * drive);
     configuration.alpha_deg =
         interval(std::asin(drive / g) * base::kDegreesPerRad, variance * std::pow(base::kDegreesPerRad / level, 2));

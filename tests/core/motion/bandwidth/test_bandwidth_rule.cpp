@@ -17,6 +17,12 @@ using namespace glidelab::core;
 
 namespace {
 
+template <class Number>
+concept CanBeFound = requires(Number number) {
+  found_by_rule("{} points", number);
+};
+static_assert(CanBeFound<double> && !CanBeFound<int>, "a rule's numbers are stored and worded as double");
+
 /// A motion with a known a, its noise, and what any bandwidth makes of it.
 struct Case {
   std::vector<double> t, x, a;
@@ -272,6 +278,7 @@ TEST_CASE("where x'''' drowns in the noise the plug-in rule says so and takes th
   REQUIRE(pick);
   CHECK(pick->by.found.find("does not rise above") != std::string_view::npos);
   CHECK(pick->by.numbers.empty());
+  CHECK(pick->by.edge == chosen_by::Rule::Edge::widest);
 }
 
 TEST_CASE("every rule states what it does and assumes, is found by its name, and has its row in the guide") {
