@@ -19,8 +19,6 @@
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
-#include "validate/study/certify/recording_twin.h"
-#include "validate/study/certify/scattered_body.h"
 #include "validate/tracks/made_tracks.h"
 #include "validate/tracks/outside_runs.h"
 
@@ -120,17 +118,6 @@ render::Scenario falls() {
   return fall;
 }
 
-render::Scenario four_falls() {
-  render::Scenario scenario = falls();
-  std::vector<sim::MotionSetup>& motions = scenario.motion.configurations.front().motions;
-  const std::vector<sim::MotionSetup> once = motions;
-  for (sim::MotionSetup motion : once) {
-    motion.name += "b";
-    motions.push_back(motion);
-  }
-  return scenario;
-}
-
 }  // namespace
 
 TEST_CASE("a recording of falls is certified: twins of it fall") {
@@ -143,43 +130,6 @@ TEST_CASE("a recording of falls is certified: twins of it fall") {
   CHECK(drag.quantity == "k_over_m_1_s");
   CHECK(drag.failed == 0);
   CHECK(drag.coverage.share > 0.7);  // 0.95 has the standard deviation 0.05 in 20 twins; five of those
-}
-
-TEST_CASE("falls whose accelerations scatter from clip to clip have twins that scatter as much") {
-  // Four falls, each with a further acceleration of its own: a standard deviation of 0.1 m/s².
-  const render::Scenario plain = four_falls();
-  MadeTracks made = make_tracks(plain, 3);
-  const std::vector<double> more_m_s2 = {0.12, -0.08, -0.1, 0.06};
-  for (std::size_t c = 0; c < made.tracks.size(); ++c) {
-    render::Scenario other = plain;
-    sim::Body& body = other.motion.configurations.front().body;
-    body = scattered(body, {.incline_m_s2 = more_m_s2[c]});
-    made.tracks[c] = make_tracks(other, 3).tracks[c];
-  }
-  made = with_noise(made, 1e-4, 3);
-  const core::AnalysisResults results = analyze_tracks(made, core::MotionOptions{});
-  const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(results, made.setups, {.without = {}, .jobs = 2});
-  const RecordingTwin twin = twin_of_recording(results, diagnosis, {});
-  REQUIRE_FALSE(twin.explanations.empty());
-  const TwinExplanation& first = twin.explanations.front();
-  REQUIRE(first.force_m_s2 > 0.03);  // the remainder that this test is about
-  CHECK(first.force_m_s2 < 0.3);
-  double square = 0.0;
-  constexpr int kTwins = 30;
-  TwinStudios studios(0);
-  for (std::uint64_t seed = 1; seed <= kTwins; ++seed) {
-    const MadeTracks scatters = record_twin(twin, {}, seed, studios),
-                     alike = record_twin(twin, {.alike = true}, seed, studios);
-    for (std::size_t c = 0; c < scatters.tracks.size(); ++c) {
-      const double t_s = scatters.tracks[c].t_s.back() - scatters.tracks[c].t_s.front();
-      const double off_m = scatters.tracks[c].x_m.back() - alike.tracks[c].x_m.back();
-      square += std::pow(off_m / (0.5 * t_s * t_s), 2) / (kTwins * 4.0);
-    }
-  }
-  // Inclination and friction are alike in a fall: sqrt(2) s_f, of which a drag of 5 /s leaves over t = 1 s the part
-  // 2 (k t - 1 + exp(-k t)) / (k t)² = 0.32, or all of it without drag.
-  CHECK(std::sqrt(square) < 1.5 * first.force_m_s2);
-  CHECK(std::sqrt(square) > 0.2 * first.force_m_s2);
 }
 
 TEST_CASE("the twin of a fall is a scenario, on whichever side of the vertical the fit of its inclination ends") {
