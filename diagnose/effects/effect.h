@@ -21,7 +21,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/result/why_unknown.h"
 #include "diagnose/effects/effect_list.h"
 #include "diagnose/result/gap_place.h"
 
@@ -279,9 +278,8 @@ struct OnLines {
   std::string_view key = {};
   double largest = 0.0;  ///< in the unit of the key
   OwnOfLines own = OwnOfLines::nothing;
-  std::string_view same_as = {};                     ///< the effect that changes lines in the same way to first order
-  std::string_view unknown_key = {};                 ///< of a second size, which no table determines,
-  std::optional<core::WhyUnknown> why_unknown = {};  ///< and why
+  std::string_view same_as = {};      ///< the effect that changes lines in the same way to first order
+  std::string_view unknown_key = {};  ///< of a second size, which the width of the smoothing kernel would tell
 };
 
 /// An effect earlier in the list that no experiment with tracks can tell from this one.

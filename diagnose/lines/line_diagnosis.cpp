@@ -52,7 +52,10 @@ std::vector<DiagnosedParameter> parameters_of(const LineExplanation& explanation
       {cause.terms.front().key, explanation.solution.size[at], explanation.solution.sd[at]}};
   if (const OnLines& lines = effect_of(cause.id).lines; !lines.unknown_key.empty()) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    parameters.push_back({.key = std::string(lines.unknown_key), .value = kNan, .sd = kNan, .why = lines.why_unknown});
+    parameters.push_back({.key = std::string(lines.unknown_key),
+                          .value = kNan,
+                          .sd = kNan,
+                          .why = core::WhyUnknown{core::unknown::KernelNotStated{}}});
   }
   return parameters;
 }

@@ -25,11 +25,7 @@ EffectInfo smoothing_bias() {
       .parameters = {},
       .law = {},
       .shapes = nullptr,
-      .lines = {.change = smoothing_lines,
-                .key = "intercept_s2_m_s2",
-                .largest = 1.0,
-                .unknown_key = "bandwidth_s",
-                .why_unknown = core::WhyUnknown{core::unknown::KernelNotStated{}}},
+      .lines = {.change = smoothing_lines, .key = "intercept_s2_m_s2", .largest = 1.0, .unknown_key = "bandwidth_s"},
       .twin = EffectTwin::none("a table of lines has no motion to simulate"),
       .in_images = std::nullopt,
       .next =
