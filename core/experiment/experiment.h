@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
+#include "core/experiment/local_gravity.h"
 #include "core/experiment/permissions.h"
 
 namespace glidelab::core {
@@ -68,7 +69,7 @@ struct Experiment {
   std::filesystem::path folder;
   std::filesystem::path file;  ///< of experiment.toml, for messages
   std::string name;
-  double gravity_m_s2 = 9.80665;
+  double gravity_m_s2 = kStandardGravity_m_s2;
   std::optional<CameraSettings> camera;
   std::optional<CalibrationSetup> calibration;
   std::optional<ScaleSetup> scale;

@@ -426,7 +426,6 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       noise_alone.push_back(linearise_again(set, *found[k]));
       profiles.push_back(profile_of(set, noise_alone.back(), &profiles[law].best.sizes));
       comparison.fits.push_back(linearise_again(weighed.set, *found[k]));
-      set_air_odds(weighed.set, comparison);
       worth.push_back(fit);
       Hypothesis both = laws[k];
       both.effects.push_back(scatter);
@@ -440,6 +439,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       });
       comparison.all.push_back(std::move(both));
     }
+    set_air_odds(weighed.set, comparison);  // of the fits that were added
   }
   const std::vector<Hypothesis> leaders = beside(comparison, excess);
   std::vector<std::vector<UnnamedFamily>> found(leaders.size());

@@ -192,7 +192,7 @@ enum class ShownAs {
   itself_and_directions,  ///< d, and K (1 + d) and K (1 - d) under k_plus_n_s_m and k_minus_n_s_m
   one_more,               ///< n, where n - 1 is fitted; s, where s - 1 is
   inverse_root,           ///< v_c, where 1/v_c² is fitted
-  beside_stated,          ///< the stated value plus e, where e is fitted
+  beside_stated,          ///< the stated line time plus e, where e is fitted; for line_s alone
   itself_and_middle,      ///< the slope, and under x_mid_m the middle of each set-up's positions, about which it is
   place_of_middle,        ///< as x_mid_m alone: at this part of the distance from a set-up's own middle to that of all
   of_mu,                  ///< deviations d of mu: the standard deviation of all mu + d, and each of them (own_sizes.h)

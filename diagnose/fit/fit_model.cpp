@@ -75,9 +75,7 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
     range.high *= heaviest_kg;
   }
   if (set.through_air && parameter.slot == slot_of(ids::rotational_inertia)) {
-    double lightest_kg = std::numeric_limits<double>::infinity();
-    for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
-    range.high = std::min(range.high, kMostAir * lightest_kg);
+    range.high = std::min(range.high, kMostAir * lightest_kg(set));
   }
   return range;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -19,6 +20,12 @@ constexpr double kNearlyAsCertain = 2.0;                       // relative error
 
 bool is_fall(const TrackGroup& group) {
   return std::abs(group.stated_rad) >= kFall_rad - 1e-9;
+}
+
+double lightest_kg(const TrackSet& set) {
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const TrackedMass& mass : set.masses) lightest = std::min(lightest, mass.mass_kg);
+  return lightest;
 }
 
 bool only_falls(const TrackSet& set) {

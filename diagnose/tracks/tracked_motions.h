@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/experiment/local_gravity.h"
 #include "core/result/results.h"
 #include "diagnose/model/track_model.h"
 #include "diagnose/result/note.h"
@@ -101,7 +102,7 @@ struct TrackedClip {
 };
 
 struct TrackSet {
-  double gravity_m_s2 = 9.80665;
+  double gravity_m_s2 = core::kStandardGravity_m_s2;
   double gravity_sd_m_s2 = 0.0;  ///< 0: exact
   std::vector<TrackedClip> clips;
   std::vector<TrackGroup> groups;
@@ -123,6 +124,9 @@ struct TrackSet {
   std::size_t left_out = 0;  ///< of these, all or none
   std::size_t moving = 0;    ///< frames of free motion, and disputed ones
 };
+
+/// The mass of the lightest body, in kg.
+double lightest_kg(const TrackSet& set);
 
 /// Whether only falls were recorded.
 bool only_falls(const TrackSet& set);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -173,10 +172,8 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
     EffectScan scan;
     if (std::isfinite(base.cost)) scan = scan_effect(ScoreSpace(set, base), inertia);
     if (scan.visible && !scan.values.empty()) {
-      double lightest_kg = std::numeric_limits<double>::infinity();
-      for (const TrackedMass& mass : set.masses) lightest_kg = std::min(lightest_kg, mass.mass_kg);
       Found beside = fit_more(set, base, scan, drag);
-      scan.values.front() = lightest_kg;
+      scan.values.front() = lightest_kg(set);
       Found heavier = fit_more(set, base, scan, drag);
       add(comparison, heavier.fit.cost < beside.fit.cost ? std::move(heavier) : std::move(beside));
     }

@@ -86,15 +86,17 @@ std::string narrow_names(const Certificate& certificate) {
   return names;
 }
 
+/// Values of one twin alone have no standard deviation.
+std::string bias_text(const CertifiedQuantity& quantity) {
+  const std::string value = fmt::format("{:.2f}", quantity.bias_sds.value);
+  return std::isfinite(quantity.bias_sds.sd) ? value + fmt::format(" ± {:.2f}", quantity.bias_sds.sd) : value;
+}
+
 std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
   const std::string failed = fmt::format("{} of {}", quantity.failed, quantity.asked);
   if (quantity.answered() == 0) return {heading_of(quantity.quantity), "–", "–", "–", "–", failed};
-  return {heading_of(quantity.quantity),
-          share_text(quantity.coverage),
-          fmt::format("{:.2f} ± {:.2f}", quantity.bias_sds.value, quantity.bias_sds.sd),
-          base::sd_text(quantity.rms),
-          base::sd_text(quantity.stated_sd),
-          failed};
+  return {heading_of(quantity.quantity), share_text(quantity.coverage),     bias_text(quantity),
+          base::sd_text(quantity.rms),   base::sd_text(quantity.stated_sd), failed};
 }
 
 const std::vector<std::string> kHeader = {"quantity",  "intervals that hold", "bias (stated sd)",

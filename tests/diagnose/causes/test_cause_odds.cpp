@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -56,6 +57,24 @@ TEST_CASE("log odds are linear in what is left") {
   CHECK(log_odds(0.4) == Approx(2.0 * log_odds(0.2)).epsilon(1e-9));
   CHECK(log_odds(1.0) == Approx(5.0 * log_odds(0.2)).epsilon(1e-9));
   CHECK(log_odds(3.0) == Approx(log_odds(1.0)).epsilon(1e-9));  // a cause that makes the gap worse leaves all of it
+}
+
+TEST_CASE("the gap of a fall without drag is a measure of the quadratic drag alone") {
+  // Both leave 0.9 of the nominal excess. That of a fall without drag is a thousand times as large.
+  const auto weighed = [](std::optional<double> without_drag) {
+    diagnose::Comparison comparison = comparison_of(0.0, 0.0, 0.0);
+    diagnose::weigh_beside_remainder({{1.25, 1.125, 1.125}, kNotMeasured, without_drag}, comparison);
+    return comparison;
+  };
+  const auto bow_to_nothing = [](const diagnose::Comparison& of) {
+    return probability_of(of, diagnose::ids::track_bow) / of.none;
+  };
+  const diagnose::Comparison before = weighed({}), after = weighed(1250.0);
+  CHECK(bow_to_nothing(after) == Approx(bow_to_nothing(before)).epsilon(1e-9));
+  CHECK(probability_of(before, diagnose::ids::quadratic_drag) ==
+        Approx(probability_of(before, diagnose::ids::track_bow)).epsilon(1e-9));
+  CHECK(probability_of(after, diagnose::ids::quadratic_drag) >
+        100.0 * probability_of(after, diagnose::ids::track_bow));  // 12.5 (0.9 - 0.0009) in log odds, and more for E
 }
 
 TEST_CASE("evidence beside a remainder gives no certainty") {

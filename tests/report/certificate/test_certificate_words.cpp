@@ -1,3 +1,4 @@
+#include <limits>
 #include <string>
 
 #include "report/certificate/certificate_report.h"
@@ -63,6 +64,15 @@ TEST_CASE("a certificate of intervals that do not hold begins with do not trust 
   made.wide_together = {113, 120, 0.9, 0.85, 0.94};
   CHECK_FALSE(made.holds());
   CHECK(report::certificate_answer(made).starts_with("Do not trust the intervals: "));
+}
+
+TEST_CASE("a bias that one twin alone shows has no standard deviation") {
+  validate::Certificate made = certificate();
+  made.quantities[1].bias_sds.sd = std::numeric_limits<double>::infinity();
+  const std::string text = report::certificate_text(made);
+  CHECK(text.find("-0.32") != std::string::npos);
+  CHECK(text.find("0.10 ± 0.10") != std::string::npos);
+  CHECK(text.find("inf") == std::string::npos);
 }
 
 TEST_CASE("only changes that stand out are given as advice, three at most, and none is said in words") {
