@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <random>
 
-#include "render/random/streams.h"
+#include "render/random/random_numbers.h"
 
 namespace glidelab::validate {
 

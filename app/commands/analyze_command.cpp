@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <memory>
 
-#include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"

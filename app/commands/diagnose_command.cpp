@@ -5,7 +5,6 @@
 
 #include <memory>
 
-#include "app/shell/bare_options.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/program_texts.h"

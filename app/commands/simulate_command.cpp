@@ -9,7 +9,6 @@
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
 #include "base/files/file_io.h"
-#include "render/scenario/clip_length.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scenario.h"
 #include "report/simulation/simulation_report.h"

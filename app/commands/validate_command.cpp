@@ -7,7 +7,6 @@
 #include "app/commands/baseline_gate.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
-#include "app/shell/outside_options.h"
 #include "app/shell/run_control.h"
 #include "base/files/file_io.h"
 #include "core/analysis/preview.h"

@@ -5,7 +5,6 @@
 #include <unistd.h>
 #include <CLI/App.hpp>
 #include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -15,12 +14,14 @@
 #include <limits>
 #include <thread>
 #include <vector>
-
+#include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/toml/strict_toml.h"
+#include "fit/estimators.h"
 
 namespace glidelab::app {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,6 +240,95 @@ void refuse_scenarios(const std::vector<std::string>& inputs) {
                                         : "a recording; glidelab render makes one of a scenario"});
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
+}
+
+namespace {
+
+std::string check_incline(const std::string& text) {
+  constexpr double kSteepest_deg = 90.0;  // a fall
+  double value_deg = 0.0;
+  if (CLI::detail::lexical_cast(text, value_deg) && std::abs(value_deg) <= kSteepest_deg) return {};  // false for NaN
+  return fmt::format("\"{0}\" is not a number of degrees from -{1} to {1}{2}", text, kSteepest_deg,
+                     decimal_point_for(text));
+}
+
+}  // namespace
+
+void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
+  command
+      .add_option(
+          "--column", options.column,
+          "For a file: the column that holds x, by header or number; default: found by its header. For a Tracker "
+          "project: the point mass; default: the only one")
+      ->type_name("NAME|NUMBER");
+  CLI::Option* mass = command.add_option("--mass", options.mass_kg, "For a file: mass of the glider in kilograms")
+                          ->type_name("KG")
+                          ->check(check_above_0);
+  command.add_option("--incline", options.incline_deg, "For a file: stated inclination in degrees")
+      ->type_name("DEG")
+      ->check(check_incline);
+  CLI::Option* runs =
+      command.add_option("--runs", options.runs,
+                         "For a file with several runs or masses: which of them become clips, \"all\" or "
+                         "their numbers, such as 1,3");
+  runs->type_name("all|N,N")->excludes("--column");
+  command
+      .add_option("--masses", options.masses_kg, "With --runs: the mass of each in kilograms, such as 0.0088,0.0079")
+      ->type_name("KG,KG")
+      ->delimiter(',')
+      ->check(check_above_0)
+      ->needs(runs)
+      ->excludes(mass);
+  add_permissions(command, options.permitted);
+}
+
+void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs) {
+  if (options.column.empty() && !options.mass_kg && !options.incline_deg && options.runs.empty()) return;
+  for (const std::string& input : inputs) {
+    if (core::is_bare_track(input)) continue;
+    throw base::InputError(base::Issue{input, 0, "--column, --mass, --incline, --runs", "not a file with a track",
+                                       "a file; for a folder, experiment.toml states column, mass_kg and incline_deg"});
+  }
+}
+
+namespace {
+
+constexpr double kMegabyte = 1048576.0;  // bytes
+
+}  // namespace
+
+std::optional<fit::OutsideEstimator> OutsideOptions::estimator() const {
+  if (command.empty()) return std::nullopt;
+  return of_command_line([&] {
+    fit::OutsideEstimator made = fit::outside_estimator(command, name);
+    made.limits.wall_s = seconds;
+    made.limits.memory_bytes = static_cast<std::uint64_t>(megabytes * kMegabyte);
+    made.stop = interrupted;
+    return made;
+  });
+}
+
+void add_outside_options(CLI::App& command, OutsideOptions& options) {
+  CLI::Option* judged =
+      command
+          .add_option("--estimator-command", options.command,
+                      "Also judge an estimator of your own: a program that reads the experiment folder {folder} "
+                      "and writes {out}/results.json (docs/reference/own-estimator.md)")
+          ->type_name("COMMAND");
+  command
+      .add_option("--estimator-name", options.name, "Its name in the results; default: the name of the program file")
+      ->type_name("NAME")
+      ->needs(judged);
+  command.add_option("--estimator-seconds", options.seconds, "Longest time that one run of it may take")
+      ->type_name("SECONDS")
+      ->check(check_above_0)
+      ->needs(judged)
+      ->capture_default_str();
+  command.add_option("--estimator-megabytes", options.megabytes, "Most memory that one of its processes may use")
+      ->type_name("MB")
+      ->check(check_above_0)
+      ->needs(judged)
+      ->capture_default_str();
 }
 
 }  // namespace glidelab::app

@@ -10,9 +10,18 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
 #include "base/errors.h"
 #include "core/experiment/permissions.h"
+#include "core/track/bare_track.h"
+#include "fit/outside/outside_estimator.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace CLI {
 class App;
@@ -112,5 +121,29 @@ void refuse_scenarios(const std::vector<std::string>& inputs);
 
 /// "; use a decimal point: 0.335" for "0,335"; empty for any other text.
 std::string decimal_point_for(const std::string& text);
+
+/// Options of the commands that accept a track file as well as experiment folders (analyze, check, diagnose, certify):
+/// what the file does not state.
+///
+/// --column, --mass, --incline, --runs, --masses, and, for folders, --allow-outside and --max-megapixels.
+void add_bare_options(CLI::App& command, core::TrackFileOptions& options);
+
+/// Options for files have no meaning for folders, whose experiment.toml states the same: InputError if an input is a
+/// folder and one of them is given, for --masses without --runs, and for --masses with --mass.
+void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs);
+
+/// Options of the commands that judge an outside estimator (fit/outside/outside_estimator.h).
+struct OutsideOptions {
+  std::string command;
+  std::string name;  ///< empty: from the command
+  double seconds = 60.0;
+  double megabytes = 4096.0;
+
+  /// Empty without a command; CommandLineError if it is not valid. An interrupt ends the estimator's program.
+  std::optional<fit::OutsideEstimator> estimator() const;
+};
+
+/// Adds --estimator-command, --estimator-name, --estimator-seconds and --estimator-megabytes.
+void add_outside_options(CLI::App& command, OutsideOptions& options);
 
 }  // namespace glidelab::app

@@ -18,4 +18,9 @@ double chi2_upper_quantile(double degrees, double p);  ///< exceeded with probab
 
 double beta_quantile(double a, double b, double p);
 
+/// The 95 % interval of the normal distribution.
+///
+/// Half its width in standard deviations: the 0.975 quantile.
+inline constexpr double kNormal95 = 1.959963984540054;
+
 }  // namespace glidelab::base

@@ -52,4 +52,9 @@ struct NamedUnit {
 };
 NamedUnit name_and_unit(std::string_view key);
 
+/// The digits 0 to 9, independent of the locale.
+constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
 }  // namespace glidelab::base

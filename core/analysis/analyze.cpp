@@ -7,8 +7,8 @@
 
 #include "base/errors.h"
 #include "core/analysis/clip_to_track.h"
-#include "core/motion/analyze_tracks.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
+#include "core/motion/join_configurations.h"
 
 namespace glidelab::core {
 namespace {

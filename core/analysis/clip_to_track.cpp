@@ -15,7 +15,7 @@
 #include "core/pictures/camera/plumb.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/marker_body.h"
-#include "core/track/read_track.h"
+#include "core/track/bare_track.h"
 
 namespace glidelab::core {
 

@@ -7,7 +7,6 @@
 
 #include "core/characterize/camera_evidence.h"
 #include "core/characterize/camera_measurement.h"
-#include "core/characterize/camera_note.h"
 #include "core/characterize/flat_field_folder.h"
 #include "core/characterize/photon_numbers.h"
 

@@ -19,7 +19,7 @@ enum class Severity {
   unusable  ///< no analysis, or an untrustworthy one
 };
 
-/// What a finding is about, as far as one wrong statement explains several (root_causes.h).
+/// What a finding is about, as far as one wrong statement explains several (recording_findings.h).
 enum class Topic {
   other,
   length,   ///< a distance, a speed or an acceleration

@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "base/text/digit.h"
+#include "base/text/number_text.h"
 
 namespace glidelab::core {
 

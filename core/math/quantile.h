@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "base/math/normal95.h"
+#include "base/math/distributions.h"
 
 namespace glidelab::core {
 

@@ -11,7 +11,6 @@
 
 #include "core/result/analysis_note.h"
 #include "core/result/strength.h"
-#include "core/result/strength_choice.h"
 #include "core/result/why_unknown.h"
 
 namespace glidelab::core {

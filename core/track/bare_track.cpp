@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <algorithm>
 #include <charconv>
 #include <set>
 #include <string_view>
-
 #include "base/errors.h"
 #include "base/math/angles.h"
 #include "core/experiment/clip_setup.h"
@@ -117,6 +115,16 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
     experiment.clips = clips_of_runs(path, clip, options);
   }
   return experiment;
+}
+
+TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column) {
+  if (is_tracker_project(file)) return read_tracker_project(file, downhill, column);
+  if (downhill && is_along_y(*downhill)) {
+    throw base::InputError(base::Issue{file.string(), 0, "downhill",
+                                       fmt::format("\"{}\" for a table of positions", name_of(*downhill)),
+                                       "\"+X\" or \"-X\": x is the column that `column` names, whatever it is called"});
+  }
+  return read_track_csv(file, downhill ? std::optional(sign_of(*downhill)) : std::nullopt, column);
 }
 
 }  // namespace glidelab::core

@@ -7,14 +7,15 @@
 #include <optional>
 #include <string>
 #include <vector>
-
+#include "core/experiment/clip_setup.h"
 #include "core/experiment/experiment.h"
+#include "core/track/track_data.h"
 
 namespace glidelab::core {
 
 /// What the analysis needs besides a track file given on its own.
 struct TrackFileOptions {
-  std::string column;                 ///< of x in a table, or a point mass (read_track.h); empty: found
+  std::string column;                 ///< of x in a table, or a point mass (bare_track.h); empty: found
   std::optional<double> mass_kg;      ///< 1 kg if not stated; K/m, mu and alpha depend on it under a recorded force
   std::optional<double> incline_deg;  ///< as stated; level if not stated. It only names the configuration
   Permissions permitted = {};         ///< of a folder
@@ -41,5 +42,12 @@ std::vector<TrackRun> runs_in(const std::filesystem::path& file);
 /// hand because of its direction alone. InputError as in read_experiment(), for a path that does not exist, for runs
 /// that the file does not have, and if the numbers of masses and runs differ.
 Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options);
+
+/// Reads a motion that was tracked elsewhere, from any supported file.
+///
+/// For a Tracker project (is_tracker_project()) read_tracker_project(), for any other file read_track_csv(). `column`
+/// is the point mass in the former case and the column in the latter. A table has no Y: `downhill` along Y is an
+/// InputError there, and an empty value means that its x is positive downhill.
+TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column);
 
 }  // namespace glidelab::core

@@ -12,7 +12,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/experiment/file_names.h"
-#include "core/track/table_units.h"
+#include "core/track/table_columns.h"
 
 namespace glidelab::core {
 namespace {

@@ -15,7 +15,7 @@
 #include "base/math/angles.h"
 #include "core/experiment/file_names.h"
 #include "core/track/column_table.h"
-#include "core/track/table_units.h"
+#include "core/track/table_columns.h"
 #include "core/track/tracker_xml.h"
 #include "core/track/zip_archive.h"
 

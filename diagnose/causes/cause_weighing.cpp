@@ -15,7 +15,6 @@
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/causes/cause_sequence.h"
 #include "diagnose/causes/remainder.h"
-#include "diagnose/causes/scatter_beside.h"
 #include "diagnose/causes/spread_prior.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
+#include <utility>
+#include <vector>
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/scan/effect_scan.h"
 
 namespace glidelab::diagnose {
+
 namespace {
 
 constexpr int kWidthsTried = 13;        // three per decade, over four decades
@@ -89,6 +93,18 @@ double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& cov
   double log = best;
   for (const std::vector<double>& of : logs) log += base::log_mean(of) - best;
   return log;
+}
+
+std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit& law) {
+  const std::size_t scatter = effect_index(ids::clip_scatter);
+  const EffectScan scan = scan_effect(ScoreSpace(set, law), scatter);
+  if (!scan.visible || scan.values.empty()) return {};
+  std::vector<std::size_t> effects = law.effects;
+  effects.push_back(scatter);
+  MotionFit fit = no_worse_than(
+      set, law, scatter, fit_motions(set, effects, with_effect(set, law, scatter, scan.values, scan.own), law.late));
+  if (!std::isfinite(fit.cost)) return {};
+  return fit;
 }
 
 }  // namespace glidelab::diagnose

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/model/track_stride.h"
 
 namespace glidelab::diagnose {
 namespace {

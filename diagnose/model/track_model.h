@@ -11,11 +11,14 @@
 /// function of all parameters and its derivatives follow by finite differences. SI units.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
+#include <numbers>
 #include <span>
 #include <vector>
-
 #include "diagnose/effects/effect_library.h"
 
 namespace glidelab::diagnose {
@@ -58,5 +61,77 @@ struct Moved {
 /// (200 frames in 2 s: K/m above 2200 1/s), or more work, turns included, than 2000 steps a frame; fewer than 100
 /// frames count as 100.
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
+
+/// Building blocks of the track model's integrator: one step that spans several frames, and a sine wave at equally
+/// spaced instants without a call of sin for each. They are in a header because they are the innermost loop of all
+/// fits. SI units.
+///
+/// Position in m and speed in m/s.
+struct PlaceAndSpeed {
+  double x = 0.0, v = 0.0;
+};
+
+/// The quintic polynomial over one step, through position, speed and acceleration at both ends.
+class Stride {
+ public:
+  Stride(const PlaceAndSpeed& from, double a_from, const PlaceAndSpeed& to, double a_to, double length_s)
+      : from_(from),
+        to_(to),
+        v_(from.v * length_s),
+        a_(0.5 * a_from * length_s * length_s),
+        by_length_(1.0 / length_s) {
+    const double rest = to.x - from.x - v_ - a_, slope = to.v * length_s - v_ - 2.0 * a_;
+    const double bend = 0.5 * (a_to - a_from) * length_s * length_s;
+    c3_ = 10.0 * rest - 4.0 * slope + bend;
+    c4_ = -15.0 * rest + 7.0 * slope - 2.0 * bend;
+    c5_ = 6.0 * rest - 3.0 * slope + bend;
+  }
+
+  PlaceAndSpeed at(double since_s) const {
+    const double u = since_s * by_length_;
+    return {from_.x + u * (v_ + u * (a_ + u * (c3_ + u * (c4_ + u * c5_)))),
+            (v_ + u * (2.0 * a_ + u * (3.0 * c3_ + u * (4.0 * c4_ + u * 5.0 * c5_)))) * by_length_};
+  }
+
+  const PlaceAndSpeed& to() const { return to_; }
+
+ private:
+  PlaceAndSpeed from_, to_;
+  double v_, a_, by_length_;  // coefficients of the position's powers of the elapsed fraction
+  double c3_ = 0.0, c4_ = 0.0, c5_ = 0.0;
+};
+
+/// sin(omega t + phase) at equally spaced instants, without a call of sin for each.
+class SineSteps {
+ public:
+  SineSteps(double hz, double phase) : omega_(2.0 * std::numbers::pi * hz), phase_(phase) {}
+
+  /// At t, t + h/2 and t + h.
+  std::array<double, 3> over(double t, double h) {
+    if (std::abs(t - t_) > kRounding_s) {
+      sin_ = std::sin(omega_ * t + phase_);
+      cos_ = std::cos(omega_ * t + phase_);
+    }
+    if (std::abs(h - h_) > kRounding_s) {
+      half_sin_ = std::sin(0.5 * omega_ * h);
+      half_cos_ = std::cos(0.5 * omega_ * h);
+      h_ = h;
+    }
+    std::array<double, 3> values{sin_, 0.0, 0.0};
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      values[i] = sin_ * half_cos_ + cos_ * half_sin_;
+      cos_ = cos_ * half_cos_ - sin_ * half_sin_;
+      sin_ = values[i];
+    }
+    t_ = t + h;
+    return values;
+  }
+
+ private:
+  static constexpr double kRounding_s = 1e-15;  // rounding error of times of some seconds
+  double omega_, phase_;
+  double t_ = std::numeric_limits<double>::infinity(), sin_ = 0.0, cos_ = 0.0;  // at the end of the last step
+  double h_ = std::numeric_limits<double>::infinity(), half_sin_ = 0.0, half_cos_ = 0.0;
+};
 
 }  // namespace glidelab::diagnose

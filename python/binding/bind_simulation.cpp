@@ -15,7 +15,6 @@
 #include "python/binding/given_tracks.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
-#include "render/scenario/clip_length.h"
 #include "render/scenario/clip_motion.h"
 #include "report/simulation/simulation_report.h"
 

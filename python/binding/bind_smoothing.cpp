@@ -18,7 +18,7 @@
 #include "core/motion/smoothing/smoother_list.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
-#include "report/analysis/strength_words.h"
+#include "report/analysis/note_words.h"
 
 namespace glidelab::python {
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "render/random/random_numbers.h"
-#include "render/random/streams.h"
 
 namespace glidelab::render {
 namespace {

@@ -9,7 +9,7 @@
 #include "render/film/truth_files.h"
 #include "render/paint/board_painter.h"
 #include "render/paint/static_painter.h"
-#include "render/random/streams.h"
+#include "render/random/random_numbers.h"
 #include "render/sensor/readout.h"
 
 namespace glidelab::render {

@@ -1,14 +1,14 @@
 #include "render/paint/tile_row.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 
-#include "render/paint/pixel_coverage.h"
-
 namespace glidelab::render {
+
 namespace {
 
 constexpr std::size_t kMostLines = 4;
@@ -21,7 +21,7 @@ struct RowLines {
   bool cut_twice;    ///< whether any pixel is cut by two or more lines and outside of none
 };
 
-/// The fraction of the pixel on the inner side of one line (pixel_coverage.h), without branches.
+/// The fraction of the pixel on the inner side of one line (tile_row.h), without branches.
 [[gnu::always_inline]] inline double inside_part(double s, double gx, double gy) {
   const double ax = std::abs(gx), ay = std::abs(gy), t = std::abs(s);
   const double a = ax > ay ? ax : ay, b = ax > ay ? ay : ax;
@@ -226,6 +226,47 @@ TileRow sphere_row(const Eigen::Vector3d& center_C, double radius_m, const RowRa
 #endif
   cover_by_ball_baseline(ball, rays, coverage);
   return coverage;
+}
+
+namespace {
+
+struct Point {
+  double x, y;
+};
+// A square has 4 corners, and each line adds at most one.
+using CutCorners = std::array<Point, 12>;
+
+}  // namespace
+
+double convex_coverage(std::span<const PixelLine> lines) {
+  if (lines.size() > 8) throw std::logic_error("too many lines through a pixel");
+  CutCorners corners{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
+  std::size_t count = 4;
+  for (const PixelLine& line : lines) {
+    CutCorners kept{};
+    std::size_t kept_count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point& p = corners[i];
+      const Point& q = corners[(i + 1) % count];
+      const double at_p = line.s + line.gx * p.x + line.gy * p.y;
+      const double at_q = line.s + line.gx * q.x + line.gy * q.y;
+      if (at_p >= 0.0) kept[kept_count++] = p;
+      if ((at_p >= 0.0) != (at_q >= 0.0)) {
+        const double share = at_p / (at_p - at_q);
+        kept[kept_count++] = {p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)};
+      }
+    }
+    corners = kept;
+    count = kept_count;
+    if (count < 3) return 0.0;
+  }
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point& p = corners[i];
+    const Point& q = corners[(i + 1) % count];
+    twice_area += p.x * q.y - q.x * p.y;
+  }
+  return std::clamp(0.5 * twice_area, 0.0, 1.0);
 }
 
 }  // namespace glidelab::render

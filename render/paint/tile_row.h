@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
-
 #include "render/camera/optics.h"
 #include "render/random/random_numbers.h"
 
@@ -28,5 +27,18 @@ TileRow polygon_row(std::span<const Eigen::Vector3d> lines, const RowRays& rays,
 
 /// Coverage by a sphere's image, each pixel in quarters, the outline's curvature to first order.
 TileRow sphere_row(const Eigen::Vector3d& center_C, double radius_m, const RowRays& rays, Simd simd = Simd::best);
+
+/// How much of a pixel lies within straight outlines; exact.
+///
+/// A line is given in the pixel's own coordinates, |x|, |y| <= 1/2: its inner side is where s + gx x + gy y > 0.
+struct PixelLine {
+  double s = 0.0;
+  double gx = 0.0;
+  double gy = 0.0;
+};
+
+/// The fraction of the pixel on the inner side of all lines (up to eight): the pixel's square is clipped by one line
+/// after another (Sutherland and Hodgman), and the remaining area is computed.
+double convex_coverage(std::span<const PixelLine> lines);
 
 }  // namespace glidelab::render

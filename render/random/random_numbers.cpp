@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "render/random/streams.h"
-
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif

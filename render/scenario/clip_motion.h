@@ -10,8 +10,8 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
-
 #include "render/scenario/scenario_data.h"
 #include "sim/motion/simulate.h"
 
@@ -111,5 +111,14 @@ void for_each_frame(const sim::Body& body, const sim::MotionSetup& motion, const
 
 /// The middle of the exposure of a row of a frame (also between rows), on sim's clock.
 double mid_exposure_s(const Recording& recording, const FrameMotion& frame, double row);
+
+/// How long a clip of a scenario may be.
+///
+/// Frames of one clip: an hour at 1389 Hz. Its true motion is held in memory, 0.6 GB of it.
+inline constexpr std::size_t kMostFrames = 5'000'000;
+
+/// InputError (file, key) if a true motion would have more states than that, with their size as a CSV.
+void check_states(const sim::MotionScenario& scenario, const Recording& recording, const std::string& file,
+                  const std::string& key);
 
 }  // namespace glidelab::render

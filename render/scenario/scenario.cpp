@@ -10,7 +10,6 @@
 #include "base/files/file_io.h"
 #include "base/toml/strict_toml.h"
 #include "base/toml/toml_set.h"
-#include "render/scenario/clip_length.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scenario_sections.h"
 #include "render/scenario/scene.h"

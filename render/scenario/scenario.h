@@ -37,7 +37,7 @@ CameraFile read_camera_name(const std::filesystem::path& path);
 
 /// Reads a whole scenario file. InputError with all errors, including inconsistencies: an exposure longer than the
 /// frame time, a lens that folds the image over, a marker that moves behind the camera or is never seen, a pattern that
-/// does not fit into the image, a clip without an end (clip_length.h).
+/// does not fit into the image, a clip without an end (clip_motion.h).
 Scenario read_scenario(const std::filesystem::path& path);
 
 /// How much of a scenario's text is checked: everything, or everything but the camera's view (for callers that make no

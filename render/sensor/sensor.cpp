@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "render/random/random_numbers.h"
-#include "render/random/streams.h"
 
 namespace glidelab::render {
 namespace {

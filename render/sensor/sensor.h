@@ -10,7 +10,7 @@
 /// expected electrons on, and if the full well is six standard deviations away, the Poisson number and the read noise
 /// are combined in one normal deviate with the variance of both; otherwise the Poisson number is exact.
 ///
-/// Random numbers are Philox4x32-10 with the key {seed low, seed high} (streams.h). Normal deviates
+/// Random numbers are Philox4x32-10 with the key {seed low, seed high} (random_numbers.h). Normal deviates
 /// (RandomPurpose::pixel_noise): a row is divided into groups of 32 pixels, each group into 8 blocks, numbered row by
 /// row through the image; word pairs (0, 1) and (2, 3) of a block give two deviates each by the Box-Muller method (24
 /// bits of each word, so at most 5.9 standard deviations), and deviate j of block b belongs to pixel 8 j + b of its

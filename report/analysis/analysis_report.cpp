@@ -8,13 +8,12 @@
 
 #include "base/math/distributions.h"
 #include "base/text/number_text.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/fitted_curve.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/sections.h"
-#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/math/normal95.h"
+#include "base/math/distributions.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"

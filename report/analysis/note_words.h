@@ -3,7 +3,6 @@
 
 #include <string>
 #include <vector>
-
 #include "core/result/analysis_note.h"
 #include "core/result/results.h"
 
@@ -18,5 +17,10 @@ std::string contradiction_words(const core::InclineContradiction& contradiction)
 
 /// "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.2 of 9; …)", "fisheye: k1, k2"
 std::string lens_words(const core::LensTerms& lens);
+
+/// How a bandwidth, or the strength of a smoother, was chosen (core/result/strength.h), in one line.
+
+/// Empty if the choice is not stated.
+std::string strength_words(const core::StrengthChoice& choice);
 
 }  // namespace glidelab::report

@@ -14,7 +14,6 @@
 #include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
-#include "report/analysis/strength_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {

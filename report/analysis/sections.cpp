@@ -8,13 +8,12 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/result_files.h"
-#include "report/analysis/strength_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 

@@ -7,8 +7,8 @@
 
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
-#include "report/html/folded.h"
 #include "report/html/gnuplot.h"
+#include "report/html/html.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/text/number_text.h"
-#include "report/html/folded.h"
 #include "report/html/gnuplot.h"
+#include "report/html/html.h"
 #include "report/html/plot.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"

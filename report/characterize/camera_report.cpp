@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/text/number_text.h"
-#include "report/characterize/camera_note_words.h"
 #include "report/characterize/measured_words.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/characterize/camera_note_words.h"
 #include "report/characterize/measured_words.h"
 
 namespace glidelab::report {

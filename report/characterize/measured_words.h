@@ -1,9 +1,10 @@
-/// How a number of a measured camera was found, or why there is none (core/characterize/measured.h), in words.
+/// How a number of a measured camera was found, or why there is none (core/characterize/camera_measurement.h), in
+/// words.
 #pragma once
 
 #include <string>
-
-#include "core/characterize/measured.h"
+#include <vector>
+#include "core/characterize/camera_measurement.h"
 
 namespace glidelab::report {
 
@@ -12,5 +13,11 @@ std::string how_words(const core::Measured& measured);
 
 /// "hidden by the quantisation: less than 0.31 e-"; empty if there is a value.
 std::string why_words(const core::Measured& measured);
+
+/// The notes on how a camera's images were taken (core/characterize/camera_measurement.h) as sentences.
+
+std::string note_words(const core::CameraNote& note);
+
+std::vector<std::string> notes_words(const std::vector<core::CameraNote>& notes);
 
 }  // namespace glidelab::report

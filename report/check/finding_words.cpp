@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "core/result/results.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "report/analysis/note_words.h"
 
 namespace glidelab::report {

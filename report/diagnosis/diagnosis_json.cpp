@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "base/math/normal95.h"
+#include "base/math/distributions.h"
 #include "report/analysis/camera_plots.h"
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/words/diagnosis_words.h"

@@ -15,7 +15,6 @@
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/diagnosis/words/image_words.h"
 #include "report/diagnosis/words/verdict_words.h"
-#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 

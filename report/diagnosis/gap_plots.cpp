@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "base/math/normal95.h"
+#include "base/math/distributions.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "report/html/plot.h"

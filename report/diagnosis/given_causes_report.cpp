@@ -8,7 +8,7 @@
 
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "report/analysis/doubts.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"

@@ -1,19 +1,18 @@
 #include "report/html/html.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cctype>
 #include <cstdint>
 #include <regex>
-
 #include "base/files/file_io.h"
-#include "base/text/digit.h"
+#include "base/text/number_text.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::report {
+
 namespace {
 
 constexpr std::array<std::string_view, 3> kVerbatim = {"code", "script", "style"};
@@ -383,6 +382,11 @@ void write_page(const std::filesystem::path& folder, const std::string& name, co
     std::filesystem::create_directories((folder / path).parent_path());
     base::write_file(folder / path, bytes);
   }
+}
+
+Html folded(const std::string& heading, const Html& part) {
+  if (part.plots().empty() && part.texts().front().empty()) return {};
+  return Html("<details class=\"part\"><summary>" + heading + "</summary>\n") + part + "</details>\n";
 }
 
 }  // namespace glidelab::report

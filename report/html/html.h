@@ -9,7 +9,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
 #include "report/html/plot.h"
 
 namespace glidelab::report {
@@ -97,5 +96,10 @@ Page page(std::string_view title, const Html& body);
 
 /// Writes the document under the given name, and the files of its plots, into the folder.
 void write_page(const std::filesystem::path& folder, const std::string& name, const Page& page);
+
+/// Parts of a page that open when their heading is clicked.
+///
+/// The heading is HTML; an empty part gives nothing.
+Html folded(const std::string& heading, const Html& part);
 
 }  // namespace glidelab::report

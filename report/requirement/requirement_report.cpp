@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "base/text/number_text.h"
-#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/requirement/requirement_answer.h"
 #include "report/requirement/requirement_plot.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/math/normal95.h"
+#include "base/math/distributions.h"
 #include "fit/estimators.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot.h"

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/text/number_text.h"
-#include "report/html/folded.h"
 #include "report/html/html.h"
 #include "report/sweep/bandwidth_study.h"
 #include "report/sweep/sweep_meaning.h"

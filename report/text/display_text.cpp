@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "diagnose/effects/effect_library.h"
 #include "fit/estimators.h"
 #include "report/html/html.h"

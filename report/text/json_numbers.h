@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/result/results.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 
 namespace glidelab::report {
 

@@ -13,7 +13,6 @@
 #include "fit/estimators.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/sections.h"
-#include "report/html/folded.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"

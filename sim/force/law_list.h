@@ -4,8 +4,9 @@
 /// scenario's documentation.
 #pragma once
 
+#include <memory>
 #include <span>
-
+#include "base/toml/strict_toml.h"
 #include "sim/force/force_law.h"
 
 /// The ids, in the order in which messages and documentation name them; sim/force/laws/ID_law.cpp (power_law.cpp)
@@ -28,5 +29,12 @@ GLIDELAB_FORCE_LAWS(GLIDELAB_DECLARE_LAW)
 }  // namespace laws
 
 std::span<const ForceLaw* const> force_laws();
+
+/// A force law from its table in a scenario.
+///
+/// Reads `law` and the keys of that law (law_list.h) from one [[configuration.force]]. A value given over the mass is
+/// multiplied by `mass_kg`. Errors are recorded in the file; the term then holds NaN and must not be used before
+/// finish().
+std::shared_ptr<const ForceTerm> read_force(const base::TomlTable& table, double mass_kg);
 
 }  // namespace glidelab::sim

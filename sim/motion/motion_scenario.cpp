@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/math/angles.h"
-#include "sim/force/read_force.h"
+#include "sim/force/law_list.h"
 
 namespace glidelab::sim {
 

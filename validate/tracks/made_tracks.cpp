@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/math/angles.h"
-#include "core/motion/analyze_tracks.h"
+#include "core/motion/join_configurations.h"
 #include "core/pictures/marker/marker.h"
 #include "render/camera/exposure_times.h"
 #include "render/scenario/clip_motion.h"

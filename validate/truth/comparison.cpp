@@ -8,7 +8,7 @@
 
 #include "base/errors.h"
 #include "core/result/quantity.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {

@@ -22,7 +22,7 @@
 
 #include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/noise.h"
-#include "core/result/strength_choice.h"
+#include "core/result/strength.h"
 
 namespace glidelab::core {
 

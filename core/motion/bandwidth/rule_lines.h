@@ -26,7 +26,7 @@
 #include "core/motion/free/free_motion.h"
 #include "core/motion/free/motion.h"
 #include "core/motion/smoothing/noise.h"
-#include "core/result/strength_choice.h"
+#include "core/result/strength.h"
 
 namespace glidelab::core {
 

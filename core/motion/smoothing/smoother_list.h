@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
 #include "core/motion/smoothing/smoother.h"
 
 namespace glidelab::core {
@@ -19,5 +18,8 @@ inline constexpr std::string_view kLocalPolynomial = "local-polynomial";
 
 /// InputError for an unknown name, and for a bandwidth, or a rule that chooses one, with a smoother that has none.
 void check_smoother(const std::string& name, bool bandwidth_asked_for);
+
+/// The local cubic of each part with its own points alone (local_polynomial.h), as one of the smoothers.
+const Smoother& cubic_smoother();
 
 }  // namespace glidelab::core

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/math/distributions.h"
-#include "base/math/normal95.h"
 
 namespace glidelab::core {
 namespace {

@@ -25,7 +25,7 @@ extern "C" {
 }
 
 #include "base/errors.h"
-#include "core/pictures/frames/image_size.h"
+#include "core/pictures/frames/read_image.h"
 
 namespace glidelab::core {
 namespace fs = std::filesystem;

@@ -28,7 +28,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/pictures/image/code_tone.h"
+#include "core/pictures/image/pixel_signal.h"
 
 namespace glidelab::core {
 

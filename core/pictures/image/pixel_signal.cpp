@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <numbers>
 #include <vector>
-
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
@@ -80,6 +79,18 @@ double noise_of(const cv::Mat& values) {
 double noise_when_shrunk(const cv::Mat& values, int shrink) {
   return values.depth() == CV_8U ? shrunk_noise<std::uint8_t>(values, shrink)
                                  : shrunk_noise<std::uint16_t>(values, shrink);
+}
+
+double light_of_code(ToneCurve tone, double code) {
+  const double share = std::clamp(code, 0.0, 1.0);
+  if (tone == ToneCurve::linear) return share;
+  return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+}
+
+double code_of_light(ToneCurve tone, double light) {
+  const double share = std::clamp(light, 0.0, 1.0);
+  if (tone == ToneCurve::linear) return share;
+  return share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1.0 / 2.4) - 0.055;
 }
 
 }  // namespace glidelab::core

@@ -11,11 +11,10 @@
 /// variance (b^2 / 12), which changes E by less than 1e-6.
 #pragma once
 
-#include <opencv2/core.hpp>
-
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <opencv2/core.hpp>
 
 namespace glidelab::core {
 
@@ -123,5 +122,12 @@ double noise_of(const cv::Mat& values);
 
 /// The same of the image shrunk by a whole number, from some of its rows; values of 8 or 16 bits.
 double noise_when_shrunk(const cv::Mat& values, int shrink);
+
+/// From an image's codes to light and back: straight, or by the curve of video and photographs (IEC 61966-2-1, sRGB).
+enum class ToneCurve { linear, srgb };
+
+/// Light of a code and back, both as shares of the largest; beyond 0 and 1 clipped, as a camera does.
+double light_of_code(ToneCurve tone, double code);
+double code_of_light(ToneCurve tone, double light);
 
 }  // namespace glidelab::core

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "base/text/number_text.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
 

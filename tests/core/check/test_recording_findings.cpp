@@ -1,8 +1,11 @@
 #include <algorithm>
-
+#include "base/files/file_io.h"
+#include "core/check/check_recording.h"
 #include "core/check/recording_findings.h"
 #include "tests/catch.h"
 #include "tests/core/findings.h"
+#include "tests/core/simulated_track.h"
+#include "tests/temp_dir.h"
 
 using namespace glidelab;
 using tests::found_as;
@@ -120,4 +123,154 @@ TEST_CASE("of a file on its own a check notes what is assumed, and nothing where
   file.clips[0].mass_assumed = false;
   REQUIRE(noted().size() == 1);
   CHECK_FALSE(found_as<core::found::AssumedForFile>(noted()[0]).mass_kg);
+}
+
+using namespace glidelab;
+using core::Finding;
+using core::LengthUnit;
+using core::Severity;
+using core::Subject;
+using core::Topic;
+using tests::found_as;
+
+namespace {
+
+const Subject kOne{Subject::Part::clips, {"m1"}};
+
+core::Experiment of_one_clip(double mass_kg = 0.3) {
+  core::Experiment experiment;
+  experiment.clips.resize(1);
+  experiment.clips[0].name = "m1";
+  experiment.clips[0].mass_kg = mass_kg;
+  return experiment;
+}
+
+/// A slope of 4.3 degrees whose track's x is multiplied by `per_m`, checked as a folder that states `stated_deg`.
+core::RecordingCheck checked(double per_m, double stated_deg) {
+  const tests::TempDir dir;
+  core::Experiment experiment;
+  for (const core::Launched launched : {core::Launched::up, core::Launched::down}) {
+    const double start_m_s = launched == core::Launched::up ? -0.6 : 0.3;
+    const core::TrackData track = tests::film(tests::launch(tests::Law{4.3, 0.0071, 0.8}, start_m_s, 1.7), {});
+    std::string csv = "t_s,x_m\n";
+    for (std::size_t k = 0; k < track.t_s.size(); ++k) {
+      csv += std::to_string(track.t_s[k]) + "," + std::to_string(per_m * track.x_m[k]) + "\n";
+    }
+    core::ClipSetup setup = tests::clip_setup(launched, stated_deg);
+    setup.name += std::to_string(experiment.clips.size());
+    setup.track = dir / (setup.name + ".csv");
+    base::write_file(setup.track, csv);
+    experiment.clips.push_back(setup);
+  }
+  return core::check_recording(experiment, 1);
+}
+
+bool any_about(const std::vector<Finding>& findings, Topic topic) {
+  return std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) { return finding.topic == topic; });
+}
+
+}  // namespace
+
+TEST_CASE("lengths and masses of a laboratory pass, those a hundred or a thousand times as large name their unit") {
+  core::Experiment experiment = of_one_clip();
+  experiment.calibration.emplace().square_m = 0.04;
+  experiment.marker.emplace().diameter_m = 0.02;
+  experiment.track.length_m = 1.5;
+  CHECK(core::unit_findings(experiment, 1.2).empty());
+  struct Row {
+    double square_m;
+    LengthUnit unit;
+  };
+  for (const Row& row :
+       {Row{40.0, LengthUnit::millimetres}, Row{4.0, LengthUnit::centimetres}, Row{25.0, LengthUnit::millimetres}}) {
+    experiment.calibration->square_m = row.square_m;
+    const std::vector<Finding> found = core::unit_findings(experiment, 1.2);
+    REQUIRE(found.size() == 1);
+    const auto& length = found_as<core::found::LengthInUnit>(found[0]);
+    CHECK(length.key == "square_m");
+    CHECK(length.value == row.square_m);
+    CHECK(length.unit == row.unit);
+    CHECK(found[0].about.part == Subject::Part::pattern);
+    CHECK(found[0].severity == Severity::unusable);
+  }
+  experiment.calibration->square_m = 0.04;
+  experiment.track.length_m = 150.0;
+  const std::vector<Finding> track = core::unit_findings(experiment, 1.2);
+  CHECK(found_as<core::found::LengthInUnit>(track.at(0)).key == "length_m");
+  CHECK(found_as<core::found::LengthInUnit>(track.at(0)).unit == LengthUnit::centimetres);
+  experiment.track.length_m = {};
+  experiment.scale = core::ScaleSetup{0.6, 0.0};
+  const std::vector<Finding> scale = core::unit_findings(experiment, 1.2);
+  CHECK(found_as<core::found::ScaleInUnit>(scale.at(0)).unit == LengthUnit::millimetres);  // 600 px per metre
+}
+
+TEST_CASE("335 kg look like grams on a track, and not on a slide of forty metres") {
+  const core::Experiment experiment = of_one_clip(335.0);
+  const std::vector<Finding> found = core::unit_findings(experiment, 1.2);
+  REQUIRE(found.size() == 1);
+  CHECK(found_as<core::found::MassInGrams>(found[0]).mass_kg == 335.0);
+  CHECK(core::unit_findings(experiment, 40.0).empty());
+}
+
+TEST_CASE("what follows from squares in millimetres stands below them, and nothing else does") {
+  core::Experiment experiment = of_one_clip();
+  experiment.calibration.emplace().square_m = 40.0;
+  const std::vector<Finding> findings = core::with_root_causes(
+      experiment, {},
+      {{Severity::unusable, kOne, core::found::BeyondTrack{900.0, 1.5, {}}, Topic::length},
+       {Severity::unusable, kOne, core::found::MotionFault{core::found::BeyondGravity{300.0, 9.8, {}}}, Topic::length},
+       {Severity::unusable, kOne, core::found::InclineOff{}, Topic::incline},
+       {Severity::change, kOne, core::found::MarkerSaturated{}}});
+  REQUIRE(findings.size() == 2);
+  CHECK(found_as<core::found::LengthInUnit>(findings[0]).key == "square_m");
+  REQUIRE(findings[0].follow.size() == 3);
+  CHECK(findings[0].follow[0].about.clips == kOne.clips);
+  CHECK(found_as<core::found::BeyondTrack>(findings[0].follow[0]).distance_m == 900.0);
+  found_as<core::found::MarkerSaturated>(findings[1]);
+}
+
+TEST_CASE("x in centimetres is named with its size in metres, and the inclination that it spoils follows") {
+  const core::RecordingCheck check = checked(100.0, 4.3);
+  REQUIRE_FALSE(check.findings.empty());
+  CHECK_FALSE(check.usable);
+  CHECK(found_as<core::found::TrackInUnit>(check.findings[0]).unit == LengthUnit::centimetres);
+  CHECK_FALSE(check.findings[0].follow.empty());
+  CHECK_FALSE(any_about(check.findings, Topic::incline));
+  CHECK_FALSE(any_about(check.findings, Topic::length));
+  CHECK(found_as<core::found::TrackInUnit>(checked(1000.0, 4.3).findings[0]).unit == LengthUnit::millimetres);
+  CHECK(checked(1.0, 4.3).findings.empty());
+}
+
+TEST_CASE("an inclination in radians is named, one that is only wrong is not") {
+  const core::RecordingCheck radians = checked(1.0, 0.07505);  // 4.3 degrees
+  REQUIRE_FALSE(radians.findings.empty());
+  const auto& angle = found_as<core::found::InclineInRadians>(radians.findings[0]);
+  CHECK(angle.stated_deg == Approx(0.07505).epsilon(1e-9));
+  CHECK(angle.as_radians_deg == Approx(4.3).epsilon(1e-4));
+  CHECK_FALSE(any_about(radians.findings, Topic::incline));
+  const core::RecordingCheck wrong = checked(1.0, 2.0);
+  CHECK(any_about(wrong.findings, Topic::incline));
+}
+
+TEST_CASE("a frame rate that makes the inclination right is the cause, and the inclination's finding follows") {
+  core::Experiment experiment = of_one_clip();
+  experiment.camera.emplace().frame_rate_hz = 120.0;
+  core::RecordingCheck check;
+  check.clips.resize(1);
+  check.clips[0].name = "m1";
+  check.clips[0].frame_rate_hz = 120.0;
+  check.clips[0].container_rate_hz = 60.0;
+  core::ConfigurationResult found;
+  found.clips = {"m1"};
+  found.incline_deg = 4.3;
+  // Twice the rate is four times the acceleration: sin(alpha) = 4 sin(4.3°).
+  found.alpha_deg = {core::Estimate{17.45, 0.01, 17.43, 17.47}, {}};
+  check.configurations = {found};
+  const std::vector<Finding> findings = core::with_root_causes(
+      experiment, check, {{Severity::unusable, kOne, core::found::InclineOff{}, Topic::incline}});
+  REQUIRE(findings.size() == 1);
+  const auto& rate = found_as<core::found::WrongFrameRate>(findings[0]);
+  CHECK(rate.stated_hz == 120.0);
+  CHECK(rate.file_hz == 60.0);
+  CHECK(findings[0].follow.size() == 1);
 }

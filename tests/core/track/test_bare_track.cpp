@@ -6,7 +6,6 @@
 #include "base/files/file_io.h"
 #include "core/analysis/analyze.h"
 #include "core/check/check_recording.h"
-#include "core/track/read_track.h"
 #include "tests/catch.h"
 #include "tests/core/made_project.h"
 #include "tests/core/notes.h"

@@ -5,7 +5,7 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
-#include "core/track/read_track.h"
+#include "core/track/bare_track.h"
 #include "core/track/track_data.h"
 #include "core/track/tracker_xml.h"
 #include "tests/catch.h"

@@ -9,7 +9,7 @@
 #include "base/errors.h"
 #include "base/files/child_process.h"
 #include "base/files/file_io.h"
-#include "base/math/normal95.h"
+#include "base/math/distributions.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/core/notes.h"

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "sim/force/law_list.h"
-#include "sim/force/read_force.h"
 #include "tests/catch.h"
 #include "tests/sim/bodies.h"
 

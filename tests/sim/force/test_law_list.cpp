@@ -11,7 +11,6 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
-#include "sim/force/read_force.h"
 #include "sim/sensitivity/sensitivity.h"
 #include "test_paths.h"
 #include "tests/catch.h"

@@ -16,7 +16,7 @@
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "diagnose/lines/line_model.h"
 #include "diagnose/verdict/diagnose.h"
 #include "validate/random_use.h"

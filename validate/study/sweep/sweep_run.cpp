@@ -4,7 +4,7 @@
 
 #include "base/errors.h"
 #include "core/result/quantity.h"
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 #include "fit/estimators.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/coverage/naive_lines.h"

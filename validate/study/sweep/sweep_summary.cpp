@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <functional>
 
-#include "base/text/digit.h"
 #include "base/text/number_text.h"
 #include "fit/estimators.h"
 #include "validate/study/sweep/design/sweep.h"

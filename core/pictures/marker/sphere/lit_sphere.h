@@ -24,7 +24,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/pictures/image/code_tone.h"
+#include "core/pictures/image/pixel_signal.h"
 
 namespace glidelab::core {
 

@@ -9,7 +9,7 @@
 
 #include "base/errors.h"
 #include "base/math/distributions.h"
-#include "render/random/streams.h"
+#include "render/random/random_numbers.h"
 
 namespace glidelab::validate {
 

@@ -1,4 +1,4 @@
-#include "render/random/streams.h"
+#include "render/random/random_numbers.h"
 
 #include "tests/catch.h"
 

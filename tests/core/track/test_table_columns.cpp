@@ -1,4 +1,4 @@
-#include "core/track/table_units.h"
+#include "core/track/table_columns.h"
 
 #include <string>
 #include <utility>

@@ -1,4 +1,3 @@
-#include "core/pictures/frames/image_size.h"
 
 #include <array>
 #include <opencv2/imgcodecs.hpp>

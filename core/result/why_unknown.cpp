@@ -1,4 +1,4 @@
-#include "core/result/why_words.h"
+#include "core/result/why_unknown.h"
 
 #include <fmt/format.h>
 
