@@ -2,17 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace glidelab::base {
 namespace {
 
+constexpr std::size_t kMostLines = 20;  // a screenful, with the command above it
+
 std::string join(const std::vector<Issue>& issues) {
   std::string text;
-  for (const Issue& issue : issues) {
+  for (std::size_t i = 0; i < std::min(issues.size(), kMostLines); ++i) {
     if (!text.empty()) text += '\n';
-    text += describe(issue);
+    text += describe(issues[i]);
   }
+  if (issues.size() > kMostLines) text += fmt::format("\nand {} more errors", issues.size() - kMostLines);
   return text;
 }
 

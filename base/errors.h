@@ -22,7 +22,8 @@ struct Issue {
 /// "file:line: key: found X, expected Y", leaving out what is empty.
 std::string describe(const Issue& issue);
 
-/// The input is wrong (exit status 1). Holds every issue that was found, one line each in what().
+/// The input is wrong (exit status 1). Holds every issue that was found; what() has a line for each of the first twenty
+/// and says how many more there are.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Issue> issues);

@@ -56,10 +56,18 @@ void append_file(const fs::path& path, std::string_view bytes) {
 }
 
 std::string read_file(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
   std::error_code failure;  // the name is too long, or its folder may not be read
   const fs::file_status status = fs::status(path, failure);
+  if (fs::is_fifo(status) || fs::is_socket(status) || fs::is_character_file(status) || fs::is_block_file(status)) {
+    throw InputError(Issue{path.string(), 0, "", fs::is_fifo(status) ? "a named pipe" : "a device or socket",
+                           "a file (save what it gives first)"});
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (const std::uintmax_t bytes = fs::file_size(path, failure); !failure && bytes > kLargestFile) {
+    throw InputError(
+        Issue{path.string(), 0, "", fmt::format("{} bytes", bytes), fmt::format("at most {}", kLargestFile)});
+  }
   if (!stream || fs::is_directory(status)) {
     throw InputError(Issue{path.string(), 0, "",
                            fs::is_directory(status)               ? "a folder"
@@ -280,6 +288,17 @@ void refuse_dangling(const fs::path& folder) {
   }
 }
 
+/// The folders above this one that do not exist yet, deepest first.
+std::vector<fs::path> missing_parents(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code error;  // a folder that cannot be looked at was not made here
+  for (fs::path at = folder.parent_path(); at.has_relative_path(); at = at.parent_path()) {
+    if (fs::symlink_status(at, error).type() != fs::file_type::not_found) break;
+    missing.push_back(at);
+  }
+  return missing;
+}
+
 }  // namespace
 
 StagedOutput::StagedOutput(fs::path final_dir)
@@ -290,15 +309,17 @@ StagedOutput::StagedOutput(fs::path final_dir)
   }
   refuse_dangling(final_);
   clear_leftovers(final_);
+  made_parents_ = missing_parents(staging_);
   fs::create_directories(staging_, error);
   if (error) throw_system_error(final_.string(), "output folder cannot be written", error.value());
-  remember_passing_folder(staging_);
+  remember_passing_folder(staging_, made_parents_);
 }
 
 StagedOutput::~StagedOutput() {
   try {
     std::error_code ignored;  // a destructor cannot report errors
     fs::remove_all(staging_, ignored);
+    for (const fs::path& parent : made_parents_) fs::remove(parent, ignored);  // only an empty one
     forget_passing_folder(staging_);
   } catch (const std::bad_alloc&) {  // the next run to the same output removes it
   }

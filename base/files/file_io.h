@@ -2,6 +2,7 @@
 /// program made, and outputs that appear whole or not at all. Errors name the file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,7 +17,10 @@ void write_file(const std::filesystem::path& path, std::string_view bytes);
 /// grows piece by piece because its contents do not fit into memory.
 void append_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// Reads a whole file; InputError if it does not exist or cannot be read.
+inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 30;  ///< bytes; a track of thirty million rows
+
+/// Reads a whole file; InputError if it does not exist, cannot be read, is no regular file (a named pipe would be
+/// waited for without end, a device read without end) or is larger than kLargestFile.
 std::string read_file(const std::filesystem::path& path);
 
 /// A new temporary folder, removed with its contents at the end of the object's life.
@@ -61,8 +65,8 @@ std::vector<OwnFile> own_files(const std::filesystem::path& dir);
 /// Outputs that appear whole or not at all.
 ///
 /// A command writes everything into a staging folder beside the final one (on the same file system, so that rename(2)
-/// is atomic) and publishes it once everything has succeeded. An exception removes the staging folder and leaves the
-/// previous output as it was.
+/// is atomic) and publishes it once everything has succeeded. An exception removes the staging folder, and the folders
+/// above it that it made and that are empty, and leaves the previous output as it was.
 class StagedOutput {
  public:
   /// Makes `<parent>/<name>.part-<place>-<pid>-<n>`; EnvironmentError if that cannot be written.
@@ -90,6 +94,7 @@ class StagedOutput {
  private:
   std::filesystem::path final_;
   std::filesystem::path staging_;
+  std::vector<std::filesystem::path> made_parents_;  ///< deepest first
 };
 
 }  // namespace glidelab::base

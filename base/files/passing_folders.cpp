@@ -1,7 +1,7 @@
 #include "base/files/passing_folders.h"
 
+#include <map>
 #include <mutex>
-#include <set>
 #include <system_error>
 
 namespace glidelab::base {
@@ -11,7 +11,7 @@ namespace {
 /// One per process, as signals are; never destroyed, because threads may outlive main().
 struct PassingFolders {
   std::mutex mutex;
-  std::set<fs::path> folders;
+  std::map<fs::path, std::vector<fs::path>> folders;  ///< and the parents that were made for each
   bool publishing = false;
 };
 
@@ -22,9 +22,9 @@ PassingFolders& passing() {
 
 }  // namespace
 
-void remember_passing_folder(const fs::path& folder) {
+void remember_passing_folder(const fs::path& folder, const std::vector<fs::path>& parents) {
   const std::lock_guard lock(passing().mutex);
-  passing().folders.insert(folder);
+  passing().folders.insert_or_assign(folder, parents);
 }
 
 void forget_passing_folder(const fs::path& folder) {
@@ -43,9 +43,10 @@ bool discard_passing_folders() {
     passing().mutex.unlock();
     return false;
   }
-  for (const fs::path& folder : passing().folders) {
+  for (const auto& [folder, parents] : passing().folders) {
     std::error_code ignored;  // what another thread writes in the meantime stays, as after a kill
     fs::remove_all(folder, ignored);
+    for (const fs::path& parent : parents) fs::remove(parent, ignored);  // only an empty one
   }
   return true;
 }

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace glidelab::base {
 
-void remember_passing_folder(const std::filesystem::path& folder);
+/// `parents`: folders above it that were made for it, deepest first, and that go with it where nothing else is in them.
+void remember_passing_folder(const std::filesystem::path& folder,
+                             const std::vector<std::filesystem::path>& parents = {});
 void forget_passing_folder(const std::filesystem::path& folder);
 
 /// From now on results are being put in place; the process then ends by itself.

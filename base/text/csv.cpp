@@ -83,6 +83,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::stri
     if (!header_read) {
       header_read = true;
       for (const std::string_view field : fields) {
+        if (issues.size() >= kMaxIssues) break;
         const std::string name(field);
         const bool known = std::find(wanted.begin(), wanted.end(), name) != wanted.end() ||
                            std::find(optional.begin(), optional.end(), name) != optional.end();

@@ -417,7 +417,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   }
   for (std::size_t r = first_data; r < rows.size() && issues.size() < kMostFieldIssues; ++r) {
     table.line.push_back(lines[r].number);
-    for (std::size_t c = 0; c < width; ++c) {
+    for (std::size_t c = 0; c < width && issues.size() < kMostFieldIssues; ++c) {
       const std::string_view field = c < rows[r].size() ? rows[r][c] : std::string_view{};
       std::optional<double> value;
       if (!is_missing(field)) {

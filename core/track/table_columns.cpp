@@ -35,14 +35,17 @@ bool is_acceleration(const TableColumn& column) {
          name.find("aceler") != std::string::npos || name.find("acc\xC3\xA9l") != std::string::npos;
 }
 
+constexpr std::size_t kMostNamedColumns = 20;
+
 std::string columns_text(const ColumnTable& table) {
   std::vector<std::string> names;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+  for (std::size_t c = 0; c < std::min(table.columns.size(), kMostNamedColumns); ++c) {
     const TableColumn& column = table.columns[c];
     const bool run_apart = !column.run.empty() && column.text.find(column.run) == std::string::npos;
     names.push_back(fmt::format("{} \"{}{}\"", c + 1, run_apart ? column.run + ": " : "", column.text));
   }
-  return fmt::format("columns {}", fmt::join(names, ", "));
+  const std::size_t more = table.columns.size() - names.size();
+  return fmt::format("columns {}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
 base::InputError wrong_column(const ColumnTable& table, const std::string& found, const std::string& expected) {

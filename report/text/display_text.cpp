@@ -70,7 +70,11 @@ std::string file_name_part(std::string_view text) {
       name += c;
     }
   }
-  return name;
+  if (name.size() <= kLongestNamePart) return name;
+  std::size_t end = kLongestNamePart;
+  const auto continues = [&](std::size_t at) { return (static_cast<unsigned char>(name[at]) & 0xc0) == 0x80; };
+  while (end > 0 && continues(end)) --end;  // UTF-8
+  return name.substr(0, end);
 }
 
 std::vector<std::string> phase_file_names(const core::AnalysisResults& results) {

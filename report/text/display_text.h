@@ -51,8 +51,11 @@ std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::Configur
 /// 2°, plunger". Text from a file: to be escaped.
 std::string configuration_name(const core::AnalysisResults& results, const core::ConfigurationResult& configuration);
 
+inline constexpr std::size_t kLongestNamePart = 100;  ///< bytes; a file's name of two parts stays below 255
+
 /// The text with '/', '%' and control characters written as %XX, so that it names one file of a folder. A clip's name
-/// is any text; a file's name is not.
+/// is any text of any length; a file's name is not. A name of more than kLongestNamePart bytes is cut between two
+/// characters.
 std::string file_name_part(std::string_view text);
 
 /// `phase-<clip>.csv` for each clip of the results; if clips of two folders have the same name, the folder's name

@@ -1,7 +1,11 @@
 /// Files from a stranger that would make a reader open other files, ask the network, fill the memory or work without an
 /// end: each is refused with one message and status 1, soon, and nothing is left.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
@@ -123,6 +127,51 @@ TEST_CASE("hostile clips and images end with one message and status 1, soon, and
     CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < kMostSeconds);
     fs::remove_all(folder);
   }
+}
+
+TEST_CASE("a named pipe in place of a text file is refused, not waited for") {
+  const tests::TempDir temp;
+  fs::create_directories(temp / "folder");
+  REQUIRE(::mkfifo((temp / "folder/experiment.toml").c_str(), 0600) == 0);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"analyze", "folder"}, {"simulate", "folder/experiment.toml"}}) {
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {"-q", "--out", "out"});
+    const tests::ProcessResult result = tests::glidelab(words, temp.path());
+    CHECK(result.status == 1);
+    CHECK_THAT(result.err, Catch::Contains("experiment.toml: found a named pipe"));
+  }
+}
+
+TEST_CASE("a clip whose name is longer than a file's is analysed") {
+  const tests::TempDir temp;
+  fs::create_directories(temp / "long");
+  std::string track = "t_s,x_m\n";
+  for (int i = 0; i < 120; ++i)
+    track += fmt::format("{:.3f},{:.6f}\n", 0.01 * i, 0.5 * 0.01 * i + 0.1 * std::sin(0.1 * i));
+  base::write_file(temp / "long/track.csv", track);
+  const std::string name(300, 'n');
+  base::write_file(
+      temp / "long/experiment.toml",
+      fmt::format("format = 1\nname = \"long\"\n[[clip]]\nname = \"{}\"\ntrack = \"track.csv\"\nmass_kg = 0.3\n"
+                  "[[clip]]\nname = \"{}2\"\ntrack = \"track.csv\"\nmass_kg = 0.3\n",
+                  name, name));
+  const tests::ProcessResult result = tests::glidelab({"analyze", "long", "-q", "--out", "out"}, temp.path());
+  INFO(result.err);
+  CHECK(result.status == 0);
+  CHECK(fs::exists(temp / "out" / fmt::format("phase-{}.csv", name.substr(0, 100))));
+  CHECK(fs::exists(temp / "out" / fmt::format("phase-{}-2.csv", name.substr(0, 100))));  // the other, cut alike
+}
+
+TEST_CASE("a table of thousands of unknown columns gets a page of errors, not thousands") {
+  const tests::TempDir temp;
+  std::string header = "a";
+  for (int i = 0; i < 50'000; ++i) header += fmt::format(",c{}", i);
+  base::write_file(temp / "wide.csv", header + "\n" + std::string(100'000, ','));
+  const tests::ProcessResult result = tests::glidelab({"analyze", "wide.csv", "-q", "--out", "out"}, temp.path());
+  CHECK(result.status == 1);
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') <= 21);
+  CHECK(result.err.size() < 4000);
 }
 
 TEST_CASE("an image that takes a thousand times as much as its file is read within the limit alone") {

@@ -239,6 +239,24 @@ TEST_CASE("no test's name holds a semicolon, at which CMake would cut it in two 
   CHECK(names > 100);
 }
 
+TEST_CASE("each change by hand of tests/tools/named_mutants.txt names what stands once in its file") {
+  std::istringstream lines(base::read_file(fs::path(tests::kSourceDir) / "tests/tools/named_mutants.txt"));
+  int changes = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.starts_with('#')) continue;
+    const std::size_t first = line.find(" | "), second = line.find(" | ", first + 3);
+    REQUIRE(second != std::string::npos);
+    const std::string text = base::read_file(fs::path(tests::kSourceDir) / line.substr(0, first)),
+                      old = line.substr(first + 3, second - first - 3);
+    const std::size_t at = text.find(old);
+    INFO(line);
+    CHECK(at != std::string::npos);
+    CHECK(text.find(old, at + 1) == std::string::npos);
+    ++changes;
+  }
+  CHECK(changes > 20);
+}
+
 TEST_CASE("every program that a test is skipped without is in a package that tools/test installs") {
   // Debian's package of each; script is of bsdutils, which every Debian has.
   const std::map<std::string, std::string> package_of = {{"chromium", "chromium"},

@@ -1,12 +1,14 @@
 #include "base/files/file_io.h"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 
 #include "base/errors.h"
+#include "base/files/passing_folders.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 
@@ -112,6 +114,49 @@ TEST_CASE("an output that is not published leaves nothing behind") {
   const glidelab::tests::TempDir temp;
   { StagedOutput output(temp / "out"); }
   CHECK(entries(temp.path()) == 0);
+
+  // nor do the folders above it that it made, unless something else has come into them
+  { StagedOutput output(temp / "runs/today/out"); }
+  CHECK(entries(temp.path()) == 0);
+  {
+    StagedOutput output(temp / "runs/today/out");
+    write_file(temp / "runs/notes.txt", "mine");
+  }
+  CHECK(read_file(temp / "runs/notes.txt") == "mine");
+  CHECK(entries(temp / "runs") == 1);
+  fs::create_directories(temp / "empty");
+  { StagedOutput output(temp / "empty/out"); }
+  CHECK(fs::exists(temp / "empty"));  // made by somebody else
+}
+
+TEST_CASE("an interrupted output leaves no folder that was made for it") {
+  const glidelab::tests::TempDir temp;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    StagedOutput output(temp / "runs/out");
+    write_file(output.dir() / "part.txt", "half");
+    ::_exit(discard_passing_folders() ? 0 : 1);
+  }
+  int status = 1;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
+  CHECK(entries(temp.path()) == 0);
+}
+
+TEST_CASE("what would be read without end is refused") {
+  const glidelab::tests::TempDir temp;
+  const auto says = [](const fs::path& path, const char* what) {
+    CHECK_THROWS_MATCHES(
+        read_file(path), InputError,
+        Catch::Matchers::Predicate<InputError>(
+            [&](const InputError& error) { return std::string(error.what()).find(what) != std::string::npos; }, what));
+  };
+  REQUIRE(::mkfifo((temp / "pipe.toml").c_str(), 0600) == 0);
+  says(temp / "pipe.toml", "a named pipe");
+  says("/dev/zero", "a device");
+  write_file(temp / "huge.toml", "");
+  fs::resize_file(temp / "huge.toml", kLargestFile + 1);  // a hole: it takes no space
+  says(temp / "huge.toml", "1073741825 bytes");
 }
 
 TEST_CASE("what a killed process left is cleared by the next output of that name, what a running one writes is not") {
