@@ -153,9 +153,12 @@ TEST_CASE("a clip whose name is longer than a file's is analysed") {
   const std::string name(300, 'n');
   base::write_file(
       temp / "long/experiment.toml",
-      fmt::format("format = 1\nname = \"long\"\n[[clip]]\nname = \"{}\"\ntrack = \"track.csv\"\nmass_kg = 0.3\n"
-                  "[[clip]]\nname = \"{}2\"\ntrack = \"track.csv\"\nmass_kg = 0.3\n",
-                  name, name));
+      fmt::format(
+          "format = 1\nname = \"long\"\n[[clip]]\nname = \"{}\"\ntrack = \"track.csv\"\nmass_kg = 0.3\nincline_deg = "
+          "2.0\n"
+          "launched = \"down\"\n[[clip]]\nname = \"{}2\"\ntrack = \"track.csv\"\nmass_kg = 0.3\nincline_deg = 2.0\n"
+          "launched = \"down\"\n",
+          name, name));
   const tests::ProcessResult result = tests::glidelab({"analyze", "long", "-q", "--out", "out"}, temp.path());
   INFO(result.err);
   CHECK(result.status == 0);

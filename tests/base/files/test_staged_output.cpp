@@ -8,7 +8,6 @@
 #include <csignal>
 
 #include "base/errors.h"
-#include "base/files/passing_folders.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 
@@ -127,20 +126,6 @@ TEST_CASE("an output that is not published leaves nothing behind") {
   fs::create_directories(temp / "empty");
   { StagedOutput output(temp / "empty/out"); }
   CHECK(fs::exists(temp / "empty"));  // made by somebody else
-}
-
-TEST_CASE("an interrupted output leaves no folder that was made for it") {
-  const glidelab::tests::TempDir temp;
-  const pid_t child = ::fork();
-  if (child == 0) {
-    StagedOutput output(temp / "runs/out");
-    write_file(output.dir() / "part.txt", "half");
-    ::_exit(discard_passing_folders() ? 0 : 1);
-  }
-  int status = 1;
-  REQUIRE(::waitpid(child, &status, 0) == child);
-  CHECK(status == 0);
-  CHECK(entries(temp.path()) == 0);
 }
 
 TEST_CASE("what would be read without end is refused") {
