@@ -145,7 +145,7 @@ std::string check_bandwidth(const std::string& text) {
 }
 
 std::string smoother_help() {
-  std::string text = "What makes v(t) and a(t) of the positions";
+  std::string text = "How v(t) and a(t) are computed from the positions";
   const char* before = ": ";
   for (const core::Smoother* smoother : core::smoothers()) {
     text += fmt::format("{}\"{}\" {}", std::exchange(before, "; "), smoother->name(), smoother->words());

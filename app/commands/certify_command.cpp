@@ -81,7 +81,7 @@ void add_certify(CLI::App& app, Command& chosen) {
       "them, what would help");
   command
       ->add_option("EXPERIMENT", options->experiments,
-                   "Folders that hold an experiment.toml; several share the glider and the track. Or files with a "
+                   "Folders that hold an experiment.toml; several must share the glider and the track. Or files with a "
                    "track, as analyze takes them")
       ->type_name("DIR|FILE")
       ->required();

@@ -173,10 +173,10 @@ void add_challenge(CLI::App& app, Command& chosen) {
       ->type_name("FILE");
   command->add_option("--estimator", options->estimator, "For run: one of Glidelab's own estimators")
       ->check(CLI::IsMember(fit::estimator_names()));
-  add_outside_options(*command, options->outside);
+  add_outside_options(*command, options->outside, "For run: an estimator of your own, which answers");
   add_common_options(*command, options->common,
                      "glidelab-out/answers-<name of the estimator>, glidelab-out/challenge-<name of the folder>",
-                     "For make: seed of the cases, which is written in the truth only; default: 1");
+                     "For make: seed of the cases, stored only in the truth file; default: 1");
   command->callback([options, command, &chosen] {
     check_use(*command, *options);
     chosen = [options] {

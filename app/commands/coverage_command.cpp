@@ -119,7 +119,7 @@ void add_coverage(CLI::App& app, Command& chosen) {
   command
       ->add_option("--level", options->levels,
                    "Confidence levels of the intervals to count, in per cent, each above 0 and below 100")
-      ->type_name("PERCENT...")
+      ->type_name("PERCENT")
       ->check(check_level)
       ->default_str("50 68 90 95 99");
   CLI::Option* bandwidth = command

@@ -86,8 +86,8 @@ void add_require(CLI::App& app, Command& chosen) {
       ->add_option(
           "--target", options->targets,
           fmt::format(
-              "QUANTITY=VALUE (what 95 % of the errors stay within), QUANTITY:sd=VALUE (root mean square error) "
-              "or QUANTITY:bias=VALUE (mean error); quantities are {}",
+              "QUANTITY=VALUE or QUANTITY:error95=VALUE (what 95 % of the errors stay within), QUANTITY:sd=VALUE "
+              "(root mean square error) or QUANTITY:bias=VALUE (mean error); quantities are {}",
               fmt::join(core::quantity_keys(), ", ")))
       ->type_name("TARGET")
       ->required();
@@ -99,12 +99,12 @@ void add_require(CLI::App& app, Command& chosen) {
       ->check(CLI::IsMember({"tracks", "clips", "none"}));
   CLI::Option* runs = command
                           ->add_option("--runs", options->runs,
-                                       "Most rendered runs of one camera: of the one to buy, and of those "
-                                       "that are close to the target")
+                                       "Maximum number of rendered runs for a camera that may be the one to buy "
+                                       "or is close to the target")
                           ->type_name("N")
                           ->check(CLI::Range(2, 100000))
                           ->capture_default_str();
-  command->add_option("--track-runs", options->track_runs, "Runs as tracks per camera")
+  command->add_option("--track-runs", options->track_runs, "Number of simulated tracks per camera")
       ->type_name("N")
       ->check(CLI::Range(2, 1000000))
       ->capture_default_str();

@@ -238,9 +238,7 @@ void add_sweep(CLI::App& app, Command& chosen) {
       "sweep",
       "Run a scenario many times with varied values, and see how errors depend on them (docs/reference/sweep.md)");
   command->add_option("SWEEP", options->sweep, "A sweep file (docs/reference/sweep.md)")->type_name("FILE")->required();
-  command
-      ->add_option("--shard", options->shard,
-                   "Do only part I of N of the runs, into a database of its own, and write no page")
+  command->add_option("--shard", options->shard, "Run only part I of N, into a database of its own, and write no page")
       ->type_name("I/N")
       ->check(check_shard);
   command

@@ -192,8 +192,8 @@ void hush_libraries() {
 int run_words(int argc, char** argv) {
   hush_libraries();
   CLI::App app(
-      "Glidelab rehearses video experiments on friction: it simulates a glider on a track, films it, analyses the film "
-      "as it would a real one, and compares the result with the truth.",
+      "Glidelab rehearses and analyses video experiments on friction: it simulates a glider, films it with a synthetic "
+      "camera, analyses real and synthetic film alike, and finds what the simple law leaves out.",
       "glidelab");
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Show this help");
@@ -213,23 +213,23 @@ int run_words(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("glidelab COMMAND --help, or glidelab help COMMAND, shows the options of a command.");
   Command command;
-  add_simulate(app, command);
-  add_render(app, command);
-  add_analyze(app, command);
-  add_validate(app, command);
-  add_coverage(app, command);
-  add_certify(app, command);
-  add_sweep(app, command);
-  add_require(app, command);
-  add_laws(app, command);
-  add_characterize(app, command);
-  add_diagnose(app, command);
-  add_blind(app, command);
-  add_challenge(app, command);
   add_new(app, command);
   add_pattern(app, command);
   add_check(app, command);
+  add_analyze(app, command);
+  add_certify(app, command);
+  add_diagnose(app, command);
+  add_characterize(app, command);
+  add_simulate(app, command);
+  add_render(app, command);
+  add_validate(app, command);
+  add_coverage(app, command);
+  add_sweep(app, command);
+  add_require(app, command);
+  add_laws(app, command);
   add_explore(app, command);
+  add_blind(app, command);
+  add_challenge(app, command);
   const std::vector<std::string> words = words_given(argc, argv);
   if (words.empty()) {
     fmt::print(stderr, "{}", app.help());

@@ -308,13 +308,13 @@ std::optional<fit::OutsideEstimator> OutsideOptions::estimator() const {
   });
 }
 
-void add_outside_options(CLI::App& command, OutsideOptions& options) {
-  CLI::Option* judged =
-      command
-          .add_option("--estimator-command", options.command,
-                      "Also judge an estimator of your own: a program that reads the experiment folder {folder} "
-                      "and writes {out}/results.json (docs/reference/own-estimator.md)")
-          ->type_name("COMMAND");
+void add_outside_options(CLI::App& command, OutsideOptions& options, const std::string& use) {
+  CLI::Option* judged = command
+                            .add_option("--estimator-command", options.command,
+                                        use +
+                                            ": a program that reads the experiment folder {folder} "
+                                            "and writes {out}/results.json (docs/reference/own-estimator.md)")
+                            ->type_name("COMMAND");
   command
       .add_option("--estimator-name", options.name, "Its name in the results; default: the name of the program file")
       ->type_name("NAME")

@@ -1,5 +1,5 @@
-/// Options of every command, options common to the commands that take recordings (analyze, check, diagnose, certify),
-/// and how a command writes: files, tables and JSON.
+/// Three groups of options: of every command, of those that take recordings (analyze, check, diagnose, certify), and of
+/// those that run an estimator of the user's own; and how a command writes: files, tables and JSON.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,6 @@
 #include "core/experiment/permissions.h"
 #include "core/track/bare_track.h"
 #include "fit/outside/outside_estimator.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace CLI {
 class App;
@@ -144,6 +136,7 @@ struct OutsideOptions {
 };
 
 /// Adds --estimator-command, --estimator-name, --estimator-seconds and --estimator-megabytes.
-void add_outside_options(CLI::App& command, OutsideOptions& options);
+void add_outside_options(CLI::App& command, OutsideOptions& options,
+                         const std::string& use = "Also judge an estimator of your own");
 
 }  // namespace glidelab::app

@@ -239,7 +239,7 @@ std::string examples() {
         "glidelab validate scenarios/rehearsals/raspberry-90.toml -o raspberry",
         "glidelab diagnose --plan scenarios/rehearsals/raspberry-90.toml --noise-m 1.5e-5 -o plan"}},
       {"I have recorded clips:",
-       {"glidelab new my-track", "glidelab check my-track", "glidelab analyze my-track", "glidelab certify my-track",
+       {"glidelab check my-track", "glidelab analyze my-track", "glidelab certify my-track",
         "glidelab diagnose my-track"}},
       {"I teach:",
        {"glidelab explore -o class", "glidelab laws scenarios/laws -o laws",
@@ -286,7 +286,8 @@ std::string man_page(const CLI::App& app) {
       ".SH EXIT STATUS\n"
       ".TP\n.B 0\ndone\n.TP\n.B 1\nthe input is wrong\n.TP\n.B 2\nthe command line is wrong\n"
       ".TP\n.B 3\nthe environment failed: disk full, codec missing\n"
-      ".TP\n.B 4\na requirement (a baseline, a target) is not met\n.TP\n.B 130\ninterrupted\n";
+      ".TP\n.B 4\na requirement is not met (a baseline, a target, a usable recording, a twin that a "
+      "scenario cannot express, intervals that do not hold)\n.TP\n.B 130\ninterrupted\n";
   return text;
 }
 

@@ -60,7 +60,7 @@ std::string read_file(const fs::path& path) {
   const fs::file_status status = fs::status(path, failure);
   if (fs::is_fifo(status) || fs::is_socket(status) || fs::is_character_file(status) || fs::is_block_file(status)) {
     throw InputError(Issue{path.string(), 0, "", fs::is_fifo(status) ? "a named pipe" : "a device or socket",
-                           "a file (save what it gives first)"});
+                           "a regular file (save the pipe's output to one first)"});
   }
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;

@@ -73,7 +73,7 @@ struct LengthSources {
   bool tracks = false;                 ///< the unit of x in tracks
 };
 
-/// Positions that stand at one value far from those before: a tracker that has lost its object writes such rows.
+/// Positions that stay at one value far from those before: a tracker that has lost its object writes such rows.
 struct LostPositions {
   double from_s = 0.0, x_m = 0.0;
   double off_m = 0.0;  ///< from the position before

@@ -13,7 +13,7 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kContradiction = 5.0;  // standard deviations between two readings of one angle
+constexpr double kLeastContradictionSds = 5.0;  // standard deviations between two readings of one angle
 
 constexpr std::array<const char*, 4> kLaunchNames{"up", "down", "released", "unknown"};  // in the order of Launched
 constexpr std::array<const char*, 4> kDownhillNames{"+X", "-X", "+Y", "-Y"};             // in the order of Downhill
@@ -39,7 +39,7 @@ std::string name_of(Downhill downhill) {
 bool contradicts(const ClipSetup& one, const ClipSetup& other) {
   if (!one.incline_sd_rad || !other.incline_sd_rad) return false;
   const double apart = std::abs(one.incline_rad - other.incline_rad);
-  return apart > kSameIncline_rad + kContradiction * std::hypot(*one.incline_sd_rad, *other.incline_sd_rad);
+  return apart > kSameIncline_rad + kLeastContradictionSds * std::hypot(*one.incline_sd_rad, *other.incline_sd_rad);
 }
 
 namespace {

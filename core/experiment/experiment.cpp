@@ -237,7 +237,8 @@ void check_downhill(const Experiment& experiment, const TomlTable& root, const s
       own ? group_tables.at(static_cast<std::size_t>(group - experiment.groups.data())) : root.table("track");
   table.reject(
       "downhill",
-      fmt::format("\"{}\" for clip \"{}\", which goes by a pattern", table.text("downhill"), filmed_along_y->name),
+      fmt::format("\"{}\" for clip \"{}\", which is calibrated by a pattern", table.text("downhill"),
+                  filmed_along_y->name),
       "\"+X\" or \"-X\", along the pattern's longer row (\"+Y\" and \"-Y\" need [scale], or a Tracker project)");
 }
 

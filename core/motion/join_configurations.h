@@ -14,7 +14,7 @@ namespace glidelab::core {
 /// The configurations of the clips: each holds those of one mass, stated inclination and group. With lines for both
 /// directions
 ///
-///     g sin(alpha) = (a0- + a0+)/2,     mu g cos(alpha) = (a0- - a0+)/2,                                       (13)
+///     g sin(alpha) = (a0- + a0+)/2,     mu g cos(alpha) = (a0- - a0+)/2        (the paper's equation (13))
 ///
 /// K/m is the directions' mean. With generalised lines the clips' own lines are weighted by their inverse covariances.
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,

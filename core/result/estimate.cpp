@@ -45,8 +45,8 @@ std::optional<AnyReason> why_no_limit_velocity(const Estimate& k_over_m_1_s, unk
 
 namespace {
 
-constexpr double kOffDeg = 0.5, kOffSds = 3.0;
-constexpr double kGrossDeg = 1.0, kGrossShare = 0.25, kGrossSds = 5.0;
+constexpr double kLeastOff_deg = 0.5, kLeastOffSds = 3.0;
+constexpr double kLeastGross_deg = 1.0, kLeastGrossShare = 0.25, kLeastGrossSds = 5.0;
 
 /// What the motion tells about the inclination: a value, or a bound if the motion is in one direction only.
 struct FoundIncline {
@@ -70,7 +70,7 @@ std::optional<double> beyond_gravity(const ConfigurationResult& found, double gr
   if (found.alpha_deg.estimate || found.lines.size() != 2) return std::nullopt;
   const double mean_m_s2 = 0.5 * (found.lines[0].a0_m_s2.value + found.lines[1].a0_m_s2.value);
   const double sd_m_s2 = 0.5 * std::hypot(found.lines[0].a0_m_s2.sd, found.lines[1].a0_m_s2.sd);
-  if (std::abs(mean_m_s2) < gravity_m_s2 + kGrossSds * sd_m_s2) return std::nullopt;
+  if (std::abs(mean_m_s2) < gravity_m_s2 + kLeastGrossSds * sd_m_s2) return std::nullopt;
   return mean_m_s2;
 }
 
@@ -93,8 +93,9 @@ std::optional<InclineContradiction> incline_contradiction(const ConfigurationRes
   if ((incline->bound < 0 && above_deg < 0.0) || (incline->bound > 0 && above_deg > 0.0)) return std::nullopt;
   const double off_deg = std::abs(above_deg);
   const double sd_deg = std::hypot(incline->sd_deg, stated.sd_deg.value_or(0.0));
-  if (off_deg < std::max(kOffDeg, kOffSds * sd_deg)) return std::nullopt;
-  const bool gross = off_deg > std::max({kGrossDeg, kGrossShare * std::abs(stated.deg), kGrossSds * sd_deg});
+  if (off_deg < std::max(kLeastOff_deg, kLeastOffSds * sd_deg)) return std::nullopt;
+  const bool gross =
+      off_deg > std::max({kLeastGross_deg, kLeastGrossShare * std::abs(stated.deg), kLeastGrossSds * sd_deg});
   return InclineContradiction{stated, incline->deg, incline->sd_deg, incline->bound, {}, gravity_m_s2, off_deg, gross};
 }
 

@@ -38,7 +38,7 @@ inline constexpr double kMassRatio = 100.0;  ///< gliders of one track differ by
 
 /// The stated inclination compared with that of the lines a = a0 - (K/m) v:
 ///
-///     both directions: g sin(alpha) = (a0- + a0+)/2                             (13)
+///     both directions: g sin(alpha) = (a0- + a0+)/2        (the paper's equation (13))
 ///     one direction:   friction brakes, so g sin(alpha) <= a0-, and g sin(alpha) >= a0+
 ///
 /// A wrong length, frame rate or gravity shows up here as well as a wrong angle: a0 scales with the length scale, with

@@ -37,7 +37,7 @@ struct FirstSmoothing {
 /// pattern of fmt with a place for each number, "rms x'''' of {:.3g} m/s^4".
 struct Rule {
   enum class Edge { none, narrowest, widest, only };  ///< of the bandwidths tried
-  std::string_view found;                             ///< a literal: results outlive whatever made it
+  std::string_view found;                             ///< a literal: results outlive the object that made it
   std::vector<double> numbers = {};
   Edge edge = Edge::none;  ///< at which the choice lies
   bool converted = false;  ///< from the bandwidth for x to that for a

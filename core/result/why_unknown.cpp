@@ -58,10 +58,10 @@ struct ReasonWords {
   }
 
   std::string operator()(const unknown::NotToldApart&) const {
-    return "these motions do not tell it apart from the other quantities";
+    return "these motions do not separate it from the other quantities";
   }
   std::string operator()(const unknown::ExplanationsDiffer&) const {
-    return "the likely explanations differ too much in it";
+    return "the likely explanations give values that differ too much";
   }
   std::string operator()(const unknown::FreeFall&) const { return "a fall has no normal force, and so no friction"; }
   std::string operator()(const unknown::NoBalance&) const { return "the forces balance at no speed downhill"; }

@@ -1,5 +1,5 @@
-/// Why the data do not determine a quantity, as data: one struct for each reason, with its numbers. why_unknown.h puts
-/// it into words.
+/// Why the data do not determine a quantity: one struct for each reason, with its numbers, and the words for it
+/// (why_words()).
 #pragma once
 
 #include <optional>
@@ -76,10 +76,10 @@ struct NoLineOfMotion {};
 
 // From a diagnosis.
 
-/// The motions do not tell it apart from the other quantities.
+/// The motions do not separate it from the other quantities.
 struct NotToldApart {};
 
-/// The likely explanations differ too much in it.
+/// The likely explanations give values that differ too much.
 struct ExplanationsDiffer {};
 
 /// A fall has no normal force, and so no friction.
@@ -115,7 +115,7 @@ struct WhyUnknown {
   std::vector<ClipAgainstLaunch> against_launch = {};  ///< of these clips, if that is why a line is missing
 };
 
-/// Why the data do not determine a quantity (why_unknown.h), in words. They are here and not in report/, because
+/// Why the data do not determine a quantity, in words. They are here and not in report/, because
 /// validate/ stores them in a sweep's database.
 ///
 /// "no line for v > 0"; empty without a reason.

@@ -15,7 +15,7 @@ namespace glidelab::core {
 
 /// What the analysis needs besides a track file given on its own.
 struct TrackFileOptions {
-  std::string column;                 ///< of x in a table, or a point mass (bare_track.h); empty: found
+  std::string column;                 ///< of x in a table, or a point mass; empty: found
   std::optional<double> mass_kg;      ///< 1 kg if not stated; K/m, mu and alpha depend on it under a recorded force
   std::optional<double> incline_deg;  ///< as stated; level if not stated. It only names the configuration
   Permissions permitted = {};         ///< of a folder

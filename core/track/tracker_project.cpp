@@ -25,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSlantedRad = 3.0 * base::kRadPerDegree;  // off the axis: positions are too short by 0.14 %
-constexpr double kStraight = 1e-3;  // variance across a line of motion over that along it; above this the line has no
-                                    // angle
+constexpr double kMostAcrossOverAlong = 1e-3;  // variance across a line of motion over that along it; above this the
+                                               // line has no angle
 constexpr double kFilledPx = 1e-6;  // off a straight line between two marks; manual marks are never that accurate
 
 std::string last_part(const std::string& name) {
@@ -234,7 +234,7 @@ double angle_to_line(const std::vector<Place>& places, bool along_y) {
     yy += (place.Y - mean_y) * (place.Y - mean_y);
   }
   const double half = 0.5 * (xx + yy), apart = std::hypot(0.5 * (xx - yy), xy);
-  if (half - apart > kStraight * (half + apart)) return 0.0;
+  if (half - apart > kMostAcrossOverAlong * (half + apart)) return 0.0;
   const double from_x = std::abs(0.5 * std::atan2(2.0 * xy, xx - yy));
   return along_y ? 0.5 * std::numbers::pi - from_x : from_x;
 }

@@ -269,7 +269,7 @@ struct LineChange {
   double of_log_k, of_a0_m_s2;
 };
 
-/// The quantity of which each configuration in a table of lines has a value of its own.
+/// The quantity that has a separate value for each configuration in a table of lines.
 enum class OwnOfLines { nothing, mu, drag };
 
 /// What an effect does to a table of lines. A null function and OwnOfLines::nothing: nothing that lines could show.

@@ -145,9 +145,10 @@ bool is_nominal(const LineData& data, const LineTerm& term) {
   const auto beside = [](const Eigen::MatrixXd& columns, const Eigen::VectorXd& of) {
     return (of - base::product(columns, base::least_squares(columns, of)).col(0)).squaredNorm();
   };
-  constexpr double kOwn = 3e-3;  // of the term's square: what cos(alpha) of two set-ups, or the scatter of K/m, makes
-  return beside(data.base_log_k, term.of_log_k) <= kOwn * term.of_log_k.squaredNorm() &&
-         beside(data.base_a0, term.of_a0) <= kOwn * term.of_a0.squaredNorm();
+  // Of the term's square: what cos(alpha) of two set-ups, or the scatter of K/m, makes.
+  constexpr double kMostOwnShare = 3e-3;
+  return beside(data.base_log_k, term.of_log_k) <= kMostOwnShare * term.of_log_k.squaredNorm() &&
+         beside(data.base_a0, term.of_a0) <= kMostOwnShare * term.of_a0.squaredNorm();
 }
 
 LineCause cause_of_one_size(const std::vector<TableLine>& lines, const EffectInfo& effect) {

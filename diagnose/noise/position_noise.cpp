@@ -21,8 +21,8 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr std::size_t kMostPoints = 1920;  // of all motions: more add nothing to a handful of numbers
 constexpr std::size_t kFewestInChunk = 24;
-constexpr double kAlike = 1e-6;   // a slow wave that is a sum of bumps to within this counts once
-constexpr double kMostOff = 8.0;  // standard deviations off the neighbours
+constexpr double kLeastIndependent = 1e-6;  // a slow wave that is a sum of bumps to within this counts once
+constexpr double kMostOff = 8.0;            // standard deviations off the neighbours
 
 // Sine and cosine, each also times t and t². A frequency between two that are tried is off by at most half a radian at
 // the ends of such points, of which these columns leave half a percent; they also cover a size that grows across the
@@ -86,7 +86,7 @@ void add_chunks(const TrackSet& set, const MotionFit& fit, std::size_t i, double
         chunk.slow(p, bumps + of_wave + m) = pixel[static_cast<std::size_t>(m)][q];
       }
     }
-    chunk.slow = base::orthonormal_columns(chunk.slow, kAlike);
+    chunk.slow = base::orthonormal_columns(chunk.slow, kLeastIndependent);
     chunks.push_back(std::move(chunk));
   }
 }

@@ -14,7 +14,7 @@
 /// about s, their mean. For a codec that predicts images from earlier ones, a prior for its errors is added. Lengths
 /// are in pixels (unit_m() of whitening.h).
 ///
-/// Nobody knows the pixels of imported tracks. Their noise may last for some frames, as with a tracker that follows its
+/// The pixels of imported tracks are unknown. Their noise may last for some frames, as with a tracker that follows its
 /// own last image; it is taken as white unless the correlation shows beyond doubt. A correlation over four frames or
 /// longer may be an effect that the model lacks, and does not count as noise.
 #pragma once

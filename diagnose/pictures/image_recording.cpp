@@ -15,7 +15,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kMemory = 0.05;      // uncertainty of a ratio of variances that should be 1,
+constexpr double kMemorySd = 0.05;    // uncertainty of a ratio of variances that should be 1,
 constexpr double kUsualMemory = 1.1;  // and its usual value for a fault-free clip
 
 }  // namespace
@@ -23,7 +23,7 @@ constexpr double kUsualMemory = 1.1;  // and its usual value for a fault-free cl
 double memory_log_evidence(const std::vector<FilmedClip>& clips) {
   double memory = 1.0;
   for (const FilmedClip& clip : clips) memory = std::max(memory, clip.record->noise_memory.value_or(1.0));
-  return log_deviation_evidence((memory - kUsualMemory) / kMemory, 1.0 / kMemory);
+  return log_deviation_evidence((memory - kUsualMemory) / kMemorySd, 1.0 / kMemorySd);
 }
 
 void add_codec(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {

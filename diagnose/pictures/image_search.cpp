@@ -33,10 +33,10 @@ double log_deviation_evidence(double z, double largest) {
 
 namespace {
 
-constexpr std::size_t kFewestSamples = 24;  // points of a series
-constexpr double kFineness = 4.0;           // frequencies a width of the peak
-constexpr double kFewestPeriods = 3.0;      // a series
-constexpr double kOverMedian = 4.0;
+constexpr std::size_t kFewestSamples = 24;      // points of a series
+constexpr double kFineness = 4.0;               // frequencies a width of the peak
+constexpr double kFewestPeriods = 3.0;          // a series
+constexpr double kMedianGainsSubtracted = 4.0;  // of the gains at all frequencies: what noise may reach
 constexpr std::size_t kMostFrequencies = 6000;  // frequencies
 
 /// A series minus its mean, slope and curvature, and the orthonormal terms that were removed.
@@ -151,7 +151,7 @@ SeriesWave strongest_wave(const std::vector<Series>& all) {
     squares += (at.a * at.a + at.b * at.b) / static_cast<double>(series.size());
     variance += at.variance / static_cast<double>(series.size() * series.size());
   }
-  wave.log_evidence = best - penalty - kOverMedian * core::median_of(gains);
+  wave.log_evidence = best - penalty - kMedianGainsSubtracted * core::median_of(gains);
   wave.amplitude = std::sqrt(squares);
   wave.sd = std::sqrt(variance);
   // Standard deviation of the frequency of a wave in white noise: sqrt(6) sd(component) / (pi span amplitude).

@@ -251,7 +251,7 @@ TwinView view_of(const std::optional<Filming>& filming, double reference_m, doub
   TwinView view;
   if (!filming) {
     view.position_m.z() *= std::max(1.0, 1.2 * range_m / kField);
-    view.assumed = {"the whole camera but for its frame rate: these are tracks"};
+    view.assumed = {"the camera, except for its frame rate, because these are tracks"};
     return view;
   }
   if (filming->lens) {

@@ -5,8 +5,9 @@
 namespace glidelab::diagnose {
 
 bool only_statements_fail(const Diagnosis& diagnosis) {
-  constexpr double kAtFloor = 7.5;  // standard errors above the floor: no more is a gap at the floor
-  const bool explained = diagnosis.gap && diagnosis.gap->before < 1.0 + kAtFloor * diagnosis.gap->standard_error;
+  constexpr double kMostErrorsAtFloor = 7.5;  // standard errors above the floor: no more is a gap at the floor
+  const bool explained =
+      diagnosis.gap && diagnosis.gap->before < 1.0 + kMostErrorsAtFloor * diagnosis.gap->standard_error;
   return diagnosis.verdict == Verdict::unknown && explained &&
          !(diagnosis.limits.driving.empty() && diagnosis.limits.contradicted.empty());
 }

@@ -9,9 +9,9 @@ bool Explanation::holds(const std::string& id) const {
 }
 
 Verdict verdict_by(double none, double unknown) {
-  constexpr double kNotRuledOut = 0.25;  // probability of nothing above which nothing else is claimed
+  constexpr double kMostNothingForClaim = 0.25;  // probability of nothing above which nothing else is claimed
   const double named = std::max(0.0, 1.0 - none - unknown);
-  if (none >= kNotRuledOut) return Verdict::none;
+  if (none >= kMostNothingForClaim) return Verdict::none;
   return named >= unknown ? Verdict::effect : Verdict::unknown;
 }
 

@@ -171,8 +171,8 @@ std::vector<TwinLack> lacks_of_forces(const TrackSet& set, const TrackModel& mod
                                   [](const TrackedMotion& motion) { return !motion.known.t_s.empty(); });
   if (forced) lacks.push_back({"the recorded force", "no force in a scenario depends on time"});
   for (const MissingInTwin& lack : forces_of(model).lacks) lacks.push_back({std::string(lack.id), lack.why});
-  if (model.k_n_s_m < 0.0) lacks.push_back({"a drag below zero", "a scenario's drag takes energy"});
-  if (model.mu < 0.0) lacks.push_back({"a friction below zero", "a scenario's friction takes energy"});
+  if (model.k_n_s_m < 0.0) lacks.push_back({"a drag below zero", "drag in a scenario can only remove energy"});
+  if (model.mu < 0.0) lacks.push_back({"a friction below zero", "friction in a scenario can only remove energy"});
   return lacks;
 }
 

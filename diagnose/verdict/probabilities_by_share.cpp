@@ -23,7 +23,7 @@ void sum_of_effects(Comparison& comparison) {
   }
 }
 
-/// Gives the explanations with `main` a total probability of kByShare, and everything else the rest.
+/// Gives the explanations with `main` a total probability of kProbabilityByShare, and everything else the rest.
 void trust(std::size_t main, const std::vector<std::size_t>& best, Comparison& comparison) {
   double with_main = 0.0, rest = comparison.unknown;
   for (const Hypothesis& one : comparison.all) {
@@ -33,12 +33,13 @@ void trust(std::size_t main, const std::vector<std::size_t>& best, Comparison& c
   const bool lost = !(with_main > 0.0);
   for (Hypothesis& one : comparison.all) {
     if (lost && !one.unnamed && one.effects == best) {
-      one.probability = kByShare;
+      one.probability = kProbabilityByShare;
     } else {
-      one.probability *= !one.unnamed && has(one, main) && !lost ? kByShare / with_main : (1.0 - kByShare) / rest;
+      one.probability *= !one.unnamed && has(one, main) && !lost ? kProbabilityByShare / with_main
+                                                                 : (1.0 - kProbabilityByShare) / rest;
     }
   }
-  comparison.unknown *= (1.0 - kByShare) / rest;
+  comparison.unknown *= (1.0 - kProbabilityByShare) / rest;
   sum_of_effects(comparison);
   sort_by_probability(comparison);
 }
@@ -94,9 +95,9 @@ void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>
     for (const Hypothesis& one : comparison.all) {
       if (!one.unnamed && one.effects == best) of_best += one.probability;
     }
-    set_unknown(std::max(comparison.unknown + of_best, kJustUnknown), comparison);
+    set_unknown(std::max(comparison.unknown + of_best, kUnknownIfLess), comparison);
   }
-  if (sequence.named_share < kMostOfGap || comparison.unknown < 1.0 - kByShare) return;
+  if (sequence.named_share < kMostOfGap || comparison.unknown < 1.0 - kProbabilityByShare) return;
   const std::size_t main = effect_index(sequence.causes.front().id);
   // Where the noise is negligible, any curve has the evidence of a certainty, and only the share counts.
   // The gap of a fall without drag is no measure of the noise.

@@ -15,11 +15,10 @@
 
 namespace glidelab::diagnose {
 
-inline constexpr double kHalfOfGap = 0.5;           ///< of the excess: the least that a verdict's causes take together
-inline constexpr double kJustUnknown = 0.5 + 1e-9;  ///< the least probability of an unknown cause if they take less
-inline constexpr double kMostOfGap =
-    0.75;                                ///< of the excess: the least that a law takes to be named by its share alone
-inline constexpr double kByShare = 0.8;  ///< the probability of a law that is named by its share
+inline constexpr double kHalfOfGap = 0.5;  ///< of the excess: the least that a verdict's causes take together
+inline constexpr double kUnknownIfLess = 0.5 + 1e-9;  ///< the least probability of an unknown cause if they take less
+inline constexpr double kMostOfGap = 0.75;  ///< of the excess: the least by which a law is named by its share alone
+inline constexpr double kProbabilityByShare = 0.8;  ///< the probability of a law that is named by its share
 
 /// Whether any effect of an explanation contributes to the gap.
 bool shows_in_gap(const Hypothesis& explanation);
@@ -39,13 +38,13 @@ void set_unknown(double unknown, Comparison& comparison);
 void move_minorities_to_unknown(Comparison& comparison);
 
 /// The probabilities for a verdict on a gap above the noise floor. A gap that the remainder alone explains has an
-/// unknown cause. So has one of which `best`, the effects that would be named, take less than half after all.
+/// unknown cause. The same holds for a gap of which `best`, the effects to be named, takes less than half.
 ///
 /// Where the noise is negligible beside the gap (an excess of kLargestExcess or more), any curve has the evidence of a
 /// certainty, and only the share counts. A law common to all clips that takes kMostOfGap is then named with the
-/// probability kByShare, if the evidence gives it less. All explanations with this main cause share it in proportion to
-/// their probabilities, and everything else shares the rest.
-/// `by_air`: the gap is measured from a fall without drag.
+/// probability kProbabilityByShare, if the evidence gives it less. All explanations with this main cause share it in
+/// proportion to their probabilities, and everything else shares the rest. `by_air`: the gap is measured from a fall
+/// without drag.
 void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>& best, bool by_air,
                    Comparison& comparison);
 

@@ -25,11 +25,11 @@ namespace {
 
 constexpr std::size_t kFewestWithoutHand = 25;  // positions that are left: fewer are better kept whole
 constexpr std::size_t kFewestPoints = 12;       // of a piece of a driven motion
-constexpr double kContradiction = 5.0;          // standard deviations between two statements
+constexpr double kLeastContradictionSds = 5.0;  // standard deviations between two statements
 constexpr double kLatestLaunch_s = 0.2;         // a motion that starts later is not the launch
 constexpr std::size_t kFirstPoints = 8;         // which show the direction of the launch,
 constexpr double kOpposite_sd = 10.0;           // by a displacement of so many standard deviations of a position
-constexpr double kMisfit = 1.5;                 // chi² per position above which the motion counts as not explained
+constexpr double kMostChi2PerPosition = 1.5;    // chi² per position above which the motion counts as not explained
 
 std::size_t points_of(const TrackSet& set) {
   std::size_t points = 0;
@@ -79,7 +79,7 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
       for (std::size_t b = 0; b < a; ++b) {
         const InclineStatement &one = group.statements[a], &two = group.statements[b];
         const double z = (one.alpha_rad - two.alpha_rad) / std::hypot(one.sd_rad, two.sd_rad);
-        if (std::abs(z) < kContradiction) continue;
+        if (std::abs(z) < kLeastContradictionSds) continue;
         set.notes.emplace_back(StatementsDisagree{group.name, one.against, two.against, std::abs(z)});
       }
     }
@@ -126,7 +126,7 @@ void leave_single(const TrackSet& set, std::vector<EdgePosition>& beyond) {
   });
 }
 
-constexpr double kUnfelt_sd = 0.3, kUnfeltPart = 1e-3;  // of the noise, and of the nominal model's residuals
+constexpr double kUnfeltSds = 0.3, kUnfeltPart = 1e-3;  // of the noise, and of the nominal model's residuals
 
 /// Removes detail from the recorded forces that would be lost in the noise or in the misfit.
 void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
@@ -135,7 +135,7 @@ void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
     if (motion.known.t_s.empty()) continue;
     const Eigen::VectorXd& left = nominal.motions[i].residual;
     const double rms = std::sqrt(left.squaredNorm() / static_cast<double>(left.size()));
-    coarsen_force(motion, set.masses[motion.mass].mass_kg, motion.sd_m * std::max(kUnfelt_sd, kUnfeltPart * rms));
+    coarsen_force(motion, set.masses[motion.mass].mass_kg, motion.sd_m * std::max(kUnfeltSds, kUnfeltPart * rms));
   }
 }
 
@@ -218,7 +218,7 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
 }
 
 bool is_misfit(const TrackSet& set, const MotionFit& fit) {
-  return fit.cost / static_cast<double>(points_of(set)) > kMisfit;
+  return fit.cost / static_cast<double>(points_of(set)) > kMostChi2PerPosition;
 }
 
 void settle_noise(const ImageEvidence& images, TrackSet& set) {

@@ -18,7 +18,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kSameScale = 1.05;
+constexpr double kMostScaleRatio = 1.05;  // of two clips that count as of one scale
 constexpr std::string_view kLineTime = "line_s";
 
 /// For each set-up, the position at `share` of the distance from the set-up's own middle to the middle of all.
@@ -40,7 +40,7 @@ double px_per_m(const ImageEvidence& images) {
     least = std::min(least, clip.px_per_m);
     most = std::max(most, clip.px_per_m);
   }
-  return most > 0.0 && most < kSameScale * least ? 0.5 * (least + most) : 0.0;
+  return most > 0.0 && most < kMostScaleRatio * least ? 0.5 * (least + most) : 0.0;
 }
 
 }  // namespace
@@ -87,16 +87,16 @@ std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const Mo
 
 namespace {
 
-constexpr double kBelowZero = 5.0;    // standard deviations below 0 at which a drag or friction counts as negative
-constexpr double kContradicts = 5.0;  // standard deviations between a statement and everything else
-constexpr double kLargePart = 0.2;    // of the motion: from here on the reader must be told that it is set aside
+constexpr double kLeastNegativeSds = 5.0;  // standard deviations below 0 at which a drag or friction counts as negative
+constexpr double kLeastPullSds = 5.0;      // standard deviations between a statement and everything else
+constexpr double kLeastPartToTell = 0.2;   // of the motion: from here on the reader must be told that it is set aside
 
 std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
   std::vector<NegativeLoss> found;
   const Eigen::MatrixXd covariance = common_covariance(fit);
   for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
     const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
-    if (!(value < -kBelowZero * sd)) continue;
+    if (!(value < -kLeastNegativeSds * sd)) continue;
     found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, value, sd});
   }
   return found;
@@ -105,7 +105,7 @@ std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
 std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, const MotionFit& fit) {
   std::vector<ContradictedIncline> found;
   for (const StatementPull& pull : statement_pulls(set, fit)) {
-    if (!pull.z || std::abs(*pull.z) < kContradicts) continue;
+    if (!pull.z || std::abs(*pull.z) < kLeastPullSds) continue;
     found.push_back({pull.group, pull.against, pull.stated_rad, pull.stated_sd_rad, pull.else_rad, pull.else_sd_rad,
                      !fit.effects.empty(), std::abs(*pull.z)});
   }
@@ -123,7 +123,7 @@ std::optional<SetAside> set_aside(const TrackSet& set) {
   const auto moving = static_cast<double>(set.moving), left_out = static_cast<double>(set.left_out);
   if (!(moving > 0.0 && points > 0.0)) return {};
   const double part = (left_out + (moving - left_out) * outliers / points) / moving;
-  if (part < kLargePart) return {};
+  if (part < kLeastPartToTell) return {};
   return SetAside{set.moving, part};
 }
 
@@ -135,7 +135,7 @@ VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit) {
 
 namespace {
 
-constexpr double kNotable = 3.0;  // log evidence from which a function without a name is worth a region
+constexpr double kLeastEvidenceOfRegion = 3.0;  // log evidence from which a function without a name is worth a region
 constexpr std::size_t kMostRegions = 6;
 constexpr std::size_t kMostCurves = 4;
 constexpr double kMostOverLacking = 2.0;  // times what the accelerations lack: a larger size is not believed
@@ -149,14 +149,14 @@ struct LargestRest {
 LargestRest largest_rest(const TrackedMotion& motion, const std::vector<double>& rest_m) {
   constexpr std::size_t kEachSide = 4;
   constexpr double kMean = 20.0 / 3.0, kSquares = 60.0, kFourths = 308.0;  // sums of k², and of (k² - mean)², k to 4
-  constexpr double kUneven = 0.2;
+  constexpr double kMostUnevenStep = 0.2;
   LargestRest largest;
   for (std::size_t p = 0; p < rest_m.size(); ++p) {
     if (motion.outlier[p] == 0) largest.x_m = std::max(largest.x_m, std::abs(rest_m[p]));
   }
   for (std::size_t p = kEachSide; p + kEachSide < motion.t_s.size(); ++p) {
     const double before = motion.t_s[p] - motion.t_s[p - kEachSide], behind = motion.t_s[p + kEachSide] - motion.t_s[p];
-    if (std::abs(behind - before) > kUneven * before) continue;
+    if (std::abs(behind - before) > kMostUnevenStep * before) continue;
     const double step = (before + behind) / (2.0 * kEachSide);
     double first = 0.0, second = 0.0;
     bool aside = false;
@@ -225,8 +225,9 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
     return (family->variable == GapVariable::clip ? 0.99 : 1.0) * family->log_evidence;
   };
   std::sort(sorted.begin(), sorted.end(), [&](const auto* a, const auto* b) { return weight(a) > weight(b); });
-  const double notable = kNotable + std::log(static_cast<double>(families.size()));  // corrected for as many looks
-  std::set<std::pair<GapVariable, GapKind>> shown;                                   // variables and what acts there
+  const double notable =
+      kLeastEvidenceOfRegion + std::log(static_cast<double>(families.size()));  // corrected for as many looks
+  std::set<std::pair<GapVariable, GapKind>> shown;                              // variables and what acts there
   for (const UnnamedFamily* family : sorted) {
     // The function on which a verdict rests has its place named, however many looks there were.
     const bool rests = diagnosis.verdict == Verdict::unknown && diagnosis.regions.empty() && family == sorted.front();
@@ -267,11 +268,11 @@ void add_regions(const TrackSet& set, const MotionFit& nominal, const std::vecto
 
 bool add_error_runs(const TrackSet& set, const std::vector<FrameEffect>& frames,
                     const std::vector<UnnamedFamily>& families, Diagnosis& diagnosis) {
-  double most = kNotable;
+  double most = kLeastEvidenceOfRegion;
   for (const UnnamedFamily& family : families) most = std::max(most, family.log_evidence);
   bool any = false;
   for (const FrameEffect& frame : frames) {
-    if (!frame.run || frame.in_runs < kNotable || frame.log_evidence + frame.in_runs < most) continue;
+    if (!frame.run || frame.in_runs < kLeastEvidenceOfRegion || frame.log_evidence + frame.in_runs < most) continue;
     const std::string clip = frame.run->clip ? set.clips[*frame.run->clip].name : "";
     diagnosis.regions.push_back({GapVariable::time, frame.run->from_s, frame.run->to_s, frame.run->excess,
                                  frame.run->size_m, "m", GapKind::displacement, clip});

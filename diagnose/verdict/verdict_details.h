@@ -29,7 +29,7 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
 /// and those of own_sizes.h. With several set-ups, x_mid_m has a key for each, "x_mid_m.NAME".
 ///
 /// `known` are the parameters of the effect so far; a key that is among them is not stated again. Nothing is stated in
-/// pixels for tracks, whose camera nobody knows, nor if the scales of the clips differ by more than 5 %.
+/// pixels for tracks, whose camera is unknown, nor if the scales of the clips differ by more than 5 %.
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
                                                    const ImageEvidence& images,
                                                    const std::vector<DiagnosedParameter>& known);

@@ -33,7 +33,7 @@ constexpr double kMostOfOneClip = 0.999;  // the highest probability that one cl
 
 constexpr double kLeastNamed = 0.1;       // of the excess: a smaller share counts as part of the remainder
 constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
-constexpr double kNotMeasured = 0.5;      // a gap below which the assumed noise is not that of the positions
+constexpr double kLeastMeasuredGap = 0.5;  // a gap below which the assumed noise is not that of the positions
 constexpr double kLikelierThanNot = 0.5;
 constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
 
@@ -247,7 +247,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   const bool settled = weighed && sequence.is_gap && names;
   if (settled) hold_to_share(sequence, best.effects, by_air, weighed->comparison);
   if (settled && !is_likelier_than_not(with, by, best)) {
-    set_unknown(std::max(by.unknown, kJustUnknown), weighed->comparison);
+    set_unknown(std::max(by.unknown, kUnknownIfLess), weighed->comparison);
   }
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
     const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named};
@@ -255,7 +255,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   } else {
     // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
     // anything claimed if the positions follow the model far better than the assumed noise allows.
-    const bool not_measured = noise_is_rounding(set) || sequence.gap_before < kNotMeasured;
+    const bool not_measured = noise_is_rounding(set) || sequence.gap_before < kLeastMeasuredGap;
     const bool below_noise = not_measured && !sequence.is_gap && !in_images;
     if (below_noise) {
       move_to_none([](const Hypothesis&) { return true; }, first);
@@ -266,12 +266,12 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
     if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
     if (!weighed && sequence.is_gap && names && shows_in_gap(best) && !in_images &&
         !is_likelier_than_not(set, first, best)) {
-      set_unknown(std::max(first.unknown, kJustUnknown), first);
+      set_unknown(std::max(first.unknown, kUnknownIfLess), first);
     }
     if (weighed && sequence.is_gap && !in_images) {
       // Nothing that moves the glider explains the gap.
       first.unknown += std::exchange(first.none, 0.0);
-      set_unknown(std::max(by.none + by.unknown, kJustUnknown), first);
+      set_unknown(std::max(by.none + by.unknown, kUnknownIfLess), first);
     }
     // Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no
     // parameter either: unless it is all but certain, it is a trace.

@@ -1,5 +1,5 @@
 /// What a render writes besides the clips: experiment.toml and the truth (the true values, the marker's true position
-/// in every frame, and ideal frames).
+/// in every frame, from the exact image of a sphere, and ideal frames).
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "render/camera/camera.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scenario.h"
 
@@ -24,6 +25,32 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed);
 
 /// The position on the track of the pattern's first corner, projected onto the line of motion of this inclination.
 double x_origin_m(const Scenario& scenario, double incline_rad);
+
+/// The exact image of a sphere, for a marker's true place in a frame.
+///
+/// A sphere of radius r about c (camera frame) fills the cone of rays d with (d·c)² >= (|c|² - r²) |d|². On the plane
+/// z = 1 of undistorted coordinates that is an ellipse, whose centre is not the projection of the sphere's centre. The
+/// lens then bends the ellipse; the photometric centre of the image is the centroid of the bent area.
+///
+/// In undistorted coordinates: points center + axis_u cos(t) + axis_v sin(t).
+struct Ellipse {
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  Eigen::Vector2d axis_u = Eigen::Vector2d::Zero();
+  Eigen::Vector2d axis_v = Eigen::Vector2d::Zero();
+};
+
+/// Empty if the sphere is not entirely in front of the camera (c.z <= r).
+std::optional<Ellipse> image_of_sphere(const Eigen::Vector3d& center_C, double radius_m);
+
+struct AreaMoments {
+  double area_px = 0.0;  ///< in square pixels
+  Eigen::Vector2d centroid_px = Eigen::Vector2d::Zero();
+};
+
+/// Area and centroid of an ellipse's image under the lens: the integrals of 1 and of the pixel position over the
+/// ellipse with the mapping's Jacobian, by Gauss-Legendre in the radius and the trapezoid rule in the angle (exact
+/// within rounding for the polynomials of a lens).
+AreaMoments image_of(const Camera& camera, const Ellipse& ellipse);
 
 /// The true position of the marker in a frame's image, for the truth folder.
 ///

@@ -1,10 +1,10 @@
-/// Random numbers as a function of a counter and a key, with no state: Philox4x32-10, the words of a row of pixels,
-/// normal and Poisson deviates.
+/// Random numbers as a function of a counter and a key, with no state: what they are drawn for, Philox4x32-10, the
+/// words of a row of pixels, normal and Poisson deviates.
 ///
 /// Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC '11.
 /// Ten rounds of two 32 x 32 -> 64 bit multiplications; passes TestU01's BigCrush. Every value is a pure function of
-/// its inputs, so that it is the same in any order and on any number of threads. random_numbers.h lists the uses of the
-/// streams.
+/// its inputs, so that it is the same in any order and on any number of threads. RandomPurpose, first below, lists what
+/// random numbers are drawn for.
 #pragma once
 
 #include <array>
@@ -16,6 +16,35 @@
 #include "base/math/simd.h"
 
 namespace glidelab::render {
+
+/// The uses of random numbers, so that no two uses draw the same ones.
+///
+/// A random word is a function of the seed and of a counter {first, second, third, purpose}. Every
+/// purpose has its own number in the last place; the stream in the third place distinguishes clips and stills.
+///
+/// Files of a seed stay the same only as long as these numbers do.
+enum class RandomPurpose : std::uint32_t {
+  pixel_noise = 0,        ///< normal deviates of shot and read noise: {block, frame, stream}
+  exact_pixel_noise = 1,  ///< Poisson numbers of dark pixels: {pixel, frame, stream}
+  fixed_pattern = 2,      ///< differences among a sensor's pixels: {pixel, 0, 0}
+  frame_clock = 3,        ///< jitter, dropped and repeated frames: {slot, 0, stream}
+  pattern_poses = 4,      ///< poses of the calibration's boards: {view, number, 0}
+  // Of a sweep's design, all {index low, index high, axis}:
+  sweep_seed = 0x5eed,     ///< the seed of a run
+  sweep_draw = 0xd4a3,     ///< the value of a random axis
+  sweep_stratum = 0x57a7,  ///< the place within a stratum
+  sweep_shift = 0x5b0b,    ///< the shift of a low-discrepancy sequence
+  sweep_permute = 0xfe15,  ///< the order of strata
+};
+
+inline constexpr std::array kRandomPurposes = {RandomPurpose::pixel_noise,   RandomPurpose::exact_pixel_noise,
+                                               RandomPurpose::fixed_pattern, RandomPurpose::frame_clock,
+                                               RandomPurpose::pattern_poses, RandomPurpose::sweep_seed,
+                                               RandomPurpose::sweep_draw,    RandomPurpose::sweep_stratum,
+                                               RandomPurpose::sweep_shift,   RandomPurpose::sweep_permute};
+
+/// Streams: clips are numbered from 0, stills from here.
+inline constexpr std::uint32_t kFirstStillStream = 0x40000000u;
 
 using PhiloxCounter = std::array<std::uint32_t, 4>;
 using PhiloxKey = std::array<std::uint32_t, 2>;
@@ -133,35 +162,6 @@ class PoissonTable {
   };
   std::vector<Distribution> whole_;
 };
-
-/// The uses of random numbers, so that no two uses draw the same ones.
-///
-/// A random word is a function of the seed and of a counter {first, second, third, purpose} (random_numbers.h). Every
-/// purpose has its own number in the last place; the stream in the third place distinguishes clips and stills.
-///
-/// Files of a seed stay the same only as long as these numbers do.
-enum class RandomPurpose : std::uint32_t {
-  pixel_noise = 0,        ///< normal deviates of shot and read noise: {block, frame, stream}
-  exact_pixel_noise = 1,  ///< Poisson numbers of dark pixels: {pixel, frame, stream}
-  fixed_pattern = 2,      ///< differences among a sensor's pixels: {pixel, 0, 0}
-  frame_clock = 3,        ///< jitter, dropped and repeated frames: {slot, 0, stream}
-  pattern_poses = 4,      ///< poses of the calibration's boards: {view, number, 0}
-  // Of a sweep's design, all {index low, index high, axis}:
-  sweep_seed = 0x5eed,     ///< the seed of a run
-  sweep_draw = 0xd4a3,     ///< the value of a random axis
-  sweep_stratum = 0x57a7,  ///< the place within a stratum
-  sweep_shift = 0x5b0b,    ///< the shift of a low-discrepancy sequence
-  sweep_permute = 0xfe15,  ///< the order of strata
-};
-
-inline constexpr std::array kRandomPurposes = {RandomPurpose::pixel_noise,   RandomPurpose::exact_pixel_noise,
-                                               RandomPurpose::fixed_pattern, RandomPurpose::frame_clock,
-                                               RandomPurpose::pattern_poses, RandomPurpose::sweep_seed,
-                                               RandomPurpose::sweep_draw,    RandomPurpose::sweep_stratum,
-                                               RandomPurpose::sweep_shift,   RandomPurpose::sweep_permute};
-
-/// Streams: clips are numbered from 0, stills from here.
-inline constexpr std::uint32_t kFirstStillStream = 0x40000000u;
 
 /// Four random words.
 constexpr PhiloxCounter random_words(RandomPurpose purpose, const std::array<std::uint32_t, 3>& counter,

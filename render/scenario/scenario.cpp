@@ -141,7 +141,7 @@ void check_images(const TomlTable& root, const Scenario& scenario) {
       const auto pixel = project(camera, corner);
       if (pixel && in_image(camera, *pixel)) continue;
       root.reject("calibration",
-                  fmt::format("a pattern of which a part is not in the image, at plane_x_m = {}",
+                  fmt::format("a pattern that is partly outside the image, at plane_x_m = {}",
                               scenario.pattern.plane_x_m[view]),
                   "a pattern in the plane of motion that is wholly in the image, with a white border of one square");
       break;
@@ -173,7 +173,7 @@ void check_images(const TomlTable& root, const Scenario& scenario) {
         root.reject("configuration", clip + " with a marker that gets behind the camera", "a motion before the camera");
       } else if (!seen) {
         root.reject("configuration", clip + " with a marker that is never in the image",
-                    "a motion of which the camera sees at least a part");
+                    "a motion that the camera sees at least in part");
       }
     }
   }

@@ -1,5 +1,5 @@
 /// From expected electrons to the codes of a camera's images: the sensor with its fixed pattern (sensor.h), then, if
-/// present, the Bayer mosaic and the tone curve (sensor.h).
+/// present, the Bayer mosaic and the tone curve.
 ///
 ///     converter codes ─► demosaiced to grey, rounded ─► round(tone((code - offset) / (largest - offset)) largest out)
 ///

@@ -115,7 +115,7 @@ struct Pixels {
 constexpr int kBatch = 16;  // groups
 
 /// The fast path for groups of pixels; returns whether some of them need the exact path. The pattern is not used if
-/// kPatterned is false. It has two short loops, of which a processor can overlap several iterations.
+/// kPatterned is false. A processor can overlap several iterations of each of its two short loops.
 template <bool kPatterned, typename Code>
 [[gnu::always_inline]] inline bool group_codes(int groups, const Transfer& t, const Pixels& pixels,
                                                const std::uint32_t* __restrict words, Code* __restrict codes) {

@@ -27,7 +27,7 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
   std::vector<std::string> doubts;
   for (const core::ConfigurationResult& c : results.configurations) {
     const auto below_zero = [](const core::Quantity& quantity) {
-      return quantity.estimate && quantity.estimate->value < -kBelowZero * quantity.estimate->sd;
+      return quantity.estimate && quantity.estimate->value < -kLeastDoubtSds * quantity.estimate->sd;
     };
     const auto doubt = [&](core::Measurand which, const char* reason) {
       const core::Quantity& quantity = core::value_of(c, which);

@@ -15,7 +15,7 @@ namespace glidelab::report {
 /// if the law fits.
 std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 
-inline constexpr double kBelowZero = 2.0;  ///< standard deviations: happens by chance in one of forty
+inline constexpr double kLeastDoubtSds = 2.0;  ///< standard deviations: happens by chance in one of forty
 
 /// Placed below a table of values that are in doubt.
 inline constexpr const char* kIfItHeld = "The law does not fit these clips: the ± would hold only if it did.";

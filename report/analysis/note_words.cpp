@@ -52,7 +52,7 @@ struct AnalysisSentence {
   std::string operator()(const core::EvenStamps& of) const {
     return fmt::format(
         "the container's time stamps are whole multiples of {:.4g} ms, and frames at an even distance of {:.6g} ms (to "
-        "{:.0f} parts in a million) explain them all: those times are used",
+        "{:.0f} ppm) explain them all: those times are used",
         of.tick_s * 1e3, of.step_s * 1e3, std::ceil(of.half_width_s / of.step_s * 1e6));
   }
 
@@ -68,7 +68,7 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::ForceUnused& of) const {
     return fmt::format(
-        "\"{}\" is not used: a force along x that was recorded with it stands under force_n in a table with the header "
+        "\"{}\" is not used. To use a force along x, put it in the column force_n of a table with the header "
         "t_s,x_m,force_n",
         of.column);
   }
@@ -78,12 +78,13 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::SlantedPath& of) const {
     return fmt::format(
-        "the path runs at {:.1f}° to the {} axis: along it distances are {:.3g} times as long. Turn the axes along the "
+        "the path runs at {:.1f}° to the {} axis: distances along the path are {:.3g} times as long. Turn the axes "
+        "along the "
         "track and export again",
         of.off_deg, of.along_y ? "y" : "x", of.stretch);
   }
   std::string operator()(const core::CountedAlongMotion&) const {
-    return "x is counted along the motion: its values are taken with the other sign";
+    return "x is counted along the motion, so its sign is reversed";
   }
   std::string operator()(const core::RowsIncomplete& of) const {
     if (of.rows == 1) return "one row between others lacks a time or x and is left out";
@@ -127,9 +128,9 @@ struct AnalysisSentence {
     const std::string level = "an inclination of 0°";
     const bool both = of.mass_kg && of.level;
     return fmt::format(
-        "{} assumed, for nobody states {} ({}): K/m, µ and α come from the motion and do not depend on that",
+        "{} assumed, because neither the file nor an option states {} ({}). K/m, µ and α do not depend on {}",
         both ? mass + " and " + level + " are" : (of.mass_kg ? mass : level) + " is", both ? "them" : "it",
-        both ? "--mass, --incline" : (of.mass_kg ? "--mass" : "--incline"));
+        both ? "--mass, --incline" : (of.mass_kg ? "--mass" : "--incline"), both ? "them" : "it");
   }
   std::string operator()(const core::AssumedMass&) const {
     return "no mass is stated: 1 kg is assumed (K/m, µ and α do not depend on it)";
@@ -205,9 +206,9 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::PixelsAnswerLeft& of) const {
     return fmt::format(
-        "in {} of {} frames the marker's place is not corrected for how the camera's pixels answer to an edge: the "
-        "clip is "
-        "too long for so large a marker, or the fit with that answer fails",
+        "in {} of {} frames the marker's place is not corrected for the response of the camera's pixels to an edge: "
+        "the "
+        "clip is too long for so large a marker, or the fit with that response fails",
         of.kept, of.sightings);
   }
   std::string operator()(const core::DarkMarker&) const {
@@ -231,8 +232,8 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::CodecDragSubtracted& of) const {
     return fmt::format(
-        "the codec draws the marker towards displacements of parts of a pixel a frame, by {:.2g} px (root mean "
-        "square): that is taken off, and the intervals allow for what is not known of it",
+        "the codec shifts the marker towards simple fractions of a pixel per frame, by {:.2g} px (root mean square). "
+        "This shift is subtracted, and the intervals include its uncertainty",
         of.rms_px);
   }
 

@@ -64,10 +64,9 @@ std::string images(const core::ClipResult& clip, const core::Preview& preview) {
   std::string text;
   if (!preview.mp4.empty()) {
     const std::string caption =
-        preview.slow_motion > 1.05 ? fmt::format("The clip, slowed down by a factor of {:.3g}", preview.slow_motion)
-        : preview.slow_motion < 0.95
-            ? fmt::format("The clip, speeded up by a factor of {:.3g}", 1.0 / preview.slow_motion)
-            : std::string("The clip");
+        preview.slow_motion > 1.05   ? fmt::format("The clip, slowed down by a factor of {:.3g}", preview.slow_motion)
+        : preview.slow_motion < 0.95 ? fmt::format("The clip, sped up by a factor of {:.3g}", 1.0 / preview.slow_motion)
+                                     : std::string("The clip");
     text += fmt::format(
         "<figure><video controls muted loop playsinline preload=\"metadata\" src=\"{}\"></video>"
         "<figcaption>{}, with the marker as it was found</figcaption></figure>\n",

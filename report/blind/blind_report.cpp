@@ -59,20 +59,21 @@ std::string blind_percent(const BlindShare& share) {
 
 std::vector<BlindTarget> blind_targets(const validate::BlindScore& score) {
   const auto& single = score.methods.front().single;
-  return {{"one strong effect: named first", share_of(single, "strong"), 0.95, false},
-          {"one moderate effect: named first", share_of(single, "moderate"), 0.80, false},
-          {"one effect, moderate or strong: among those named",
-           {share_of(score.in_set, "strong").of + share_of(score.in_set, "moderate").of,
-            share_of(score.in_set, "strong").yes + share_of(score.in_set, "moderate").yes},
-           0.97,
-           false},
-          {"nothing wrong: a verdict other than none", score.false_alarm, 0.05, true},
-          {"not in the list, strong: unknown, or what the list has for it", share_of(score.recognised, "strong"), 0.85,
-           false},
-          {"not in the list, all: unknown, or what the list has for it", all_of(score.recognised), 0.85, false},
-          {"not in the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
-          {"two effects: both named", score.methods.front().pair, 0.75, false},
-          {"gap shrinks by 0.95 or more of what a fit of the true effect reaches", score.shrunk, 0.95, false}};
+  return {
+      {"one strong effect: named first", share_of(single, "strong"), 0.95, false},
+      {"one moderate effect: named first", share_of(single, "moderate"), 0.80, false},
+      {"one effect, moderate or strong: among those named",
+       {share_of(score.in_set, "strong").of + share_of(score.in_set, "moderate").of,
+        share_of(score.in_set, "strong").yes + share_of(score.in_set, "moderate").yes},
+       0.97,
+       false},
+      {"nothing wrong: a verdict other than none", score.false_alarm, 0.05, true},
+      {"not in the list, strong: unknown, or its nearest equivalent on the list", share_of(score.recognised, "strong"),
+       0.85, false},
+      {"not in the list, all: unknown, or its nearest equivalent on the list", all_of(score.recognised), 0.85, false},
+      {"not in the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
+      {"two effects: both named", score.methods.front().pair, 0.75, false},
+      {"gap shrinks by 0.95 or more of what a fit of the true effect reaches", score.shrunk, 0.95, false}};
 }
 
 bool is_met(const BlindTarget& target) {
@@ -95,7 +96,7 @@ std::string blind_meaning(const validate::BlindScore& score) {
   add(score.methods.front().pair, "Two effects at once", "both are named");
   add(score.false_alarm, "Nothing wrong", "the verdict is other than none");
   add(all_of(score.recognised), "A cause that is not in the list",
-      "it is called unknown, or by what the list has for it");
+      "it is called unknown, or by its nearest equivalent on the list");
   add(score.wrong_name, "A cause that is not in the list", "some name gets a probability over 0.8");
   text = meaning_section("<p>How far a verdict on an experiment like these can be trusted:</p>\n<ul>\n" + text +
                          "</ul>\n");
@@ -351,8 +352,8 @@ Page blind_page(const BlindRun& run) {
       fmt::format("blind cases: {} {}, seed {}", run.outcomes.size(), run.images ? "films" : "tracks", run.seed),
       question);
   body +=
-      "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis. Another "
-      "process that was given the experiment folder only diagnosed each.</p>\n";
+      "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis. Each was "
+      "diagnosed by a separate process that saw only the experiment folder.</p>\n";
   body += blind_meaning(score);
   HtmlTable targets({"what", "found", "wanted"});
   for (const BlindTarget& target : blind_targets(score)) {

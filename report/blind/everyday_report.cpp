@@ -118,8 +118,9 @@ TextRows number_rows(const EverydayScore& score) {
   }
   for (const auto& [kind, many] : score.cases) {
     const auto failed = score.failed.find(kind);
-    rows.push_back({"cases, of which could not be diagnosed", words_of_class(kind),
-                    fmt::format("{}, {}", many, failed == score.failed.end() ? 0 : failed->second)});
+    rows.push_back({"cases", words_of_class(kind), std::to_string(many)});
+    rows.push_back({"cases not diagnosed", words_of_class(kind),
+                    std::to_string(failed == score.failed.end() ? 0 : failed->second)});
   }
   if (score.timed > 0) {
     rows.push_back({"seconds a diagnosis: mean, most", "",
@@ -327,8 +328,8 @@ Page everyday_page(const BlindRun& run) {
                                question);
   body +=
       "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis, each with "
-      "three to five small imperfections besides its causes. Another process that was given the experiment folder only "
-      "diagnosed each.</p>\n";
+      "three to five small imperfections besides its causes. Each was diagnosed by a separate process that saw only "
+      "the experiment folder.</p>\n";
   HtmlTable targets({"what", "found (95 % interval)", "wanted"});
   for (const EverydayTarget& target : everyday_targets(score)) {
     const char* how = !bears(target) ? "" : is_met(target) ? ": met" : ": missed";

@@ -89,7 +89,7 @@ std::string answer_of(const ChallengeScore& score) {
   for (const auto& [winners, quantities] : by_winners) {
     const std::string in = list_of(quantities);
     if (winners.empty()) {
-      sentences.push_back(fmt::format("Nobody has an answer to {}.", in));
+      sentences.push_back(fmt::format("No entrant determines {}.", in));
     } else if (winners.size() == 1) {
       sentences.push_back(fmt::format("Best in {}: {}.", in, winners.front()));
     } else {

@@ -11,6 +11,7 @@
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
+#include "report/sweep/sweep_meaning.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
 #include "report/text/outside_text.h"
@@ -97,8 +98,6 @@ Plot reliability_plot(const validate::Coverage& coverage) {
 
 namespace {
 
-constexpr double kAstray = 2.0;  // scatter over stated sd; chance alone moves the ratio of 200 values by a tenth
-
 /// "95 %", "99.5 %".
 std::string level_text(double level) {
   return base::number_text(100.0 * level, 4) + " %";
@@ -184,7 +183,7 @@ std::string failures_html(const std::vector<validate::CoverageFailure>& failures
 std::vector<validate::CoverageRow> scattered(const validate::Coverage& coverage) {
   std::vector<validate::CoverageRow> rows;
   for (const validate::CoverageRow& row : coverage.rows) {
-    if (row.determined > 0 && row.estimator != validate::kNaiveLines && row.sd > kAstray * row.stated_sd)
+    if (row.determined > 0 && row.estimator != validate::kNaiveLines && row.sd > kMostScatterOverStated * row.stated_sd)
       rows.push_back(row);
   }
   return rows;
@@ -236,9 +235,9 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
   const std::vector<validate::CoverageRow> astray = scattered(coverage);
   if (!astray.empty()) {
     text += fmt::format(
-        "<p>The values scatter more than {} times as far as stated for {}. A few replicates lie far off, too few to "
+        "<p>The values scatter more than {} times as much as stated for {}. A few replicates lie far off, too few to "
         "affect the coverage of 95 % intervals: record such a motion more than once.</p>\n",
-        base::number_text(kAstray, 2), astray_list(astray));
+        base::number_text(kMostScatterOverStated, 2), astray_list(astray));
   }
   text +=
       "<p>The naive lines treat smoothed points as if they were independent. They are shown to demonstrate what that "

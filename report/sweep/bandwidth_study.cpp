@@ -133,7 +133,7 @@ std::string where_text(const std::vector<double>& at, const std::vector<double>&
   return text + " s";
 }
 
-/// "the default rule chooses 0.05 s (0.04 to 0.06) and errs 1.2 times as much".
+/// "the default rule chooses 0.05 s (0.04 to 0.06) and has errors up to 1.2 times as large".
 std::string rule_words(const SweepSummary& summary, const Curves& curves, double use) {
   const std::string lines(fit::default_estimator().name);
   const auto chosen = std::find_if(summary.bandwidths.begin(), summary.bandwidths.end(),
@@ -145,14 +145,15 @@ std::string rule_words(const SweepSummary& summary, const Curves& curves, double
     factor = std::max(factor, ours->rms / curve.at(use)->rms);
   }
   if (chosen == summary.bandwidths.end()) return {};
-  const std::string errs =
-      factor > 1.05 ? fmt::format("errs up to {} times as much", base::number_text(factor, 2)) : "errs no more";
+  const std::string errors = factor > 1.05
+                                 ? fmt::format("has errors up to {} times as large", base::number_text(factor, 2))
+                                 : "has errors no larger";
   const std::string low = base::number_text(chosen->low_s, 2), high = base::number_text(chosen->high_s, 2);
   return fmt::format("; the default rule chooses {}{} and {}", seconds_text(chosen->median_s),
-                     low == high ? "" : fmt::format(" ({} to {} in eight of ten clips)", low, high), errs);
+                     low == high ? "" : fmt::format(" ({} to {} in eight of ten clips)", low, high), errors);
 }
 
-/// "the fit of the whole motion, which needs no h, errs 4 to 8 times less".
+/// "the fit of the whole motion, which needs no bandwidth, has an error 4 to 8 times smaller".
 std::string fit_words(const SweepSummary& summary, const Curves& curves, double use) {
   std::string text;
   for (const fit::Estimator& other : fit::judged_estimators()) {
@@ -166,7 +167,7 @@ std::string fit_words(const SweepSummary& summary, const Curves& curves, double 
     }
     if (most == 0.0 || (least < 1.1 && most < 1.1)) continue;
     const std::string from = base::number_text(least, 2), to = base::number_text(most, 2);
-    text += fmt::format("; the {}, which needs no bandwidth, errs {} times less", other.title,
+    text += fmt::format("; the {}, which needs no bandwidth, has an error {} times smaller", other.title,
                         from == to ? from : from + " to " + to);
   }
   return text;
@@ -204,10 +205,11 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
   answer.from_s = *from;
   answer.to_s = *to;
   answer.text = fmt::format("Use h = {}", seconds_text(answer.use_s));
-  answer.text += answer.from_s < answer.to_s
-                     ? fmt::format("; anything from {} to {} errs at most {:.0f} % more", base::number_text(*from, 3),
-                                   seconds_text(*to), 100.0 * (kNearlyAsGood - 1.0))
-                     : fmt::format("; its neighbours err more than {:.0f} % more", 100.0 * (kNearlyAsGood - 1.0));
+  answer.text +=
+      answer.from_s < answer.to_s
+          ? fmt::format("; anything from {} to {} gives errors at most {:.0f} % larger", base::number_text(*from, 3),
+                        seconds_text(*to), 100.0 * (kNearlyAsGood - 1.0))
+          : fmt::format("; its neighbours give errors more than {:.0f} % larger", 100.0 * (kNearlyAsGood - 1.0));
   if (!answer.narrow_s.empty()) {
     answer.text += fmt::format("; {} the stated intervals are too narrow", where_text(answer.narrow_s, all));
   }

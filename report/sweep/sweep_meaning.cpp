@@ -400,11 +400,12 @@ std::string stated_sds(const SweepSummary& summary) {
     const ErrorStatistics& of = series.groups.front().statistics;
     if (of.answered == 0 || !(of.sd > 0.0) || !(of.rms > 0.0)) continue;
     // Two standard errors of the ratio, for normal errors.
-    const double clearly = kAstray * (1.0 + 2.0 / std::sqrt(2.0 * static_cast<double>(of.answered)));
+    const double clearly = kMostScatterOverStated * (1.0 + 2.0 / std::sqrt(2.0 * static_cast<double>(of.answered)));
     if (of.rms > clearly * of.sd) small.push_back({&series, of.rms / of.sd});
     if (of.sd > clearly * of.rms) large.push_back({&series, of.sd / of.rms});
   }
-  return two_lists(fmt::format("Stated standard deviations that are more than {} times", base::number_text(kAstray, 1)),
+  return two_lists(fmt::format("Stated standard deviations that are more than {} times",
+                               base::number_text(kMostScatterOverStated, 1)),
                    series_text(small, 2, " times"), series_text(large, 2, " times"), "smaller than the rms error",
                    "larger than the rms error");
 }

@@ -18,14 +18,15 @@ inline constexpr double kClearlyBetterFactor = 1.1;
 /// more than one rule.
 std::string sweep_advice(const validate::SweepSummary& summary);
 
-/// A stated standard deviation that is off by more than this factor (and two standard errors more) is named.
-inline constexpr double kAstray = 2.0;
+/// A scatter of more than this many stated standard deviations is named, and in a sweep one of less than their inverse
+/// (and two standard errors more). Chance alone moves the ratio of 200 values by a tenth.
+inline constexpr double kMostScatterOverStated = 2.0;
 
 /// The outcome of a sweep, in a short paragraph. HTML. It names the estimator with the smallest rms error for each
 /// quantity (of those that answer in kLeastAnsweredShare of the most often answered runs), how the error changes along
 /// each key and from one configuration to another, whose 95 % intervals do not contain the truth as often (by more than
 /// three binomial standard errors), and whose stated standard deviation differs from the rms error by more than
-/// kAstray, in either direction. Empty if no run has an answer.
+/// kMostScatterOverStated, in either direction. Empty if no run has an answer.
 std::string sweep_meaning(const validate::SweepSummary& summary);
 
 }  // namespace glidelab::report

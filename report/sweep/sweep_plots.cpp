@@ -154,11 +154,11 @@ struct Titles {
 };
 
 Titles titles_of(const std::vector<const Series*>& drawn) {
-  constexpr std::size_t kMany = 5;
+  constexpr std::size_t kLeastManySeries = 5;
   const std::string lines = std::string(fit::default_estimator().name) + " ";
   Titles titles;
   for (const Series* const series : drawn) {
-    const bool by_rule = drawn.size() >= kMany && series->estimator.starts_with(lines);
+    const bool by_rule = drawn.size() >= kLeastManySeries && series->estimator.starts_with(lines);
     titles.of_each.push_back(by_rule ? series->estimator.substr(lines.size()) : series->estimator);
     titles.shortened = titles.shortened || by_rule;
   }

@@ -93,28 +93,13 @@ std::vector<std::string> phase_file_names(const core::AnalysisResults& results) 
   return names;
 }
 
-namespace {
+namespace {}  // namespace
 
-std::string_view name_of(std::string_view id) {
+std::string effect_name(std::string_view id) {
   if (id == "none") return "nothing is missing";
   if (id == "unknown") return "an unnamed cause";
-  for (const diagnose::EffectInfo& effect : diagnose::all_effects()) {
-    if (effect.id == id) return effect.name;
-  }
-  return id;
-}
-
-}  // namespace
-
-std::string effect_name(std::string_view ids) {
-  constexpr std::string_view kAnd = " + ";
-  std::string text;
-  for (std::size_t at = 0; at <= ids.size();) {
-    const std::size_t end = std::min(ids.find(kAnd, at), ids.size());
-    text += (text.empty() ? "" : std::string(kAnd)) + std::string(name_of(ids.substr(at, end - at)));
-    at = end + kAnd.size();
-  }
-  return text;
+  if (const diagnose::EffectInfo* const effect = diagnose::find_effect(id)) return std::string(effect->name);
+  return std::string(id);
 }
 
 std::vector<std::string> effect_names(const std::vector<std::string>& ids) {
@@ -128,10 +113,10 @@ std::string effect_meaning(std::string_view id) {
   return {};
 }
 
-std::string effect_html(std::string_view ids) {
-  const std::string name = effect_name(ids);
-  if (name == ids) return escape(ids);
-  return fmt::format("{} <small><code>{}</code></small>", escape(name), escape(ids));
+std::string effect_html(std::string_view id) {
+  const std::string name = effect_name(id);
+  if (name == id) return escape(id);
+  return fmt::format("{} <small><code>{}</code></small>", escape(name), escape(id));
 }
 
 std::string parameter_text(std::string_view key, double value, double sd) {

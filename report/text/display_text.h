@@ -62,11 +62,10 @@ std::string file_name_part(std::string_view text);
 /// precedes it (and a number follows it if that is also the same).
 std::vector<std::string> phase_file_names(const core::AnalysisResults& results);
 
-/// The names of effects on pages, in contrast to the ids in files and options; the names are given by the effects' own
-/// files (diagnose/effects/): "quadratic drag + rolling shutter" for "quadratic_drag + rolling_shutter"; "none" and
-/// "unknown" are also put into words. A text that is not the id of an effect (a cause without a name, already in words)
-/// stays as it is.
-std::string effect_name(std::string_view ids);
+/// The name of an effect on pages, in contrast to the id in files and options; it is given by the effect's own file
+/// (diagnose/effects/): "quadratic drag" for "quadratic_drag"; "none" and "unknown" are also put into words. A text
+/// that is not the id of an effect (a cause without a name, already in words) stays as it is.
+std::string effect_name(std::string_view id);
 
 /// The meaning of the letters in the effect's size: "a force −c v |v|"; empty if its size is a word, or if an id is not
 /// that of an effect.
@@ -75,8 +74,8 @@ std::string effect_meaning(std::string_view id);
 /// effect_name() of each.
 std::vector<std::string> effect_names(const std::vector<std::string>& ids);
 
-/// The name, with the ids in small type next to it if they differ. HTML.
-std::string effect_html(std::string_view ids);
+/// The name, with the id in small type next to it if they differ. HTML.
+std::string effect_html(std::string_view id);
 
 using base::name_and_unit;
 using base::NamedUnit;

@@ -32,7 +32,7 @@ struct Kinematics {
 /// (3) of the paper).
 Kinematics viscous_motion(double k_1_s, double v_lim_m_s, double x0_m, double v0_m_s, double t_s);
 
-/// Constant acceleration, v = v0 + a t; on a dry incline a = g (sin alpha - mu cos alpha) (equations (6) and (7)).
+/// Constant acceleration, v = v0 + a t; on a dry incline a = g (sin alpha - mu cos alpha) (the paper's (6), (7)).
 Kinematics uniform_motion(double a_m_s2, double x0_m, double v0_m_s, double t_s);
 
 /// dv/dt = a0 - k v for any k >= 0: viscous_motion() with v_lim = a0 / k, and uniform_motion() at k = 0.
@@ -50,9 +50,9 @@ struct DryTrack {
 
 DryTrack dry_track(double incline_rad, double mu, double mu_static, double gravity_m_s2);
 
-/// dv/dt = drive - k v - sign(v) friction (equation (8)), piece by piece: exponentials up to v = 0. There it sticks if
-/// |drive| <= holding (equality within rounding); otherwise it slides on with the sign of the drive. It comes to v = 0
-/// at most once, because v grows afterwards.
+/// dv/dt = drive - k v - sign(v) friction (the paper's (8)), piece by piece: exponentials up to v = 0. There it sticks
+/// if |drive| <= holding (equality within rounding); otherwise it slides on with the sign of the drive. It comes to v =
+/// 0 at most once, because v grows afterwards.
 State viscous_coulomb_motion(const DryTrack& track, double k_1_s, double x0_m, double v0_m_s, double t_s);
 
 /// When viscous_coulomb_motion() first comes to v = 0; empty if it does not, or if v0 = 0.

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/files/file_io.h"
+#include "diagnose/effects/effect_list.h"
 #include "test_paths.h"
 #include "tests/app/command_names.h"
 #include "tests/catch.h"
@@ -283,6 +284,15 @@ TEST_CASE("the README has at most 100 lines, says that it runs on Linux, and nam
   for (const char* word : {"newest build", "missed", "commit"}) {
     INFO(word);
     CHECK(text.find(word) == std::string::npos);
+  }
+}
+
+TEST_CASE("the README says how many effects a diagnosis knows, and no other page repeats the number") {
+  const std::string stated = fmt::format("{} effects", diagnose::kEffects);
+  for (const Page& page : pages_of_repository()) {
+    if (page.path.starts_with("docs/evidence")) continue;
+    INFO(page.path);
+    CHECK((text_of(page).find(stated) != std::string::npos) == (page.path == "README.md"));
   }
 }
 

@@ -44,8 +44,6 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "fit/outside/outside_tally.h",
       "core/analysis/preview.h",
       "core/characterize/camera_measurement.h",
-      "core/characterize/camera_measurement.h",
-      "core/characterize/camera_measurement.h",
       "core/check/finding.h",
       "core/check/recording_check.h",
       "validate/truth/comparison.h",
@@ -65,7 +63,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "diagnose/effects/effect_list.h",
       "validate/film/twin_motions.h",
       "sim/motion/simulate.h",
-      "diagnose/next/plan.h"}},  // the result types, and what effects are called
+      "diagnose/next/plan.h"}},  // result types, the lists of estimators and effects, motions to draw
     {"app", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
     {"python", {"base", "core", "sim", "render", "fit", "diagnose", "validate", "teach", "report"}},
 };

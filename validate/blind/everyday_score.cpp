@@ -13,8 +13,8 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kHalf = 0.5;         // of the excess: a claim concerns this share
-constexpr double kClearErrors = 2.0;  // standard errors
+constexpr double kLeastClaimedShare = 0.5;  // of the excess: a claim concerns this share
+constexpr double kClearErrors = 2.0;        // standard errors
 constexpr std::size_t kCalibrationBins = 10;
 
 bool holds(const std::vector<std::string>& ids, const std::string& id) {
@@ -42,8 +42,9 @@ std::string strength_of(const BlindOutcome& outcome) {
 }
 
 bool claims_half(const EverydaySaying& saying) {
-  return saying.claims || std::any_of(saying.names.begin(), saying.names.end(),
-                                      [](const EverydayName& name) { return name.share.value_or(0.0) >= kHalf; });
+  return saying.claims || std::any_of(saying.names.begin(), saying.names.end(), [](const EverydayName& name) {
+           return name.share.value_or(0.0) >= kLeastClaimedShare;
+         });
 }
 
 void add_shares(const BlindOutcome& outcome, const EverydaySaying& saying, EverydayMethod& method) {
@@ -101,7 +102,7 @@ bool is_fair(const BlindOutcome& outcome, const EverydaySaying& saying) {
     all += dirt.excess;
     if (!saying.names.empty() && holds(dirt.effects, saying.names.front().id)) fair += dirt.excess;
   }
-  return fair > 0.0 && fair >= kHalf * all;
+  return fair > 0.0 && fair >= kLeastClaimedShare * all;
 }
 
 /// The stated probability of a verdict, and whether the verdict is right.
@@ -241,7 +242,7 @@ EverydaySaying said_by_forward_selection(const BlindVerdict& verdict) {
     saying.names.push_back({other, {}, 1.0, share(left, *second->gap_after)});
     left = *second->gap_after;
   }
-  saying.claims = share(verdict.gap_before, left) >= kHalf;
+  saying.claims = share(verdict.gap_before, left) >= kLeastClaimedShare;
   return saying;
 }
 

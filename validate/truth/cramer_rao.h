@@ -1,8 +1,8 @@
 /// How precisely a motion can determine K/m, mu, alpha and v_lim at all: the Cramér-Rao bound.
 ///
-/// Positions x_i have independent normal noise with one standard deviation s per clip. Equation (8) holds with k = K/m,
-/// drive d = g sin(alpha) and friction f = mu g cos(alpha) for all clips of one configuration, and each clip has its
-/// own start (x0, v0); none of these is known a priori:
+/// Positions x_i have independent normal noise with one standard deviation s per clip. The paper's (8) holds with k =
+/// K/m, drive d = g sin(alpha) and friction f = mu g cos(alpha) for all clips of one configuration, and each clip has
+/// its own start (x0, v0); none of these is known a priori:
 ///
 ///     F = sum over clips of J'(1 - P)J / s^2,   J = dx/d(k, d, f),   P projects on dx/d(x0, v0);
 ///     least variance of q(k, d, f) = grad q' F^-1 grad q.

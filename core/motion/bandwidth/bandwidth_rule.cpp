@@ -57,7 +57,7 @@ void check_bandwidth(const std::optional<double>& bandwidth_s, const std::string
 namespace {
 
 constexpr double kMostPart = 0.2;             // largest bandwidth, as a fraction of the longest part
-constexpr double kTrim = 0.1;                 // fraction of each part left out at each end
+constexpr double kTrimmedAtEachEnd = 0.1;     // fraction of each part left out at each end
 constexpr std::size_t kMostUsedPoints = 400;  // more are thinned
 
 }  // namespace
@@ -75,7 +75,7 @@ BandwidthScan::BandwidthScan(const BandwidthProblem& problem) : problem_(problem
   const std::size_t stride = points / kMostUsedPoints + 1;
   for (std::size_t p = 0; p < problem.parts.size(); ++p) {
     const std::size_t n = problem.parts[p].t_s.size();
-    const auto trim = static_cast<std::size_t>(std::ceil(kTrim * static_cast<double>(n)));
+    const auto trim = static_cast<std::size_t>(std::ceil(kTrimmedAtEachEnd * static_cast<double>(n)));
     for (std::size_t j = trim; j + trim < n; j += stride) probes_.push_back({p, j});
   }
 }

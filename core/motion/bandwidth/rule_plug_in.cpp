@@ -91,10 +91,10 @@ std::optional<BandwidthPick> by_plug_in(const BandwidthProblem& problem) {
   pick.bandwidth_s = std::clamp(ideal, narrowest, widest);
   const double rms = std::sqrt(mean_square), ideal_ms = 1e3 * ideal;
   if (ideal < narrowest) {
-    pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4 asks for {:.1f} ms, narrower than the frames allow",
+    pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4 calls for {:.1f} ms, narrower than the frames allow",
                             rms, ideal_ms);
   } else if (ideal > widest) {
-    pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4 asks for {:.1f} ms, wider than the motion allows", rms,
+    pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4 calls for {:.1f} ms, wider than the motion allows", rms,
                             ideal_ms);
   } else {
     pick.by = found_by_rule("plug-in: rms x'''' of {:.3g} m/s^4", rms);

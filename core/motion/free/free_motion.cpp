@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 6;
 constexpr std::size_t kEnoughPoints = 400;  // more are thinned: the cost is candidates times points
-constexpr double kPartOfSize = 0.25;        // tolerance of a point, as a fraction of the line's size
-constexpr double kDeviations = 5.0;         // tolerance of a point, in standard deviations
+constexpr double kToleranceOfSize = 0.25;   // tolerance of a point, as a fraction of the line's size
+constexpr double kToleranceSds = 5.0;       // tolerance of a point, in standard deviations
 
 /// Least squares through the points for which `counts(i)` is true; a level line if their v hardly differ.
 template <typename Counts>
@@ -70,7 +70,7 @@ LawPoints thinned(const LawPoints& points) {
 }  // namespace
 
 double ConsensusLine::tolerance(double sd_m_s2) const {
-  return std::max(kPartOfSize * size_m_s2, kDeviations * scatter * sd_m_s2);
+  return std::max(kToleranceOfSize * size_m_s2, kToleranceSds * scatter * sd_m_s2);
 }
 
 std::optional<ConsensusLine> find_consensus(const LawPoints& all) {

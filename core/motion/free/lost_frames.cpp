@@ -18,20 +18,20 @@ constexpr std::size_t kBefore = 4, kBehind = 4;  // positions on either side to 
 constexpr std::size_t kFewestBehind = 2;         // if another loss follows soon
 constexpr std::size_t kFewestInWindow = 6;       // on both sides together
 constexpr int kMostPoints = kBefore + 1 + kBehind;
-constexpr double kEvidence = 50.0;      // variances by which a loss lowers the sum of squares
-constexpr double kExplained = 4.0;      // allowed residual, in standard deviations of the noise
-constexpr double kOfDistance = 0.1;     // allowed residual, as a fraction of the distance per frame: a law may change
-                                        // at a reversal
-constexpr double kOfFrame = 1.0 / 7.0;  // allowed deviation of the jump from a whole number of frames
-constexpr double kMarkerMissing = 2.0;  // allowed frames without a marker in a window
-constexpr double kUniform = 0.1;        // of the step
+constexpr double kLeastEvidenceOfLoss = 50.0;    // variances by which a loss lowers the sum of squares
+constexpr double kMostResidualSds = 4.0;         // allowed residual, in standard deviations of the noise
+constexpr double kMostResidualOfDistance = 0.1;  // allowed residual, as a fraction of the distance per frame: a law may
+                                                 // change at a reversal
+constexpr double kMostOffWholeFrame = 1.0 / 7.0;  // allowed deviation of the jump from a whole number of frames
+constexpr double kMostFramesMissing = 2.0;        // allowed frames without a marker in a window
+constexpr double kMostUnevenStep = 0.1;           // of the step
 constexpr double kUnit = 1.0 / static_cast<double>(kBefore);  // of a step: keeps the design's columns alike
 constexpr int kTurnRounds = 4;                                // iterations for the time of a turn
 constexpr Eigen::Index kFewestAtTurn = 7;                     // points
 
 bool is_uniform(const std::vector<double>& t_s, double step_s) {
   for (std::size_t i = 1; i < t_s.size(); ++i) {
-    if (std::abs(t_s[i] - t_s[i - 1] - step_s) > kUniform * step_s) return false;
+    if (std::abs(t_s[i] - t_s[i - 1] - step_s) > kMostUnevenStep * step_s) return false;
   }
   return step_s > 0.0;
 }
@@ -124,7 +124,7 @@ CubicFit cubic_through(const Window& window, int lost) {
 int lost_between(const Window& window, double noise_m) {
   const double variance = noise_m * noise_m;
   const double without = cubic_through(window, 0).squares;
-  if (without < kEvidence * variance) return 0;
+  if (without < kLeastEvidenceOfLoss * variance) return 0;
   int best = 0;
   CubicFit fit{.squares = without};
   for (int lost = 1; lost <= kMostLost; ++lost) {
@@ -134,9 +134,9 @@ int lost_between(const Window& window, double noise_m) {
     fit = tried;
   }
   const double scatter = std::max(variance, fit.squares / fit.freedom);
-  const double explained = std::max(kExplained * noise_m, kOfDistance * fit.distance);
-  const bool explains = without - fit.squares > kEvidence * scatter && scatter < explained * explained;
-  const bool whole = std::abs(fit.off) < kOfFrame && std::sqrt(scatter * fit.off_gain) < kOfFrame;
+  const double explained = std::max(kMostResidualSds * noise_m, kMostResidualOfDistance * fit.distance);
+  const bool explains = without - fit.squares > kLeastEvidenceOfLoss * scatter && scatter < explained * explained;
+  const bool whole = std::abs(fit.off) < kMostOffWholeFrame && std::sqrt(scatter * fit.off_gain) < kMostOffWholeFrame;
   return best > 0 && explains && whole ? best : 0;
 }
 
@@ -155,13 +155,13 @@ bool is_smooth(const Motion& motion, const std::vector<double>& t_s, std::size_t
   }
   const Eigen::HouseholderQR<Design> qr(design);
   y.applyOnTheLeft(qr.householderQ().adjoint());
-  return y.tail(n - 4).squaredNorm() < kEvidence * motion.noise_m * motion.noise_m;
+  return y.tail(n - 4).squaredNorm() < kLeastEvidenceOfLoss * motion.noise_m * motion.noise_m;
 }
 
 /// Whether a window of these points has hardly any frame without a marker.
 bool is_close(const Motion& motion, std::size_t first, std::size_t count, double step_s) {
   const double span_s = motion.t_s[first + count - 1] - motion.t_s[first];
-  return span_s <= (static_cast<double>(count) + kMarkerMissing) * step_s;
+  return span_s <= (static_cast<double>(count) + kMostFramesMissing) * step_s;
 }
 
 /// Number of frames lost before point i of a motion whose points are at the times t_s; 0 without evidence of a loss.
@@ -209,9 +209,9 @@ std::optional<Beside> lost_beside(const Motion& motion, const std::vector<double
   const auto lost = static_cast<int>(best - fits.begin());
   if (lost == 0 || lost == all) return {};  // one loss with nothing between: found as such
   const double scatter = std::max(motion.noise_m * motion.noise_m, best->squares / best->freedom);
-  const double explained = std::max(kExplained * motion.noise_m, kOfDistance * best->distance);
+  const double explained = std::max(kMostResidualSds * motion.noise_m, kMostResidualOfDistance * best->distance);
   const double otherwise = std::min(fits.front().squares, fits.back().squares);
-  if (scatter >= explained * explained || otherwise - best->squares < kEvidence * scatter) return {};
+  if (scatter >= explained * explained || otherwise - best->squares < kLeastEvidenceOfLoss * scatter) return {};
   return Beside{lost, all - lost};
 }
 

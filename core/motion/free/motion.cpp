@@ -55,9 +55,9 @@ namespace {
 
 constexpr std::size_t kNeighbours = 10;  // on both sides
 constexpr int kAllowedAmongNeighbours = 2;
-constexpr std::size_t kOneSide = 5;  // neighbours
-constexpr double kThreshold = 6.0;   // standard deviations
-constexpr double kAgreement = 3.0;   // standard deviations
+constexpr std::size_t kOneSide = 5;           // neighbours
+constexpr double kLeastOutlierSds = 6.0;      // standard deviations
+constexpr double kMostDisagreementSds = 3.0;  // standard deviations
 
 struct Prediction {
   double off = 0.0;        // distance of the point from the neighbours' cubic
@@ -104,8 +104,8 @@ bool continues(const Motion& motion, std::size_t j, int step) {
     neighbours.push_back(step < 0 ? j - reach : j + reach);
   }
   const Prediction prediction = predict<3>(motion, j, neighbours);
-  return prediction.scatter < kAgreement * motion.noise_m &&
-         prediction.off < kAgreement * motion.noise_m * std::sqrt(1.0 + prediction.gain);
+  return prediction.scatter < kMostDisagreementSds * motion.noise_m &&
+         prediction.off < kMostDisagreementSds * motion.noise_m * std::sqrt(1.0 + prediction.gain);
 }
 
 bool is_outlier(const Motion& motion, std::size_t j, const std::vector<char>& dropped) {
@@ -119,9 +119,9 @@ bool is_outlier(const Motion& motion, std::size_t j, const std::vector<char>& dr
   for (int without = 0; neighbours.size() >= 6; ++without) {
     const Prediction prediction = predict<4>(motion, j, neighbours);
     const double scale = std::max(motion.noise_m, prediction.scatter) * std::sqrt(1.0 + prediction.gain);
-    if (prediction.off > kThreshold * scale) return !continues(motion, j, -1) && !continues(motion, j, 1);
+    if (prediction.off > kLeastOutlierSds * scale) return !continues(motion, j, -1) && !continues(motion, j, 1);
     // The neighbours agree, or too many do not: the point is no worse than they are.
-    if (without == kAllowedAmongNeighbours || prediction.scatter < kAgreement * motion.noise_m) return false;
+    if (without == kAllowedAmongNeighbours || prediction.scatter < kMostDisagreementSds * motion.noise_m) return false;
     neighbours.erase(neighbours.begin() + static_cast<std::ptrdiff_t>(prediction.worst));
   }
   return false;

@@ -15,10 +15,10 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kNoiseShare = 0.10;      // largest noise of a, as a fraction of the median |a|
-constexpr double kLongestPart = 12.0;     // largest bandwidth: the moving time over this
-constexpr double kGrowth = 1.15;          // ratio of successive bandwidths
-constexpr double kStillDeviations = 5.0;  // of v: one point in 1e6 by chance
+constexpr double kMostNoiseShare = 0.10;           // largest noise of a, as a fraction of the median |a|
+constexpr double kLeastMovingPerBandwidth = 12.0;  // largest bandwidth: the moving time over this
+constexpr double kGrowth = 1.15;                   // ratio of successive bandwidths
+constexpr double kStillDeviations = 5.0;           // of v: one point in 1e6 by chance
 
 /// Robust standard deviation of x about the smoothed x; more than the pilot noise if the noise is correlated.
 double residual_noise(const Motion& motion, const std::vector<std::optional<SmoothedPoint>>& smoothed,
@@ -79,8 +79,8 @@ Pilot first_smoothing(const Motion& motion) {
       noise.push_back(pilot.sd_a_m_s2[j]);
     }
     const double moving_s = motion.step_s * static_cast<double>(std::max(magnitude.size(), motion.t_s.size() / 4));
-    const bool quiet = !magnitude.empty() && quantile(noise, 0.5) <= kNoiseShare * quantile(magnitude, 0.5);
-    if (quiet || kGrowth * bandwidth > moving_s / kLongestPart) return pilot;
+    const bool quiet = !magnitude.empty() && quantile(noise, 0.5) <= kMostNoiseShare * quantile(magnitude, 0.5);
+    if (quiet || kGrowth * bandwidth > moving_s / kLeastMovingPerBandwidth) return pilot;
     bandwidth *= kGrowth;
   }
 }

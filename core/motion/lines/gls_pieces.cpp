@@ -12,14 +12,14 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kWindow = 3.0;      // bandwidths on both sides of an event, used to estimate its time
-constexpr double kDeviations = 2.0;  // margin left out around an event, in standard deviations of its time
+constexpr double kEventWindowBandwidths = 3.0;  // bandwidths on both sides of an event, used to estimate its time
+constexpr double kEventMarginSds = 2.0;         // margin left out around an event, in standard deviations of its time
 
 std::optional<EventTime> event_between(const Motion& motion, std::size_t from, std::size_t border, std::size_t to,
                                        EventKind kind, double bandwidth_s, const std::vector<double>& autocovariance) {
   const std::span t = std::span(motion.t_s).subspan(from, to - from);
   const std::span y = std::span(motion.y_m).subspan(from, to - from);
-  return estimate_event(t, y, kind, motion.t_s[border], kWindow * bandwidth_s, autocovariance);
+  return estimate_event(t, y, kind, motion.t_s[border], kEventWindowBandwidths * bandwidth_s, autocovariance);
 }
 
 /// The range of points of one stretch between the times.
@@ -42,7 +42,7 @@ std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free,
     const std::size_t end = stretch.first + stretch.count;
     double from_s = motion.t_s[stretch.first], to_s = motion.t_s[end - 1];
     if (turned) {
-      from_s = turned->t_s + kDeviations * turned->sd_s;
+      from_s = turned->t_s + kEventMarginSds * turned->sd_s;
     } else if (stretch.first > 0) {
       from_s += bandwidth_s;
     }
@@ -59,7 +59,7 @@ std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free,
       event = event_between(motion, stretch.first, end, rest, EventKind::stops, bandwidth_s, autocovariance);
     }
     if (event) {
-      to_s = event->t_s - kDeviations * event->sd_s;
+      to_s = event->t_s - kEventMarginSds * event->sd_s;
     } else if (end < n) {
       to_s -= bandwidth_s;
     }
@@ -70,7 +70,7 @@ std::vector<FreePiece> free_pieces(const Motion& motion, const FreeMotion& free,
 
 namespace {
 
-constexpr double kPivot = 1e-9;  // smallest allowed pivot of C over its diagonal
+constexpr double kLeastPivot = 1e-9;  // smallest allowed pivot of C over its diagonal
 
 using Vector = Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
@@ -139,7 +139,7 @@ bool LineNodes::well_conditioned(double k) const {
   const BandedCholesky cholesky(c);
   if (cholesky.info() != Eigen::Success) return false;
   const Vector diagonal = c.diagonal(), pivot = Sparse(cholesky.matrixL()).diagonal();
-  return (pivot.array().square() > kPivot * diagonal.array()).all();
+  return (pivot.array().square() > kLeastPivot * diagonal.array()).all();
 }
 
 NodeResidual LineNodes::residual(double k) const {

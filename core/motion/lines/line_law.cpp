@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMostSteps = 12;
 constexpr double kBiasSettled = 1e-3;  // of the standard deviation of k and of a0
-constexpr double kLargest = 0.5;       // largest bias of k, as a fraction of k or of two of its standard deviations
+constexpr double kMostBias = 0.5;      // largest bias of k, as a fraction of k or of two of its standard deviations
 constexpr double kDifference = 1e-3;   // relative step of the derivatives of the bias
 
 /// Points of one stretch, and the measured positions within reach of their kernels.
@@ -137,7 +137,7 @@ std::optional<LawBias> law_bias(const LineInput& input, const LineFit& line,
         ((next - law).array().abs() <= kBiasSettled * sd.array() + 1e-12).all();  // 1e-12: positions without noise
     law = next;
   }
-  if (!settled || !(std::abs(bias[0]) <= kLargest * std::max(std::abs(law[0]), 2.0 * sd[0]))) return {};
+  if (!settled || !(std::abs(bias[0]) <= kMostBias * std::max(std::abs(law[0]), 2.0 * sd[0]))) return {};
 
   const OwnLaw::Points made = own.points(law);
   std::vector<double> residual;

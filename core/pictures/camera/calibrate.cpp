@@ -450,9 +450,10 @@ int distortion_terms(const Calibration& calibration) {
 Calibration calibrate_any_lens(const BoardViews& boards, double square_m) {
   Calibration found = calibrate_camera(boards, square_m);
   const CameraModel& camera = found.camera;
-  constexpr double kWide = 0.8;   // focal lengths
-  constexpr int kFewerTerms = 2;  // of the distortion
-  const bool wide = std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy) > kWide;
+  constexpr double kLeastWideCorner = 0.8;  // focal lengths
+  constexpr int kFewerTerms = 2;            // of the distortion
+  const bool wide =
+      std::hypot(0.5 * camera.size.width / camera.fx, 0.5 * camera.size.height / camera.fy) > kLeastWideCorner;
   if (!wide && !follows_badly(found.noise)) return found;
   std::optional<Calibration> fisheye = calibrate_fisheye(boards, square_m);
   if (!fisheye || fisheye->views_used < found.views_used) return found;
@@ -460,8 +461,8 @@ Calibration calibrate_any_lens(const BoardViews& boards, double square_m) {
   const double gain = coordinates * 2.0 * std::log(found.rms_px / fisheye->rms_px);
   const int fewer = distortion_terms(found) - distortion_terms(*fisheye);
   const bool simpler = wide && fewer >= kFewerTerms && gain > -kSignificantOne * fewer;
-  if (gain < kDecisive && !simpler) return found;
-  fisheye->notes.emplace_back(FisheyePreferred{fisheye->rms_px, found.rms_px, gain < kDecisive ? fewer : 0});
+  if (gain < kLeastDecisiveGain && !simpler) return found;
+  fisheye->notes.emplace_back(FisheyePreferred{fisheye->rms_px, found.rms_px, gain < kLeastDecisiveGain ? fewer : 0});
   return std::move(*fisheye);
 }
 

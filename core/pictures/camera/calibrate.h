@@ -68,12 +68,12 @@ std::vector<Note> notes_on_views(const BoardViews& boards, const std::vector<con
 ///
 /// Lenses move the image's corner by a part of N(0, 0.3²) with k1, N(0, 0.2²) with k2, N(0, 0.1²) with k3. That is an
 /// assumption, two to four times the largest of the three measured calibrations in scenarios/cameras (a C920: 0.07,
-/// -0.10, 0.02), for wider lenses are in use. A radial term counts as far as that leaves it: with the sd s of its part
-/// at the corner, v' C^-1 v and the term's value times usual² / (usual² + s²). What the views know ten times better
-/// loses 1 %; noise that would bend the image's sides by half is no term.
+/// -0.10, 0.02), because wider lenses are in use. A radial term counts as far as that leaves it: with the sd s of its
+/// part at the corner, v' C^-1 v and the term's value times usual² / (usual² + s²). What the views know ten times
+/// better loses 1 %; noise that would bend the image's sides by half is no term.
 ///
-/// What a term that was left out may still do is added to the covariance (left_out_terms.h), so that leaving terms out
-/// makes no result look more certain; left_out_terms.h says for which lenses this does not hold. k2 of a lens of extent
+/// What a term that was left out may still do is added to the covariance, so that leaving terms out makes no result
+/// look more certain (left_out_terms.h, which says for which lenses this does not hold). k2 of a lens of extent
 /// e is N(0, (2 e)²) at the corner and k3 N(0, e²); in the three measured calibrations k2 has 0.6 to 2 times the part
 /// of k1.
 ///
@@ -91,14 +91,14 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m);
 std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
 
 /// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.
-inline constexpr double kDecisive = 100.0;
+inline constexpr double kLeastDecisiveGain = 100.0;
 
 /// Brown-Conrady, or a fisheye, which is tried if the image's corner is more than 0.8 focal lengths off the axis, or if
 /// neighbouring corners show that Brown-Conrady does not describe the lens. With the gain g = n log(rms² / rms²) of the
 /// fisheye over n coordinates (twice the logarithm of the likelihood ratio), it is taken in either of two cases:
 ///
-/// - It explains the corners decisively better, g > kDecisive. So much is asked because some ten neighbouring corners
-///   share their errors; how many terms either model has does not count.
+/// - It explains the corners decisively better, g > kLeastDecisiveGain. So much is asked because some ten neighbouring
+///   corners share their errors; how many terms either model has does not count.
 /// - It explains them as well with at least two fewer terms of the distortion, and the image's corner is more than 0.8
 ///   focal lengths off the axis: a polynomial that mimics a fisheye where the pattern was seen goes wrong beyond. As
 ///   well: g > -9 for each term saved, for a term that gains less than 9 would not be kept (calibrate_camera()). One

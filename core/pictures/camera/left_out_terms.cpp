@@ -12,10 +12,10 @@ double believed(double usual, double sd) {
 }
 
 Eigen::Matrix<double, 9, 9> effect_of(const std::vector<LeftOutTerm>& all, double kept_at_corner) {
-  constexpr double kWithin = 2.0;  // standard deviations
+  constexpr double kSdsOfLeftOutK1 = 2.0;  // standard deviations
   double extent = kept_at_corner;
   for (const LeftOutTerm& one : all) {
-    if (one.power == 1) extent += one.at_corner * (std::abs(one.value[0]) + kWithin * std::sqrt(one.own(0, 0)));
+    if (one.power == 1) extent += one.at_corner * (std::abs(one.value[0]) + kSdsOfLeftOutK1 * std::sqrt(one.own(0, 0)));
   }
   Eigen::Matrix<double, 9, 9> effect = Eigen::Matrix<double, 9, 9>::Zero();
   for (const LeftOutTerm& one : all) {

@@ -1,8 +1,8 @@
 /// What terms of a lens that its calibration left out may still do.
 ///
 /// A term that the views do not determine is fixed to zero. It may still be real, and the fit without it then errs by
-/// more than its own covariance. To that are added, for a term v of covariance C in the last fit that had it, and C_a
-/// the covariance of all terms with it,
+/// more than its own covariance. For a term v with covariance C in the last fit that had it, and C_a the covariance of
+/// all terms with it, we add
 ///
 ///     b C_a C^-1 C_a' + r w w',    w = b C_a C^-1 v,    r = max(0, 1 - q / (b v' C^-1 v)):
 ///
@@ -10,7 +10,7 @@
 /// believed: 1 for p1, p2; usual² / (usual² + s²) for a radial term, whose part s at the image's corner is N(0, usual²)
 /// over lenses. A straight lens has small high terms: of k2 and k3, usual is at most `of_extent` times the lens's
 /// extent e, the sum of the sizes at the corner of the radial terms that were kept and, where k1 was left out, of what
-/// k1 may be (its size and two standard deviations). k1 is not bounded by the extent, which it makes.
+/// k1 may be (its size and two standard deviations). k1 itself defines the extent and is not bounded by it.
 ///
 /// High terms go with k1 in lenses as they are. They do not in images that a camera has straightened itself, or in a
 /// lens whose k1 happens to be near zero beside large k2 and k3: there the intervals may be too narrow.

@@ -214,15 +214,15 @@ std::vector<RestitutionMode> Restitution::modes() const {
   std::vector<RestitutionMode> modes;
   if (scale_) return modes;
   // A quarter of a standard deviation: far above the fits' rounding, and small beside what bends the response.
-  constexpr double kSds = 0.25;
+  constexpr double kStepSds = 0.25;
   const Eigen::MatrixXd of_camera = square_root(calibration_.covariance);
   for (Eigen::Index k = 0; k < of_camera.cols(); ++k) {
-    const CameraModel camera = calibration_.camera.moved(kSds * of_camera.col(k));
-    modes.push_back({camera, refit_pose(camera, views_, square_m_, *plane_), height_m_, kSds, true});
+    const CameraModel camera = calibration_.camera.moved(kStepSds * of_camera.col(k));
+    modes.push_back({camera, refit_pose(camera, views_, square_m_, *plane_), height_m_, kStepSds, true});
   }
   const Eigen::MatrixXd of_pose = square_root(plane_->covariance);
   for (Eigen::Index k = 0; k < of_pose.cols(); ++k) {
-    modes.push_back({calibration_.camera, moved(plane_->pose, kSds * of_pose.col(k)), height_m_, kSds, false});
+    modes.push_back({calibration_.camera, moved(plane_->pose, kStepSds * of_pose.col(k)), height_m_, kStepSds, false});
   }
   return modes;
 }

@@ -20,7 +20,7 @@
 namespace glidelab::core {
 
 /// Draws the pixels of a rectangle within the image, if they are not there yet: for an image whose pixels are made as
-/// they are looked at (a renderer's, of which a tracker looks at a hundredth).
+/// they are looked at (a renderer's: a tracker looks at a hundredth of it).
 using DrawPixels = std::function<void(const cv::Rect&)>;
 
 struct Frame {

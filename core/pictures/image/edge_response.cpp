@@ -13,13 +13,13 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::array kNarrower_px2{0.0, 0.15, 0.3};
-constexpr int kLearningRounds = 3;        // the terms settle to a hundredth
-constexpr double kFewestPixels = 300.0;   // beyond the windows' own parameters
-constexpr double kMostLeft = 0.93;        // of the residuals' squares: noise alone leaves 1 - 13 / pixels
-constexpr double kMostLeftByCurve = 0.7;  // left by the curve's light: the noise of bright pixels weighs other there
-constexpr double kCurved = 0.2;           // t of codes that follow a curve: 0.3 to 0.5 for BT.709
-constexpr double kStraight = 0.5;         // of that, left by the curve's light
-constexpr double kRidge = 1e-3;           // of the best seen term: what the windows hardly show stays out
+constexpr int kLearningRounds = 3;          // the terms settle to a hundredth
+constexpr double kFewestPixels = 300.0;     // beyond the windows' own parameters
+constexpr double kMostLeft = 0.93;          // of the residuals' squares: noise alone leaves 1 - 13 / pixels
+constexpr double kMostLeftByCurve = 0.7;    // left by the curve's light: the noise of bright pixels weighs other there
+constexpr double kLeastCurvature = 0.2;     // t of codes that follow a curve: 0.3 to 0.5 for BT.709
+constexpr double kMostCurvatureLeft = 0.5;  // of that, left by the curve's light
+constexpr double kRidge = 1e-3;             // of the best seen term: what the windows hardly show stays out
 
 /// The terms with which a window's light is compared.
 struct Columns {
@@ -138,7 +138,7 @@ std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeRespo
 bool is_straighter(const Learnt& light, const Learnt& codes) {
   const double curved = std::abs(codes.response.curvature());
   return light.left < kMostLeftByCurve * codes.left ||
-         (curved > kCurved && std::abs(light.response.curvature()) < kStraight * curved);
+         (curved > kLeastCurvature && std::abs(light.response.curvature()) < kMostCurvatureLeft * curved);
 }
 
 }  // namespace

@@ -185,7 +185,7 @@ struct Moments {
   cv::Vec3d second;
 };
 
-/// The moments of what stands above the fitted background.
+/// The moments of what exceeds the fitted background.
 Moments moments_of(const MarkerPixels& window, const MarkerFit& marker, double expected_radius_px) {
   cv::Vec3d moments(0.0, 0.0, 0.0);
   cv::Point2d first;

@@ -48,7 +48,7 @@ struct MarkerFit {
   cv::Vec3d shape;          ///< the elements uu, uv, vv of M (1/px)
   double amplitude = 0.0;   ///< B - b, in units of the signal
   double background = 0.0;
-  /// Second moments uu, uv, vv (px²) about the centre, of what stands above the background in a disc a little larger
+  /// Second moments uu, uv, vv (px²) about the centre, of what exceeds the background in a disc a little larger
   /// than the marker. They are those of the pixels, not of the model.
   cv::Vec3d moments;
   /// The centroid of what stands out there, less the centre (px): how far light from one side or an uneven background

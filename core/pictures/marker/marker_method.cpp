@@ -13,21 +13,21 @@
 namespace glidelab::core {
 namespace {
 
-constexpr double kReach = 2.2, kReachMargin_px = 2.0;  // of the radius, with a margin: half the side of the box
-constexpr double kRim = 1.6;                           // of the radius: pixels farther out are background
-constexpr double kSmallest_px = 1.5;                   // the marker's pixels are sought at least as far out
-constexpr std::size_t kFewestOfRim = 8;                // pixels
-constexpr double kFloor = 0.2;                         // of the peak
+constexpr double kBoxRadii = 2.2, kBoxMargin_px = 2.0;  // of the radius, with a margin: half the side of the box
+constexpr double kMostRadiiOfMarker = 1.6;              // of the radius: pixels farther out are background
+constexpr double kSmallest_px = 1.5;                    // the marker's pixels are sought at least as far out
+constexpr std::size_t kFewestOfRim = 8;                 // pixels
+constexpr double kFloorOfPeak = 0.2;                    // of the peak
 
 /// The background by the median of the rim of the box, the peak by the brightest tenth near the guess.
 struct Peak {
   double level;
   double amplitude;  ///< above the level, > 0
-  double floor() const { return level + kFloor * amplitude; }
+  double floor() const { return level + kFloorOfPeak * amplitude; }
 };
 
 cv::Rect box_around(const Signal& signal, const MarkerGuess& guess) {
-  const double reach = kReach * guess.radius_px + kReachMargin_px;
+  const double reach = kBoxRadii * guess.radius_px + kBoxMargin_px;
   const cv::Point corner(static_cast<int>(std::floor(guess.centre.x - reach)),
                          static_cast<int>(std::floor(guess.centre.y - reach)));
   const int side = 2 * static_cast<int>(std::ceil(reach)) + 1;
@@ -43,7 +43,7 @@ std::optional<Peak> peak_in(const Signal& signal, const cv::Rect& box, const Mar
   for (int v = box.y; v < box.br().y; ++v) {
     for (int u = box.x; u < box.br().x; ++u) {
       const double distance = distance_of(u, v, guess);
-      if (distance > kRim * guess.radius_px) rim.push_back(signal.at(u, v));
+      if (distance > kMostRadiiOfMarker * guess.radius_px) rim.push_back(signal.at(u, v));
       if (distance < std::max(guess.radius_px, kSmallest_px)) near.push_back(signal.at(u, v));
     }
   }
@@ -109,7 +109,7 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
   double sum = 0.0, sum_u = 0.0, sum_v = 0.0, area = 0.0;
   for (const cv::Point& here : connected(signal, box, *seed, floor)) {
     // The weight rises linearly from 0 at the floor, so that a pixel that comes or goes there does not matter.
-    const double weight = std::min((signal.at(here.x, here.y) - floor) / ((1.0 - kFloor) * peak->amplitude), 1.0);
+    const double weight = std::min((signal.at(here.x, here.y) - floor) / ((1.0 - kFloorOfPeak) * peak->amplitude), 1.0);
     sum += weight;
     sum_u += weight * here.x;
     sum_v += weight * here.y;

@@ -14,7 +14,7 @@ constexpr std::size_t kExposureStep = 5;   // frames, from one whose exposure co
 constexpr double kBrightQuantile = 0.999;  // of the pixels, the level that is called bright
 constexpr std::size_t kMostPairs = 24;
 // The squares of the smaller 95 % of normal numbers have 0.759 of their variance.
-constexpr double kKept = 0.95, kKeptVariance = 0.759;
+constexpr double kKeptOfResiduals = 0.95, kKeptVariance = 0.759;
 
 /// Every fourth pixel, either way.
 template <class Code>
@@ -141,7 +141,7 @@ double ClipWatch::pixel_noise(const std::vector<MarkerSighting>& sightings) cons
     }
   }
   if (squares.empty()) return 0.0;
-  const double limit = quantile(squares, kKept);
+  const double limit = quantile(squares, kKeptOfResiduals);
   double sum = 0.0, count = 0.0;
   for (const double square : squares) {
     if (square > limit) continue;

@@ -2,7 +2,7 @@
 /// own in each motion.
 ///
 /// A camera that turns moves the sides of the image by more: the amplitude is then A (1 + slope (x - x_mid) + bend (x -
-/// x_mid)²), with x_mid the middle of the positions of all set-ups. Nobody knows the camera of imported tracks; there
+/// x_mid)²), with x_mid the middle of the positions of all set-ups. The camera of imported tracks is unknown; there
 /// the amplitude is the same everywhere.
 #include "base/math/angles.h"
 #include "diagnose/effects/effect.h"

@@ -1,4 +1,4 @@
-/// A recorded force F(t) of which F(t - tau) acts at time t.
+/// The force that acts at t is F(t - tau), F being the recorded one.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {

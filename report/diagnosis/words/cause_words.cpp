@@ -171,10 +171,10 @@ std::string region_words(const diagnose::GapRegion& region) {
 
 std::string holds_within_words(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.levels || !diagnosis.levels->holds_within || !diagnosis.levels->configuration) return {};
-  constexpr double kHolds = 1.5;  // times the noise: a law with a larger gap only fits better there
+  constexpr double kMostGapThatHolds = 1.5;  // times the noise: a law with a larger gap only fits better there
   const double within = *diagnosis.levels->configuration;
   const std::string here = base::number_text(within, 3), across = base::number_text(diagnosis.levels->all, 3);
-  if (within < kHolds) {
+  if (within < kMostGapThatHolds) {
     return fmt::format("The law holds within each configuration (gap {}); across them it does not ({}).", here, across);
   }
   return fmt::format("The law fits far better within each configuration (gap {}) than across them ({}).", here, across);

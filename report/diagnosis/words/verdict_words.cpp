@@ -297,7 +297,7 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
   }
   return fmt::format(
       "{} The nominal model explains the motion to within its noise, and no known effect shifts an inclination so "
-      "far: a statement is wrong, or something else acts like an inclination ({}).",
+      "far: a stated value is wrong, or something else acts like an inclination ({}).",
       sentences(diagnosis.limits.contradicted), sure);
 }
 

@@ -114,8 +114,8 @@ TEST_CASE("a wrong command line is status 2, one message, and nothing on standar
 TEST_CASE("an unknown command is named together with those that exist") {
   const tests::ProcessResult result = tests::glidelab({"guess", "folder"});
   CHECK(result.err.find("unknown command \"guess\"") != std::string::npos);
-  CHECK(result.err.find("simulate, render, analyze, validate, coverage, certify, sweep, require, laws, characterize, "
-                        "diagnose, blind, challenge, new, pattern, check, explore") != std::string::npos);
+  CHECK(result.err.find("new, pattern, check, analyze, certify, diagnose, characterize, simulate, render, validate, "
+                        "coverage, sweep, require, laws, explore, blind, challenge") != std::string::npos);
 }
 
 TEST_CASE("an input that is not there is status 1 and names the file, whatever the command") {

@@ -254,7 +254,7 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"diameter_m = 0.02", "diameter_m = 0.02\ncolor = \"green\"", "14: marker.color: found text \"green\""},
       {"diameter_m = 0.02", "diameter_m = 0.02\nstart_px = [1, -2]", "14: marker.start_px: found -2"},
       {"\"-X\"", "\"x\"", "15: track.downhill"},
-      {"\"-X\"", "\"+Y\"", "15: track.downhill: found \"+Y\" for clip \"a\", which goes by a pattern"},
+      {"\"-X\"", "\"+Y\"", "15: track.downhill: found \"+Y\" for clip \"a\", which is calibrated by a pattern"},
       {"name = \"a\"", "name = \"a/b\"", "17: clip[1].name"},
       {"clips/a.mkv", "clips/c.mkv", "18: clip[1].file: found no file clips/c.mkv"},
       {"mass_kg", "track = \"track.csv\"\nmass_kg", "19: clip[1].track: found a track and a file"},

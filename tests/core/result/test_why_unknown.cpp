@@ -32,7 +32,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::NotTold{}, "did not say why"},
       {unknown::NotAnswered{}, "no such configuration"},
       {unknown::NoLineOfMotion{}, "does not move"},
-      {unknown::NotToldApart{}, "do not tell it apart"},
+      {unknown::NotToldApart{}, "do not separate it"},
       {unknown::ExplanationsDiffer{}, "differ too much"},
       {unknown::FreeFall{}, "no normal force"},
       {unknown::NoBalance{}, "no speed downhill"},

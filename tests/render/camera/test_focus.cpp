@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/paint/sphere_image.h"
+#include "render/film/truth_files.h"
 #include "tests/catch.h"
 #include "tests/render/made_clip.h"
 

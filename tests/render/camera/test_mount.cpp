@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "base/errors.h"
-#include "render/paint/sphere_image.h"
+#include "render/film/truth_files.h"
 #include "tests/catch.h"
 #include "tests/render/made_clip.h"
 

@@ -7,7 +7,6 @@
 #include "base/files/file_io.h"
 #include "render/film/clip_renderer.h"
 #include "render/film/truth_files.h"
-#include "render/paint/sphere_image.h"
 #include "render/scenario/scene.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

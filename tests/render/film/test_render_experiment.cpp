@@ -17,7 +17,6 @@
 #include "base/toml/strict_toml.h"
 #include "core/experiment/experiment.h"
 #include "render/film/truth_files.h"
-#include "render/paint/sphere_image.h"
 #include "render/scenario/scene.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/errors.h"
-#include "render/paint/sphere_image.h"
+#include "render/film/truth_files.h"
 #include "tests/catch.h"
 
 using namespace glidelab::render;

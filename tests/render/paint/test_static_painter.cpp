@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "render/paint/sphere_image.h"
+#include "render/film/truth_files.h"
 #include "tests/catch.h"
 #include "tests/render/tilted_board.h"
 

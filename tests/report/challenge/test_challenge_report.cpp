@@ -48,7 +48,7 @@ TEST_CASE("a challenge's score begins with who is best in what") {
         "In K/m 8 cases do not tell mine and lines apart, the best of 3. Best in µ: mine.");
   CHECK(first_line(score_of({quantity_of("mu", {1, 1, 1}, 8)})) ==
         "In µ 8 cases do not tell mine, lines and spline apart.");
-  CHECK(first_line(score_of({quantity_of("alpha_deg", {1, 1, 1}, 0)})) == "Nobody has an answer to α.");
+  CHECK(first_line(score_of({quantity_of("alpha_deg", {1, 1, 1}, 0)})) == "No entrant determines α.");
 }
 
 TEST_CASE("the page of a challenge's score begins with the same answer, and folds the pairs away") {

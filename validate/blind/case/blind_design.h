@@ -4,8 +4,8 @@
 ///
 ///     inertia dv/dt = drive - drag - sign(v) friction,        at v = 0 it stays while |drive| <= friction
 ///
-/// drive = m g sin(alpha), drag = K v, friction = mu m g cos(alpha), inertia = m, each of which a change may alter as a
-/// function of (x, v, t). SI, x downhill.
+/// drive = m g sin(alpha), drag = K v, friction = mu m g cos(alpha), inertia = m, each of which the effect may change
+/// as a function of (x, v, t). SI, x downhill.
 #pragma once
 
 #include <algorithm>

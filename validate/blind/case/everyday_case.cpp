@@ -18,8 +18,8 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kOne = 0.50, kTwo = 0.70, kDirt = 0.85;  // of 100 cases 50, 20, 15 and 15
-constexpr double kMostExcess = 40.0;                      // a gap of 6.4
+constexpr double kUpToOne = 0.50, kUpToTwo = 0.70, kUpToDirt = 0.85;  // of 100 cases 50, 20, 15 and 15
+constexpr double kMostExcess = 40.0;                                  // a gap of 6.4
 constexpr int kMostEverydayDraws = 600;
 constexpr int kDesignsPerCause = 8;    // designs tried per cause: none may show a weak effect
 constexpr double kLongestTrack = 1.3;  // m, on either side of the middle
@@ -216,10 +216,10 @@ BlindRandom random_of(std::uint64_t seed, std::size_t index) {
 Wanted draw_wanted(BlindRandom& random, const EverydayDraw& draw) {
   const double lot = uniform(random, 0.0, 1.0);
   Wanted wanted;
-  wanted.kind = lot < kOne    ? EverydayClass::one
-                : lot < kTwo  ? EverydayClass::two
-                : lot < kDirt ? EverydayClass::dirt
-                              : EverydayClass::outside;
+  wanted.kind = lot < kUpToOne    ? EverydayClass::one
+                : lot < kUpToTwo  ? EverydayClass::two
+                : lot < kUpToDirt ? EverydayClass::dirt
+                                  : EverydayClass::outside;
   wanted.strong = uniform(random, 0.0, 1.0) < 0.5;
   wanted.only = draw.only;
   if (draw.only.empty()) return wanted;

@@ -130,13 +130,15 @@ void compare_smoothing(const SmoothingRecord& then, const SmoothingRecord& now, 
 /// The power to detect a spread larger by a factor of 1.5, and a bias of half a standard deviation.
 void tell_power(double runs_then, double runs_now, BaselineComparison& comparison) {
   if (!(runs_now > 2.0 && runs_then > 2.0)) return;
-  constexpr double kLarger = 1.5, kBias = 0.5;
+  constexpr double kErrorFactorToFind = 1.5, kBiasToFind_sd = 0.5;
   const double needed = base::normal_upper_quantile(level_of(comparison));
   // For |z|, z standard normal: mean sqrt(2/pi), standard deviation sqrt(1 - 2/pi).
   constexpr double kMean = 0.7978845608, kSd = 0.6028102750;
-  comparison.power_spread = base::normal_cdf(
-      (kLarger - 1.0) * kMean / (kSd * std::sqrt(kLarger * kLarger / runs_now + 1.0 / runs_then)) - needed);
-  comparison.power_bias = base::normal_cdf(kBias / std::sqrt(1.0 / runs_now + 1.0 / runs_then) - needed);
+  comparison.power_spread =
+      base::normal_cdf((kErrorFactorToFind - 1.0) * kMean /
+                           (kSd * std::sqrt(kErrorFactorToFind * kErrorFactorToFind / runs_now + 1.0 / runs_then)) -
+                       needed);
+  comparison.power_bias = base::normal_cdf(kBiasToFind_sd / std::sqrt(1.0 / runs_now + 1.0 / runs_then) - needed);
 }
 
 }  // namespace

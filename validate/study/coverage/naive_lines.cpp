@@ -92,7 +92,7 @@ core::AnalysisResults with_naive_lines(core::AnalysisResults results) {
     }
     const double weight = 1.0 / minus->var_k + 1.0 / plus->var_k;
     configuration.k_over_m_1_s = interval((minus->k / minus->var_k + plus->k / plus->var_k) / weight, 1.0 / weight);
-    // Equation (13): the half sum of the intercepts is g sin(alpha), the half difference mu g cos(alpha).
+    // The paper's equation (13): the half sum of the intercepts is g sin(alpha), the half difference mu g cos(alpha).
     const double drive = 0.5 * (minus->a0 + plus->a0), friction = 0.5 * (minus->a0 - plus->a0);
     const double variance = 0.25 * (minus->var_a0 + plus->var_a0);
     if (!(std::abs(drive) < g)) {

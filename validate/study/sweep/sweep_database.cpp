@@ -78,7 +78,7 @@ void check_entries(Database& database, const SweepEntries& expected) {
   const auto other = std::ranges::find_if(found, of_estimator);
   if (other != found.end() && std::ranges::none_of(expected, of_estimator)) {
     throw base::InputError(base::Issue{database.file().string(), 0, kEstimatorEntry, other->second,
-                                       "none: a sweep that began with --estimator-command goes on with it"});
+                                       "none: a sweep begun with --estimator-command must be continued with it"});
   }
 }
 

@@ -29,7 +29,7 @@ void check_apart(const TomlTable& table, const AxisSource& source) {
   if (!std::isfinite(source.from) || !std::isfinite(source.to)) return;
   const std::vector<base::TomlScalar> values = all_values(source);
   if (std::adjacent_find(values.begin(), values.end()) == values.end()) return;
-  table.reject("count", fmt::format("{} values, of which some are alike as whole numbers", source.count),
+  table.reject("count", fmt::format("{} values, some of which are the same whole number", source.count),
                "fewer values, or a longer range");
 }
 

@@ -102,7 +102,7 @@ TEST_CASE("A range over a key of whole numbers gives whole numbers where it says
   }
   CHECK_THAT(
       tests::refusal_of_sweep("", kNoise + width + "range = { from = 300, to = 303, whole = true, count = 6 }\n"),
-      Contains("count: found 6 values, of which some are alike"));
+      Contains("count: found 6 values, some of which are the same"));
   CHECK_THAT(
       tests::refusal_of_sweep("", kNoise + width + "range = { from = 300.5, to = 400, whole = true, count = 3 }\n"),
       Contains("range.from: found 300.5"));

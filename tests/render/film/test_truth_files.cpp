@@ -1,4 +1,4 @@
-#include "render/paint/sphere_image.h"
+#include "render/film/truth_files.h"
 
 #include <cmath>
 #include <numbers>
