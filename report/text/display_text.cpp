@@ -11,6 +11,7 @@
 #include "base/text/number_text.h"
 #include "core/result/why_words.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/result/joined_ids.h"
 #include "fit/estimators.h"
 #include "report/html/html.h"
 #include "validate/study/coverage/interval_coverage.h"
@@ -103,14 +104,9 @@ std::string_view name_of(std::string_view id) {
 }  // namespace
 
 std::string effect_name(std::string_view ids) {
-  constexpr std::string_view kAnd = " + ";
-  std::string text;
-  for (std::size_t at = 0; at <= ids.size();) {
-    const std::size_t end = std::min(ids.find(kAnd, at), ids.size());
-    text += (text.empty() ? "" : std::string(kAnd)) + std::string(name_of(ids.substr(at, end - at)));
-    at = end + kAnd.size();
-  }
-  return text;
+  std::vector<std::string> names;
+  for (const std::string& id : diagnose::split_ids(ids)) names.emplace_back(name_of(id));
+  return diagnose::joined_ids(names);
 }
 
 std::vector<std::string> effect_names(const std::vector<std::string>& ids) {
