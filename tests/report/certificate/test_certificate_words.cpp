@@ -208,5 +208,5 @@ TEST_CASE("configurations are named by mass and inclination, and by the twin's o
   own.setup = 2;
   made.configurations = {own};
   CHECK(report::certificate_json(made).find("\"configuration\": \"0.2 kg, 0°\"") != std::string::npos);
-  CHECK(report::certificate_page("a", made).html.find(">0.2 kg, 0°</td>") != std::string::npos);
+  CHECK(report::certificate_page("a", made).html.find(">0.2\u00a0kg, 0°</td>") != std::string::npos);
 }
