@@ -6,6 +6,7 @@
 #include <array>
 
 #include "base/text/number_text.h"
+#include "report/blind/blind_words.h"
 #include "report/blind/everyday_report.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
@@ -147,8 +148,8 @@ std::string wanted_calibration_text() {
   return fmt::format("below {}", kWantedCalibration);
 }
 
-std::string said_text(const validate::ConfusionRow& row) {
-  std::vector<std::pair<std::string, std::size_t>> said(row.said.begin(), row.said.end());
+std::string said_text(const std::map<std::string, std::size_t>& times_said) {
+  std::vector<std::pair<std::string, std::size_t>> said(times_said.begin(), times_said.end());
   std::stable_sort(said.begin(), said.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string text;
   for (const auto& [word, times] : said) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", word, times);
@@ -224,14 +225,15 @@ Plot methods_plot(const validate::BlindScore& score) {
   const double middle = 0.5 * (static_cast<double>(score.methods.size()) - 1.0);
   for (std::size_t m = 0; m < score.methods.size(); ++m) {
     const auto& method = score.methods[m];
-    PlotData rows{fmt::format("m{}", m), {}, {"kind of case (place)", fmt::format("right by {} (%)", method.name)}};
+    PlotData rows{
+        fmt::format("m{}", m), {}, {"kind of case (place)", fmt::format("right by {} (%)", method_name(method.by))}};
     const std::array<BlindShare, 6> shares = kinds_of(method);
     for (std::size_t s = 0; s < shares.size(); ++s) {
       rows.rows.push_back(
           {static_cast<double>(s) + 1.0 + 0.2 * (static_cast<double>(m) - middle), 100.0 * shares[s].share()});
     }
     script += fmt::format("{}$m{} using 1:2 with boxes lc rgb '{}' title {}", m == 0 ? "" : ", ", m, color(m),
-                          gnuplot_quoted(method.name));
+                          gnuplot_quoted(method_name(method.by)));
     data.push_back(std::move(rows));
   }
   return {Drawing{script, data, {480, 400}}, "How often each method of deciding is right, by kind of case",
@@ -242,7 +244,7 @@ std::string methods_table(const validate::BlindScore& score) {
   HtmlTable table({"", "nothing there", "one, weak", "moderate", "strong", "two effects", "outside"});
   for (const validate::BlindMethod& method : score.methods) {
     std::vector<std::string> row = percents_of(method);
-    row.insert(row.begin(), escape(method.name));
+    row.insert(row.begin(), escape(method_name(method.by)));
     table.row(row);
   }
   return table.str();
@@ -291,7 +293,7 @@ std::string blind_json(const BlindRun& run) {
   put(document, "expected_calibration_error", score.calibration_error);
   document["methods"] = Json::array();
   for (const auto& method : score.methods) {
-    document["methods"].push_back({{"name", method.name},
+    document["methods"].push_back({{"name", method_name(method.by)},
                                    {"none", share_json(method.none)},
                                    {"single", shares_json(method.single)},
                                    {"pair", share_json(method.pair)},
@@ -302,7 +304,8 @@ std::string blind_json(const BlindRun& run) {
   document["outside_unknown"] = shares_json(score.recognised);
   document["outside_variable_named"] = share_json(score.where);
   document["outside_variable_first"] = share_json(score.where_first);
-  document["left_out"] = shares_json(score.left_out);
+  document["left_out"] = Json::object();
+  for (const auto& [verdict, share] : score.left_out) document["left_out"][without_words(verdict)] = share_json(share);
   document["left_out_variable_first"] = share_json(score.left_out_where);
   document["reliability"] = Json::array();
   for (const auto& bin : score.reliability) {
@@ -313,7 +316,7 @@ std::string blind_json(const BlindRun& run) {
     document["reliability"].push_back(std::move(one));
   }
   document["confusion"] = Json::object();
-  for (const auto& row : score.confusion) document["confusion"][row.truth] = row.said;
+  for (const auto& [truth, said] : confusion_words(score)) document["confusion"][truth] = said;
   document["outcomes"] = Json::array();
   for (const auto& outcome : run.outcomes) document["outcomes"].push_back(outcome_json(outcome));
   return json_text(document);
@@ -328,17 +331,17 @@ std::string blind_text(const BlindRun& run) {
     rows.push_back({target.what, blind_percent(target.share), wanted_text(target)});
   rows.push_back(
       {"expected calibration error", base::number_text(score.calibration_error, 2), wanted_calibration_text()});
-  for (const auto& [word, share] : score.left_out)
-    rows.push_back({"without the true effect in the list: " + word, blind_percent(share), ""});
+  for (const auto& [verdict, share] : score.left_out)
+    rows.push_back({"without the true effect in the list: " + without_words(verdict), blind_percent(share), ""});
   std::string text = text_table(rows, 1) + "\n";
   rows = {{"right", "none", "weak", "moderate", "strong", "two", "outside"}};
   for (const auto& method : score.methods) {
     rows.push_back(percents_of(method));
-    rows.back().insert(rows.back().begin(), method.name);
+    rows.back().insert(rows.back().begin(), method_name(method.by));
   }
   text += text_table(rows, 1) + "\n";
   rows = {{"truth", "first name"}};
-  for (const auto& row : score.confusion) rows.push_back({row.truth, said_text(row)});
+  for (const auto& [truth, said] : confusion_words(score)) rows.push_back({truth, said_text(said)});
   text += text_table(rows, 2);
   if (score.failed > 0) text += fmt::format("\n{} cases could not be diagnosed; they count as wrong.\n", score.failed);
   return text;
@@ -370,13 +373,14 @@ Page blind_page(const BlindRun& run) {
   body += "<h2>Compared with simpler methods</h2>\n" + methods_table(score);
   if (!score.left_out.empty()) {
     HtmlTable left({"verdict without the true effect in the list", "cases"});
-    for (const auto& [word, share] : score.left_out) left.row({escape(word), blind_percent(share)});
+    for (const auto& [verdict, share] : score.left_out)
+      left.row({escape(without_words(verdict)), blind_percent(share)});
     left.row({"of those called unknown: the first region lies over a variable of the effect",
               blind_percent(score.left_out_where)});
     body += "<h2>Leave one effect out</h2>\n" + left.str();
   }
   HtmlTable confusion({"truth", "named first (times)"}, 2);
-  for (const auto& row : score.confusion) confusion.row({escape(row.truth), escape(said_text(row))});
+  for (const auto& [truth, said] : confusion_words(score)) confusion.row({escape(truth), escape(said_text(said))});
   body += "<h2>Confusions</h2>\n" + confusion.str();
   body +=
       "<p class=\"soft\">A case's gain is the log likelihood by which the true model beats the nominal one, fitted to "

@@ -4,6 +4,7 @@
 
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
+#include "report/blind/blind_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
@@ -75,14 +76,16 @@ void add_rows(const std::string& what, const SharesByCase& shares, const std::st
 
 TextRows detail_rows(const EverydayScore& score) {
   TextRows rows;
-  for (const auto& method : score.methods) add_rows("main cause first", method.main_first, method.name, rows);
   for (const auto& method : score.methods)
-    add_rows("first cannot be told from it", method.main_in_set, method.name, rows);
-  for (const auto& method : score.methods) add_rows("both named", method.both, method.name, rows);
+    add_rows("main cause first", method.main_first, method_name(method.by), rows);
   for (const auto& method : score.methods)
-    add_rows("half of the excess claimed", method.false_claim, method.name, rows);
-  for (const auto& method : score.methods) add_rows("a wrong name above 0.8", method.wrong_name, method.name, rows);
-  const std::string& first = score.methods.front().name;
+    add_rows("first cannot be told from it", method.main_in_set, method_name(method.by), rows);
+  for (const auto& method : score.methods) add_rows("both named", method.both, method_name(method.by), rows);
+  for (const auto& method : score.methods)
+    add_rows("half of the excess claimed", method.false_claim, method_name(method.by), rows);
+  for (const auto& method : score.methods)
+    add_rows("a wrong name above 0.8", method.wrong_name, method_name(method.by), rows);
+  const std::string first = method_name(score.methods.front().by);
   add_rows("main cause helps most, claimed or not", score.main_helps, first, rows);
   add_rows("the verdict is unknown", score.unknown, first, rows);
   rows.push_back({"claims that name most of the imperfections correctly", "small imperfections alone", "", first,
@@ -93,12 +96,12 @@ TextRows detail_rows(const EverydayScore& score) {
 TextRows number_rows(const EverydayScore& score) {
   TextRows rows;
   for (const auto& method : score.methods) {
-    rows.push_back({"share of a named cause, claimed minus true: rms, mean", method.name,
+    rows.push_back({"share of a named cause, claimed minus true: rms, mean", method_name(method.by),
                     method.share_error.of == 0
                         ? "–"
                         : fmt::format("{}, {} (of {})", base::number_text(method.share_error.rms(), 2),
                                       base::number_text(method.share_error.mean(), 2), method.share_error.of)});
-    rows.push_back({"the same of every cause, 0 where it is not named", method.name,
+    rows.push_back({"the same of every cause, 0 where it is not named", method_name(method.by),
                     method.any_share_error.of == 0
                         ? "–"
                         : fmt::format("{}, {} (of {})", base::number_text(method.any_share_error.rms(), 2),
@@ -159,7 +162,7 @@ Json score_json(const EverydayScore& score) {
   Json everyday = Json::object();
   everyday["methods"] = Json::array();
   for (const auto& method : score.methods) {
-    everyday["methods"].push_back({{"name", method.name},
+    everyday["methods"].push_back({{"name", method_name(method.by)},
                                    {"main_first", by_case_json(method.main_first)},
                                    {"main_in_set", by_case_json(method.main_in_set)},
                                    {"both", by_case_json(method.both)},

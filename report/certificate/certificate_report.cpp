@@ -7,6 +7,7 @@
 
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
+#include "report/certificate/certificate_words.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
@@ -115,7 +116,8 @@ std::vector<std::string> change_cells(const Certificate& certificate, const Chan
 }
 
 std::string change_name(const ChangedTwin& change) {
-  return fmt::format("{}: {}", change.limit, change.change);
+  const LimitWords words = limit_words(change);
+  return fmt::format("{}: {}", words.limit, words.change);
 }
 
 constexpr const char* kNothingStandsOut =
@@ -124,7 +126,7 @@ constexpr const char* kNothingStandsOut =
 std::string limits_words(const Certificate& certificate) {
   std::string names;
   for (const ChangedTwin& change : certificate.changes) {
-    if (change.stands_out) names += (names.empty() ? "" : ", ") + change.limit;
+    if (change.stands_out) names += (names.empty() ? "" : ", ") + limit_words(change).limit;
   }
   return names.empty() ? kNothingStandsOut : fmt::format("What limits it, most first: {}.", names);
 }
@@ -153,10 +155,6 @@ std::string twin_words(const Certificate& certificate) {
   return text;
 }
 
-std::string lack_text(const validate::NotInTwins& lack) {
-  return fmt::format("{} ({})", effect_name(lack.what), lack.why);
-}
-
 /// "quadratic drag and friction by configuration".
 std::string explanation_name(const validate::CertifiedExplanation& one) {
   std::string text;
@@ -180,10 +178,10 @@ std::string explanation_words(const Certificate& certificate) {
 }
 
 /// "The twins are without …: read the answer with that in mind."; empty if nothing is missing.
-std::string lack_words(const Certificate& certificate) {
+std::string all_lacks(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;
-  for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_text(lack);
+  for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
   return fmt::format("The recording has what its twins have not: {}. The answer holds as far as that does not matter.",
                      lacks);
 }
@@ -208,8 +206,9 @@ std::vector<std::string> best_changes(const Certificate& certificate) {
   std::vector<std::string> words;
   for (const ChangedTwin& change : certificate.changes) {
     if (!change.stands_out || words.size() == kMostChanges) continue;
-    words.push_back(fmt::format("{}. With {}, {} err {} less.", change.advice, change.change,
-                                headline_names(certificate), fall_text(*change.together)));
+    const LimitWords limit = limit_words(change);
+    words.push_back(fmt::format("{}. With {}, {} err {} less.", limit.advice, limit.change, headline_names(certificate),
+                                fall_text(*change.together)));
   }
   return words;
 }
@@ -246,15 +245,15 @@ Json share_json(const validate::RunShare& share) {
       {"holds", share.holds}, {"of", share.of}, {"share", share.share}, {"interval95", {share.low, share.high}}};
 }
 
-Json quantity_json(const CertifiedQuantity& quantity) {
+Json quantity_json(const CertifiedQuantity& quantity, const std::vector<std::string>& setups) {
   Json object;
-  if (!quantity.configuration.empty()) object["configuration"] = quantity.configuration;
+  if (quantity.setup) object["configuration"] = setups.at(*quantity.setup);
   object["quantity"] = quantity.quantity;
   object["asked"] = quantity.asked;
   object["failed"] = quantity.failed;
   if (quantity.answered() == 0) {
     object["coverage"] = nullptr;
-    object["why"]["coverage"] = quantity.why;
+    object["why"]["coverage"] = unanswered_words(quantity);
     return object;
   }
   object["coverage"] = share_json(quantity.coverage);
@@ -271,7 +270,8 @@ Json fall_json(const validate::RunFall& fall) {
 }
 
 Json change_json(const ChangedTwin& change) {
-  Json object{{"limit", change.limit}, {"change", change.change}, {"advice", change.advice}, {"twins", change.runs}};
+  const LimitWords words = limit_words(change);
+  Json object{{"limit", words.limit}, {"change", words.change}, {"advice", words.advice}, {"twins", change.runs}};
   if (change.together) {
     object["fall"] = fall_json(*change.together);
   } else {
@@ -299,11 +299,13 @@ std::string certificate_json(const Certificate& certificate) {
   document["estimator"] = certificate.estimator;
   document["by"] = certificate.filmed ? "film" : "tracks";
   document["together"] = share_json(certificate.together);
+  const std::vector<std::string> setups = setup_names(certificate);
   document["quantities"] = Json::array();
-  for (const CertifiedQuantity& one : certificate.quantities) document["quantities"].push_back(quantity_json(one));
+  for (const CertifiedQuantity& one : certificate.quantities)
+    document["quantities"].push_back(quantity_json(one, setups));
   document["configurations"] = Json::array();
   for (const CertifiedQuantity& one : certificate.configurations)
-    document["configurations"].push_back(quantity_json(one));
+    document["configurations"].push_back(quantity_json(one, setups));
   document["explanations"] = Json::array();
   for (const validate::CertifiedExplanation& one : certificate.explanations) {
     document["explanations"].push_back({{"causes", one.ids},
@@ -315,7 +317,7 @@ std::string certificate_json(const Certificate& certificate) {
   for (const ChangedTwin& change : certificate.changes) document["changes"].push_back(change_json(change));
   document["causes"] = certificate.causes;
   document["not_in_the_twins"] = Json::array();
-  for (const validate::NotInTwins& lack : certificate.without) document["not_in_the_twins"].push_back(lack_text(lack));
+  for (const validate::NotInTwins& lack : certificate.without) document["not_in_the_twins"].push_back(lack_words(lack));
   put(document, "recorded_noise_m", certificate.recorded_noise_m);
   put(document, "twin_noise_m", certificate.twin_noise_m);
   return json_text(document);
@@ -324,7 +326,7 @@ std::string certificate_json(const Certificate& certificate) {
 std::string certificate_text(const Certificate& certificate) {
   std::string text = certificate_answer(certificate) + "\n";
   if (const std::string which = explanation_words(certificate); !which.empty()) text += printable(which) + "\n";
-  if (const std::string lacks = lack_words(certificate); !lacks.empty()) text += printable(lacks) + "\n";
+  if (const std::string lacks = all_lacks(certificate); !lacks.empty()) text += printable(lacks) + "\n";
   text += "\n";
   std::vector<std::vector<std::string>> rows = {kHeader};
   for (const CertifiedQuantity& quantity : certificate.quantities) rows.push_back(cells_of(quantity));
@@ -387,10 +389,11 @@ std::string configurations_table(const Certificate& certificate) {
   std::vector<std::string> header = kHeader;
   header.insert(header.begin(), "configuration");
   HtmlTable table(header, 2);
+  const std::vector<std::string> setups = setup_names(certificate);
   for (const CertifiedQuantity& quantity : certificate.configurations) {
     std::vector<std::string> cells = cells_of(quantity);
     cells.front() = escape(cells.front());
-    cells.insert(cells.begin(), escape(quantity.configuration));
+    cells.insert(cells.begin(), escape(setups.at(*quantity.setup)));
     table.row(cells);
   }
   return table.str();
@@ -425,7 +428,7 @@ Page certificate_page(const std::string& name, const Certificate& certificate) {
               fmt::format("<p><b>{}</b></p>\n", escape(certificate_answer(certificate)));
   if (const std::string which = explanation_words(certificate); !which.empty())
     body += fmt::format("<p>{}</p>\n", escape(which));
-  if (const std::string lacks = lack_words(certificate); !lacks.empty())
+  if (const std::string lacks = all_lacks(certificate); !lacks.empty())
     body += fmt::format("<p class=\"note\">{}</p>\n", escape(lacks));
   HtmlTable table(kHeader);
   for (const CertifiedQuantity& quantity : certificate.quantities) {

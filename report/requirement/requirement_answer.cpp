@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/text/number_text.h"
+#include "report/requirement/requirement_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
@@ -34,7 +35,7 @@ std::string model_of(const std::string& camera) {
 std::string mode_words(const Candidate& candidate) {
   return fmt::format("{} x {} pixels, {} frames/s, exposure {}, {}", candidate.mode.width_px, candidate.mode.height_px,
                      base::number_text(candidate.frame_rate_hz, 4), base::size_text(candidate.mode.exposure_s, 2, "s"),
-                     candidate.mode.codec);
+                     codec_words(candidate.mode.codec));
 }
 
 /// The expected error: from runs, or the bound if nothing was run.
@@ -133,7 +134,7 @@ std::string requirement_answer(const Requirement& requirement) {
                   asked_words(requirement), near->name, near->judged_by == validate::Confirm::none ? "at least " : "",
                   expected_words(requirement, *near), judged_words(requirement, *near));
   if (!near->limits.empty() && near->limits.front().gain >= kLeastNamedGain) {
-    text += fmt::format(" Its main limitation: {}.", near->limits.front().name);
+    text += fmt::format(" Its main limitation: {}.", limitation_words(near->limits.front().what));
   }
   return text;
 }

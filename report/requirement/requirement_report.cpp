@@ -13,6 +13,7 @@
 #include "report/html/html.h"
 #include "report/requirement/requirement_answer.h"
 #include "report/requirement/requirement_plot.h"
+#include "report/requirement/requirement_words.h"
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
 
@@ -101,7 +102,8 @@ std::string limit_text(const Candidate& candidate) {
   std::string text;
   for (const validate::Limit& limit : candidate.limits) {
     if (limit.gain < kLeastNamedGain) break;
-    text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limit.name, limit.gain, limit.gain < 10.0 ? 1 : 0);
+    text += fmt::format("{}{} {:.{}f}x", text.empty() ? "" : "; ", limitation_words(limit.what), limit.gain,
+                        limit.gain < 10.0 ? 1 : 0);
   }
   return text;
 }
@@ -159,7 +161,7 @@ std::string candidate_table(const Requirement& requirement) {
   HtmlTable table(header, first_number);
   for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
     const Candidate& candidate = requirement.candidates[i];
-    const std::string verdict = escape(describe(candidate));
+    const std::string verdict = escape(candidate_verdict(candidate));
     std::vector<std::string> row = {std::to_string(i + 1), escape(candidate.name),
                                     escape(cost_text(requirement, candidate)),
                                     reached(candidate) ? "<b>" + verdict + "</b>" : verdict};
@@ -253,7 +255,7 @@ std::string requirement_text(const Requirement& requirement) {
   }
   std::string below;
   for (const Candidate& candidate : requirement.candidates) {
-    rows.push_back({candidate.name, cost_text(requirement, candidate), describe(candidate),
+    rows.push_back({candidate.name, cost_text(requirement, candidate), candidate_verdict(candidate),
                     base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
     for (std::string& cell : result_cells(requirement, candidate)) rows.back().push_back(std::move(cell));
     if (reached(candidate)) continue;
@@ -279,7 +281,7 @@ std::string requirement_json(const Requirement& requirement) {
   if (const std::string enough = enough_words(requirement); !enough.empty()) document["better_than_needed"] = enough;
   document["order"] = requirement.by_price ? "price" : "pixels_s";
   for (const Target& target : requirement.targets) {
-    document["targets"].push_back(target.name());
+    document["targets"].push_back(target_words(target));
     document["measures"].push_back(target.measure == Target::Measure::sd ? "root mean square error, a bias included"
                                    : target.measure == Target::Measure::error95
                                        ? "what 95 % of the runs' errors stay within"
@@ -290,7 +292,7 @@ std::string requirement_json(const Requirement& requirement) {
     Json object;
     object["name"] = candidate.name;
     object["reached"] = reached(candidate);
-    object["verdict"] = describe(candidate);
+    object["verdict"] = candidate_verdict(candidate);
     if (!candidate.why.empty()) object["why_refused"] = candidate.why;
     if (!candidate.price_class.empty()) object["price_class"] = candidate.price_class;
     put(object, "price_eur", candidate.price, "no price");
@@ -300,7 +302,7 @@ std::string requirement_json(const Requirement& requirement) {
     for (std::size_t t = 0; t < candidate.results.size(); ++t) {
       const validate::TargetResult& result = candidate.results[t];
       Json of;
-      of["target"] = requirement.targets[t].name();
+      of["target"] = target_words(requirement.targets[t]);
       put(of, "bound", result.bound, "the motion does not determine it");
       put(of, "found", result.found, "not run");
       if (result.found) {
@@ -315,7 +317,7 @@ std::string requirement_json(const Requirement& requirement) {
       object["targets"].push_back(std::move(of));
     }
     for (const validate::Limit& limit : candidate.limits) {
-      object["limits"].push_back({{"without", limit.name}, {"bound_smaller_by", limit.gain}});
+      object["limits"].push_back({{"without", limitation_words(limit.what)}, {"bound_smaller_by", limit.gain}});
     }
     document["candidates"].push_back(std::move(object));
   }

@@ -239,6 +239,21 @@ Html axis_plots(const SweepSummary& summary, const base::Progress& progress) {
   return body;
 }
 
+/// "6 runs with camera.frame_rate_hz = 120: …", for each kind of reason.
+std::vector<std::string> failure_lines(const validate::FailedRuns& failures) {
+  const auto runs = [](std::uint64_t n) { return fmt::format("{} {}", n, n == 1 ? "run" : "runs"); };
+  std::vector<std::string> lines;
+  for (const validate::FailedRuns::Kind& kind : failures.kinds) {
+    lines.push_back(fmt::format("{}{}{}{}", runs(kind.runs), kind.one_text ? "" : ", one of them",
+                                kind.of_scenario ? " with " : ": ", kind.why));
+  }
+  if (failures.other_kinds > 0) {
+    lines.push_back(fmt::format("and {} more {} ({})", failures.other_kinds,
+                                failures.other_kinds == 1 ? "kind" : "kinds", runs(failures.other_runs)));
+  }
+  return lines;
+}
+
 std::string runs_of(const SweepSummary& summary) {
   std::string html = fmt::format(
       "<div class=\"tiles\"><div class=\"tile\"><b>{} / {}</b><span>runs</span></div><div class=\"tile\"><b{}>{}</b>"
@@ -246,7 +261,7 @@ std::string runs_of(const SweepSummary& summary) {
       "threads</span></div></div>\n",
       summary.runs, summary.planned, summary.failed > 0 ? " class=\"bad\"" : "", summary.failed,
       base::number_text(summary.cpu_s, 3));
-  for (const std::string& failure : summary.failures)
+  for (const std::string& failure : failure_lines(summary.failures))
     html += fmt::format("<p class=\"note\">{}</p>\n", escape(failure));
   if (summary.outside) html += fmt::format("<p>{}.</p>\n", escape(outside_text(*summary.outside)));
   return html;
@@ -281,7 +296,7 @@ std::string sweep_text(const SweepSummary& summary) {
   const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary);
   std::string text = (answer ? answer->text + "\n\n" : std::string()) + text_table(rows, 2);
   text += fmt::format("{} of {} runs, {} failed\n", summary.runs, summary.planned, summary.failed);
-  for (const std::string& failure : summary.failures) text += fmt::format("  {}\n", failure);
+  for (const std::string& failure : failure_lines(summary.failures)) text += fmt::format("  {}\n", failure);
   if (summary.outside) text += outside_text(*summary.outside) + "\n";
   return text;
 }
@@ -293,7 +308,7 @@ std::string sweep_json(const SweepSummary& summary) {
   document["runs"] = summary.runs;
   document["planned"] = summary.planned;
   document["failed"] = summary.failed;
-  document["failures"] = summary.failures;
+  document["failures"] = failure_lines(summary.failures);
   if (summary.outside) document["outside"] = outside_json(*summary.outside);
   if (const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary)) {
     document["bandwidth"] = {{"answer", answer->text},

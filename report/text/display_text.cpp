@@ -93,8 +93,6 @@ std::vector<std::string> phase_file_names(const core::AnalysisResults& results) 
   return names;
 }
 
-namespace {}  // namespace
-
 std::string effect_name(std::string_view id) {
   if (id == "none") return "nothing is missing";
   if (id == "unknown") return "an unnamed cause";

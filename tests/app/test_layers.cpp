@@ -59,6 +59,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "diagnose/result/next_step.h",
       "diagnose/result/note.h",
       "diagnose/result/image_fact.h",
+      "diagnose/result/joined_ids.h",
       "diagnose/effects/effect_library.h",
       "diagnose/effects/effect_list.h",
       "validate/film/twin_motions.h",

@@ -27,7 +27,7 @@ validate::Requirement one_camera(const std::string& quantity, double target, dou
   candidate.pixels_s = 1e7;
   candidate.frame_rate_hz = 30.0;
   candidate.noise_m = 2.46e-5;
-  candidate.mode = {640, 480, 0.002, "MJPEG of quality 70"};
+  candidate.mode = {640, 480, 0.002, {validate::CodecSetting::Kind::mjpeg, 70.0}};
   candidate.results = {{bound, 1.1 * bound, 0.3 * bound, 200, 3, "trajectory", 0.9 * bound, 1.5 * bound}};
   requirement.candidates = {candidate};
   return requirement;

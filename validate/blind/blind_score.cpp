@@ -1,6 +1,5 @@
 #include "validate/blind/blind_score.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "diagnose/effects/effect_list.h"
+#include "diagnose/result/joined_ids.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_filmed_effects.h"
 
@@ -33,12 +33,6 @@ bool recognises(const BlindOutcome& outcome, const std::string& said) {
 
 using Json = nlohmann::json;
 
-std::vector<std::string> split(const std::string& id) {
-  const auto plus = id.find(" + ");
-  if (plus == std::string::npos) return {id};
-  return {id.substr(0, plus), id.substr(plus + 3)};
-}
-
 /// Json::exception if something is missing or of the wrong type.
 BlindVerdict verdict_of(const Json& document) {
   BlindVerdict verdict;
@@ -52,7 +46,8 @@ BlindVerdict verdict_of(const Json& document) {
         {effect.at("id"), alone, effect.at("equivalent_to"), effect.value("joint_probability", alone)});
   }
   for (const Json& ranked : document.at("ranking")) {
-    BlindRanked one{split(ranked.at("id")),
+    const std::vector<std::string> ids = diagnose::split_ids(ranked.at("id").get<std::string>());
+    BlindRanked one{{ids.begin(), ids.end()},
                     ranked.at("probability"),
                     ranked.at("log_likelihood_gain"),
                     ranked.at("parameters"),
@@ -133,7 +128,7 @@ const BlindRanked* most(const std::vector<BlindRanked>& ranking, std::size_t siz
   double best_value = 0.0;
   for (const BlindRanked& one : ranking) {
     if (one.ids.size() != size) continue;
-    if (!with.empty() && std::find(one.ids.begin(), one.ids.end(), with) == one.ids.end()) continue;
+    if (!with.empty() && !one.ids.contains(with)) continue;
     const double value = one.log_likelihood_gain - by_parameter * one.parameters;
     if (best != nullptr && value <= best_value) continue;
     best = &one;
@@ -146,7 +141,7 @@ const BlindRanked* most(const std::vector<BlindRanked>& ranking, std::size_t siz
 Saying of_best_residual(const BlindVerdict& verdict) {
   if (verdict.verdict == "failed") return {"failed", {}};
   const BlindRanked* best = most(verdict.ranking, 1, "", 0.0);
-  return best == nullptr ? Saying{"none", {}} : Saying{"effect", best->ids};
+  return best == nullptr ? Saying{"none", {}} : Saying{"effect", {*best->ids.begin()}};
 }
 
 /// Forward selection by Schwarz's criterion: one effect if it lowers the criterion, a second one if that lowers it
@@ -157,11 +152,11 @@ Saying of_stepwise_bic(const BlindVerdict& verdict) {
   const auto value = [&](const BlindRanked& one) { return one.log_likelihood_gain - price * one.parameters; };
   const BlindRanked* first = most(verdict.ranking, 1, "", price);
   if (first == nullptr || value(*first) <= 0.0) return {"none", {}};
-  const BlindRanked* second = most(verdict.ranking, 2, first->ids.front(), price);
-  if (second == nullptr || value(*second) <= value(*first)) return {"effect", first->ids};
-  Saying saying{"effect", first->ids};
+  Saying saying{"effect", {*first->ids.begin()}};
+  const BlindRanked* second = most(verdict.ranking, 2, saying.names.front(), price);
+  if (second == nullptr || value(*second) <= value(*first)) return saying;
   for (const std::string& id : second->ids) {
-    if (id != first->ids.front()) saying.names.push_back(id);
+    if (id != *first->ids.begin()) saying.names.push_back(id);
   }
   return saying;
 }
@@ -193,7 +188,7 @@ void count_saying(const BlindOutcome& outcome, const Saying& saying, BlindMethod
 
 /// Random choice among all effects, none and unknown with equal odds: expected shares, written as if of 10,000 trials.
 BlindMethod picking(const std::vector<BlindOutcome>& outcomes) {
-  BlindMethod method{"picking at random", {}, {}, {}, {}};
+  BlindMethod method{DecisionMethod::picking, {}, {}, {}, {}};
   constexpr std::size_t kTries = 10000;
   const double words =
       2.0 + static_cast<double>((outcomes.empty() ? library_effects() : library_of(outcomes.front())).size());
@@ -264,7 +259,7 @@ void add_shrink(const BlindOutcome& outcome, BlindScore& score) {
   const BlindVerdict& verdict = outcome.verdict;
   std::optional<double> oracle;
   for (const BlindRanked& ranked : verdict.ranking) {
-    if (ranked.ids == std::vector<std::string>{outcome.causes.front().id}) oracle = ranked.gap_after;
+    if (ranked.ids == std::set<std::string>{outcome.causes.front().id}) oracle = ranked.gap_after;
   }
   if (!oracle || verdict.gap_before - *oracle < kClearGap * verdict.gap_error) return;
   const double reached = (verdict.gap_before - verdict.gap_after) / (verdict.gap_before - *oracle);
@@ -279,13 +274,10 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
     count(score.in_set[strength], named_by(outcome).contains(true_class(outcome)));
     count(score.exact[strength], !verdict.effects.empty() && verdict.effects.front().id == outcome.causes.front().id);
     if (outcome.left_out) {
-      const std::string said = verdict_without(outcome);
-      for (const char* word :
-           {"unknown", "equivalent", "none", "another name", "another name, probability over 0.8", "failed"}) {
-        count(score.left_out[word], said == word);
-      }
+      const VerdictWithout said = verdict_without(outcome);
+      for (const VerdictWithout one : kVerdictsWithout) count(score.left_out[one], said == one);
       const auto variables = variables_of(outcome.causes.front().id);
-      if (said == "unknown" && !variables.empty()) {
+      if (said == VerdictWithout::unknown && !variables.empty()) {
         const auto& where = outcome.left_out->where;
         count(score.left_out_where,
               !where.empty() && std::find(variables.begin(), variables.end(), where.front()) != variables.end());
@@ -311,22 +303,23 @@ void add_case(const BlindOutcome& outcome, BlindScore& score) {
 }
 
 void add_confusion(const BlindOutcome& outcome, BlindScore& score) {
-  std::string truth = "none";
-  for (const BlindCause& cause : outcome.causes) truth = truth == "none" ? cause.id : "two effects";
+  std::optional<std::string> truth = "none";
+  if (outcome.causes.size() == 1) truth = outcome.causes.front().id;
+  if (outcome.causes.size() > 1) truth.reset();
   auto row =
       std::find_if(score.confusion.begin(), score.confusion.end(), [&](const auto& r) { return r.truth == truth; });
   if (row == score.confusion.end()) {
-    score.confusion.push_back({truth, {}});
+    score.confusion.push_back({truth});
     row = std::prev(score.confusion.end());
   }
   const BlindVerdict& verdict = outcome.verdict;
-  std::string said = verdict.effects.empty() ? verdict.verdict : verdict.effects.front().id;
   if (outcome.kind == BlindKind::pair && !verdict.effects.empty()) {
     std::size_t found = 0;
     for (const std::string& cause : classes_of(outcome)) found += named_by(outcome).contains(cause);
-    said = fmt::format("{} of the two named", found);
+    ++row->named[found];
+    return;
   }
-  ++row->said[said];
+  ++row->said[verdict.effects.empty() ? verdict.verdict : verdict.effects.front().id];
 }
 
 }  // namespace
@@ -359,9 +352,9 @@ std::string_view strength_word(const BlindOutcome& outcome) {
 
 BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
   BlindScore score;
-  score.methods = {{"glidelab diagnose", {}, {}, {}, {}},
-                   {"refit that lowers the residuals most", {}, {}, {}, {}},
-                   {"stepwise BIC", {}, {}, {}, {}}};
+  score.methods = {{DecisionMethod::diagnosis, {}, {}, {}, {}},
+                   {DecisionMethod::best_residual, {}, {}, {}, {}},
+                   {DecisionMethod::stepwise_bic, {}, {}, {}, {}}};
   for (const BlindOutcome& outcome : outcomes) {
     Saying said = of_diagnosis(outcome.verdict);
     count_saying(outcome, said, score.methods[0]);
@@ -386,17 +379,20 @@ BlindScore score_blind(const std::vector<BlindOutcome>& outcomes) {
   return score;
 }
 
-std::string verdict_without(const BlindOutcome& outcome) {
+VerdictWithout verdict_without(const BlindOutcome& outcome) {
   if (!outcome.left_out) throw std::logic_error("a case that was not diagnosed without its effect");
   const BlindVerdict& without = *outcome.left_out;
-  if (without.verdict != "effect") return without.verdict;
+  if (without.verdict == "none") return VerdictWithout::none;
+  if (without.verdict == "unknown") return VerdictWithout::unknown;
+  if (without.verdict != "effect") return VerdictWithout::failed;
   // Effects that the full diagnosis calls equivalent to the truth on these data may replace it.
   const std::set<std::string> named = named_by(outcome);
   const bool truth_named = named.contains(true_class(outcome));
-  if (truth_named && named.contains(blind_class(without.effects.front().id, outcome.filmed))) return "equivalent";
+  if (truth_named && named.contains(blind_class(without.effects.front().id, outcome.filmed)))
+    return VerdictWithout::equivalent;
   const bool sure = std::any_of(without.effects.begin(), without.effects.end(),
                                 [](const BlindNamed& effect) { return effect.probability > kSureName; });
-  return sure ? "another name, probability over 0.8" : "another name";
+  return sure ? VerdictWithout::sure_other_name : VerdictWithout::other_name;
 }
 
 std::vector<std::string> variables_of(const std::string& effect) {

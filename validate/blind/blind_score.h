@@ -1,6 +1,7 @@
 /// Diagnoses of blind cases, read from their diagnosis.json and compared with the truth.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -25,7 +26,7 @@ struct BlindNamed {
 };
 
 struct BlindRanked {
-  std::vector<std::string> ids;  ///< one or two
+  std::set<std::string> ids;  ///< its effects, or "unknown"
   double probability = 0.0;
   double log_likelihood_gain = 0.0;
   double parameters = 0.0;
@@ -86,9 +87,18 @@ struct BlindShare {
   ProportionInterval interval95() const { return proportion_interval(yes, of, 0.95); }
 };
 
+/// Who or what decides about a case.
+enum class DecisionMethod {
+  diagnosis,
+  best_residual,      ///< the refit that lowers the residuals most
+  stepwise_bic,       ///< forward selection by Schwarz's criterion
+  picking,            ///< at random
+  forward_selection,  ///< by held-out residuals
+};
+
 /// How often one decision method is right.
 struct BlindMethod {
-  std::string name;
+  DecisionMethod by = DecisionMethod::diagnosis;
   BlindShare none, outside, pair;
   std::map<std::string, BlindShare> single;  ///< by strength
 };
@@ -101,9 +111,23 @@ struct ReliabilityBin {
 
 /// One line of a confusion matrix.
 struct ConfusionRow {
-  std::string truth;
-  std::map<std::string, std::size_t> said;  ///< first name, none, unknown, failed
+  std::optional<std::string> truth;               ///< the cause's id, or "none"; empty: two effects
+  std::map<std::string, std::size_t> said = {};   ///< first name, none, unknown, failed
+  std::map<std::size_t, std::size_t> named = {};  ///< of two effects: cases, by how many of the two have been named
 };
+
+/// What a diagnosis says of a case of one effect if that effect is not on its list.
+enum class VerdictWithout {
+  other_name,
+  sure_other_name,  ///< with a probability above kSureName
+  equivalent,       ///< an effect that the full diagnosis calls equivalent to the truth on these data
+  failed,
+  none,
+  unknown,
+};
+inline constexpr std::array<VerdictWithout, 6> kVerdictsWithout = {
+    VerdictWithout::other_name, VerdictWithout::sure_other_name, VerdictWithout::equivalent, VerdictWithout::failed,
+    VerdictWithout::none,       VerdictWithout::unknown};
 
 struct BlindScore {
   std::vector<BlindMethod> methods;              ///< the diagnosis first
@@ -119,8 +143,8 @@ struct BlindScore {
   /// Single and strong cases in which the true effect's own fit clearly reduces the gap: the diagnosis closes 95 % of
   /// that.
   BlindShare shrunk;
-  std::map<std::string, BlindShare> left_out;  ///< by the words of verdict_without()
-  BlindShare left_out_where;                   ///< of those, unknown: the first region is in a variable of the effect
+  std::map<VerdictWithout, BlindShare> left_out;
+  BlindShare left_out_where;  ///< of those, unknown: the first region is in a variable of the effect
   std::vector<ConfusionRow> confusion;
   std::size_t failed = 0;
 };
@@ -128,9 +152,8 @@ struct BlindScore {
 /// Every case counts; one that could not be diagnosed counts as wrong, but not in the probabilities.
 BlindScore score_blind(const std::vector<BlindOutcome>& outcomes);
 
-/// "unknown", "none", "failed", "equivalent" (the full diagnosis calls it equivalent to the truth on these data),
-/// "another name", "another name, probability over 0.8". std::logic_error for a case that was not diagnosed without it.
-std::string verdict_without(const BlindOutcome& outcome);
+/// std::logic_error for a case that was not diagnosed without its effect.
+VerdictWithout verdict_without(const BlindOutcome& outcome);
 
 /// The variables in which an effect of the list can show (`where` of a diagnosis.json, "clip" for a region of one
 /// clip), as in effects.md; none for an effect that no region can show (an inclination alone, single frames).

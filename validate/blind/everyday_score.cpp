@@ -90,7 +90,7 @@ const BlindRanked* least_gap(const BlindVerdict& verdict, std::size_t size, cons
   const BlindRanked* best = nullptr;
   for (const BlindRanked& one : verdict.ranking) {
     if (one.ids.size() != size || !one.gap_after) continue;
-    if (!with.empty() && !holds(one.ids, with)) continue;
+    if (!with.empty() && !one.ids.contains(with)) continue;
     if (best == nullptr || *one.gap_after < *best->gap_after) best = &one;
   }
   return best;
@@ -235,10 +235,11 @@ EverydaySaying said_by_forward_selection(const BlindVerdict& verdict) {
   if (saying.failed || first == nullptr || verdict.gap_before - 1.0 <= kClearErrors * verdict.gap_error) return saying;
   const auto share = [&](double from, double to) { return (from * from - to * to) / before; };
   double left = *first->gap_after;
-  saying.names.push_back({first->ids.front(), {}, 1.0, share(verdict.gap_before, left)});
-  const BlindRanked* second = least_gap(verdict, 2, first->ids.front());
+  const std::string& id = *first->ids.begin();
+  saying.names.push_back({id, {}, 1.0, share(verdict.gap_before, left)});
+  const BlindRanked* second = least_gap(verdict, 2, id);
   if (second != nullptr && left - *second->gap_after > kClearErrors * verdict.gap_error) {
-    const std::string& other = second->ids[second->ids[0] == first->ids.front() ? 1 : 0];
+    const std::string& other = *second->ids.begin() == id ? *second->ids.rbegin() : *second->ids.begin();
     saying.names.push_back({other, {}, 1.0, share(left, *second->gap_after)});
     left = *second->gap_after;
   }
@@ -249,8 +250,8 @@ EverydaySaying said_by_forward_selection(const BlindVerdict& verdict) {
 EverydayScore score_everyday(const std::vector<BlindOutcome>& outcomes) {
   EverydayScore score;
   score.methods.resize(2);
-  score.methods[0].name = "glidelab diagnose";
-  score.methods[1].name = "forward selection by held-out residuals";
+  score.methods[0].by = DecisionMethod::diagnosis;
+  score.methods[1].by = DecisionMethod::forward_selection;
   std::map<std::string, std::vector<std::pair<double, bool>>> stated, by_verdict;
   double seconds = 0.0;
   for (const BlindOutcome& outcome : outcomes) {

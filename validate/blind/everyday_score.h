@@ -64,7 +64,7 @@ using SharesByCase = std::map<std::string, std::map<std::string, BlindShare>>;
 BlindShare sum_of(const SharesByCase& shares, const std::vector<std::string>& classes = {});
 
 struct EverydayMethod {
-  std::string name;
+  DecisionMethod by = DecisionMethod::diagnosis;
   SharesByCase main_first;   ///< one, two: claimed, and the main cause comes first
   SharesByCase main_in_set;  ///< the same, or the first cannot be told from it
   SharesByCase both;         ///< two: claimed, and both are among the names

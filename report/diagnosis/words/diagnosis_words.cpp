@@ -8,6 +8,7 @@
 
 #include "base/math/angles.h"
 #include "base/text/number_text.h"
+#include "diagnose/result/joined_ids.h"
 #include "report/analysis/note_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
@@ -37,7 +38,7 @@ std::string verdict_id(diagnose::Verdict verdict) {
 }
 
 std::string explanation_id(const diagnose::Explanation& explanation) {
-  return fmt::format("{}", fmt::join(ids_of(explanation), " + "));
+  return diagnose::joined_ids(ids_of(explanation));
 }
 
 std::string explanation_name(const diagnose::Explanation& explanation) {

@@ -1,11 +1,17 @@
+#include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "report/certificate/certificate_report.h"
+#include "report/certificate/certificate_words.h"
 #include "report/text/display_text.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
+using validate::TwinLimit;
 
 namespace {
 
@@ -31,8 +37,8 @@ validate::Certificate certificate() {
   return made;
 }
 
-validate::ChangedTwin change(const std::string& limit, bool stands_out) {
-  return {limit, "half of it", "more light", 10, {}, validate::RunFall{0.42, 0.3, 0.5}, stands_out};
+validate::ChangedTwin change(validate::TwinLimit limit, bool stands_out) {
+  return {limit, {}, 10, {}, validate::RunFall{0.42, 0.3, 0.5}, stands_out};
 }
 
 }  // namespace
@@ -77,11 +83,14 @@ TEST_CASE("a bias that one twin alone shows has no standard deviation") {
 
 TEST_CASE("only changes that stand out are given as advice, three at most, and none is said in words") {
   validate::Certificate made = certificate();
-  made.changes = {change("noise", true), change("marker", false)};
+  made.changes = {change(TwinLimit::pixel_noise, true), change(TwinLimit::marker, false)};
   REQUIRE(report::best_changes(made).size() == 1);
-  CHECK(report::best_changes(made).front() == "more light. With half of it, K/m, µ err 42 % (30 to 50 %) less.");
+  CHECK(report::best_changes(made).front() ==
+        "Use more light, or a wider aperture: four times the light halves the noise. With half the noise of each "
+        "pixel, K/m, µ err 42 % (30 to 50 %) less.");
   CHECK(report::certificate_text(made).find("What limits it, most first: noise.") != std::string::npos);
-  made.changes.front().advice = "Take it out (glidelab analyze --with quadratic_drag)";
+  made.changes.front().limit = TwinLimit::cause;
+  made.changes.front().causes = {"quadratic_drag"};
   made.changes.back().together = validate::RunFall{-0.002, -0.1, 0.1};
   CHECK(report::certificate_page("a", made).html.find("(<code>glidelab analyze --with quadratic_drag</code>)") !=
         std::string::npos);
@@ -89,16 +98,16 @@ TEST_CASE("only changes that stand out are given as advice, three at most, and n
   CHECK(report::certificate_page("a", made).html.find("−0 %") == std::string::npos);
   made.changes.back().together = validate::RunFall{-237.6, -2900.0, -18.7};  // 238.6 times the error
   CHECK(report::certificate_page("a", made).html.find("× 240 (20 to 2900)") != std::string::npos);
-  made.changes.assign(5, change("noise", true));
+  made.changes.assign(5, change(TwinLimit::few_clips, true));
   CHECK(report::best_changes(made).size() == 3);
-  made.changes.assign(2, change("noise", false));
+  made.changes.assign(2, change(TwinLimit::few_clips, false));
   CHECK(report::best_changes(made).empty());
   CHECK(report::certificate_text(made).find("Nothing stands out") != std::string::npos);
 }
 
 TEST_CASE("what the twins are without stands right below the answer, on the page too") {
   validate::Certificate made = certificate();
-  made.without = {{"friction_drift", "it has no name"}};
+  made.without = {validate::lacking::Inexpressible{"friction_drift", "it has no name"}};
   const std::string text = report::certificate_text(made);
   const std::size_t line = text.find('\n');
   CHECK(report::effect_name("friction_drift") != "friction_drift");
@@ -122,4 +131,82 @@ TEST_CASE("a certificate says which explanation breaks the intervals where anoth
   made.explanations.pop_back();
   CHECK(report::certificate_text(made).find("leaves a probability") == std::string::npos);
   CHECK(report::certificate_page("a", made).html.find("Each explanation") == std::string::npos);
+}
+
+TEST_CASE("every limitation of a recording has a name, what its twins have instead, and advice") {
+  struct Row {
+    TwinLimit limit;
+    const char *name, *change, *advice;
+  };
+  const std::vector<Row> rows = {
+      {TwinLimit::pixel_noise, "noise", "half the noise of each pixel",
+       "Use more light, or a wider aperture: four times the light halves the noise"},
+      {TwinLimit::position_noise, "noise", "half the noise of each position",
+       "Lower the noise of the positions: more light, a larger marker, a finer scale or a better tracker"},
+      {TwinLimit::marker, "marker", "a marker of twice the diameter", "Use a larger marker"},
+      {TwinLimit::frame_rate, "frame rate", "twice as many frames a second", "Use a higher frame rate"},
+      {TwinLimit::scale, "scale", "the scale without error",
+       "Measure the scale better (a longer ruler, in the plane of motion), or use a pattern"},
+      {TwinLimit::calibration, "calibration", "the camera known without error",
+       "Take more calibration images, tilted more and filling the image"},
+      {TwinLimit::codec, "codec", "no loss by compression",
+       "Compress less: a higher bit rate or quality, or a lossless codec"},
+      {TwinLimit::rounding, "rounding", "positions with all their digits", "Export more digits"},
+      {TwinLimit::cause, "a cause beside the law", "the viscous and the Coulomb friction alone",
+       "Take the cause out of the experiment"},
+      {TwinLimit::clip_scatter, "what differs from clip to clip", "every clip by one law",
+       "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"},
+      {TwinLimit::few_clips, "few clips", "every clip recorded twice", "Record a second clip of each kind"}};
+  CHECK(rows.size() == static_cast<std::size_t>(TwinLimit::few_clips) + 1);
+  for (const Row& row : rows) {
+    const report::LimitWords words = report::limit_words(change(row.limit, true));
+    CHECK(words.limit == row.name);
+    CHECK(words.change == row.change);
+    CHECK(words.advice == row.advice);
+  }
+  validate::ChangedTwin two = change(TwinLimit::cause, true);
+  two.causes = {"quadratic_drag", "track_bow"};
+  CHECK(report::limit_words(two).advice ==
+        "Take the cause out of the experiment, or put it into the model (glidelab analyze --with quadratic_drag --with "
+        "track_bow)");
+}
+
+TEST_CASE("everything that twins may lack has words and a reason, an error of several lines in one") {
+  namespace lacking = validate::lacking;
+  const std::vector<std::pair<validate::NotInTwins, std::string>> lacks = {
+      {lacking::Inexpressible{"quadratic_drag", "no law"}, "quadratic drag (no law)"},
+      {lacking::Images{"twin: no view\nof the track"}, "images and calibration (twin: no view of the track)"},
+      {lacking::ClipScatter{}, "what differs from clip to clip (filming leaves as much)"},
+      {lacking::Noise{5e-4, 1.23456e-5},
+       "noise as in the recording (its positions scatter by 0.0005 m, the twin's by 1.23e-05 m: another cause than the "
+       "pixels' noise)"}};
+  std::vector<bool> seen(std::variant_size_v<validate::NotInTwins>, false);
+  for (const auto& [lack, words] : lacks) {
+    CHECK(report::lack_words(lack) == words);
+    seen[lack.index()] = true;
+  }
+  CHECK(std::find(seen.begin(), seen.end(), false) == seen.end());
+}
+
+TEST_CASE("a quantity that no twin answers says why, also where no clip could be used") {
+  validate::CertifiedQuantity none = quantity("mu", 0.0);
+  none.failed = none.asked;
+  CHECK(report::unanswered_words(none) == "none of its clips could be used");
+  none.why = core::WhyUnknown{core::unknown::NoDownhillLine{}};
+  CHECK(report::unanswered_words(none) == "no line for v > 0");
+  validate::Certificate made = certificate();
+  made.quantities = {none};
+  CHECK(report::certificate_json(made).find("\"coverage\": \"no line for v > 0\"") != std::string::npos);
+}
+
+TEST_CASE("configurations are named by mass and inclination, and by the twin's own names where two read the same") {
+  validate::Certificate made = certificate();
+  constexpr double kDegree = 0.017453292519943295;  // pi / 180
+  made.setups = {{"a", 0.335, 4.0 * kDegree}, {"b", 0.335, 4.0 * kDegree}, {"c", 0.2, 0.0}};
+  CHECK(report::setup_names(made) == std::vector<std::string>{"0.335 kg, 4° (a)", "0.335 kg, 4° (b)", "0.2 kg, 0°"});
+  validate::CertifiedQuantity own = quantity("mu", 0.0);
+  own.setup = 2;
+  made.configurations = {own};
+  CHECK(report::certificate_json(made).find("\"configuration\": \"0.2 kg, 0°\"") != std::string::npos);
+  CHECK(report::certificate_page("a", made).html.find(">0.2\u00a0kg, 0°</td>") != std::string::npos);
 }

@@ -216,7 +216,7 @@ TEST_CASE("what the scene does over time has a colour and a name for each clip, 
 TEST_CASE("the chart of the blind cases has every kind that its table has") {
   report::BlindRun run;
   run.score.methods.resize(1);
-  run.score.methods.front().name = "glidelab diagnose";
+  run.score.methods.front().by = validate::DecisionMethod::diagnosis;
   run.score.methods.front().single["weak"] = {4, 1};
   const report::Page page = report::blind_page(run);
   const auto plotted = std::ranges::find_if(

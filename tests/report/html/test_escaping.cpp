@@ -244,7 +244,7 @@ TEST_CASE("the pages of require and of coverage have every name from a file as t
     candidate.verdict = verdict;
     candidate.pixels_s = 1e7;
     candidate.results = {{1e-4, 2e-4, 1e-5, 200, 3, kEvil}};
-    candidate.limits = {{kEvil, 3.0}};
+    candidate.limits = {{validate::Limitation::light, 3.0}};
     requirement.candidates.push_back(candidate);
   }
   check_is_text(report::requirement_report(requirement));
@@ -278,13 +278,18 @@ TEST_CASE("the page of a certificate has every name from a file as text") {
   quantity.bias_sds = {1.5, 0.1};
   quantity.rms = quantity.stated_sd = 1e-4;
   certificate.quantities = {quantity};
-  quantity.configuration = kEvil;
+  certificate.setups = {{kEvil, 0.3, 0.1}, {kEvil, 0.3, 0.1}};  // alike: their names tell them apart
+  quantity.setup = 1;
   certificate.configurations = {quantity};
   certificate.causes = {kEvil};
-  certificate.without = {{kEvil, kEvil}};
+  certificate.without = {validate::lacking::Inexpressible{kEvil, kEvil}, validate::lacking::Images{kEvil}};
   certificate.explanations = {{{kEvil}, 0.5, 20, {}}, {{}, 0.5, 20, {}}};
-  certificate.changes = {
-      {kEvil, kEvil, kEvil, 40, {{"mu", {0.5, 0.4, 0.6}, true}}, validate::RunFall{0.5, 0.4, 0.6}, true}};
+  certificate.changes = {{validate::TwinLimit::cause,
+                          {kEvil},
+                          40,
+                          {{"mu", {0.5, 0.4, 0.6}, true}},
+                          validate::RunFall{0.5, 0.4, 0.6},
+                          true}};
   check_is_text(report::certificate_page(kEvil, certificate));
 }
 
@@ -303,7 +308,7 @@ TEST_CASE("the page of a sweep has every name from a file as text, with its mass
   of.name = kEvil;
   of.runs = of.failed = 400;
   of.planned = 800;
-  of.failures = {kEvil};
+  of.failures.kinds = {{400, true, false, kEvil}};
   of.overall = {series("mu"), series(kEvil)};
   of.accelerations = {{kEvil, kEvil, 10, 0.1, 1.0, 1.2}};
   of.configurations = {{kEvil, {series("mu")}, of.accelerations}, {kEvil, {series("mu")}, of.accelerations}};
@@ -340,8 +345,8 @@ TEST_CASE("the page of blind cases has every name from a file as text") {
   named.verdict.effects = {{kEvil, 0.9, {kEvil}}};
   report::BlindRun run;
   run.outcomes = {outcome, named};
-  run.score.methods = {{kEvil, {1, 1}, {1, 1}, {1, 1}, {}}};
-  run.score.left_out = {{kEvil, {1, 1}}};
+  run.score.methods = {{validate::DecisionMethod::diagnosis, {1, 1}, {1, 1}, {1, 1}, {}}};
+  run.score.left_out = {{validate::VerdictWithout::other_name, {1, 1}}};
   run.score.confusion = {{kEvil, {{kEvil, 1}}}};
   check_is_text(report::blind_page(run));
 }
@@ -374,7 +379,6 @@ TEST_CASE("the page of everyday cases has every name from a file as text") {
   run.outcomes = {outcome};
   run.everyday.emplace();
   validate::EverydayMethod method;
-  method.name = kEvil;
   method.main_first[kEvil][kEvil] = {1, 1};
   run.everyday->methods = {method};
   run.everyday->covered[kEvil][kEvil] = {1, 1};

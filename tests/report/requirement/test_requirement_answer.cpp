@@ -15,7 +15,7 @@ validate::Candidate camera(const std::string& name, double price, validate::Verd
   of.price_class = "8-25 EUR";
   of.frame_rate_hz = 90.0;
   of.noise_m = 1.5e-5;
-  of.mode = {640, 480, 0.002, "H.264 at 8 Mbit/s"};
+  of.mode = {640, 480, 0.002, {validate::CodecSetting::Kind::h264_bitrate, 8000.0}};
   of.verdict = verdict;
   of.judged_by = validate::Confirm::clips;
   of.results = {{1e-5, error, 0.1 * error, 20, 0, "trajectory", 0.8 * error, 1.3 * error}};
@@ -72,7 +72,7 @@ TEST_CASE("where nothing reaches the target the nearest is named, with what limi
   for (validate::Candidate& candidate : requirement.candidates) candidate.verdict = validate::Verdict::missed;
   requirement.candidates[2].results[0].found = 2e-4;
   requirement.candidates[1].results[0].found = 3e-4;
-  requirement.candidates[2].limits = {{"light (no shot noise)", 3.0}};
+  requirement.candidates[2].limits = {{validate::Limitation::light, 3.0}};
   CHECK_THAT(report::requirement_answer(requirement),
              Contains("Nothing here reaches µ ± 0.0001. phone comes nearest: expect µ ± 0.0002") &&
                  Contains("Its main limitation: light (no shot noise)"));

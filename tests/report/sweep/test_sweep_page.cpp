@@ -223,3 +223,26 @@ TEST_CASE("the question of mu and mass is answered in words, with its standard e
   CHECK(has(text, "produces all of it at h = 0.13 s, where the lines have R² = 0.9971"));
   CHECK(has(text, "R² of 0.99960 smoothing can produce 0.00070, 29 % of the fall, with h = 0.07 s"));
 }
+
+TEST_CASE(
+    "failed runs are counted by kind of reason on screen, page and in the file, and the kinds that are not shown") {
+  validate::SweepSummary of = summary();
+  of.failed = 22;
+  of.failures.kinds = {{12, false, false, "no root between 0.3333 and 7"},
+                       {6, false, true, "camera.frame_rate_hz = 0.06667: too fast"},
+                       {1, true, true, "camera.frame_rate_hz = 50: no light"},
+                       {1, true, false, "no marker"}};
+  of.failures.other_kinds = of.failures.other_runs = 2;
+  const std::string text = report::sweep_text(of), json = report::sweep_json(of), html = report::sweep_report(of).html;
+  for (const char* line :
+       {"12 runs, one of them: no root between 0.3333 and 7",
+        "6 runs, one of them with camera.frame_rate_hz = 0.06667: too fast",
+        "1 run with camera.frame_rate_hz = 50: no light", "1 run: no marker", "and 2 more kinds (2 runs)"}) {
+    INFO(line);
+    CHECK(has(text, std::string("\n  ") + line + "\n"));
+    CHECK(has(json, std::string("\"") + line + "\""));
+    CHECK(has(html, line));
+  }
+  of.failures.other_kinds = of.failures.other_runs = 1;
+  CHECK(has(report::sweep_text(of), "  and 1 more kind (1 run)\n"));
+}

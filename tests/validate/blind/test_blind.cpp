@@ -271,7 +271,7 @@ TEST_CASE("a case that could not be diagnosed is right by no method, though noth
   const auto score = validate::score_blind({outcome(validate::BlindKind::none, "", 0.0, "failed", "", 0.0)});
   REQUIRE(score.methods.size() == 4);  // the last picks at random
   for (std::size_t m = 0; m < 3; ++m) {
-    INFO(score.methods[m].name);
+    CHECK(score.methods[m].by == static_cast<validate::DecisionMethod>(m));
     CHECK(score.methods[m].none.of == 1);
     CHECK(score.methods[m].none.yes == 0);
   }

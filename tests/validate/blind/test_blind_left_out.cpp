@@ -48,18 +48,18 @@ TEST_CASE("of what is unknown without its effect the first region counts, where 
   const validate::BlindScore score = validate::score_blind(outcomes);
   CHECK(score.left_out_where.of == 4);
   CHECK(score.left_out_where.yes == 2);
-  CHECK(score.left_out.at("unknown").yes == 5);
-  CHECK(score.left_out.at("none").yes == 1);
+  CHECK(score.left_out.at(validate::VerdictWithout::unknown).yes == 5);
+  CHECK(score.left_out.at(validate::VerdictWithout::none).yes == 1);
 }
 
 TEST_CASE("a name in place of the effect is its equal, another, or a sure one") {
   validate::BlindOutcome outcome = left_out("quadratic_drag", "effect");
   outcome.left_out->effects = {{"power_law_drag", 0.9, {}}};
-  CHECK(validate::verdict_without(outcome) == "equivalent");
+  CHECK(validate::verdict_without(outcome) == validate::VerdictWithout::equivalent);
   outcome.left_out->effects = {{"tether", 0.6, {}}};
-  CHECK(validate::verdict_without(outcome) == "another name");
+  CHECK(validate::verdict_without(outcome) == validate::VerdictWithout::other_name);
   outcome.left_out->effects = {{"tether", 0.9, {}}};
-  CHECK(validate::verdict_without(outcome) == "another name, probability over 0.8");
+  CHECK(validate::verdict_without(outcome) == validate::VerdictWithout::sure_other_name);
   outcome.left_out.reset();
   CHECK_THROWS_AS(validate::verdict_without(outcome), std::logic_error);
 }
@@ -96,8 +96,8 @@ TEST_CASE("a case whose diagnosis without its effect failed counts as failed, an
     REQUIRE(outcomes[0].left_out.has_value());
     CHECK(outcomes[0].left_out->verdict == "failed");
     CHECK(outcomes[0].left_out->why == "made to fail");
-    CHECK(validate::score_blind(outcomes).left_out.at("unknown").of == 1);
-    CHECK(validate::score_blind(outcomes).left_out.at("failed").yes == 1);
+    CHECK(validate::score_blind(outcomes).left_out.at(validate::VerdictWithout::unknown).of == 1);
+    CHECK(validate::score_blind(outcomes).left_out.at(validate::VerdictWithout::failed).yes == 1);
   }
   CHECK(calls == 2);
 }

@@ -1,28 +1,37 @@
 /// The content of a certificate: whether the stated intervals hold in recordings like this one, the error of each
-/// quantity, and what limits it. report/ writes it as certify.json and a page.
+/// quantity, and what limits it. report/certificate puts it into words, as certify.json and a page.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "core/result/why_unknown.h"
 #include "validate/study/certify/run_shares.h"
 
 namespace glidelab::validate {
 
+/// A configuration of the twins.
+struct CertifiedSetup {
+  std::string name;  ///< in the twin's scenario
+  double mass_kg = 0.0;
+  double incline_rad = 0.0;  ///< as stated
+};
+
 /// One of core::kQuantities over the twins, in its unit.
 struct CertifiedQuantity {
-  std::string configuration;  ///< "0.335 kg, 4°"; empty: all together
+  std::optional<std::size_t> setup;  ///< among Certificate::setups; empty: all together
   std::string quantity;
-  std::size_t asked = 0;   ///< number of values with known truth: twins times configurations
-  std::size_t failed = 0;  ///< of these, without an estimate
-  RunShare coverage;       ///< of the stated intervals of 95 %
-  RunShare wide_coverage;  ///< the same with an interval of 99 % over all quantities (Bonferroni)
-  RunMean bias_sds;        ///< error over stated sd
-  double rms = 0.0;        ///< of the errors
-  double stated_sd = 0.0;  ///< root mean square
-  std::string why = {};    ///< why none has an estimate
+  std::size_t asked = 0;                     ///< number of values with known truth: twins times configurations
+  std::size_t failed = 0;                    ///< of these, without an estimate
+  RunShare coverage;                         ///< of the stated intervals of 95 %
+  RunShare wide_coverage;                    ///< the same with an interval of 99 % over all quantities (Bonferroni)
+  RunMean bias_sds;                          ///< error over stated sd
+  double rms = 0.0;                          ///< of the errors
+  double stated_sd = 0.0;                    ///< root mean square
+  std::optional<core::WhyUnknown> why = {};  ///< why none has an estimate; empty: no clip could be used
 
   std::size_t answered() const { return asked - failed; }
   /// Fewer hold than 95 %, by more than chance makes.
@@ -36,11 +45,25 @@ struct QuantityFall {
   bool significant = false;  ///< above 0 at 95 % over all changes and quantities (Bonferroni)
 };
 
+/// What may limit a recording, and what its twins have instead.
+enum class TwinLimit {
+  pixel_noise,     ///< of filmed twins: half the noise of each pixel
+  position_noise,  ///< of tracks: half the noise of each position
+  marker,          ///< twice its diameter
+  frame_rate,      ///< twice as many frames
+  scale,           ///< no error
+  calibration,     ///< the camera without error
+  codec,           ///< no loss
+  rounding,        ///< positions with all their digits
+  cause,           ///< no force but the viscous and the Coulomb friction
+  clip_scatter,    ///< every clip by one law
+  few_clips,       ///< every clip twice
+};
+
 /// One limitation removed or reduced, and the same twins recorded with this change.
 struct ChangedTwin {
-  std::string limit;   ///< "noise", "calibration", "marker", "few clips", …
-  std::string change;  ///< "the pixels' noise halved"
-  std::string advice;  ///< what the user can do: "Use a larger marker"
+  TwinLimit limit = TwinLimit::few_clips;
+  std::vector<std::string> causes = {};  ///< of TwinLimit::cause: ids of the effects, as far as they have names
   std::size_t runs = 0;
   std::vector<QuantityFall> quantities;
   std::optional<RunFall> together;  ///< K/m, mu and alpha (those that have values), interval of 95 %
@@ -58,17 +81,37 @@ struct CertifiedExplanation {
   bool fails() const { return coverage.of > 0 && coverage.high < 0.95; }
 };
 
-/// A feature of the recording that its twins lack.
-struct NotInTwins {
-  std::string what;  ///< an effect's id, or words
-  std::string why;
+/// Features of the recording that its twins lack, and why.
+namespace lacking {
+
+/// No scenario can express it.
+struct Inexpressible {
+  std::string what, why;  ///< as in diagnose::TwinLack
 };
+
+/// A scenario's camera would not see enough, so that tracks were simulated.
+struct Images {
+  std::string error;  ///< of the scenario
+};
+
+/// The scatter from clip to clip: filming leaves as much.
+struct ClipScatter {};
+
+/// The scatter of positions: another cause than the pixels' noise makes that of the recording.
+struct Noise {
+  double recorded_m = 0.0, twin_m = 0.0;
+};
+
+}  // namespace lacking
+
+using NotInTwins = std::variant<lacking::Inexpressible, lacking::Images, lacking::ClipScatter, lacking::Noise>;
 
 struct Certificate {
   std::size_t runs = 0;
   std::string estimator;
   bool filmed = false;  ///< clips were filmed and tracked; otherwise positions were simulated
   std::size_t clips = 0;
+  std::vector<CertifiedSetup> setups;                 ///< the twins' configurations
   RunShare together;                                  ///< coverage of K/m, mu and alpha, in all configurations
   RunShare wide_together;                             ///< the same with the interval of CertifiedQuantity
   std::vector<CertifiedExplanation> explanations;     ///< those that the twins follow, the reported one first

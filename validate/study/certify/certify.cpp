@@ -1,7 +1,6 @@
 #include "validate/study/certify/certify.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,12 +10,10 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "base/math/angles.h"
 #include "core/analysis/analyze.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
-#include "core/result/why_unknown.h"
 #include "diagnose/lines/line_model.h"
 #include "diagnose/verdict/diagnose.h"
 #include "validate/random_use.h"
@@ -73,23 +70,26 @@ core::AnalysisResults analysis_of(const MadeTracks& made, const CertifyOptions& 
 
 TwinOutcome outcome_of(const Twins& twins, const TwinChange& change, std::uint64_t seed) {
   core::AnalysisResults results;
-  std::string why = "none of its clips could be used";
+  std::optional<std::string> refusal;
   TwinOutcome outcome;
   try {
     results = analysis_of(record_twin(twins.twin, change, seed, twins.studios, twins.progress), twins.options);
     outcome.noise_m = median_noise(results);
   } catch (const base::InputError& error) {  // a twin that the analysis refuses has no values
-    why = error.what();
+    refusal = error.what();
   } catch (const base::NumericalError& error) {
-    why = error.what();
+    refusal = error.what();
   }
   for (const TrueConfiguration& truth : twins.truths[explanation_of(twins.twin, seed)].configurations) {
     auto& of = outcome.configurations.emplace_back();
     const core::ConfigurationResult* result = result_of(results, truth);
     for (std::size_t q = 0; q < kQuantityCount; ++q) {
       of[q].truth = core::value_of(truth, core::kQuantities[q].which);
-      of[q].found =
-          result ? core::value_of(*result, core::kQuantities[q].which) : core::undetermined(core::unknown::Told{why});
+      if (result != nullptr) {
+        of[q].found = core::value_of(*result, core::kQuantities[q].which);
+      } else if (refusal) {
+        of[q].found = core::undetermined(core::unknown::Told{*refusal});
+      }
     }
   }
   return outcome;
@@ -132,9 +132,9 @@ std::vector<RunCount> counts_of(const Outcomes& outcomes, std::size_t first_quan
 }
 
 CertifiedQuantity certified(const Outcomes& outcomes, std::size_t quantity,
-                            const std::optional<std::size_t>& configuration, const std::string& name) {
+                            const std::optional<std::size_t>& configuration) {
   CertifiedQuantity result;
-  result.configuration = name;
+  result.setup = configuration;
   result.quantity = core::kQuantities[quantity].key;
   std::vector<double> sds(outcomes.size()), counts(outcomes.size());
   double square = 0.0, stated = 0.0;
@@ -142,7 +142,7 @@ CertifiedQuantity certified(const Outcomes& outcomes, std::size_t quantity,
     ++result.asked;
     if (!one.found.estimate) {
       ++result.failed;
-      result.why = core::why_words(one.found.why);
+      result.why = one.found.why;
       return;
     }
     const double error = one.found.estimate->value - *one.truth, sd = one.found.estimate->sd;
@@ -202,7 +202,8 @@ std::optional<RunFall> fall_of_all(const std::vector<Squares>& all, double confi
 
 struct WantedChange {
   TwinChange change;
-  std::string limit, words, advice;
+  TwinLimit limit;
+  std::vector<std::string> causes = {};
 };
 
 bool is_linear(const std::vector<sim::ConfigurationSetup>& configurations) {
@@ -232,56 +233,23 @@ std::optional<std::vector<std::string>> causes_beside_law(const RecordingTwin& t
 std::vector<WantedChange> wanted_changes(const RecordingTwin& twin) {
   std::vector<WantedChange> wanted;
   if (twin.filmed) {
-    wanted.push_back({{.noise = 0.5},
-                      "noise",
-                      "half the noise of each pixel",
-                      "Use more light, or a wider aperture: four times the light halves the noise"});
-    wanted.push_back({{.marker = 2.0}, "marker", "a marker of twice the diameter", "Use a larger marker"});
+    wanted.push_back({{.noise = 0.5}, TwinLimit::pixel_noise});
+    wanted.push_back({{.marker = 2.0}, TwinLimit::marker});
   } else {
-    wanted.push_back({{.noise = 0.5},
-                      "noise",
-                      "half the noise of each position",
-                      "Lower the noise of the positions: more light, a larger marker, a finer scale or a better "
-                      "tracker"});
-    wanted.push_back({{.double_rate = true}, "frame rate", "twice as many frames a second", "Use a higher frame rate"});
+    wanted.push_back({{.noise = 0.5}, TwinLimit::position_noise});
+    wanted.push_back({{.double_rate = true}, TwinLimit::frame_rate});
   }
   const bool by_scale = twin.scale_sd_relative > 0.0;
-  if (by_scale) {
-    wanted.push_back({{.camera_known = true},
-                      "scale",
-                      "the scale without error",
-                      "Measure the scale better (a longer ruler, in the plane of motion), or use a pattern"});
-  } else if (twin.filmed) {
-    wanted.push_back({{.camera_known = true},
-                      "calibration",
-                      "the camera known without error",
-                      "Take more calibration images, tilted more and filling the image"});
-  }
-  if (twin.filmed && render::lossy(twin.scenario.codec)) {
-    wanted.push_back({{.lossless = true},
-                      "codec",
-                      "no loss by compression",
-                      "Compress less: a higher bit rate or quality, or a lossless codec"});
-  }
-  if (std::any_of(twin.clips.begin(), twin.clips.end(), [](const ClipNoise& clip) { return clip.rounding_m > 0.0; })) {
-    wanted.push_back({{.unrounded = true}, "rounding", "positions with all their digits", "Export more digits"});
-  }
-  if (const auto causes = causes_beside_law(twin)) {
-    std::string advice = "Take the cause out of the experiment";
-    if (!causes->empty())
-      advice += fmt::format(", or put it into the model (glidelab analyze --with {})", fmt::join(*causes, " --with "));
-    wanted.push_back(
-        {{.nominal = true}, "a cause beside the law", "the viscous and the Coulomb friction alone", advice});
-  }
+  if (by_scale || twin.filmed)
+    wanted.push_back({{.camera_known = true}, by_scale ? TwinLimit::scale : TwinLimit::calibration});
+  if (twin.filmed && render::lossy(twin.scenario.codec)) wanted.push_back({{.lossless = true}, TwinLimit::codec});
+  if (std::any_of(twin.clips.begin(), twin.clips.end(), [](const ClipNoise& clip) { return clip.rounding_m > 0.0; }))
+    wanted.push_back({{.unrounded = true}, TwinLimit::rounding});
+  if (const auto causes = causes_beside_law(twin)) wanted.push_back({{.nominal = true}, TwinLimit::cause, *causes});
   if (std::any_of(twin.explanations.begin(), twin.explanations.end(),
-                  [](const TwinExplanation& one) { return one.probability > 0.1 && !one.leaves_nothing(); })) {
-    wanted.push_back({{.alike = true},
-                      "what differs from clip to clip",
-                      "every clip by one law",
-                      "Make the clips alike: the track clean and level, the air still, nothing that touches the "
-                      "glider"});
-  }
-  wanted.push_back({{.twice = true}, "few clips", "every clip recorded twice", "Record a second clip of each kind"});
+                  [](const TwinExplanation& one) { return one.probability > 0.1 && !one.leaves_nothing(); }))
+    wanted.push_back({{.alike = true}, TwinLimit::clip_scatter});
+  wanted.push_back({{.twice = true}, TwinLimit::few_clips});
   return wanted;
 }
 
@@ -307,8 +275,7 @@ ChangedTwin changed_twin(const WantedChange& wanted, const Outcomes& before, con
                          std::size_t changes) {
   ChangedTwin result;
   result.limit = wanted.limit;
-  result.change = wanted.words;
-  result.advice = wanted.advice;
+  result.causes = wanted.causes;
   result.runs = after.size();
   std::vector<Squares> headline;
   std::vector<std::pair<std::size_t, Squares>> all;
@@ -327,21 +294,6 @@ ChangedTwin changed_twin(const WantedChange& wanted, const Outcomes& before, con
   result.together = fall_of_all(headline, kConfidence);
   result.stands_out = result.together && fall_of_all(headline, 1.0 - one)->low > 0.0;
   return result;
-}
-
-/// "0.335 kg, 4°", with the twin's own name added if another configuration has the same.
-std::vector<std::string> configuration_names(const render::Scenario& scenario) {
-  std::vector<std::string> names;
-  for (const sim::ConfigurationSetup& setup : scenario.motion.configurations) {
-    names.push_back(
-        fmt::format("{:.4g} kg, {:.4g}°", setup.body.mass_kg, setup.stated_incline_rad * base::kDegreesPerRad));
-  }
-  std::vector<std::string> own = names;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (std::count(names.begin(), names.end(), names[i]) > 1)
-      own[i] = fmt::format("{} ({})", names[i], scenario.motion.configurations[i].name);
-  }
-  return own;
 }
 
 void check_runs(std::size_t runs) {
@@ -368,8 +320,10 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   certificate.causes = twin.causes;
   certificate.without = twin.without;
   certificate.recorded_noise_m = twin.noise_m;
-  for (const sim::ConfigurationSetup& setup : twin.scenario.motion.configurations)
+  for (const sim::ConfigurationSetup& setup : twin.scenario.motion.configurations) {
     certificate.clips += setup.motions.size();
+    certificate.setups.push_back({setup.name, setup.body.mass_kg, setup.stated_incline_rad});
+  }
 
   const std::vector<WantedChange> wanted = options.changes ? wanted_changes(twin) : std::vector<WantedChange>{};
   const std::size_t runs_of_change = twin.filmed ? std::min(kFilmedChanges, options.runs) : options.runs;
@@ -387,13 +341,12 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   certificate.together = share_of(held, kConfidence);
   certificate.wide_together = share_of(held, kWideConfidence);
   certificate.explanations = explanations_of(twin, held, options.seed);
-  const std::vector<std::string> names = configuration_names(twin.scenario);
   for (std::size_t q = 0; q < kQuantityCount; ++q) {
-    CertifiedQuantity quantity = certified(outcomes, q, std::nullopt, "");
+    CertifiedQuantity quantity = certified(outcomes, q, std::nullopt);
     if (quantity.asked == 0) continue;
     certificate.quantities.push_back(std::move(quantity));
-    for (std::size_t c = 0; names.size() > 1 && c < names.size(); ++c) {
-      CertifiedQuantity own = certified(outcomes, q, c, names[c]);
+    for (std::size_t c = 0; certificate.setups.size() > 1 && c < certificate.setups.size(); ++c) {
+      CertifiedQuantity own = certified(outcomes, q, c);
       if (own.asked > 0) certificate.configurations.push_back(std::move(own));
     }
   }
@@ -426,10 +379,7 @@ void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base:
   const double factor = twin.noise_m / pilot.noise_m;
   if (factor > 1.0 / kAlike && factor < kAlike) return;
   if (factor < 1.0 / kFarthest || factor > kFarthest) {
-    twin.without.push_back(
-        {"noise as in the recording", fmt::format("its positions scatter by {:.3g} m, the twin's by {:.3g} m: another "
-                                                  "cause than the pixels' noise",
-                                                  twin.noise_m, pilot.noise_m)});
+    twin.without.emplace_back(lacking::Noise{twin.noise_m, pilot.noise_m});
     return;
   }
   scale_noise(twin.scenario.sensor, factor);

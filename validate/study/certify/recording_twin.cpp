@@ -1,7 +1,5 @@
 #include "validate/study/certify/recording_twin.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -138,7 +136,7 @@ void drop_remainders(RecordingTwin& twin) {
     any = any || !one.leaves_nothing();
     one.q_m2_s3 = one.force_m_s2 = one.drag = 0.0;
   }
-  if (any) twin.without.push_back({"what differs from clip to clip", "filming leaves as much"});
+  if (any) twin.without.emplace_back(lacking::ClipScatter{});
 }
 
 }  // namespace
@@ -153,15 +151,13 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
       twin.scenario = render::read_scenario(diagnosis.twin, kName);
       twin.filmed = true;
     } catch (const base::InputError& error) {  // the camera of a scenario cannot see it
-      std::string why = error.what();
-      std::replace(why.begin(), why.end(), '\n', ' ');
-      twin.without.push_back({"images and calibration", why});
+      twin.without.emplace_back(lacking::Images{error.what()});
     }
   }
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) twin.causes.push_back(effect.id);
   for (const diagnose::TwinLack& lack : diagnosis.twin_lacks) {
     std::erase(twin.causes, lack.what);
-    twin.without.push_back({lack.what, lack.why});
+    twin.without.emplace_back(lacking::Inexpressible{lack.what, lack.why});
   }
   twin.explanations = explanations_of(diagnosis, twin.scenario);
   twin.noise_m = median_noise(results);

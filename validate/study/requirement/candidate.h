@@ -1,4 +1,5 @@
 /// One point of a sweep (a camera, a setting) as judged by a requirement: how it is tested, and the result.
+/// report/requirement puts it into words.
 #pragma once
 
 #include <cstddef>
@@ -67,16 +68,42 @@ struct Enough {
   std::optional<double> noise_m = {};  ///< of a position
 };
 
+/// How frames are compressed.
+struct CodecSetting {
+  enum class Kind { lossless, mjpeg, h264_quality, h264_bitrate };
+  Kind kind = Kind::lossless;
+  double value = 0.0;  ///< mjpeg: quality; h264: constant rate factor, or kbit/s
+};
+
 /// How a camera should be set.
 struct CameraMode {
   int width_px = 0, height_px = 0;
   double exposure_s = 0.0;
-  std::string codec;
+  CodecSetting codec = {};
 };
 
-/// A hypothetically removed limitation: the factor by which the bound of the hardest target then decreases.
+/// What may limit a camera, and what it would have instead.
+enum class Limitation {
+  // Of the bound.
+  frame_rate,    ///< kFast_hz, with the same exposure
+  light,         ///< no shot noise
+  camera_noise,  ///< none
+  motion_blur,   ///< none
+  resolution,    ///< kFiner times finer
+  // Of runs: no bound contains it.
+  clock,            ///< even
+  rolling_shutter,  ///< global
+  codec,            ///< lossless
+  calibration,      ///< the true camera
+  imaging,          ///< true positions with the expected noise: no lens, no calibration, no tracker
+};
+inline constexpr double kFast_hz = 1000.0;
+inline constexpr double kFiner = 4.0;
+
+/// A hypothetically removed limitation: the factor by which the bound, or the error by runs, of the hardest target then
+/// decreases.
 struct Limit {
-  std::string name;
+  Limitation what = Limitation::frame_rate;
   double gain = 1.0;
 };
 
@@ -108,8 +135,5 @@ struct Candidate {
   std::optional<Enough> enough = {};  ///< for the first that reaches the targets, if its errors are kMuchLess times
                                       ///< smaller than allowed
 };
-
-/// "reached, by clips", "impossible", …
-std::string describe(const Candidate& candidate);
 
 }  // namespace glidelab::validate

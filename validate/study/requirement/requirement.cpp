@@ -128,15 +128,12 @@ void as_candidate(Candidate& candidate, const Work& work) {
   }
 }
 
-std::string codec_text(const render::Scenario& scenario) {
-  const std::string name = scenario.codec == render::Codec::h264    ? "H.264"
-                           : scenario.codec == render::Codec::mjpeg ? "MJPEG"
-                                                                    : "frames without loss";
+CodecSetting codec_of(const render::Scenario& scenario) {
   const render::Compression& how = scenario.compression;
-  if (scenario.codec == render::Codec::mjpeg) return fmt::format("{} of quality {}", name, how.quality);
-  if (scenario.codec != render::Codec::h264) return name;
-  return how.bitrate_kbit_s > 0.0 ? fmt::format("{} at {:.3g} Mbit/s", name, how.bitrate_kbit_s / 1000.0)
-                                  : fmt::format("{} at crf {:.3g}", name, how.crf);
+  if (scenario.codec == render::Codec::mjpeg) return {CodecSetting::Kind::mjpeg, static_cast<double>(how.quality)};
+  if (scenario.codec != render::Codec::h264) return {};
+  return how.bitrate_kbit_s > 0.0 ? CodecSetting{CodecSetting::Kind::h264_bitrate, how.bitrate_kbit_s}
+                                  : CodecSetting{CodecSetting::Kind::h264_quality, how.crf};
 }
 
 /// Tests a point by the bound and, if that allows the target, by tracks.
@@ -154,7 +151,7 @@ Trial trial_of(const Sweep& sweep, std::uint64_t point, const RequirementOptions
     candidate.frame_rate_hz = run.scenario.recording.frame_rate_hz;
     candidate.pixels_s = candidate.frame_rate_hz * run.scenario.camera.width_px * run.scenario.camera.height_px;
     candidate.mode = {run.scenario.camera.width_px, run.scenario.camera.height_px, run.scenario.recording.exposure_s,
-                      codec_text(run.scenario)};
+                      codec_of(run.scenario)};
     const MadeTracks made = make_tracks(trial.setting->scenario, 1);
     const std::vector<double> noise_m = noise_of(*trial.setting, made.truth);
     for (const double noise : noise_m) candidate.noise_m += noise * noise / static_cast<double>(noise_m.size());

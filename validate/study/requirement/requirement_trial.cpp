@@ -68,21 +68,20 @@ double hardest(const std::vector<TargetResult>& results, const std::vector<Targe
 
 std::vector<Limit> limits_of(const Setting& setting, double need, const std::vector<Target>& targets) {
   std::vector<Limit> limits;
-  const auto try_without = [&](const std::string& name, const Setting& changed, const WithoutLimit& without) {
+  const auto try_without = [&](Limitation what, const Setting& changed, const WithoutLimit& without) {
     const double then = need_of(changed, without, targets);
-    if (std::isfinite(then) && then > 0.0) limits.push_back({name, need / then});
+    if (std::isfinite(then) && then > 0.0) limits.push_back({what, need / then});
   };
-  constexpr double kFast_hz = 1000.0;
   if (setting.scenario.recording.frame_rate_hz < kFast_hz) {
     Setting fast = setting;
     fast.scenario.recording.frame_rate_hz = kFast_hz;
-    try_without("frame rate (1000 Hz instead, the same exposure)", fast, {});
+    try_without(Limitation::frame_rate, fast, {});
   }
   if (!setting.given_noise_m) {
-    try_without("light (no shot noise)", setting, {.shot_noise = true});
-    try_without("the camera's own noise (none)", setting, {.camera_noise = true});
-    try_without("motion blur (none)", setting, {.motion_blur = true});
-    try_without("resolution (4 times finer)", setting, {.finer = 4.0});
+    try_without(Limitation::light, setting, {.shot_noise = true});
+    try_without(Limitation::camera_noise, setting, {.camera_noise = true});
+    try_without(Limitation::motion_blur, setting, {.motion_blur = true});
+    try_without(Limitation::resolution, setting, {.finer = kFiner});
   }
   std::sort(limits.begin(), limits.end(), [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
   return limits;
@@ -241,36 +240,35 @@ std::vector<Limit> RecordedRuns::limits() {
   }
   std::vector<TargetResult> now(options_.targets.size());
   judge_outcomes(as_it_is, options_.targets, kConfidence, now);
-  const auto try_without = [&](const char* name, const Setting& changed, Confirm confirm) {
+  const auto try_without = [&](Limitation what, const Setting& changed, Confirm confirm) {
     std::vector<TargetResult> then(options_.targets.size());
     judge_outcomes(outcomes_of(changed, confirm, runs), options_.targets, kConfidence, then);
     double gain = 0.0;
     for (std::size_t t = 0; t < then.size(); ++t) {
       if (now[t].found && then[t].found) gain = std::max(gain, *now[t].found / *then[t].found);
     }
-    if (std::isfinite(gain) && gain > 0.0) limits.push_back({name, gain});
+    if (std::isfinite(gain) && gain > 0.0) limits.push_back({what, gain});
   };
   Setting changed = setting;
   changed.scenario.recording.clock = {};
-  try_without("the camera's clock (even instead, by runs)", changed, options_.confirm);
+  try_without(Limitation::clock, changed, options_.confirm);
   if (options_.confirm != Confirm::clips) return limits;
   if (setting.scenario.recording.shutter.rolling) {
     changed = setting;
     changed.scenario.recording.shutter.rolling = false;
-    try_without("rolling shutter (global instead, by runs)", changed, options_.confirm);
+    try_without(Limitation::rolling_shutter, changed, options_.confirm);
   }
   if (render::lossy(setting.scenario.codec)) {
     changed = setting;
     changed.scenario.codec = render::Codec::magicyuv;
-    try_without("codec (lossless instead, by runs)", changed, options_.confirm);
+    try_without(Limitation::codec, changed, options_.confirm);
   }
   if (true_camera(setting.scenario.camera)) {
     changed = setting;
     changed.lens_known = true;
-    try_without("calibration (the true camera instead, by runs)", changed, options_.confirm);
+    try_without(Limitation::calibration, changed, options_.confirm);
   }
-  try_without("lens, calibration and tracking (true positions with the expected noise, by runs)", setting,
-              Confirm::tracks);
+  try_without(Limitation::imaging, setting, Confirm::tracks);
   return limits;
 }
 

@@ -101,11 +101,6 @@ double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
 
 }  // namespace
 
-std::string Target::name() const {
-  const char* measures[] = {"sd", "95 % error", "bias"};
-  return fmt::format("{} {} {}", quantity, measures[static_cast<int>(measure)], value);
-}
-
 Target parse_target(const std::string& text) {
   Target target;
   const std::size_t equals = text.find('='), colon = text.find(':');

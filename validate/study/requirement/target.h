@@ -32,7 +32,6 @@ struct Target {
   std::string quantity;                      ///< "mu"
   Measure measure = Measure::error95;
   double value = 0.0;
-  std::string name() const;  ///< "mu 95 % error 0.0005"
 };
 
 /// Number of errors from which the 95 % error has distribution-free limits: 0.95^59 < 0.05.

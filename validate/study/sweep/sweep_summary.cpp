@@ -163,29 +163,24 @@ std::vector<ChosenBandwidth> bandwidths_of(Database& database) {
   return all;
 }
 
-/// "6 runs with camera.frame_rate_hz = 120: …": errors of a scenario begin with its name. If reasons differ only in
-/// their numbers, the first is shown.
-std::vector<std::string> failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
+/// Errors of a scenario begin with its name and the varied values.
+FailedRuns failures_of(const Sweep& sweep, Database& database, std::uint64_t failed) {
   constexpr std::size_t kShownKinds = 5;
   FailureKinds reasons;
   SqlStatement select = database.prepare("SELECT why FROM run WHERE status = 'failed' ORDER BY run");
   while (select.step()) reasons.add(select.text(0));
   const std::vector<FailureKind> kinds = reasons.by_number();
   const std::string file = sweep.scenario_file.string() + " with ";
-  std::vector<std::string> failures;
-  std::uint64_t others = failed;
+  FailedRuns failures;
+  failures.other_runs = failed;
   for (std::size_t k = 0; k < std::min(kinds.size(), kShownKinds); ++k) {
     const FailureKind& kind = kinds[k];
-    const bool names = kind.example.starts_with(file);
-    const std::string why = with_rounded_numbers(names ? kind.example.substr(file.size()) : kind.example);
-    failures.push_back(fmt::format("{} {}{}{}{}", kind.runs, kind.runs == 1 ? "run" : "runs",
-                                   kind.one_text ? "" : ", one of them", names ? " with " : ": ", why));
-    others -= kind.runs;
+    const bool of_scenario = kind.example.starts_with(file);
+    failures.kinds.push_back({kind.runs, kind.one_text, of_scenario,
+                              with_rounded_numbers(of_scenario ? kind.example.substr(file.size()) : kind.example)});
+    failures.other_runs -= kind.runs;
   }
-  if (const std::size_t more = kinds.size() - failures.size(); more > 0) {
-    failures.push_back(fmt::format("and {} more {} ({} {})", more, more == 1 ? "kind" : "kinds", others,
-                                   others == 1 ? "run" : "runs"));
-  }
+  failures.other_kinds = kinds.size() - failures.kinds.size();
   return failures;
 }
 

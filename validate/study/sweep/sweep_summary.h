@@ -84,12 +84,22 @@ struct ConfigurationSummary {
   std::vector<AccelerationError> accelerations = {};
 };
 
+/// Failed runs by the kinds of their reasons (FailureKinds).
+struct FailedRuns {
+  struct Kind {
+    std::uint64_t runs = 0;
+    bool one_text = true;      ///< all reasons are identical to `why`
+    bool of_scenario = false;  ///< the scenario was refused: `why` begins with the varied values
+    std::string why;           ///< an example, its numbers rounded
+  };
+  std::vector<Kind> kinds;  ///< the five most frequent
+  std::uint64_t other_kinds = 0, other_runs = 0;
+};
+
 struct SweepSummary {
   std::string name;
   std::uint64_t runs = 0, planned = 0, failed = 0;
-  /// The five most frequent kinds of reasons (FailureKinds), each with its count and an example, and the number of
-  /// further kinds.
-  std::vector<std::string> failures;
+  FailedRuns failures;
   double cpu_s = 0.0;                                ///< wall time of all runs on their threads
   std::vector<Series> overall;                       ///< one group each
   std::vector<ConfigurationSummary> configurations;  ///< by their names; empty if the scenario has one

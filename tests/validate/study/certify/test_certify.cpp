@@ -12,6 +12,7 @@
 #include "base/files/file_io.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/result/quantity.h"
+#include "core/result/why_unknown.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/diagnose.h"
@@ -165,7 +166,7 @@ TEST_CASE("half the noise halves the errors of a track, and the certificate says
   const Certificate certificate = certify({temp / "made"}, {.runs = 120, .seed = 4, .jobs = 2});
   REQUIRE_FALSE(certificate.changes.empty());
   const ChangedTwin& first = certificate.changes.front();
-  CHECK(first.limit == "noise");
+  CHECK(first.limit == TwinLimit::position_noise);
   CHECK(first.stands_out);
   REQUIRE(first.together);
   // The same deviates at half their size: errors are half as large where they are linear in the noise and nothing else
@@ -207,6 +208,68 @@ TEST_CASE("a certificate does not depend on the number of threads") {
     CHECK(one.changes[i].limit == two.changes[i].limit);
     CHECK(one.changes[i].together->value == two.changes[i].together->value);
   }
+}
+
+namespace {
+
+/// A recording of tracks of one mass, thirty positions a second.
+RecordingTwin coarse_tracks() {
+  RecordingTwin twin;
+  twin.scenario = one_mass();
+  for (const sim::MotionSetup& motion : twin.scenario.motion.configurations.front().motions) {
+    ClipNoise& clip = twin.clips.emplace_back();
+    clip.white_m = kNoise_m;
+    for (int i = 0; i < 30.0 * motion.duration_s; ++i) clip.frame_s.push_back(i / 30.0);
+  }
+  return twin;
+}
+
+std::vector<TwinLimit> limits_of(const Certificate& certificate) {
+  std::vector<TwinLimit> limits;
+  for (const ChangedTwin& change : certificate.changes) limits.push_back(change.limit);
+  std::sort(limits.begin(), limits.end());
+  return limits;
+}
+
+}  // namespace
+
+TEST_CASE("each limitation that a recording has is taken away in turn, and none that it has not") {
+  RecordingTwin twin = coarse_tracks();
+  const Certificate plain = certify_twin(twin, {.runs = 20, .jobs = 2});
+  CHECK(limits_of(plain) ==
+        std::vector<TwinLimit>{TwinLimit::position_noise, TwinLimit::frame_rate, TwinLimit::few_clips});
+  REQUIRE(plain.setups.size() == 1);
+  const sim::ConfigurationSetup& only = twin.scenario.motion.configurations.front();
+  CHECK(plain.setups.front().name == only.name);
+  CHECK(plain.setups.front().mass_kg == only.body.mass_kg);
+  CHECK(plain.setups.front().incline_rad == only.stated_incline_rad);
+  CHECK(plain.configurations.empty());  // one is all
+  for (const CertifiedQuantity& quantity : plain.quantities) CHECK_FALSE(quantity.setup);
+
+  twin.scale_sd_relative = 0.01;
+  twin.clips.front().rounding_m = 1e-4;
+  twin.causes = {"quadratic_drag"};
+  TwinExplanation drag{twin.scenario.motion.configurations, 1.0, twin.causes};
+  drag.configurations.front().body.forces.push_back(sim::laws::quadratic().with({0.05}));
+  drag.force_m_s2 = 1e-3;
+  twin.explanations = {drag};
+  const Certificate full = certify_twin(twin, {.runs = 20, .jobs = 2});
+  CHECK(limits_of(full) == std::vector<TwinLimit>{TwinLimit::position_noise, TwinLimit::frame_rate, TwinLimit::scale,
+                                                  TwinLimit::rounding, TwinLimit::cause, TwinLimit::clip_scatter,
+                                                  TwinLimit::few_clips});
+  for (const ChangedTwin& change : full.changes)
+    CHECK(change.causes == (change.limit == TwinLimit::cause ? twin.causes : std::vector<std::string>{}));
+}
+
+TEST_CASE("a quantity that no twin answers has the reason of the analysis") {
+  RecordingTwin twin = coarse_tracks();
+  for (ClipNoise& clip : twin.clips) clip.frame_s.resize(2);
+  const Certificate short_clips = certify_twin(twin, {.runs = 20, .jobs = 2, .changes = false});
+  CHECK(short_clips.empty());
+  REQUIRE_FALSE(short_clips.quantities.empty());
+  CHECK(short_clips.quantities.front().answered() == 0);
+  REQUIRE(short_clips.quantities.front().why);
+  CHECK(!core::why_words(short_clips.quantities.front().why).empty());
 }
 
 TEST_CASE("a table of lines and too few twins are refused, each with one error") {

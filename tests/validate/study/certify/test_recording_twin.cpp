@@ -205,3 +205,68 @@ TEST_CASE("a filmed twin is the same with a calibration and a stage that were ke
   CHECK(first.tracks[0].x_m != own.tracks[0].x_m);  // by the calibration
   CHECK(record_twin(twin, {}, 8, studios).tracks[0].x_m != first.tracks[0].x_m);
 }
+
+namespace {
+
+/// Results and diagnosis of one clip that was filmed, and its folder.
+struct Filmed {
+  core::AnalysisResults results;
+  diagnose::Diagnosis diagnosis;
+  core::Experiment folder;
+
+  explicit Filmed(const std::string& toml) {
+    diagnosis.twin = toml;
+    core::ClipResult clip;
+    clip.name = "up";
+    clip.position_noise_m = 2e-5;
+    clip.sightings.resize(20);
+    clip.images = std::make_shared<core::ImageRecord>();
+    results.clips = {clip};
+    folder.camera.emplace();
+    folder.marker.emplace();
+    folder.clips.resize(1);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what no scenario can express is missing in the twins, with the diagnosis's reason, and no cause of theirs") {
+  Filmed filmed(tests::tiny_scenario());
+  filmed.diagnosis.effects.resize(2);
+  filmed.diagnosis.effects[0].id = "track_bow";
+  filmed.diagnosis.effects[1].id = "quadratic_drag";
+  filmed.diagnosis.twin_lacks = {{"track_bow", "no law"}};
+  const RecordingTwin twin = twin_of_recording(filmed.results, filmed.diagnosis, {filmed.folder});
+  CHECK(twin.filmed);
+  CHECK(twin.causes == std::vector<std::string>{"quadratic_drag"});
+  REQUIRE(twin.without.size() == 1);
+  const auto* const lack = std::get_if<lacking::Inexpressible>(&twin.without.front());
+  REQUIRE(lack != nullptr);
+  CHECK(lack->what == "track_bow");
+  CHECK(lack->why == "no law");
+}
+
+TEST_CASE("filmed twins have no scatter from clip to clip, and say so only where the diagnosis leaves some") {
+  Filmed filmed(tests::tiny_scenario());
+  filmed.diagnosis.likely_twins.resize(1);
+  filmed.diagnosis.likely_twins[0].toml = filmed.diagnosis.twin;
+  CHECK(twin_of_recording(filmed.results, filmed.diagnosis, {filmed.folder}).without.empty());
+  filmed.diagnosis.likely_twins[0].q_m2_s3 = 1e-7;
+  const RecordingTwin twin = twin_of_recording(filmed.results, filmed.diagnosis, {filmed.folder});
+  REQUIRE(twin.without.size() == 1);
+  CHECK(std::holds_alternative<lacking::ClipScatter>(twin.without.front()));
+  CHECK(twin.explanations.front().leaves_nothing());
+}
+
+TEST_CASE("a recording whose camera would not see enough is simulated as tracks, with the scenario's error as reason") {
+  std::string toml = tests::tiny_scenario();
+  const std::string at = "position_m = [0.0, 0.1, 2.4]";
+  toml.replace(toml.find(at), at.size(), "position_m = [0.0, 0.1, 0.3]");  // the track is wider than the image
+  const Filmed filmed(toml);
+  const RecordingTwin twin = twin_of_recording(filmed.results, filmed.diagnosis, {filmed.folder});
+  CHECK_FALSE(twin.filmed);
+  REQUIRE(twin.without.size() == 1);
+  const auto* const images = std::get_if<lacking::Images>(&twin.without.front());
+  REQUIRE(images != nullptr);
+  CHECK(images->error.find("twin of the recording") != std::string::npos);
+}

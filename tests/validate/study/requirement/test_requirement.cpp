@@ -81,6 +81,7 @@ values = [50, 125]
   const validate::Candidate& noisy = named(requirement, "tracks.noise_m = 0.01, camera.frame_rate_hz = 125");
   CHECK(noisy.verdict == validate::Verdict::impossible);
   REQUIRE(noisy.limits.size() == 1);
+  CHECK(noisy.limits[0].what == validate::Limitation::frame_rate);
   // 1000 Hz in place of 125: sqrt(8), but for the frames at the ends (1/150)
   CHECK(std::abs(noisy.limits[0].gain - std::sqrt(8.0)) < 0.05);
   // cheapest first: by pixels a second
@@ -99,11 +100,13 @@ TEST_CASE("A target within the errors' uncertainty is undecided") {
   CHECK(found.beyond == 0);
   const auto verdict_at = [&](double target) {
     options.targets.front().value = target;
-    return validate::describe(validate::find_requirement(sweep, options).candidates.front());
+    const validate::Candidate only = validate::find_requirement(sweep, options).candidates.front();
+    CHECK(only.judged_by == validate::Confirm::tracks);
+    return only.verdict;
   };
-  CHECK(verdict_at(*found.found + 0.5 * found.found_sd) == "undecided, by tracks");
-  CHECK(verdict_at(*found.found + 2.5 * found.found_sd) == "reached, by tracks");
-  CHECK(verdict_at(std::max(1e-9, *found.found - 2.5 * found.found_sd)) != "reached, by tracks");
+  CHECK(verdict_at(*found.found + 0.5 * found.found_sd) == validate::Verdict::undecided);
+  CHECK(verdict_at(*found.found + 2.5 * found.found_sd) == validate::Verdict::reached);
+  CHECK(verdict_at(std::max(1e-9, *found.found - 2.5 * found.found_sd)) != validate::Verdict::reached);
 }
 
 TEST_CASE("What would do in place of a setting that is much better than needed still reaches the target") {
@@ -212,7 +215,7 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   const validate::Requirement requirement = validate::find_requirement(sweep, options);
   const validate::Candidate& only = requirement.candidates.front();
   REQUIRE(only.verdict == validate::Verdict::missed);
-  CHECK(validate::describe(only) == "missed, by clips");
+  CHECK(only.judged_by == validate::Confirm::clips);
   CHECK(size.close == 1);
   CHECK(size.points == 1);
   CHECK(size.recordings == 4);
@@ -223,34 +226,37 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   CHECK(again.candidates.front().results[0].found == only.results[0].found);
   REQUIRE(again.candidates.front().limits.size() == only.limits.size());
   for (std::size_t i = 0; i < only.limits.size(); ++i) {
-    CHECK(again.candidates.front().limits[i].name == only.limits[i].name);
+    CHECK(again.candidates.front().limits[i].what == only.limits[i].what);
     CHECK(again.candidates.front().limits[i].gain == only.limits[i].gain);
   }
   // However easy the target is, images judge.
   options.targets[0].value = 1000.0 * bound;
   const validate::Requirement easy = validate::find_requirement(sweep, options);
-  CHECK(validate::describe(easy.candidates.front()) == "reached, by clips");
+  CHECK(easy.candidates.front().verdict == validate::Verdict::reached);
+  CHECK(easy.candidates.front().judged_by == validate::Confirm::clips);
   CHECK(size.recordings == 4);
   CHECK(easy.candidates.front().results[0].runs == 4);  // all of them: it is the one to buy
   REQUIRE(easy.first_reached() != nullptr);
-  CHECK(easy.first_reached()->mode.codec == "MJPEG of quality 20");
+  CHECK(easy.first_reached()->mode.codec.kind == validate::CodecSetting::Kind::mjpeg);
+  CHECK(easy.first_reached()->mode.codec.value == 20.0);
   // So much better than needed that fewer frames would do.
   REQUIRE(easy.first_reached()->enough);
   CHECK(easy.first_reached()->enough->times > validate::kMuchLess);
   CHECK(easy.first_reached()->enough->noise_m > easy.first_reached()->noise_m);
-  const auto gain = [&](const std::string& start) {
+  const auto gain = [&](validate::Limitation what) {
     const auto found = std::find_if(only.limits.begin(), only.limits.end(),
-                                    [&](const validate::Limit& limit) { return limit.name.starts_with(start); });
+                                    [&](const validate::Limit& limit) { return limit.what == what; });
     REQUIRE(found != only.limits.end());
     return found->gain;
   };
+  using validate::Limitation;
   // Blocks of 8 pixels at quality 20 shift a marker of 8 pixels by more than the noise of a clean image; a shutter
   // whose line time is declared is corrected, and costs less.
-  CHECK(gain("codec") > 1.0);
-  CHECK(gain("rolling shutter") < gain("codec"));
-  CHECK(gain("lens, calibration and tracking") > 1.0);
+  CHECK(gain(Limitation::codec) > 1.0);
+  CHECK(gain(Limitation::rolling_shutter) < gain(Limitation::codec));
+  CHECK(gain(Limitation::imaging) > 1.0);
   // A calibration from six views of 28 corners is no part of what a coarse codec spoils: hardly anything.
-  CHECK(gain("calibration (the true camera") < gain("codec"));
+  CHECK(gain(Limitation::calibration) < gain(Limitation::codec));
 }
 
 TEST_CASE("Whoever wants to stop while a recording is made waits for an image or some frames, not for its end") {

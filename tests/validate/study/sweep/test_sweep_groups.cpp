@@ -149,7 +149,7 @@ TEST_CASE("Configurations are compared over the runs in which each has an answer
   CHECK(a.groups[0].statistics.rms > 2.0 * b.groups[0].statistics.rms);  // the hard ones are in it
 }
 
-TEST_CASE("Of more than five kinds of failures the page says how many more there are and of how many runs") {
+TEST_CASE("Of more than five kinds of failures the summary has five, how many more there are and of how many runs") {
   const auto failures = [](std::uint64_t kinds) {
     const tests::TempDir dir;
     const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(
@@ -162,16 +162,20 @@ TEST_CASE("Of more than five kinds of failures the page says how many more there
     }
     return validate::summarize(sweep, database.database()).failures;
   };
-  const std::vector<std::string> eight = failures(8);  // 7 of two runs and one of 6
-  REQUIRE(eight.size() == 6);
-  CHECK(eight[0] == "6 runs: reason h");
-  CHECK(eight[5] == "and 3 more kinds (6 runs)");
-  CHECK(failures(6).back() == "and 1 more kind (2 runs)");
-  CHECK(failures(5).size() == 5);
+  const validate::FailedRuns eight = failures(8);  // 7 of two runs and one of 6
+  REQUIRE(eight.kinds.size() == 5);
+  CHECK(eight.kinds[0].runs == 6);
+  CHECK(eight.kinds[0].one_text);
+  CHECK_FALSE(eight.kinds[0].of_scenario);
+  CHECK(eight.kinds[0].why == "reason h");
+  CHECK(eight.other_kinds == 3);
+  CHECK(eight.other_runs == 6);
+  CHECK(failures(6).other_kinds == 1);
+  CHECK(failures(6).other_runs == 2);
+  CHECK(failures(5).other_kinds == 0);
 }
 
-TEST_CASE(
-    "Failures of one cause are one kind whatever its numbers, and the page shows one of them with short numbers") {
+TEST_CASE("Failures of one cause are one kind whatever its numbers, and one of them stands for it with short numbers") {
   const tests::TempDir dir;
   const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(
       dir.path(), "replicates = 20", tests::kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [50]\n"));
@@ -185,10 +189,26 @@ TEST_CASE(
                                        : fmt::format("{} with camera.frame_rate_hz = 50: no light", file);
     database.add({run, 0, run, run, {50.0}, true, why, {}, {}}, 0.1);
   }
-  CHECK(validate::summarize(sweep, database.database()).failures ==
-        std::vector<std::string>{"12 runs, one of them: no root between 0.3333 and 7",
-                                 "6 runs, one of them with camera.frame_rate_hz = 0.06667: too fast",
-                                 "1 run with camera.frame_rate_hz = 50: no light", "1 run: no marker"});
+  struct Row {
+    std::uint64_t runs;
+    bool one_text, of_scenario;
+    const char* why;
+  };
+  const std::vector<Row> rows = {{12, false, false, "no root between 0.3333 and 7"},
+                                 {6, false, true, "camera.frame_rate_hz = 0.06667: too fast"},
+                                 {1, true, true, "camera.frame_rate_hz = 50: no light"},
+                                 {1, true, false, "no marker"}};
+  const validate::FailedRuns found = validate::summarize(sweep, database.database()).failures;
+  REQUIRE(found.kinds.size() == rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    INFO(rows[k].why);
+    CHECK(found.kinds[k].runs == rows[k].runs);
+    CHECK(found.kinds[k].one_text == rows[k].one_text);
+    CHECK(found.kinds[k].of_scenario == rows[k].of_scenario);
+    CHECK(found.kinds[k].why == rows[k].why);
+  }
+  CHECK(found.other_kinds == 0);
+  CHECK(found.other_runs == 0);
 }
 
 TEST_CASE("The error of a(t) beside the best possible one is given of each configuration apart") {

@@ -1,0 +1,98 @@
+#include "report/certificate/certificate_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/math/angles.h"
+#include "core/result/why_unknown.h"
+#include "report/text/display_text.h"
+
+namespace glidelab::report {
+namespace {
+
+std::string cause_advice(const std::vector<std::string>& causes) {
+  const std::string advice = "Take the cause out of the experiment";
+  if (causes.empty()) return advice;
+  return advice + fmt::format(", or put it into the model (glidelab analyze --with {})", fmt::join(causes, " --with "));
+}
+
+/// Words for everything that twins may lack; a feature without them does not compile.
+struct LackWords {
+  std::string operator()(const validate::lacking::Inexpressible& of) const {
+    return fmt::format("{} ({})", effect_name(of.what), of.why);
+  }
+  std::string operator()(const validate::lacking::Images& of) const {
+    std::string why = of.error;
+    std::replace(why.begin(), why.end(), '\n', ' ');
+    return fmt::format("images and calibration ({})", why);
+  }
+  std::string operator()(const validate::lacking::ClipScatter&) const {
+    return "what differs from clip to clip (filming leaves as much)";
+  }
+  std::string operator()(const validate::lacking::Noise& of) const {
+    return fmt::format(
+        "noise as in the recording (its positions scatter by {:.3g} m, the twin's by {:.3g} m: another cause than the "
+        "pixels' noise)",
+        of.recorded_m, of.twin_m);
+  }
+};
+
+}  // namespace
+
+LimitWords limit_words(const validate::ChangedTwin& changed) {
+  using validate::TwinLimit;
+  switch (changed.limit) {
+    case TwinLimit::pixel_noise:
+      return {"noise", "half the noise of each pixel",
+              "Use more light, or a wider aperture: four times the light halves the noise"};
+    case TwinLimit::position_noise:
+      return {"noise", "half the noise of each position",
+              "Lower the noise of the positions: more light, a larger marker, a finer scale or a better tracker"};
+    case TwinLimit::marker:
+      return {"marker", "a marker of twice the diameter", "Use a larger marker"};
+    case TwinLimit::frame_rate:
+      return {"frame rate", "twice as many frames a second", "Use a higher frame rate"};
+    case TwinLimit::scale:
+      return {"scale", "the scale without error",
+              "Measure the scale better (a longer ruler, in the plane of motion), or use a pattern"};
+    case TwinLimit::calibration:
+      return {"calibration", "the camera known without error",
+              "Take more calibration images, tilted more and filling the image"};
+    case TwinLimit::codec:
+      return {"codec", "no loss by compression", "Compress less: a higher bit rate or quality, or a lossless codec"};
+    case TwinLimit::rounding:
+      return {"rounding", "positions with all their digits", "Export more digits"};
+    case TwinLimit::cause:
+      return {"a cause beside the law", "the viscous and the Coulomb friction alone", cause_advice(changed.causes)};
+    case TwinLimit::clip_scatter:
+      return {"what differs from clip to clip", "every clip by one law",
+              "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"};
+    case TwinLimit::few_clips:
+      return {"few clips", "every clip recorded twice", "Record a second clip of each kind"};
+  }
+  return {};
+}
+
+std::string lack_words(const validate::NotInTwins& lack) {
+  return std::visit(LackWords{}, lack);
+}
+
+std::string unanswered_words(const validate::CertifiedQuantity& quantity) {
+  return quantity.why ? core::why_words(quantity.why) : "none of its clips could be used";
+}
+
+std::vector<std::string> setup_names(const validate::Certificate& certificate) {
+  std::vector<std::string> names;
+  for (const validate::CertifiedSetup& setup : certificate.setups)
+    names.push_back(fmt::format("{:.4g} kg, {:.4g}°", setup.mass_kg, setup.incline_rad * base::kDegreesPerRad));
+  std::vector<std::string> own = names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::count(names.begin(), names.end(), names[i]) > 1)
+      own[i] = fmt::format("{} ({})", names[i], certificate.setups[i].name);
+  }
+  return own;
+}
+
+}  // namespace glidelab::report
