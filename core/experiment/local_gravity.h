@@ -11,9 +11,10 @@ inline constexpr double kStandardGravity_m_s2 = 9.80665;
 /// standard deviation of 0.052/sqrt(12) = 0.015 m/s².
 inline constexpr double kLocalGravity_sd_m_s2 = 0.015;
 
-/// Standard deviation of a value of gravity in an experiment's file, in m/s². The standard value says nothing of the
-/// place, so it has the spread over the Earth. Any other value is that of the place, rounded to its last digit: half
-/// a unit of it over sqrt(3), but at most the spread over the Earth. 9.81 has 0.0029, 9.8123 has 0.000029.
+/// Standard deviation of a value of gravity in an experiment's file, in m/s². The standard value and 9.81, which is
+/// written everywhere, say nothing of the place, so they have the spread over the Earth. Any other value is that of the
+/// place, rounded to its last digit: half a unit of it over sqrt(3), but at most the spread over the Earth. 9.82 has
+/// 0.0029, 9.8123 has 0.000029, and 9.8 the spread.
 double gravity_sd_m_s2(double gravity_m_s2);
 
 }  // namespace glidelab::core

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/long_work.h"
-#include "base/math/dense.h"
-#include "base/math/log_sum.h"
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/causes/cause_sequence.h"
+#include "diagnose/causes/parameter_prior.h"
 #include "diagnose/causes/remainder.h"
 #include "diagnose/causes/spread_prior.h"
 #include "diagnose/effects/effect_library.h"
@@ -21,14 +18,13 @@
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/air_odds.h"
+#include "diagnose/weigh/unknown_noise.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kFirst =
     6;  // likeliest by the noise alone: the best gives the first remainder, and all are weighed
-constexpr double kDecades = 9.2;         // ln 10^4: sizes are uniform in their logarithm over four decades
-constexpr double kLeastSeen = 2.0;       // standard deviations: a smaller size cannot be told from none
 constexpr double kFamilies = 3.0;        // ln 20: the likeliest of some twenty functions without a name is taken
 constexpr std::size_t kProfiled = 14;    // explanations that get a remainder of their own
 constexpr double kRemainderCost = 3.0;   // log evidence that a remainder costs, its sizes being unknown
@@ -38,122 +34,9 @@ constexpr std::size_t kWithScatter = 3;  // laws that are weighed together with 
 constexpr double kMuchLeft = 0.1;        // of the excess: a law that leaves less needs no clip scatter beside it
 constexpr double kNotWeighed = 1e3;      // log evidence by which an explanation without a fit is behind
 
-constexpr EffectSlot kPush = slot_of(ids::late_release, 1);
-
-const EffectParameter* parameter_of(EffectSlot slot) {
-  return &effect_list()[slot.effect].parameters[slot.parameter];
-}
-
-bool is_phase(const EffectParameter* parameter) {
-  return effect_list()[parameter->slot.effect].search == Search::wave;
-}
-
-constexpr double kAnyPushes = 0.1;   // of late releases: pushes of any size and sign, each motion its own
-constexpr double kPushSpread = 0.5;  // standard deviation of one hand's pushes, relative to their mean
-
-/// The direction in which a motion starts: 1 or -1.
-double start_direction(const FitMotion& motion) {
-  const auto moves = std::find_if(motion.v_m_s.begin(), motion.v_m_s.end(), [](double v) { return v != 0.0; });
-  return moves != motion.v_m_s.end() && *moves < 0.0 ? -1.0 : 1.0;
-}
-
-/// The pushes of a hand that lets go late, positive along the motion. Nine times in ten they are those of one hand,
-/// about equal and along the motion. Otherwise they have any size and sign.
-struct Pushes {
-  std::vector<double> along, sds;
-
-  void add(double push, double sd) {
-    along.push_back(push);
-    sds.push_back(sd);
-  }
-  /// Log prior density in units of each push's standard deviation.
-  double log_prior() const {
-    const double root = 0.5 * std::log(2.0 * std::numbers::pi), n = static_cast<double>(along.size());
-    double any = std::log(kAnyPushes), mean = 0.0, mean_sd = 0.0;
-    for (std::size_t k = 0; k < along.size(); ++k) {
-      any += root - std::log(std::max(std::abs(along[k]) / sds[k], kLeastSeen) * kDecades);
-      mean += along[k] / n;
-      mean_sd += sds[k] / n;
-    }
-    if (!(mean > 0.0)) return any;
-    const double of_mean = std::max(kPushSpread * mean, mean_sd) / std::sqrt(n);  // standard deviation of the mean
-    double one_hand =
-        std::log1p(-kAnyPushes) + root + std::log(of_mean / (std::max(mean, kLeastSeen * of_mean) * kDecades));
-    for (std::size_t k = 0; k < along.size(); ++k) {
-      const double width = std::max(kPushSpread * mean, sds[k]), off = (along[k] - mean) / width;
-      one_hand -= std::log(width / sds[k]) + 0.5 * off * off;
-    }
-    return base::log_sum({any, one_hand});
-  }
-};
-
-/// Log prior density of the effects of a fit at its parameters, times sqrt(2 pi) for each parameter, which the
-/// likelihood leaves out. In a fall through air models differ in which drag they have, so K has a prior as well: that
-/// of the size of an effect, or Stokes' law where it is held. At the edge of a prior a K or a gravity is held there
-/// (motion_fit.cpp), at no cost.
-double log_prior(const TrackSet& set, const MotionFit& fit, const RemainderSpace::Solution& solution) {
-  double log = 0.0;
-  const double root = 0.5 * std::log(2.0 * std::numbers::pi);
-  std::map<const EffectParameter*, std::size_t> kinds;
-  std::vector<Eigen::Index> spread;
-  std::vector<std::size_t> kind_of_spread;
-  const auto& globals = fit.layout->globals();
-  for (std::size_t g = 0; g < globals.size(); ++g) {
-    const auto& of = globals[g];
-    const auto at = static_cast<Eigen::Index>(g);
-    const double sd = std::sqrt(std::max(0.0, solution.covariance(at, at)));
-    if (of.kind == ParameterLayout::Global::Kind::k && set.through_air) {
-      const double k = std::max(std::abs(fit.at.global[at] + solution.change[at]), kLeastSeen * sd);
-      if (!holds_drag(set, fit.effects)) log += root - std::log(k * kDecades);
-    }
-    const bool normal =
-        of.kind == ParameterLayout::Global::Kind::k || of.kind == ParameterLayout::Global::Kind::gravity;
-    for (const FitStatement& s : fit.statements) log -= normal && s.global == g ? std::log(s.sd) : 0.0;
-    if (of.kind != ParameterLayout::Global::Kind::effect) continue;
-    const EffectInfo& info = effect_list()[of.effect];
-    const double fitted = fit.at.global[at] + solution.change[at];
-    if (info.search == Search::spread) {
-      // Bumps along the track are of one kind. So are the values of one parameter for the clips or configurations.
-      const bool of_all = of.parameter->each == Each::experiment;
-      const EffectParameter* kind = of_all ? &info.parameters.front() : of.parameter;
-      spread.push_back(at);
-      kind_of_spread.push_back(kinds.try_emplace(kind, kinds.size()).first->second);
-    } else if (of.parameter == &info.parameters.front()) {
-      const double size = std::max(std::abs(fitted), kLeastSeen * sd);
-      log += root - std::log(size * kDecades * (info.both_signs ? 2.0 : 1.0));
-    } else {
-      // A parameter that the data leave open has the width of its prior and costs nothing.
-      log += root - std::log(std::max(of.range.high - of.range.low, sd / std::exp(-root)));
-    }
-  }
-  if (!spread.empty()) {
-    const Eigen::VectorXd fitted = fit.at.global + solution.change;
-    log += log_spread_prior(fitted(spread), solution.covariance(spread, spread), kind_of_spread);
-  }
-  const auto& own = fit.layout->own();
-  Pushes pushes;
-  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
-    for (Eigen::Index o = 2; o < fit.motions[i].own.cols(); ++o) {
-      const double norm = fit.motions[i].own.col(o).norm();
-      const double size = fit.at.own[i][o], seen = std::abs(size) * norm;
-      if (own[static_cast<std::size_t>(o - 2)] == parameter_of(kPush)) {
-        if (norm > 0.0) pushes.add(size * start_direction(fit.motions[i]), 1.0 / norm);
-        continue;
-      }
-      if (is_phase(own[static_cast<std::size_t>(o - 2)])) {
-        // All phases are equally likely, whatever the origin of time.
-        log += root - std::log(std::max(2.0 * std::numbers::pi * norm, std::exp(root)));
-        continue;
-      }
-      log += root - std::log(std::max(seen, kLeastSeen) * kDecades);
-    }
-  }
-  if (!pushes.along.empty()) log += pushes.log_prior();
-  return log;
-}
-
 struct Profile {
   RemainderSpace::Best best;
+  double chi2 = 0.0;
   double log_evidence = -std::numeric_limits<double>::infinity();
 };
 
@@ -163,8 +46,15 @@ Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const Rema
   if (!std::isfinite(noise_alone.cost)) return profile;
   const RemainderSpace space(set, noise_alone, extra);
   profile.best = space.likeliest(start);
+  profile.chi2 = space.chi2(profile.best.sizes);
   profile.log_evidence = profile.best.log_likelihood + log_prior(set, noise_alone, space.solve(profile.best.sizes));
   return profile;
+}
+
+/// Takes off what a gain over the nominal model's chi² is worth less where few positions show the noise.
+void allow_for_unknown_noise(const TrackSet& set, const Profile& nominal, Profile& profile) {
+  const double gain = 0.5 * (nominal.chi2 - profile.chi2);
+  profile.log_evidence -= lost_to_unknown_noise(few_positions(set), nominal.chi2, gain);
 }
 
 /// The columns of a family in units of the noise alone: undoes the part of the whitening that the remainder caused.
@@ -186,15 +76,17 @@ RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
 
 /// Log evidence of a fit with the likeliest function without a name beside it: one that all clips share, or one with a
 /// size for each clip. Empty if there is none.
-std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with, const MotionFit& noise_alone,
-                                      const std::vector<UnnamedFamily>& families, const RemainderSizes& start) {
+std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with, const Profile& nominal,
+                                      const MotionFit& noise_alone, const std::vector<UnnamedFamily>& families,
+                                      const RemainderSizes& start) {
   std::optional<double> log;
   for (const UnnamedFamily* family : {likeliest_shared(families), likeliest_of_clips(families)}) {
     if (family == nullptr || !(family->tau > 0.0)) continue;
     const RemainderExtra extra = extra_of(with, *family);
     if (!(extra.sd > 0.0) || !extra.columns.allFinite()) continue;
-    log = std::max(log.value_or(-std::numeric_limits<double>::infinity()),
-                   profile_of(set, noise_alone, &start, &extra).log_evidence - kFamilies);
+    Profile profile = profile_of(set, noise_alone, &start, &extra);
+    allow_for_unknown_noise(set, nominal, profile);
+    log = std::max(log.value_or(-std::numeric_limits<double>::infinity()), profile.log_evidence - kFamilies);
   }
   return log;
 }
@@ -391,6 +283,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       excess.of_fits[f] = std::min(excess.of_fits[f], held_out_excess(set, anew));
     }
   });
+  for (const std::size_t f : worth) allow_for_unknown_noise(set, profiles.front(), profiles[f]);
   done(0.9);
   // Functions without a name alone and beside the likeliest explanations, each with a remainder of its own. Those of
   // the search stand beside what was best with the common remainder, so they are not comparable.
@@ -424,6 +317,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       excess.of_fits.push_back(held_out_excess(set, *found[k]));
       noise_alone.push_back(linearise_again(set, *found[k]));
       profiles.push_back(profile_of(set, noise_alone.back(), &profiles[law].best.sizes));
+      allow_for_unknown_noise(set, profiles.front(), profiles.back());
       comparison.fits.push_back(linearise_again(weighed.set, *found[k]));
       worth.push_back(fit);
       Hypothesis both = laws[k];
@@ -446,7 +340,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   base::for_each_parallel(leaders.size(), jobs, [&](std::size_t k) {
     const auto fit = static_cast<std::size_t>(leaders[k].fit);
     found[k] = fit == 0 ? comparison.unnamed : unnamed_families(ScoreSpace(weighed.set, comparison.fits[fit]));
-    logs[k] = unnamed_profile(set, weighed.set, noise_alone[fit], found[k], profiles[fit].best.sizes);
+    logs[k] = unnamed_profile(set, weighed.set, profiles.front(), noise_alone[fit], found[k], profiles[fit].best.sizes);
   });
   for (std::size_t k = 0; k < leaders.size(); ++k) {
     const Hypothesis& named = leaders[k];

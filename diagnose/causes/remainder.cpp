@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "base/math/dense.h"
@@ -122,7 +123,15 @@ RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const 
     const double off = s.value - fit.at.global[g], weight = 1.0 / (s.sd * s.sd);
     stated_weight_[g] += weight;
     stated_right_[g] += weight * off;
-    stated_square_ += weight * off * off;
+    stated_square_ += s.chi2(fit.at.global[g]);
+    const ParameterLayout::Global& global = fit.layout->globals()[s.global];
+    const ParameterRange& range = global.range;
+    const bool has_range = std::isfinite(range.low) && std::isfinite(range.high) && range.low < range.high;
+    if (s.against || global.kind == ParameterLayout::Global::Kind::effect || !has_range) continue;
+    const FitStatement::Prior prior = s.prior();
+    const double by_prior = 1.0 / (prior.sd * prior.sd);
+    ranged_.push_back({g, fit.at.global[g], range.low, range.high, s.held.has_value(), weight, by_prior,
+                       by_prior * (prior.value - fit.at.global[g])});
   }
   for (Eigen::Index e = 0; e < extra_; ++e) stated_weight_[common_ + e] = 1.0 / (extra_sd_ * extra_sd_);
   Eigen::Index row = 0;
@@ -194,6 +203,55 @@ RemainderSpace::Sums RemainderSpace::sums_of(const RemainderSizes& sizes) const 
   return sums;
 }
 
+namespace {
+
+/// Log of the upper tail of the standard normal distribution above z.
+double log_tail(double z) {
+  constexpr double kFar = 8.0;
+  if (z < kFar) return std::log(0.5 * std::erfc(z / std::numbers::sqrt2));
+  // The asymptotic series; its next term is 15/z⁶, 6e-5 at z = 8.
+  const double by = 1.0 / (z * z);
+  return -0.5 * z * z - std::log(z) - 0.5 * std::log(2.0 * std::numbers::pi) + std::log1p(-by * (1.0 - 3.0 * by));
+}
+
+/// Log of the normal probability between two limits.
+double log_between(double low, double high, double mean, double sd) {
+  const bool below = low + high < 2.0 * mean;  // the mirror image has the limits above the mean
+  const double near = (below ? mean - high : low - mean) / sd, far = (below ? mean - low : high - mean) / sd;
+  const double upper = log_tail(near);
+  return upper + std::log1p(-std::exp(log_tail(far) - upper));
+}
+
+}  // namespace
+
+/// What the ranges of stated parameters add to the log likelihood. A prior ends at its range, and has an integral of 1
+/// over it. A parameter p within its range has the probability of the range under its Gaussian. One that is held at an
+/// edge p_0 counts as known there so far; in place of that it has the integral over its range of
+///
+///     exp(s (p - p_0) - h (p - p_0)²/2),
+///
+/// with the score s and the curvature h there, for the best values of the others.
+double RemainderSpace::log_within_ranges(const Eigen::MatrixXd& lower, const Eigen::VectorXd& along) const {
+  double log = 0.0;
+  for (const Ranged& of : ranged_) {
+    log -= log_between(of.low, of.high, of.at + of.prior_right / of.prior_weight, 1.0 / std::sqrt(of.prior_weight));
+    Eigen::VectorXd unit = Eigen::VectorXd::Zero(lower.rows());
+    unit[of.global] = scale_[of.global];
+    const Eigen::VectorXd column = base::solve_lower(lower, unit);
+    const double variance = column.squaredNorm(), change = column.dot(along);
+    if (!of.held) {
+      log += log_between(of.low, of.high, of.at + change, std::sqrt(variance));
+      continue;
+    }
+    const double score = change / variance + of.prior_right;
+    const double curvature = std::max(0.0, 1.0 / variance - of.held_weight) + of.prior_weight;
+    log -= 0.5 * change * change / variance + 0.5 * std::log(variance);
+    log += 0.5 * score * score / curvature - 0.5 * std::log(curvature);
+    log += log_between(of.low, of.high, of.at + score / curvature, 1.0 / std::sqrt(curvature));
+  }
+  return log;
+}
+
 double RemainderSpace::log_likelihood(const Sums& sums) const {
   // Scaled, and with a floor for directions of which the data say nothing: such a direction costs every explanation the
   // same.
@@ -204,7 +262,15 @@ double RemainderSpace::log_likelihood(const Sums& sums) const {
   double log = -0.5 * (sums.square - along.squaredNorm()) - 0.5 * sums.log_determinant;
   log -= lower.diagonal().array().log().sum() - scale_.array().log().sum();
   if (extra_ > 0) log -= static_cast<double>(extra_) * std::log(extra_sd_);
-  return log;
+  return log + log_within_ranges(lower, along);
+}
+
+double RemainderSpace::chi2(const RemainderSizes& sizes) const {
+  const Sums sums = sums_of(sizes);
+  Eigen::MatrixXd scaled = scale_.asDiagonal() * sums.normal * scale_.asDiagonal();
+  scaled.diagonal().array() += kUnseen;
+  const Eigen::VectorXd along = base::solve_lower(base::cholesky_lower(scaled), scale_.cwiseProduct(sums.right));
+  return sums.square - along.squaredNorm();
 }
 
 double RemainderSpace::log_likelihood(const RemainderSizes& sizes) const {

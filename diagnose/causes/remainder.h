@@ -49,9 +49,13 @@ class RemainderSpace {
   RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra = nullptr);
 
   /// Log likelihood of the positions. Parameters are integrated out over flat priors, stated quantities and the sizes
-  /// of the extra columns over theirs. It holds up to a constant that all fits to one set share, and without the 0.5
-  /// log(2 pi) of each parameter. The factor f of a motion costs 4 log f.
+  /// of the extra columns over theirs. A K, a gravity or an inclination with a range is integrated over that range
+  /// alone, whether the fit is at its edge or not. It holds up to a constant that all fits to one set share, and
+  /// without the 0.5 log(2 pi) of each parameter. The factor f of a motion costs 4 log f.
   double log_likelihood(const RemainderSizes& sizes) const;
+
+  /// chi² of the positions and statements at the minimum under these sizes.
+  double chi2(const RemainderSizes& sizes) const;
 
   struct Best {
     RemainderSizes sizes;
@@ -93,6 +97,15 @@ class RemainderSpace {
       normal += sign * of.normal;
     }
   };
+  /// A stated parameter with a range.
+  struct Ranged {
+    Eigen::Index global = 0;
+    double at = 0.0, low = 0.0, high = 0.0;
+    bool held = false;                             ///< at an edge,
+    double held_weight = 0.0;                      ///< by this weight in place of
+    double prior_weight = 0.0, prior_right = 0.0;  ///< those of its prior, and of its score
+  };
+  double log_within_ranges(const Eigen::MatrixXd& lower, const Eigen::VectorXd& along) const;
   Sums stated() const;
   Sums sums_of(std::size_t motion, const RemainderSizes& sizes, double wider) const;
   Sums sums_of(const RemainderSizes& sizes) const;
@@ -102,6 +115,7 @@ class RemainderSpace {
   std::vector<Motion> motions_;
   Eigen::VectorXd stated_weight_, stated_right_;
   double stated_square_ = 0.0;
+  std::vector<Ranged> ranged_;
   Eigen::Index common_ = 0, extra_ = 0;
   double extra_sd_ = 0.0, part_s_ = 0.0;
   Eigen::VectorXd scale_;

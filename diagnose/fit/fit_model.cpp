@@ -19,6 +19,8 @@ constexpr double kMostStokes = 3.0, kMostGravity_sd = 3.0, kMostFall_sd = 3.0;
 // The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
 // m/s.
 constexpr double kMostAir = 10.0;
+// A Maxwell wheel, a ring of radius R on an axle of radius r, has (R/r)² times its mass: 65 mm and 3 mm.
+constexpr double kMostWheel = 500.0;
 constexpr double kFewestTurns = 2.0;    // periods in the longest motion: anything slower is a drift, which has other
                                         // causes too
 constexpr double kFastest = 0.48;       // as a fraction of the frame rate
@@ -52,7 +54,7 @@ ParameterRange range_of_places(const TrackSet& set) {
   return range;
 }
 
-ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
+ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter, const std::vector<std::size_t>& beside) {
   if (parameter.reach == Reach::places) return range_of_places(set);
   if (parameter.reach == Reach::waves) return range_of_waves(set);
   ParameterRange range{parameter.low, parameter.high};
@@ -69,13 +71,12 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter) {
     }
   }
   if (parameter.reach == Reach::held_speed) range.low = std::max(range.low, set.held_m_s);
-  if (parameter.reach == Reach::with_mass) {
-    double heaviest_kg = 1.0;
-    for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
-    range.high *= heaviest_kg;
-  }
-  if (set.through_air && parameter.slot == slot_of(ids::rotational_inertia)) {
-    range.high = std::min(range.high, kMostAir * lightest_kg(set));
+  double heaviest_kg = 0.0;
+  for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
+  if (parameter.reach == Reach::with_mass) range.high *= std::max(1.0, heaviest_kg);
+  if (parameter.slot == slot_of(ids::rotational_inertia) && only_falls(set)) {
+    const bool of_air = set.through_air && holds_drag(set, beside);
+    range.high = of_air ? std::min(range.high, kMostAir * lightest_kg(set)) : kMostWheel * heaviest_kg;
   }
   return range;
 }
@@ -163,7 +164,7 @@ void ParameterLayout::add_common(const TrackSet& set) {
 void ParameterLayout::add_effect(const TrackSet& set, std::size_t effect) {
   for (const EffectParameter& parameter : effect_list()[effect].parameters) {
     if (parameter.only_filmed && !set.images) continue;
-    Global global{Global::Kind::effect, 0, &parameter, effect, parameter.step, range_of(set, parameter)};
+    Global global{Global::Kind::effect, 0, &parameter, effect, parameter.step, range_of(set, parameter, effects_)};
     switch (parameter.each) {
       case Each::experiment:
         globals_.push_back(global);

@@ -93,9 +93,7 @@ std::vector<FitStatement> statements_of(const TrackSet& set, const ParameterLayo
 double cost_of(const MotionFit& fit) {
   double cost = 0.0;
   for (const FitMotion& motion : fit.motions) cost += motion.residual.squaredNorm();
-  for (const FitStatement& s : fit.statements) {
-    cost += std::pow((s.value - fit.at.global[static_cast<Eigen::Index>(s.global)]) / s.sd, 2);
-  }
+  for (const FitStatement& s : fit.statements) cost += s.chi2(fit.at.global[static_cast<Eigen::Index>(s.global)]);
   return std::isfinite(cost) ? cost : std::numeric_limits<double>::infinity();
 }
 
@@ -255,6 +253,7 @@ void hold_at_edges(MotionFit& fit) {
     if (global.kind == Global::Kind::effect || !has_range(global) || s.against) continue;
     const double at = fit.at.global[static_cast<Eigen::Index>(s.global)];
     if (at > global.range.low && at < global.range.high) continue;
+    s.held = s.prior();
     s.value = at;
     s.sd *= kHeld;
   }

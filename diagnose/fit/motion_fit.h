@@ -10,7 +10,9 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,16 @@ struct FitStatement {
   double sd = 0.0;
   std::optional<Against> against = {};  ///< none: a prior
   bool counts = true;                   ///< false: a prior for what the data leave undetermined, not evidence
+  struct Prior {
+    double value = 0.0, sd = 0.0;
+  };
+  /// The prior of a parameter that stopped at the edge of its range; `value` and `sd` then hold it there.
+  std::optional<Prior> held = {};
+
+  /// What it states of its parameter, whether or not it holds it.
+  Prior prior() const { return held.value_or(Prior{value, sd}); }
+  /// What it adds to chi² at this value of its parameter.
+  double chi2(double at) const { return std::pow((prior().value - at) / prior().sd, 2); }
 };
 
 struct MotionFit {

@@ -20,9 +20,12 @@ constexpr int kMostTurns = 20;           // reversals within one step; more is c
 constexpr double kNoSpeed_m_s = 1e-300;  // has a direction but causes no motion
 constexpr int kMostLeaving = 40;         // iterations to find the instant at which static friction gives way,
 constexpr double kSameTime_s = 1e-13;    // to within this
-constexpr double kMostSteps = 2500.0, kMostOfFrame = 60.0;  // most steps of a motion: a constant plus so many a frame
-constexpr std::size_t kMostWork = 2000;                     // most steps a position, including those spent at turns;
-constexpr std::size_t kFewTimes = 100;                      // fewer positions than this count as this many
+// Most steps of a motion: a constant plus so many a frame. A rate k that takes more steps than this is past in a frame,
+// exp(-k T) = 1e-7: such a motion is at its terminal velocity from the second frame on to within the least noise of a
+// position (of the distance covered, track_set.cpp), and no larger rate differs from it. ln(1e7)/0.3 = 54.
+constexpr double kMostSteps = 2500.0, kMostOfFrame = 16.1 / kLongestTurn;
+constexpr std::size_t kMostWork = 2000;  // most steps a position, including those spent at turns;
+constexpr std::size_t kFewTimes = 100;   // fewer positions than this count as this many
 
 // What the integrator itself must know of time-dependent effects: the phase of a vibration, and when a hand lets go.
 constexpr EffectSlot kShake = slot_of(ids::base_vibration, 0), kShakeHz = slot_of(ids::base_vibration, 1),

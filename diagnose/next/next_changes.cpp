@@ -269,6 +269,8 @@ TrackSet with_clip(const TrackSet& set, const Change& change) {
   one.x_mid_m = set.x_mid_m;
   one.modes = set.modes;
   one.images = set.images;
+  one.through_air = set.through_air;
+  one.no_drag = set.no_drag;
   one.clips = {{"next", clip.rate_hz, 0.0, 0, 0.0}};
   if (change.set_up) one.groups.push_back({"next", change.set_up->alpha_rad, {}, set.x_mid_m});
   one.masses.push_back({clip.mass_kg, 0.0});

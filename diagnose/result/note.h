@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -75,7 +76,15 @@ struct OnlyFalls {};
 
 /// A fall is faster than any viscous drag allows, and its drag is quadratic: K is held at 0, and the gap is that of a
 /// fall without any drag.
-struct FallsThroughAir {};
+struct FallsThroughAir {
+  /// Log evidence by which the positions alone prefer the quadratic drag to a viscous one; none if it was not measured.
+  std::optional<double> over_viscous = {};
+};
+
+/// A fall with a wrong scale or a wrong frame rate, which slow it: a buoyancy would do the same.
+struct BuoyancyLooksAlike {
+  double density_ratio = 0.0;  ///< of the fluid to the body
+};
 
 /// Clips of one set-up state different inclinations.
 struct SplitSetUps {
@@ -132,7 +141,7 @@ struct TableOfLines {
 using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside,
                              PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
                              SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
-                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir>;
+                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

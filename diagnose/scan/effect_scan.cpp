@@ -22,7 +22,7 @@ EffectScan scan_sizes(const ScoreSpace& space, std::size_t effect) {
   const EffectInfo& info = effect_list()[effect];
   EffectScan scan;
   scan.effect = effect;
-  const double most = range_of(space.set(), info.parameters[0]).high;
+  const double most = range_of(space.set(), info.parameters[0], space.fit().effects).high;
   std::vector<double> logs;
   double best = -1.0;
   for (const std::vector<double>& shape : effect_shapes(space.set(), effect)) {
@@ -245,8 +245,8 @@ std::optional<PairScan> scan_pair(const ScoreSpace& space, const EffectScan& a, 
     }
   }
   if (shape_a == nullptr) return std::nullopt;
-  const ParameterRange range_a = range_of(space.set(), of_a.parameters[0]);
-  const ParameterRange range_b = range_of(space.set(), of_b.parameters[0]);
+  const ParameterRange range_a = range_of(space.set(), of_a.parameters[0], {b.effect});
+  const ParameterRange range_b = range_of(space.set(), of_b.parameters[0], {a.effect});
   PairScan scan{a.effect, b.effect, best.gain, best.gain, {}, {}};
   scan.log_evidence -= price(best.first, best.first_sd, range_a.high, of_a.both_signs);
   scan.log_evidence -= price(best.second, best.second_sd, range_b.high, of_b.both_signs);

@@ -12,7 +12,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kMostPositions = 30000;  // of all motions
-constexpr double kFasterThanStokes_m_s = 0.5;
+constexpr double kFasterThanStokes_m_s = 0.5, kFaster_sd = 3.0;
 constexpr double kFree_rad = 88.0 * std::numbers::pi / 180.0;  // below it something guides the body
 constexpr double kNearlyAsCertain = 2.0;                       // relative error of sin(alpha) over that of g
 
@@ -38,9 +38,16 @@ bool falls_through_air(const TrackSet& set) {
   if (!only_falls(set) || !free || is_driven(set)) return false;
   return std::any_of(set.motions.begin(), set.motions.end(), [](const TrackedMotion& motion) {
     const std::size_t last = motion.t_s.size() - 1, quarter = std::max<std::size_t>(2, last / 4);
-    for (std::size_t p = quarter; p <= last; ++p) {
-      const double displacement = motion.x_m[p] - motion.x_m[p - quarter];
-      if (std::abs(displacement) > kFasterThanStokes_m_s * (motion.t_s[p] - motion.t_s[p - quarter])) return true;
+    const auto is_fast = [&](std::size_t from, std::size_t to) {
+      const double noise_m = std::hypot(motion.sd_of(from), motion.sd_of(to));
+      const double displacement_m = std::abs(motion.x_m[to] - motion.x_m[from]) - kFaster_sd * noise_m;
+      return !motion.outlier[from] && !motion.outlier[to] &&
+             displacement_m > kFasterThanStokes_m_s * (motion.t_s[to] - motion.t_s[from]);
+    };
+    for (std::size_t points = quarter; points <= last; points += quarter) {
+      for (std::size_t from = 0; from + points <= last; ++from) {
+        if (is_fast(from, from + points)) return true;
+      }
     }
     return false;
   });

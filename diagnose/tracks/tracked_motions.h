@@ -133,7 +133,7 @@ bool only_falls(const TrackSet& set);
 
 /// Whether the motions are falls at speeds at which the drag of air is not viscous: only falls of 88 degrees and more
 /// were recorded (below, something guides the body), no force drives them, and the mean speed over some quarter of a
-/// motion is above 0.5 m/s.
+/// motion (or two or three, or all of it) is above 0.5 m/s by more than three standard deviations of its noise.
 ///
 /// Stokes drag needs a Reynolds number of about 1 or less. A sphere of radius r and density rho_s that falls at its
 /// terminal velocity v = 2/9 (rho_s/rho - 1) g r²/nu with 2 r v = nu has v = (nu g (rho_s/rho - 1)/18)^(1/3): 0.2 m/s

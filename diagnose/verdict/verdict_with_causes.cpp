@@ -180,6 +180,34 @@ std::vector<LikelyTwin> likely_twins(const TrackSet& set, const Explanations& ex
   return twins;
 }
 
+/// The log evidence by which the positions alone prefer an explanation of a fall, a quadratic drag with or without the
+/// inertia of the air, to a viscous drag with or without the same. Empty for other explanations.
+std::optional<double> evidence_over_viscous(const Comparison& comparison, const Hypothesis& best) {
+  const std::size_t drag = effect_index(ids::quadratic_drag);
+  std::set<std::size_t> effects(best.effects.begin(), best.effects.end());
+  if (effects.size() > 1 && !is_drag_with_its_air(best.effects)) return {};
+  const Hypothesis* quadratic = find(comparison, effects);
+  effects.erase(drag);
+  const Hypothesis* viscous = find(comparison, effects);
+  if (quadratic == nullptr || viscous == nullptr) return {};
+  return quadratic->log_evidence - viscous->log_evidence;
+}
+
+/// The ratio of densities of fluid and body with which buoyancy would slow a fall as a named wrong scale or frame rate
+/// does: g becomes (1 + e) g by the scale, and (1 + e)² g by the frame rate. Empty if none is named, or if it would be
+/// no buoyancy: the fall is faster.
+std::optional<double> ratio_of_densities(const Diagnosis& diagnosis) {
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    const bool of_rate = effect.id == ids::frame_rate_error;
+    if (!of_rate && effect.id != ids::scale_error) continue;
+    for (const DiagnosedParameter& parameter : effect.parameters) {
+      const double factor = (1.0 + parameter.value) * (of_rate ? 1.0 + parameter.value : 1.0);
+      if (parameter.key == "e" && factor < 1.0) return 1.0 - factor;
+    }
+  }
+  return {};
+}
+
 /// Whether the nominal model has a gap and the likeliest explanation by the noise alone leaves one too, or leaves a
 /// doubt although sizes of each clip or a second cause help it to follow the motion.
 bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
@@ -226,6 +254,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   const double least_named = weighed ? kLeastNamed : kLeastShare;
   // K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
   const bool by_air = set.through_air && claims && names && has(best, effect_index(ids::quadratic_drag));
+  const std::optional<double> over_viscous = by_air ? evidence_over_viscous(by, best) : std::nullopt;
   const TrackSet gap_set = by_air ? without_drag(set) : set, gap_with = by_air ? without_drag(with) : with;
   const MotionFit gap_nominal = by_air ? fit_nominal(gap_set) : nominal;
   CauseSequence sequence = sequence_of(gap_set, gap_nominal, gap_with, fit_of(best), without, least_named);
@@ -304,7 +333,10 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
         diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence, jobs) : diagnosis.regions;
   }
   diagnosis.levels = levels_of(gap_set, gap_nominal, jobs);
-  if (by_air) diagnosis.notes.emplace_back(FallsThroughAir{});
+  if (by_air) diagnosis.notes.emplace_back(FallsThroughAir{over_viscous});
+  if (const std::optional<double> ratio = only_falls(set) ? ratio_of_densities(diagnosis) : std::nullopt) {
+    diagnosis.notes.emplace_back(BuoyancyLooksAlike{*ratio});
+  }
   Explanations explanations{{&reported, sizes, 1.0}};
   if (weighed) {
     const bool with_names = diagnosis.verdict == Verdict::effect;

@@ -11,9 +11,19 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kViscousOdds = 0.02, kDrivingOdds = 0.001;
+constexpr double kViscousOdds = 0.05, kDrivingOdds = 0.001;
 constexpr double kDecades = 9.2;    // ln 10^4
 constexpr double kLeastSeen = 2.0;  // standard deviations
+constexpr double kMostAirAlong_kg = 0.011;
+
+/// Whether the inertia of a fit is certainly larger than that of air.
+bool turns_a_wheel(const MotionFit& fit) {
+  const std::size_t g = fit.layout->first_of(effect_index(ids::rotational_inertia));
+  if (g == fit.layout->globals().size()) return false;
+  const auto at = static_cast<Eigen::Index>(g);
+  const double sd_kg = std::sqrt(std::max(0.0, common_covariance(fit)(at, at)));
+  return fit.at.global[at] - kLeastSeen * sd_kg > kMostAirAlong_kg;
+}
 
 }  // namespace
 
@@ -24,10 +34,11 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
   if (!set.through_air || has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag))) return 0.0;
   // A drag of some other kind, or the air that moves along with what it does not brake.
   for (const EffectSlot slot :
-       {slot_of(ids::rotational_inertia), slot_of(ids::eddy_rolloff), slot_of(ids::damping_gradient),
-        slot_of(ids::configuration_drag), slot_of(ids::direction_dependent_drag), slot_of(ids::clip_scatter)}) {
+       {slot_of(ids::eddy_rolloff), slot_of(ids::damping_gradient), slot_of(ids::configuration_drag),
+        slot_of(ids::direction_dependent_drag), slot_of(ids::clip_scatter)}) {
     if (has_law(slot)) return std::log(kViscousOdds);
   }
+  if (has_law(slot_of(ids::rotational_inertia)) && !turns_a_wheel(fit)) return std::log(kViscousOdds);
   const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(0, 0)));
   const double z = sd > 0.0 ? fit.at.global[0] / sd : 0.0;
   const double without =

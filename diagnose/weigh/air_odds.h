@@ -1,14 +1,19 @@
 /// The prior odds of explanations of a fall through air that have no quadratic drag.
 ///
 /// At the speeds of such a fall the drag of air is not viscous (falls_through_air()), so that an explanation in which
-/// braking shows and is viscous has the odds of one in fifty, a judgement: a liquid, a magnet in a copper pipe, or made
-/// data. An explanation without any drag is as likely as it was. With K = z standard deviations off 0, a fall without
-/// drag is likelier than one with a viscous drag of any size (uniform in its logarithm over four decades, 9.2 = ln
-/// 10^4) by the factor
+/// braking shows and is viscous has the odds of one in twenty, a judgement: a liquid, a magnet in a copper pipe, or
+/// made data, as one of ten falls from other people's repositories was. Of positions that do not tell, the quadratic
+/// drag is then likely, not certain. An explanation without any drag is as likely as it was. With K = z standard
+/// deviations off 0, a fall without drag is likelier than one with a viscous drag of any size (uniform in its logarithm
+/// over four decades, 9.2 = ln 10^4) by the factor
 ///
-///     B = 9.2 max(|z|, 2)/sqrt(2 pi) exp(-z²/2),     odds = 0.02 + B, or 0.001 + B for a K below 0, which drives.
+///     B = 9.2 max(|z|, 2)/sqrt(2 pi) exp(-z²/2),     odds = 0.05 + B, or 0.001 + B for a K below 0, which drives.
 ///
-/// Effects that change the viscous drag need one, and air moves along only with what it brakes: both have its odds.
+/// Effects that change the viscous drag need one, and air moves along only with what it brakes: both have its odds. An
+/// inertia that is too large for air (by two standard deviations) is that of a pulley or a wheel, and asks for no drag.
+/// The air that moves with a disc of radius r, broadside on, weighs
+///
+///     8/3 rho r³ = 11 g     for r = 0.15 m and rho = 1.2 kg/m³.
 ///
 /// In an explanation with a quadratic drag, that drag takes the place of K (fit/drag_of_air.h). Explanations with
 /// either drag then have the same kind of prior for its size.

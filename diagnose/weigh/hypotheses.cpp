@@ -95,15 +95,10 @@ void give_trifles_to_their_effects(Comparison& comparison) {
   }
 }
 
-/// A gain counts less where few positions show the noise. A loss counts in full: it is that of the wrong drag in a
-/// fall.
 void allow_for_unknown_noise(const TrackSet& set, Comparison& comparison) {
   const std::optional<FewPositions> few = few_positions(set);
-  if (!few) return;
   const double chi2 = comparison.fits.front().cost;
-  for (Hypothesis& one : comparison.all) {
-    if (one.gain > 0.0) one.log_evidence -= one.gain - gain_with_unknown_noise(*few, chi2, one.gain);
-  }
+  for (Hypothesis& one : comparison.all) one.log_evidence -= lost_to_unknown_noise(few, chi2, one.gain);
 }
 
 }  // namespace

@@ -25,4 +25,8 @@ double gain_with_unknown_noise(const FewPositions& of, double chi2, double gain)
   return 0.5 * (of.degrees + of.positions) * std::log((of.degrees + chi2) / (of.degrees + after));
 }
 
+double lost_to_unknown_noise(const std::optional<FewPositions>& of, double chi2, double gain) {
+  return of && gain > 0.0 ? gain - gain_with_unknown_noise(*of, chi2, gain) : 0.0;
+}
+
 }  // namespace glidelab::diagnose

@@ -27,4 +27,8 @@ std::optional<FewPositions> few_positions(const TrackSet& set);
 /// model with `chi2`.
 double gain_with_unknown_noise(const FewPositions& of, double chi2, double gain);
 
+/// What is to be taken off the log evidence of an explanation that gains `gain` with the estimated noise over a model
+/// with `chi2`: 0 if the noise counts as known. A loss counts in full: it is that of the wrong drag in a fall.
+double lost_to_unknown_noise(const std::optional<FewPositions>& of, double chi2, double gain);
+
 }  // namespace glidelab::diagnose

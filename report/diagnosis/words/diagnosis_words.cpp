@@ -144,10 +144,25 @@ struct Sentence {
     return "The motions are falls, with an inclination of 80 degrees or more: there is almost no normal force, and µ "
            "is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 degree.";
   }
-  std::string operator()(const diagnose::FallsThroughAir&) const {
-    return "In air, what falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
-           "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, leave this "
-           "out (--without quadratic_drag).";
+  std::string operator()(const diagnose::FallsThroughAir& of) const {
+    constexpr double kClearly = 2.3;  // log evidence: ten to one
+    std::string words =
+        "In air, what falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
+        "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, leave this "
+        "out (--without quadratic_drag).";
+    if (!of.over_viscous) return words;
+    if (*of.over_viscous > kClearly) return words + " The positions by themselves prefer it to a viscous drag, too.";
+    return words + (*of.over_viscous < -kClearly
+                        ? " The positions by themselves prefer a viscous drag: the name rests on what air does."
+                        : " The positions by themselves do not tell it from a viscous drag: the name rests on what air "
+                          "does.");
+  }
+  std::string operator()(const diagnose::BuoyancyLooksAlike& of) const {
+    return fmt::format(
+        "In a fall, buoyancy looks the same as such a scale or frame rate: it lowers the driving acceleration, here as "
+        "in a fluid with {:.2g} of the density of the body. Both densities decide whether that is it; a ruler in the "
+        "image shows whether the scale is wrong, a stopwatch whether the frame rate is.",
+        of.density_ratio);
   }
   std::string operator()(const diagnose::SplitSetUps& of) const {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",

@@ -8,13 +8,14 @@ using glidelab::core::gravity_sd_m_s2;
 
 // A number rounded to a step q has a standard deviation of q/sqrt(12).
 TEST_CASE("a stated gravity is known to its last digit") {
-  CHECK(gravity_sd_m_s2(9.81) == Approx(0.01 / std::sqrt(12.0)).epsilon(1e-12));
+  CHECK(gravity_sd_m_s2(9.82) == Approx(0.01 / std::sqrt(12.0)).epsilon(1e-12));
   CHECK(gravity_sd_m_s2(9.8123) == Approx(0.0001 / std::sqrt(12.0)).epsilon(1e-12));
   CHECK(gravity_sd_m_s2(0.00001625) == Approx(1e-8 / std::sqrt(12.0)).epsilon(1e-12));
 }
 
-TEST_CASE("the standard gravity, and one of a single decimal, are known as well as the latitude") {
+TEST_CASE("the standard gravity, the textbooks' 9.81 and one of a single decimal are known as well as the latitude") {
   CHECK(gravity_sd_m_s2(9.80665) == 0.015);
+  CHECK(gravity_sd_m_s2(9.81) == 0.015);
   CHECK(gravity_sd_m_s2(9.8) == 0.015);
   CHECK(gravity_sd_m_s2(10.0) == 0.015);
 }

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/whitening.h"
 #include "tests/catch.h"
@@ -218,4 +219,50 @@ TEST_CASE("a single motion has no scatter from motion to motion, whatever its la
   CHECK(best.sizes.force_m_s2 == 0.0);
   const diagnose::RemainderSizes scattered{1e-4, 0.1, 0.7, {}};
   CHECK(space.likeliest(&scattered).sizes.drag == 0.0);
+}
+
+// Two priors of g about different values, of the same fall: the ratio of their evidences is that of the integrals over
+// the range of g of the likelihood times each. The fall is so heavy and so steep that nothing else acts; x0 and v0 are
+// linear, so that chi² is a parabola in g.
+TEST_CASE("a gravity at the edge of its range has the evidence of the integral over that range, as one within has") {
+  const tests::MadeGlider glider{.k_n_s_m = 0.0, .mu = 0.0, .gravity_m_s2 = 9.90};
+  const tests::MadeExperiment made =
+      tests::made_experiment({{50.0, 90.0, 0.0, 0.1}}, {}, 31, 2e-3, 60, 120.0, 1e-4, 0.0, glider);
+  const auto at = [&](double gravity_m_s2) {
+    core::AnalysisResults results = made.results;
+    results.gravity_m_s2 = gravity_m_s2;
+    diagnose::TrackSet set = diagnose::track_set(results, made.setups, true);
+    set.gravity_sd_m_s2 = 0.015;
+    return diagnose::without_drag(set);
+  };
+  const auto evidence = [](const diagnose::TrackSet& set) {
+    return diagnose::RemainderSpace(set, diagnose::fit_nominal(set)).log_likelihood(diagnose::RemainderSizes{});
+  };
+  const diagnose::TrackedMotion motion = at(9.80665).motions.front();
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(motion.t_s.size()), 3);
+  Eigen::VectorXd x(design.rows());
+  for (Eigen::Index i = 0; i < design.rows(); ++i) {
+    const auto p = static_cast<std::size_t>(i);
+    const double t = motion.t_s[p] - motion.t_s.front(), w = motion.outlier[p] ? 0.0 : 1.0 / motion.sd_of(p);
+    design.row(i) << w, w * t, 0.5 * w * t * t;
+    x[i] = w * motion.x_m[p];
+  }
+  const Eigen::Matrix3d covariance = (design.transpose() * design).inverse();
+  const double best = (covariance * (design.transpose() * x))[2], sd = std::sqrt(covariance(2, 2));
+  const auto integral = [&](double gravity_m_s2) {
+    double sum = 0.0;
+    constexpr int kParts = 20000;
+    for (int i = 0; i < kParts; ++i) {
+      const double z = -3.0 + 6.0 * (i + 0.5) / kParts, g = gravity_m_s2 + 0.015 * z;
+      sum += std::exp(-0.5 * (z * z + std::pow((g - best) / sd, 2))) / kParts;
+    }
+    return std::log(sum);
+  };
+  const diagnose::TrackSet middle = at(9.89);
+  REQUIRE(std::abs(best - 9.89) < 0.04);
+  for (const double gravity : {9.80665, 9.84, 9.86, 9.94}) {
+    CAPTURE(gravity, best, sd);
+    // The inclination and K, which this integral leaves out, change by their ranges: 1e-4 degrees, and 1e-4 N s/m.
+    CHECK(std::abs(evidence(at(gravity)) - evidence(middle) - (integral(gravity) - integral(9.89))) < 0.02);
+  }
 }

@@ -62,6 +62,79 @@ TEST_CASE("a glider that runs up and comes back is where the closed form has it,
   }
 }
 
+namespace {
+
+/// |x - expected|² in units of the noise.
+double off2(const std::vector<double>& x_m, const std::vector<double>& expected_m, double noise_m) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < x_m.size(); ++i) sum += std::pow((x_m[i] - expected_m[i]) / noise_m, 2);
+  return sum;
+}
+
+}  // namespace
+
+// Errors d of the modelled positions in units of the noise change a log likelihood by r'd + d'd/2, and r'd ~ N(0, d'd)
+// for residuals r of unit variance: with |d| below 0.01 the standard deviation of the change is below 0.01.
+TEST_CASE("the steps of the integration change no log evidence by 0.01, for carts and for falls, stiff ones too") {
+  constexpr double kMost2 = 0.01 * 0.01;
+  for (const double k : {0.0, 0.3, 3.0, 30.0, 300.0}) {  // K/m in 1/s
+    for (const double rate : {25.0, 60.0, 240.0}) {
+      CAPTURE(k, rate);
+      diagnose::TrackModel model;
+      model.mass_kg = 0.01;
+      model.k_n_s_m = k * model.mass_kg;
+      model.alpha_rad = 0.5 * std::numbers::pi;
+      std::vector<double> t, x;
+      for (int i = 0; i < 60; ++i) {
+        t.push_back(i / rate);
+        const double g = model.gravity_m_s2;
+        x.push_back(k > 0.0 ? g / k * (t.back() + std::expm1(-k * t.back()) / k) : 0.5 * g * t.back() * t.back());
+      }
+      CHECK(off2(diagnose::move(model, t).x_m, x, 1e-4) < kMost2);
+    }
+  }
+  for (const double c : {1e-3, 3e-2, 1.0}) {  // c/m in 1/m, from rest: v = u tanh(g t/u)
+    for (const double rate : {25.0, 60.0, 240.0}) {
+      CAPTURE(c, rate);
+      diagnose::TrackModel model;
+      model.mass_kg = 0.01;
+      model.alpha_rad = 0.5 * std::numbers::pi;
+      model.effects[diagnose::slot_of(diagnose::ids::quadratic_drag)] = c * model.mass_kg;
+      std::vector<double> t, x;
+      for (int i = 0; i < 60; ++i) {
+        t.push_back(i / rate);
+        x.push_back(std::log(std::cosh(std::sqrt(model.gravity_m_s2 * c) * t.back())) / c);
+      }
+      CHECK(off2(diagnose::move(model, t).x_m, x, 1e-4) < kMost2);
+    }
+  }
+  for (const double rate : {30.0, 100.0, 240.0}) {
+    CAPTURE(rate);
+    diagnose::TrackModel model = glider();  // downhill
+    model.mu = 0.006;
+    model.v0_m_s = 0.3;
+    const double k = model.k_n_s_m / model.mass_kg;
+    const double u = model.gravity_m_s2 * (std::sin(model.alpha_rad) - model.mu * std::cos(model.alpha_rad)) / k;
+    std::vector<double> t, x;
+    for (int i = 0; i < 200; ++i) {
+      t.push_back(i / rate);
+      x.push_back(u * t.back() - (model.v0_m_s - u) * std::expm1(-k * t.back()) / k);
+    }
+    CHECK(off2(diagnose::move(model, t).x_m, x, 3e-5) < kMost2);
+  }
+}
+
+TEST_CASE("a drag is followed as long as any position can show it") {
+  diagnose::TrackModel model = glider();
+  model.v0_m_s = 0.6;
+  std::vector<double> t;
+  for (int i = 0; i < 1000; ++i) t.push_back(0.04 * i);
+  model.k_n_s_m = 16.0 / 0.04 * model.mass_kg;  // exp(-16) = 1e-7 of the first speed is left in the second frame
+  CHECK(std::isfinite(diagnose::move(model, t).x_m.back()));
+  model.k_n_s_m = 18.0 / 0.04 * model.mass_kg;
+  CHECK_FALSE(std::isfinite(diagnose::move(model, t).x_m.back()));
+}
+
 TEST_CASE("a shaken glider is where the closed form has it, whatever the frames") {
   diagnose::TrackModel model = glider();
   model.v0_m_s = 0.4;

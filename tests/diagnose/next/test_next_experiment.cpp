@@ -118,6 +118,28 @@ TEST_CASE("what falls is dropped again, not thrown up nor laid on another slope"
   CHECK(drops == 4);  // both masses, a lighter one and a heavier one
 }
 
+TEST_CASE("the next fall is one through air if those so far are: beside its quadratic drag K is held at 0") {
+  const auto made = tests::made_experiment({{0.3, 90.0, 0.0, 0.2}, {0.5, 90.0, 0.0, 0.2}}, {}, 5, 1e-4, 40, 60.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(set.through_air);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const std::size_t drag = diagnose::effect_index("quadratic_drag");
+  const diagnose::MotionFit fit =
+      diagnose::fit_motions(set, {drag}, diagnose::with_effect(set, nominal, drag, {1e-3}, {}));
+  const diagnose::ParameterRange held = fit.layout->globals().front().range;
+  REQUIRE(held.high < 1e-3);
+  std::size_t clips = 0;
+  for (const Change& change : diagnose::feasible_changes(set, nominal)) {
+    if (!change.clip) continue;
+    ++clips;
+    const diagnose::TrackSet next = diagnose::next_motion(set, fit, change).set;
+    const diagnose::ParameterRange range = diagnose::ParameterLayout(next, {drag}).globals().front().range;
+    CHECK(range.low == held.low);
+    CHECK(range.high == held.high);
+  }
+  CHECK(clips > 0);
+}
+
 TEST_CASE("no clip splits a wrong scale from a wrong clock: a measured length or a stopwatch does") {
   const diagnose::TrackSet set = inclined(100.0, 0.05);
   const diagnose::MotionFit nominal = diagnose::fit_nominal(set);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "diagnose/effects/effect_library.h"
@@ -98,6 +99,54 @@ TEST_CASE("what runs down a track of 85 degrees does not fall freely") {
   CHECK(is_through_air());
   for (core::ClipSetup& setup : made.setups) setup.incline_rad = 85.0 * std::numbers::pi / 180.0;
   CHECK_FALSE(is_through_air());
+}
+
+TEST_CASE("a fall is faster than viscous drag allows only by more than its noise") {
+  Fall fall;
+  fall.masses_kg = {1e-3};
+  fall.k_n_s_m = 1e-3 * 9.80665 / 0.45;  // 0.45 m/s at most; a quarter of the motion has a noise of 0.19 m/s
+  fall.noise_m = 8e-3;
+  fall.rate_hz = 50.0;
+  fall.frames = 14;
+  for (unsigned seed = 20; seed < 30; ++seed) {
+    CAPTURE(seed);
+    const tests::MadeExperiment made = fallen(fall, seed);
+    CHECK_FALSE(diagnose::track_set(made.results, made.setups, true).through_air);
+  }
+}
+
+TEST_CASE("the inertia of a pulley or of a Maxwell wheel is no air, and is named") {
+  for (const double times : {3.0, 9.0, 40.0}) {
+    CAPTURE(times);
+    Fall fall;
+    fall.masses_kg = {0.06, 0.06, 0.1};
+    fall.added_kg = times * 0.06;  // the same pulley
+    fall.noise_m = 5e-4;
+    fall.rate_hz = 60.0;
+    fall.frames = 60;
+    const diagnose::Diagnosis diagnosis = diagnosed(fallen(fall, 21));
+    REQUIRE(names(diagnosis) == Names{"rotational_inertia"});
+    const diagnose::DiagnosedParameter& found = diagnosis.effects.front().parameters.front();
+    CHECK(std::abs(found.value - fall.added_kg) < 4.0 * found.sd);
+  }
+}
+
+TEST_CASE("a fall with a buoyancy is a wrong scale, and a note says which densities would do the same") {
+  Fall fall;
+  fall.masses_kg = {2e-3, 2e-3, 4e-3};
+  fall.gravity_m_s2 = 0.84 * 9.80665;  // glass in glycerine would be 0.5
+  fall.k_n_s_m = 2e-3 * fall.gravity_m_s2 / 0.2;
+  fall.noise_m = 1e-4;
+  fall.rate_hz = 120.0;
+  fall.frames = 60;
+  const diagnose::Diagnosis diagnosis = diagnosed(fallen(fall, 22));
+  REQUIRE_FALSE(diagnosis.effects.empty());
+  CHECK((diagnosis.effects.front().id == "scale_error" || diagnosis.effects.front().id == "frame_rate_error"));
+  double ratio = 0.0;
+  for (const diagnose::Note& note : diagnosis.notes) {
+    if (const auto* of = std::get_if<diagnose::BuoyancyLooksAlike>(&note)) ratio = of->density_ratio;
+  }
+  CHECK(std::abs(ratio - 0.16) < 0.02);  // the fit may put up to 0.005 of it into g, and has noise
 }
 
 TEST_CASE("the g of a drag-free fall is that of a parabola and the spread over the Earth") {

@@ -26,6 +26,14 @@ TEST_CASE("with few positions a gain is that of the likelihood averaged over the
   }
 }
 
+TEST_CASE("an unknown noise takes nothing off a loss, nor off a gain where it counts as known") {
+  const diagnose::FewPositions few{15.0, 5.7};
+  CHECK(diagnose::lost_to_unknown_noise(few, 60.0, -20.0) == 0.0);
+  CHECK(diagnose::lost_to_unknown_noise(std::nullopt, 60.0, 20.0) == 0.0);
+  CHECK(diagnose::lost_to_unknown_noise(few, 60.0, 20.0) ==
+        Approx(20.0 - diagnose::gain_with_unknown_noise(few, 60.0, 20.0)).epsilon(1e-12));
+}
+
 TEST_CASE("with many positions the noise counts as known") {
   diagnose::TrackSet set;
   set.motions.resize(2);
