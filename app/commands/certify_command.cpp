@@ -63,7 +63,7 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   say(options.common, fmt::format("{} twins and their changes in {:.0f} s; report: {}", certificate.runs, seconds,
                                   (out / "report.html").string()));
   if (certificate.empty()) {
-    throw base::NotMet("nothing to count: no twin has an estimate of K/m, mu or alpha whose truth is known");
+    throw base::NotMet("there is nothing to count: no twin yields K/m, mu or alpha with a known true value");
   }
   if (!certificate.holds()) {
     throw base::NotMet(fmt::format("the stated intervals hold the truth less often than they say; {} has the table",

@@ -19,7 +19,7 @@ constexpr double kAgainstUnnamedBeside = 1.4;  // log odds against a function wi
 constexpr double kAgainstUnnamedAlone = 1.0;   // and alone
 constexpr double kImitatedPart = 0.08;         // part of a cause's probability that belongs to a cause off the list
 constexpr double kAgainstFurtherCause = 2.0;   // log odds against each further cause where the noise is negligible
-constexpr double kNotMeasured = -1.0;          // the excess of a gap of 0: no clip was held out
+constexpr double kNoClipHeldOut = -1.0;        // the excess of a gap of 0: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // limits of E in cause_odds.h
 
 bool makes_a_gap(const Hypothesis& hypothesis) {
@@ -34,7 +34,7 @@ bool is_clip_scatter(const Hypothesis& hypothesis) {
 }
 
 double part_left(double left, double before) {
-  if (!(before > kLeastExcess) || !(left > kNotMeasured)) return 1.0;
+  if (!(before > kLeastExcess) || !(left > kNoClipHeldOut)) return 1.0;
   return std::clamp(left / before, 0.0, 1.0);
 }
 

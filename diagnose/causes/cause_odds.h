@@ -1,4 +1,4 @@
-/// How likely each explanation is when a remainder stands beside it: by its evidence, and by the part of the gap that
+/// How likely each explanation is when weighed with a remainder: by its evidence, and by the part of the gap that
 /// it leaves.
 ///
 /// The model of the remainder (remainder.h) is wrong as well: draughts, wavy tracks and lagging trackers are not a

@@ -25,14 +25,14 @@ namespace {
 
 constexpr std::size_t kFirst =
     6;  // likeliest by the noise alone: the best gives the first remainder, and all are weighed
-constexpr double kFamilies = 3.0;        // ln 20: the likeliest of some twenty functions without a name is taken
-constexpr std::size_t kProfiled = 14;    // explanations that get a remainder of their own
-constexpr double kRemainderCost = 3.0;   // log evidence that a remainder costs, its sizes being unknown
-constexpr double kNearlyAsLikely = 0.1;  // relative to the probability of the likeliest explanation
-constexpr std::size_t kMostBeside = 8;   // explanations beside which a function without a name is weighed
-constexpr std::size_t kWithScatter = 3;  // laws that are weighed together with clip scatter
-constexpr double kMuchLeft = 0.1;        // of the excess: a law that leaves less needs no clip scatter beside it
-constexpr double kNotWeighed = 1e3;      // log evidence by which an explanation without a fit is behind
+constexpr double kCostOfTakingTheBest = 3.0;  // ln 20: the likeliest of some twenty functions without a name is taken
+constexpr std::size_t kProfiled = 14;         // explanations that get a remainder of their own
+constexpr double kRemainderCost = 3.0;        // log evidence that a remainder costs, its sizes being unknown
+constexpr double kNearlyAsLikely = 0.1;       // relative to the probability of the likeliest explanation
+constexpr std::size_t kMostBeside = 8;        // explanations beside which a function without a name is weighed
+constexpr std::size_t kWithScatter = 3;       // laws that are weighed together with clip scatter
+constexpr double kMuchLeft = 0.1;             // of the excess: a law that leaves less needs no clip scatter beside it
+constexpr double kNotWeighed = 1e3;           // log evidence by which an explanation without a fit is behind
 
 struct Profile {
   RemainderSpace::Best best;
@@ -86,7 +86,7 @@ std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with,
     if (!(extra.sd > 0.0) || !extra.columns.allFinite()) continue;
     Profile profile = profile_of(set, noise_alone, &start, &extra);
     allow_for_unknown_noise(set, nominal, profile);
-    log = std::max(log.value_or(-std::numeric_limits<double>::infinity()), profile.log_evidence - kFamilies);
+    log = std::max(log.value_or(-std::numeric_limits<double>::infinity()), profile.log_evidence - kCostOfTakingTheBest);
   }
   return log;
 }

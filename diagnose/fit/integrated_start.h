@@ -6,7 +6,7 @@
 /// is linear in K, mu, sin(alpha), x0 and v0 once the x under the integral is the measured one and sign(v) changes at
 /// the turns that the positions show. Nothing is differentiated, so noise hardly matters. There is a single minimum,
 /// however long the motion and however far the stated inclination is from the true one. Errors are of the order of the
-/// noise over the range of x; whatever the nominal model lacks enters as in any least squares.
+/// noise over the range of x; misfit of the nominal model enters as in any least-squares fit.
 ///
 /// Friction and drag are never negative here: a fit should not start with a glider that they drive. If the positions
 /// leave a direction undetermined (mu and the inclination if motions go one way), the statements and wide priors

@@ -22,7 +22,7 @@ namespace {
 constexpr int kBins = 12;
 constexpr double kFewestInBin = 5.0;  // points
 constexpr std::size_t kFewestToSmooth = 8;
-constexpr double kEnds = 2.0;  // bandwidths that are left out at a motion's ends
+constexpr double kLeftOutAtEachEnd = 2.0;  // bandwidths that are left out at a motion's ends
 
 /// A point of the phase plane: its speed, and d as weights of the motion's positions from `first` on.
 struct PhasePoint {
@@ -49,7 +49,8 @@ SmoothedMotion smoothed(const TrackedMotion& data, double bandwidth_s, double k_
   if (!(bandwidth_s > 0.0) || t.size() < kFewestToSmooth) return motion;
   const core::LocalCubic cubic(t, bandwidth_s);
   for (std::size_t p = 0; p < t.size(); ++p) {
-    if (t[p] - t.front() < kEnds * bandwidth_s || t.back() - t[p] < kEnds * bandwidth_s) continue;
+    if (t[p] - t.front() < kLeftOutAtEachEnd * bandwidth_s || t.back() - t[p] < kLeftOutAtEachEnd * bandwidth_s)
+      continue;
     const auto row = cubic.row_of_point(p);
     if (!row) continue;
     PhasePoint point{core::weighted_sums(*row, x).v_m_s, row->first, row->weights->a};

@@ -248,8 +248,8 @@ std::vector<ResidualCurve> residuals_of(const TrackSet& set, const MotionFit& no
 }
 
 bool holds_within(double gap_within, double gap_of_all) {
-  constexpr double kWithin = 0.15;
-  return gap_within * gap_within - 1.0 < kWithin * (gap_of_all * gap_of_all - 1.0);
+  constexpr double kMostExcessWithin = 0.15;
+  return gap_within * gap_within - 1.0 < kMostExcessWithin * (gap_of_all * gap_of_all - 1.0);
 }
 
 }  // namespace glidelab::diagnose

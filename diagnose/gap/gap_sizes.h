@@ -1,7 +1,6 @@
 /// How large the gap is in each domain, before and after, with 95 % intervals over clips.
 ///
-/// The domains are positions (held_out.h), phase plane (domain_gaps.h), parameters (held_out.h, domain_gaps.h) and
-/// images.
+/// The domains are positions (held_out.h), phase plane and parameters (domain_gaps.h) and images.
 ///
 /// An interval says how much a gap would differ with other clips of the same kind. It is a jackknife: with T_(c) a
 /// pooled number T of n clips from which clip c is left out (not out of the fit),

@@ -21,7 +21,7 @@ namespace glidelab::diagnose {
 /// lighter one, on the flattest and the steepest set-up; a level track and a steeper one; twice and half the frame
 /// rate; half the exposure, if the scatter of filmed markers grows with their speed; a plumb view (0.05 degrees) of
 /// each of these set-ups that has none; the pattern at both ends of the range of positions (0.5 mm); a stopwatch (one
-/// frame in ten seconds). If a recorded force moves the glider, no clips, because nobody knows their forces. `nominal`
+/// frame in ten seconds). If a recorded force moves the glider, no clips, because their forces are unknown. `nominal`
 /// is the fit of the nominal model to `set`.
 std::vector<Change> feasible_changes(const TrackSet& set, const MotionFit& nominal);
 

@@ -9,7 +9,7 @@
 ///              + c² exp(-n/m)                  what a codec with loss, or a tracker, hands from frame to frame
 ///              + (v tau/s)² [i = j]            uneven times
 ///
-/// Nobody knows the pixels of imported tracks: there the unit of d is the metre, and a = b = 0. Motions count as
+/// The pixels of imported tracks are unknown: there the unit of d is the metre, and a = b = 0. Motions count as
 /// independent of each other, and so do stretches of 240 points: it is ignored that clips pass over the same pixels.
 #pragma once
 

@@ -19,7 +19,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kPriorNone = 0.3, kPriorOne = 0.4, kPriorTwo = 0.1, kPriorUnnamed = 0.2;
-constexpr std::size_t kFitted = 9;            // effects of the short list that are fitted in full
+constexpr std::size_t kMostFitted = 9;        // effects of the short list that are fitted in full
 constexpr double kLeastEvidenceBeside = 3.0;  // log evidence above which something else is weighed beside an effect
 constexpr double kNoLossSeen = -3.0;          // log evidence of lost frames if none is found
 constexpr double kWeakEvidence = 6.0;         // log evidence below which something unnamed shows only weakly
@@ -157,7 +157,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   comparison.all.push_back(unnamed);
 
   const Hypothesis nothing = comparison.all.front();
-  fit_best(set, nominal, best_of(comparison.scans, kFitted), nothing, work.at(0.2), comparison);
+  fit_best(set, nominal, best_of(comparison.scans, kMostFitted), nothing, work.at(0.2), comparison);
   if (const std::size_t air = effect_index(ids::quadratic_drag);
       set.through_air && !left_out.contains(air) && find(comparison, {air}) == nullptr) {
     // In place of K it is fitted even if it does not show beside K.

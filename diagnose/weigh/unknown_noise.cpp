@@ -7,7 +7,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kDegreesOfPosition = 0.38;  // 2/(4 * 1.32)
-constexpr double kKnown = 30.0;
+constexpr double kLeastDegreesKnown = 30.0;  // of freedom, from which on the noise counts as known
 
 }  // namespace
 
@@ -17,7 +17,7 @@ std::optional<FewPositions> few_positions(const TrackSet& set) {
     few.positions += static_cast<double>(std::count(motion.outlier.begin(), motion.outlier.end(), char{0}));
   }
   few.degrees = kDegreesOfPosition * few.positions;
-  return few.degrees < kKnown ? std::optional(few) : std::nullopt;
+  return few.degrees < kLeastDegreesKnown ? std::optional(few) : std::nullopt;
 }
 
 double gain_with_unknown_noise(const FewPositions& of, double chi2, double gain) {

@@ -182,7 +182,7 @@ std::string all_lacks(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;
   for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
-  return fmt::format("The recording has what its twins have not: {}. The answer holds as far as that does not matter.",
+  return fmt::format("The twins leave out {}, which the recording has. The answer holds if that does not matter.",
                      lacks);
 }
 
@@ -190,7 +190,7 @@ std::string all_lacks(const Certificate& certificate) {
 
 std::string certificate_answer(const Certificate& certificate) {
   if (certificate.empty()) {
-    return "Nothing to count: in no twin of this recording K/m, µ or α has an estimate whose truth is known.";
+    return "There is nothing to count: no twin of this recording yields K/m, µ or α with a known true value.";
   }
   const std::string share = share_text(certificate.together), bias = bias_words(certificate);
   if (certificate.holds()) {
@@ -331,7 +331,7 @@ std::string certificate_text(const Certificate& certificate) {
   std::vector<std::vector<std::string>> rows = {kHeader};
   for (const CertifiedQuantity& quantity : certificate.quantities) rows.push_back(cells_of(quantity));
   text += text_table(rows, 1);
-  std::vector<std::vector<std::string>> changes = {{"how much less it errs with"}};
+  std::vector<std::vector<std::string>> changes = {{"how much smaller its error is with"}};
   for (const CertifiedQuantity& quantity : certificate.quantities)
     changes.front().push_back(symbol_of(quantity.quantity));
   for (const ChangedTwin& change : certificate.changes) {

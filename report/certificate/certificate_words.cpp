@@ -13,7 +13,7 @@ namespace glidelab::report {
 namespace {
 
 std::string cause_advice(const std::vector<std::string>& causes) {
-  const std::string advice = "Take the cause out of the experiment";
+  const std::string advice = "Remove the cause from the experiment";
   if (causes.empty()) return advice;
   return advice + fmt::format(", or put it into the model (glidelab analyze --with {})", fmt::join(causes, " --with "));
 }

@@ -111,7 +111,7 @@ std::string requirement_answer(const Requirement& requirement) {
         first->price_class.empty()
             ? fmt::format("Choose {}; set it to {}", first->name, mode_words(*first))
             : fmt::format("Buy: {}, {}; set it to {}", model_of(first->name), first->price_class, mode_words(*first));
-    std::string text = fmt::format("{}; expect {} ({}; {} was asked for).", what, expected_words(requirement, *first),
+    std::string text = fmt::format("{}; expect {} ({}; the target was {}).", what, expected_words(requirement, *first),
                                    judged_words(requirement, *first), asked_words(requirement));
     const auto undecided = std::count_if(requirement.candidates.data(), first, [](const Candidate& candidate) {
       return candidate.verdict == Verdict::undecided;

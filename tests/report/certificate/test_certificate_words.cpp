@@ -111,8 +111,7 @@ TEST_CASE("what the twins are without stands right below the answer, on the page
   const std::string text = report::certificate_text(made);
   const std::size_t line = text.find('\n');
   CHECK(report::effect_name("friction_drift") != "friction_drift");
-  CHECK(text.substr(line + 1).starts_with(
-      "The recording has what its twins have not: " + report::effect_name("friction_drift") + " (it"));
+  CHECK(text.substr(line + 1).starts_with("The twins leave out " + report::effect_name("friction_drift") + " (it"));
   CHECK(report::certificate_page("a", made).html.find("what its twins have not") != std::string::npos);
 }
 
@@ -153,7 +152,7 @@ TEST_CASE("every limitation of a recording has a name, what its twins have inste
        "Compress less: a higher bit rate or quality, or a lossless codec"},
       {TwinLimit::rounding, "rounding", "positions with all their digits", "Export more digits"},
       {TwinLimit::cause, "a cause beside the law", "the viscous and the Coulomb friction alone",
-       "Take the cause out of the experiment"},
+       "Remove the cause from the experiment"},
       {TwinLimit::clip_scatter, "what differs from clip to clip", "every clip by one law",
        "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"},
       {TwinLimit::few_clips, "few clips", "every clip recorded twice", "Record a second clip of each kind"}};
@@ -167,7 +166,7 @@ TEST_CASE("every limitation of a recording has a name, what its twins have inste
   validate::ChangedTwin two = change(TwinLimit::cause, true);
   two.causes = {"quadratic_drag", "track_bow"};
   CHECK(report::limit_words(two).advice ==
-        "Take the cause out of the experiment, or put it into the model (glidelab analyze --with quadratic_drag --with "
+        "Remove the cause from the experiment, or put it into the model (glidelab analyze --with quadratic_drag --with "
         "track_bow)");
 }
 

@@ -97,7 +97,7 @@ struct Images {
 /// The scatter from clip to clip: filming leaves as much.
 struct ClipScatter {};
 
-/// The scatter of positions: another cause than the pixels' noise makes that of the recording.
+/// The scatter of positions: something other than pixel noise makes that of the recording.
 struct Noise {
   double recorded_m = 0.0, twin_m = 0.0;
 };
