@@ -37,7 +37,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::SlantedPath{12.34, 1.0236, false},
        "at 12.3° to the x axis: distances along the path are 1.02 times as long"},
       {core::SlantedPath{12.34, 1.0236, true}, "to the y axis"},
-      {core::CountedAlongMotion{}, "with the other sign"},
+      {core::CountedAlongMotion{}, "its sign is reversed"},
       {core::RowsIncomplete{1}, "one row between others lacks a time or x"},
       {core::RowsIncomplete{4}, "4 rows between others lack a time or x"},
       {core::RoundedTimes{0.01, 1.0 / 30.0}, "multiples of 0.01 s and taken as even, 0.0333333 s apart"},
