@@ -11,8 +11,11 @@ notebook. docs/guide/python.md is the tutorial.
 
 from __future__ import annotations
 
+import numpy as _numpy
+
 from . import _glidelab
 from ._analysis import Analysis, Clip, Configuration, Line, Motion, analyze
+from ._arrays import refuse_numpy as _refuse_numpy
 from ._camera import Camera, Marker, calibrate, fit_marker
 from ._certificate import Certificate, CertifiedExplanation, CertifiedQuantity, ChangedTwin, certify
 from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Recovered, Residuals, diagnose, plan
@@ -28,6 +31,7 @@ from ._smoothing import (Bandwidth, BandwidthRule, Smoothed, Strength, bandwidth
 from ._studies import (Candidate, Coverage, CoverageRow, Recovery, Requirement, Sweep, Validation, coverage, require,
                        sweep, validate)
 
+_refuse_numpy(_glidelab.pybind11_version, _numpy.__version__)
 __version__: str = _glidelab.version
 
 

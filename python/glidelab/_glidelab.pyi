@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 version: str
+pybind11_version: tuple[int, int]
 
 _Vector = NDArray[np.float64]
 _Told = Optional[Callable[[str, float], object]]
