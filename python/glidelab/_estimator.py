@@ -14,17 +14,17 @@ from typing import Any, Optional, TypeVar, Union
 import numpy as np
 
 from . import _glidelab
-from ._analysis import DEFAULT_ESTIMATOR, QUANTITIES, analyze
+from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
-from ._results import Quantity, frame_of, html_table, rounded
+from ._recovered import QUANTITIES
+from ._results import NORMAL95, Quantity, frame_of, html_table, rounded
 
 Found = Union[float, tuple[float, float], Quantity, None]
 Estimator = Callable[[Sequence[Track]], Mapping[str, Found]]
 _Function = TypeVar("_Function", bound=Estimator)
 
 _registered: dict[str, Estimator] = {}
-_NORMAL95 = 1.959964  # the normal distribution's 97.5 % quantile
 
 
 def estimator(function: _Function) -> _Function:
@@ -116,7 +116,8 @@ class Judgement:
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a quantity."""
         return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
-            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered")})
+            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered")},
+                        ("truth", "bias", "sd", "rms"))
 
     def _table(self) -> list[list[str]]:
         def text(value: Optional[float]) -> str:
@@ -210,7 +211,7 @@ def _quantity(found: Any, key: str) -> Quantity:
         return replace(answer, interval95=(low, high))
     if answer.sd is None:
         return answer
-    return replace(answer, interval95=(value - _NORMAL95 * answer.sd, value + _NORMAL95 * answer.sd))
+    return replace(answer, interval95=(value - NORMAL95 * answer.sd, value + NORMAL95 * answer.sd))
 
 
 def _checked(found: Any) -> dict[str, Quantity]:
