@@ -244,10 +244,11 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
     def ring(_number: int, _frame: object) -> None:
         raise _TooLong
 
-    before = signal.signal(signal.SIGALRM, ring)
     begin = time.monotonic()
-    left, interval = signal.setitimer(signal.ITIMER_REAL, seconds)
+    left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0)
+    before = signal.signal(signal.SIGALRM, ring)
     try:
+        signal.setitimer(signal.ITIMER_REAL, seconds)
         yield
     finally:
         try:
@@ -311,8 +312,8 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         How many experiments; each with noise of its own, the same for all estimators.
     seconds : float, optional
         How long one call of an estimator may take, on the clock; a longer one is ended and counts as a failure. A
-        signal ends it, so judge() has to run in Python's main thread, and a call of C code ends only when it returns to
-        Python. What bounds any code, and its memory, is a process of its own: ``estimator_command=`` of `validate`,
+        signal ends it, so judge() has to run in Python's main thread, a call of C code ends only when it returns to
+        Python, and one that catches BaseException may not end at all. What bounds any code, and its memory, is a process of its own: ``estimator_command=`` of `validate`,
         `coverage` and `sweep`.
     seed : int, optional
         Of the first replicate; the scenario's. The others follow it.

@@ -179,6 +179,16 @@ class Patience(unittest.TestCase):
         self.assertEqual(judged.failures, {"endless": "not done after 0.2 s"})
 
     @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
+    def test_a_limit_holds_of_a_built_in_one_and_of_any_length(self):
+        before = signal.getsignal(signal.SIGALRM)
+        for seconds in (1e-6, 1e-5, 1e-4, 1e-3):  # a fit of all motions takes longer
+            judged = glidelab.judge(SCENARIO, "trajectory", noise_m=2e-5, replicates=2, seconds=seconds)
+            self.assertEqual({row.failed for row in judged.rows}, {2})
+            self.assertIn("not done after", judged.failures["trajectory"])
+            self.assertEqual(signal.getsignal(signal.SIGALRM), before)
+            self.assertEqual(signal.getitimer(signal.ITIMER_REAL), (0.0, 0.0))
+
+    @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
     def test_a_timer_of_the_caller_s_rings_all_the_same(self):
         rung = threading.Event()
         before = signal.signal(signal.SIGALRM, lambda number, frame: rung.set())

@@ -158,4 +158,9 @@ TEST_CASE("version 1 of the challenge has this film", "[slow]") {
   // Measured in images whose grey values another machine may round differently, one in many thousands of them: a
   // marker of some hundred pixels moves by less than a thousandth of its noise, which is some 0.02 mm.
   CHECK(std::abs(up.x_m.front() - 0.44139731702183793) < 1e-6);
+  // Here, and again, they are the same bits.
+  make_challenge_case(ChallengeLevel::camera, 2, 0, temp / "again");
+  for (const char* clip : {"up-1", "down-1"}) {
+    CHECK(positions(temp / "again", clip).x_m == positions(temp / "case", clip).x_m);
+  }
 }
