@@ -313,8 +313,8 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
     seconds : float, optional
         How long one call of an estimator may take, on the clock; a longer one is ended and counts as a failure. A
         signal ends it, so judge() has to run in Python's main thread, a call of C code ends only when it returns to
-        Python, and one that catches BaseException may not end at all. What bounds any code, and its memory, is a process of its own: ``estimator_command=`` of `validate`,
-        `coverage` and `sweep`.
+        Python, and one that catches BaseException may not end at all. What bounds any code, and its memory, is a
+        process of its own: ``estimator_command=`` of `validate`, `coverage` and `sweep`.
     seed : int, optional
         Of the first replicate; the scenario's. The others follow it.
     jobs, progress
