@@ -45,9 +45,9 @@ install_optional() {
   }
 }
 
-# skipped_in LOG: what tests of ctest's log say that they were skipped for, each once.
+# skipped_in LOG: what tests of ctest's log say that they were skipped for, or left out of what they tested, each once.
 skipped_in() {
-  grep -hoE '^[[:space:]]*skipped: .*' "$1" | sed 's/^ *//' | sort -u || true  # a line of its own: commands are in the log as well
+  grep -hoE '^[[:space:]]*(skipped|not run): .*' "$1" | sed 's/^ *//' | sort -u || true  # a line of its own: commands are in the log as well
 }
 
 # What the program alone is configured with: nothing is looked for that tests and benchmarks take (packages-test.txt).

@@ -18,6 +18,7 @@
 #include "core/motion/join_configurations.h"
 #include "core/motion/smoothing/smoother_list.h"
 #include "core/result/quantity.h"
+#include "diagnose/verdict/fit_given_causes.h"
 #include "fit/estimators.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
@@ -25,6 +26,7 @@
 #include "python/binding/watched_work.h"
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/result_files.h"
+#include "report/diagnosis/given_causes_report.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::python {
@@ -43,7 +45,27 @@ struct AnalysisChoices {
   bool robust = false;
   int jobs = 1;
   std::string smoother;
+  std::vector<std::string> with_effects;
 };
+
+constexpr const char* kWithEffects = "with_effects";
+
+/// An analysis, and the fit with causes that were named; empty if none was.
+struct Analysed {
+  core::AnalysisResults results;
+  std::optional<diagnose::GivenCauses> with;
+};
+
+using Cameras = std::vector<std::optional<core::CameraSettings>>;
+
+Analysed with_causes(core::AnalysisResults results, const std::vector<core::ClipSetup>& setups, const Cameras& cameras,
+                     const AnalysisChoices& choices, const base::Progress& progress) {
+  Analysed made{std::move(results), {}};
+  if (!choices.with_effects.empty()) {
+    made.with = diagnose::fit_given_causes(made.results, setups, cameras, choices.with_effects, kWithEffects, progress);
+  }
+  return made;
+}
 
 const fit::Estimator& estimator_of(const AnalysisChoices& choices) {
   const fit::Estimator& estimator = estimator_named(choices.estimator);
@@ -88,20 +110,24 @@ py::dict motion_arrays(const core::ClipResult& clip) {
 
 /// The outcome, and the arrays of each clip. `previews` are made together with the page.
 py::tuple told(
-    core::AnalysisResults found, std::string title,
+    Analysed found, std::string title,
     std::function<std::vector<core::Preview>(const core::AnalysisResults&, const base::Progress&)> previews) {
-  const auto results = std::make_shared<const core::AnalysisResults>(std::move(found));
+  const auto made = std::make_shared<const Analysed>(std::move(found));
+  const report::Json with = made->with ? report::given_causes_json(*made->with) : report::Json(nullptr);
   Outcome outcome;
-  outcome.json = report::results_json(*results);
-  outcome.text = report::analysis_text(*results);
-  outcome.write = [results, title = std::move(title), previews = std::move(previews)](const fs::path& folder,
-                                                                                      const base::Progress& progress) {
-    report::write_analysis_files(*results, folder);
-    report::write_page(folder, "report.html",
-                       report::analysis_report(title, *results, previews(*results, progress), progress));
+  outcome.json = report::results_json(made->results, with);
+  outcome.text = report::analysis_text(made->results);
+  if (made->with) outcome.text += report::given_causes_text(made->results, *made->with);
+  outcome.write = [made, with, title = std::move(title), previews = std::move(previews)](
+                      const fs::path& folder, const base::Progress& progress) {
+    report::write_analysis_files(made->results, folder, with);
+    const report::Html section = made->with ? report::given_causes_section(made->results, *made->with) : report::Html{};
+    report::write_page(
+        folder, "report.html",
+        report::analysis_report(title, made->results, previews(made->results, progress), progress, section));
   };
   py::list motions;
-  for (const core::ClipResult& clip : results->clips) motions.append(motion_arrays(clip));
+  for (const core::ClipResult& clip : made->results.clips) motions.append(motion_arrays(clip));
   return py::make_tuple(std::move(outcome), std::move(motions));
 }
 
@@ -109,8 +135,9 @@ py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisCh
                         const core::TrackFileOptions& bare, const py::object& progress_told) {
   const std::vector<fs::path> folders(inputs.begin(), inputs.end());
   const fit::Estimator& estimator = estimator_of(choices);
+  diagnose::check_given_causes(choices.with_effects, kWithEffects);
   std::string title;
-  core::AnalysisResults results = WatchedWork(progress_told).run([&](const base::Progress& progress) {
+  Analysed made = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     core::AnalysisOptions how;
     how.bandwidth_s = choices.bandwidth_s;
     how.bandwidth_rule = rule_of(choices);
@@ -118,11 +145,20 @@ py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisCh
     how.lines = estimator.lines;
     how.bare = bare;
     how.smoother = choices.smoother;
+    how.images = !choices.with_effects.empty();
     core::AnalysisResults of_lines = core::analyze(folders, how, progress);
     title = report::title_of(core::read_tracks(folders.front(), bare).name, folders.size());
-    return estimator.estimate(std::move(of_lines), {.robust = choices.robust});
+    std::vector<core::ClipSetup> setups;
+    Cameras cameras;
+    for (const fs::path& folder : folders) {
+      const core::Experiment experiment = core::read_tracks(folder, bare);
+      setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
+      cameras.resize(setups.size(), experiment.camera);
+    }
+    return with_causes(estimator.estimate(std::move(of_lines), {.robust = choices.robust}), setups, cameras, choices,
+                       progress);
   });
-  return told(std::move(results), title, [folders, bare](const auto& of, const base::Progress& progress) {
+  return told(std::move(made), title, [folders, bare](const auto& of, const base::Progress& progress) {
     return core::previews_of(folders, of, progress, bare);
   });
 }
@@ -138,14 +174,16 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, double gravity_m_s2, con
   how.smoother = choices.smoother;
   core::check_smoothing(how);
   check_gravity(gravity_m_s2);
-  core::AnalysisResults results = WatchedWork(progress_told).run([&](const base::Progress& progress) {
+  diagnose::check_given_causes(choices.with_effects, kWithEffects);
+  Analysed made = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     const GivenTracks tracks = read_given(std::move(given));
     core::AnalysisResults of_lines =
         core::analyze_tracks(tracks.setups, tracks.tracks, gravity_m_s2, how, choices.jobs, progress);
     for (core::ClipResult& clip : of_lines.clips) clip.experiment = name;
-    return estimator.estimate(std::move(of_lines), {.robust = choices.robust});
+    return with_causes(estimator.estimate(std::move(of_lines), {.robust = choices.robust}), tracks.setups,
+                       Cameras(tracks.setups.size()), choices, progress);
   });
-  return told(std::move(results), name, [](const auto&, const auto&) { return std::vector<core::Preview>{}; });
+  return told(std::move(made), name, [](const auto&, const auto&) { return std::vector<core::Preview>{}; });
 }
 
 }  // namespace
@@ -162,8 +200,9 @@ const fit::Estimator& estimator_named(const std::string& name) {
 void bind_analysis(py::module_& module) {
   py::class_<AnalysisChoices>(module, "AnalysisChoices")
       .def(py::init([](std::optional<double> bandwidth_s, std::string rule, std::string estimator, bool robust,
-                       int jobs, std::string smoother) {
-        return AnalysisChoices{bandwidth_s, std::move(rule), std::move(estimator), robust, jobs, std::move(smoother)};
+                       int jobs, std::string smoother, std::vector<std::string> with_effects) {
+        return AnalysisChoices{bandwidth_s, std::move(rule),     std::move(estimator),   robust,
+                               jobs,        std::move(smoother), std::move(with_effects)};
       }));
   module.def("analyze_files", &analyze_files);
   module.def("analyze_arrays", &analyze_arrays);

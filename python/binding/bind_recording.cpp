@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -26,12 +27,13 @@ struct Checked {
 
 core::TrackFileOptions file_options(std::string column, std::optional<double> mass_kg,
                                     std::optional<double> incline_deg, std::string runs, std::vector<double> masses_kg,
-                                    bool allow_outside) {
+                                    bool allow_outside, std::optional<double> most_megapixels) {
   core::TrackFileOptions options;
   options.column = std::move(column);
   options.mass_kg = mass_kg;
   options.incline_deg = incline_deg;
   options.permitted.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
+  if (most_megapixels) options.permitted.most_pixels = static_cast<std::size_t>(std::llround(1e6 * *most_megapixels));
   options.runs = std::move(runs);
   options.masses_kg = std::move(masses_kg);
   return options;

@@ -15,6 +15,7 @@
 #include "diagnose/lines/line_model.h"
 #include "fit/estimators.h"
 #include "python/binding/bindings.h"
+#include "python/binding/given_estimator.h"
 #include "python/binding/given_scenario.h"
 #include "python/binding/outcome.h"
 #include "python/binding/watched_work.h"
@@ -44,6 +45,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Seed = std::optional<std::uint64_t>;
+using Judged = std::optional<GivenEstimator>;
 
 /// A closed loop with its folders, which are removed with the last reference to it.
 struct Validated {
@@ -51,6 +53,7 @@ struct Validated {
   fs::path experiment() const { return folder / "experiment"; }
   fs::path truth() const { return folder / "experiment.truth"; }
   std::string name;
+  std::string outside;  ///< name of the outside estimator
   validate::ValidationResult result;
 };
 
@@ -65,6 +68,10 @@ void write_validation(const Validated& done, const fs::path& out, const base::Pr
     if (name.starts_with("trajectory-")) base::write_file(out / name, base::read_file(entry.path()));
   }
   base::write_file(out / "comparison.json", report::comparison_json(done.result.comparison));
+  if (!done.result.outside_json.empty()) {
+    base::write_file(out / fmt::format("results-{}.json", report::file_name_part(done.outside)),
+                     done.result.outside_json);
+  }
   const std::vector<core::Preview> previews = core::previews_of({done.experiment()}, done.result.results, progress, {});
   report::write_page(
       out, "report.html",
@@ -72,8 +79,10 @@ void write_validation(const Validated& done, const fs::path& out, const base::Pr
 }
 
 /// The comparison, and the JSON and the text of the analysis.
-py::tuple run_validation(const GivenScenario& given, Seed seed, int jobs, const py::object& told) {
-  const auto done = WatchedWork(told).run([&](const base::Progress& progress) {
+py::tuple run_validation(const GivenScenario& given, const Judged& judged, Seed seed, int jobs,
+                         const py::object& told) {
+  WatchedWork watched(told);
+  const auto done = watched.run([&](const base::Progress& progress) {
     const render::Scenario scenario = read_scenario(given);
     auto loop = std::make_shared<Validated>();
     fs::create_directory(loop->experiment());
@@ -82,6 +91,8 @@ py::tuple run_validation(const GivenScenario& given, Seed seed, int jobs, const 
     validate::ValidationOptions run;
     run.render = {.seed = seed.value_or(scenario.seed), .jobs = jobs};
     run.analysis.jobs = jobs;
+    run.outside = outside_of(judged, watched);
+    if (run.outside) loop->outside = run.outside->name;
     loop->result = validate::run_validation(scenario, loop->experiment(), loop->truth(), run, progress);
     return std::shared_ptr<const Validated>(std::move(loop));
   });
@@ -92,10 +103,11 @@ py::tuple run_validation(const GivenScenario& given, Seed seed, int jobs, const 
 }
 
 Outcome measure_coverage(const GivenScenario& given, std::optional<double> noise_m, std::size_t replicates,
-                         std::vector<double> levels, std::optional<double> bandwidth_s, Seed seed, int jobs,
-                         const py::object& told) {
+                         std::vector<double> levels, std::optional<double> bandwidth_s, const Judged& judged, Seed seed,
+                         int jobs, const py::object& told) {
   std::string name;
-  const auto coverage = WatchedWork(told).run([&](const base::Progress& progress) {
+  WatchedWork watched(told);
+  const auto coverage = watched.run([&](const base::Progress& progress) {
     // With a given noise there is no camera, so it need not see the motions.
     const render::Scenario scenario =
         read_scenario(given, noise_m ? render::ScenarioChecks::values : render::ScenarioChecks::all);
@@ -104,6 +116,7 @@ Outcome measure_coverage(const GivenScenario& given, std::optional<double> noise
     wanted.replicates = replicates;
     wanted.noise_sd_m = noise_m;
     wanted.bandwidth_s = bandwidth_s;
+    wanted.outside = outside_of(judged, watched);
     if (!levels.empty()) wanted.levels = std::move(levels);
     wanted.seed = seed.value_or(scenario.seed);
     wanted.jobs = jobs;
@@ -145,10 +158,13 @@ Outcome find_requirement(const std::string& file, const std::vector<std::string>
           }};
 }
 
-Outcome run_sweep(const std::string& file, const std::string& folder, Seed seed, int jobs, const py::object& told) {
-  const auto summary = WatchedWork(told).run([&](const base::Progress& progress) {
+Outcome run_sweep(const std::string& file, const std::string& folder, const Judged& judged, Seed seed, int jobs,
+                  const py::object& told) {
+  WatchedWork watched(told);
+  const auto summary = watched.run([&](const base::Progress& progress) {
     validate::Sweep sweep = validate::read_sweep(file);
     if (seed) sweep.seed = *seed;
+    sweep.outside = outside_of(judged, watched);
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) base::throw_system_error(folder, "cannot be made", error.value());
@@ -189,6 +205,7 @@ Outcome certify(const std::vector<std::string>& inputs, std::size_t twins, const
 }  // namespace
 
 void bind_studies(py::module_& module) {
+  bind_given_estimator(module);
   module.def("validate", &run_validation);
   module.def("coverage", &measure_coverage);
   module.def("require", &find_requirement);

@@ -11,6 +11,7 @@ PYBIND11_MODULE(_glidelab, module) {
   using namespace glidelab::python;
   translate_errors();
   module.attr("version") = GLIDELAB_VERSION;
+  module.attr("pybind11_version") = pybind11::make_tuple(PYBIND11_VERSION_MAJOR, PYBIND11_VERSION_MINOR);
   bind_outcome(module);
   bind_given_track(module);
   bind_analysis(module);
@@ -19,6 +20,7 @@ PYBIND11_MODULE(_glidelab, module) {
   bind_recording(module);
   bind_smoothing(module);
   bind_studies(module);
+  bind_blind(module);
   bind_film(module);
   bind_camera(module);
   bind_tracks(module);

@@ -43,7 +43,9 @@ class WatchedWork {
     return done.get();
   }
 
-  /// For work that checks for interruption more often than it reports: throws Interrupted.
+  /// For work that checks for interruption more often than it reports.
+  bool stopped() const { return stop_; }
+  /// Throws Interrupted.
   void throw_if_stopped() const {
     if (stop_) throw base::Interrupted();
   }

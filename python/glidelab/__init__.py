@@ -11,39 +11,70 @@ notebook. docs/guide/python.md is the tutorial.
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as _numpy
+
 from . import _glidelab
 from ._analysis import Analysis, Clip, Configuration, Line, Motion, analyze
+from ._arrays import refuse_numpy as _refuse_numpy
+from ._blind import Blind, BlindCase, BlindTarget, blind
 from ._camera import Camera, Marker, calibrate, fit_marker
 from ._certificate import Certificate, CertifiedExplanation, CertifiedQuantity, ChangedTwin, certify
-from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Recovered, Residuals, diagnose, plan
+from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Residuals, diagnose, plan
 from ._estimator import Judged, Judgement, estimator, judge
 from ._errors import Error, InputError, Issue, NotMet, NumericalError, SystemFailure
 from ._film import FilmedClip, Frame, Rendered, render, render_folder
 from ._inputs import Track, load_scenario
+from ._outside import OutsideFailures, OutsideRuns
 from ._recording import Finding, RecordingCheck, check
+from ._recovered import Recovered, WithEffects
 from ._results import Quantity, Result
 from ._simulation import ModeChange, SimulatedClip, Simulation, simulate
 from ._smoothing import (Bandwidth, BandwidthRule, Smoothed, Strength, bandwidth_rules, choose_bandwidth,
                          position_noise, smooth)
-from ._studies import (Candidate, Coverage, CoverageRow, Recovery, Requirement, Sweep, Validation, coverage, require,
-                       sweep, validate)
+from ._studies import Coverage, CoverageRow, Recovery, Validation, coverage, validate
+from ._sweeps import Candidate, Requirement, Sweep, require, sweep
 
+_refuse_numpy(_glidelab.pybind11_version, _numpy.__version__)
 __version__: str = _glidelab.version
 
 
-def explain(result: Result) -> str:
-    """What the command prints of a result: the answer in sentences, and its tables."""
-    return str(result)
+class Explanation(str):
+    """A text that a prompt and a notebook show as it reads, line by line."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _repr_pretty_(self, printer: Any, _cycle: bool) -> None:
+        printer.text(str(self))
+
+
+def explain(result: Result) -> Explanation:
+    """What the command prints of a result: the answer in sentences, and its tables.
+
+    Parameters
+    ----------
+    result : Result
+        Of any function that returns one: `analyze`, `diagnose`, `validate`, ...
+
+    Returns
+    -------
+    Explanation
+        A str. As the last line of a cell, or at the prompt, it shows itself as it reads; a script prints it.
+    """
+    return Explanation(result)
 
 
 __all__ = [
-    "Analysis", "Bandwidth", "BandwidthRule", "Camera", "Candidate", "Cause", "Certificate",
-    "CertifiedExplanation", "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage", "CoverageRow",
-    "Diagnosis", "Effect",
-    "Error", "FilmedClip", "Finding", "Frame", "InputError", "Issue", "Judged", "Judgement", "Line",
-    "Marker", "ModeChange", "Motion", "NotMet", "NumericalError", "Plan", "PlannedEffect", "Quantity",
-    "RecordingCheck", "Recovered", "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip",
-    "Simulation", "Smoothed", "Strength", "Sweep", "SystemFailure", "Track", "Validation", "analyze", "bandwidth_rules",
-    "calibrate", "certify", "check", "choose_bandwidth", "coverage", "diagnose", "estimator", "explain", "fit_marker",
-    "judge", "load_scenario", "plan", "position_noise", "render", "render_folder", "require", "simulate", "smooth", "sweep", "validate",
+    "Analysis", "Bandwidth", "BandwidthRule", "Blind", "BlindCase", "BlindTarget", "Camera", "Candidate", "Cause",
+    "Certificate", "CertifiedExplanation", "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage",
+    "CoverageRow", "Diagnosis", "Effect", "Error", "Explanation", "FilmedClip", "Finding", "Frame", "InputError",
+    "Issue", "Judged", "Judgement", "Line", "Marker", "ModeChange", "Motion", "NotMet", "NumericalError",
+    "OutsideFailures", "OutsideRuns", "Plan", "PlannedEffect", "Quantity", "RecordingCheck", "Recovered",
+    "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip", "Simulation", "Smoothed",
+    "Strength", "Sweep", "SystemFailure", "Track", "Validation", "WithEffects", "analyze", "bandwidth_rules",
+    "blind", "calibrate", "certify", "check", "choose_bandwidth", "coverage", "diagnose", "estimator", "explain",
+    "fit_marker", "judge", "load_scenario", "plan", "position_noise", "render", "render_folder", "require",
+    "simulate", "smooth", "sweep", "validate",
 ]

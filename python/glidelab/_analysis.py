@@ -15,11 +15,10 @@ from ._arrays import Vector, frozen
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_tracks, job_count, refuse, refuse_of_arrays,
                       source_of, teller)
-from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, quantity_of
+from ._recovered import QUANTITIES, WithEffects, with_effects_of
+from ._results import Made, Quantity, Result, frame_of, html_plot, html_table, new_axes, quantity_of
 
 DEFAULT_ESTIMATOR = _glidelab.estimator_names()[0]
-
-QUANTITIES = dict(_glidelab.quantities())  # keys and their units
 
 
 @dataclass(frozen=True)
@@ -196,12 +195,15 @@ class Analysis(Result):
     doubts : tuple of str
         What the law (drag in proportion to the speed, dry friction, gravity) cannot explain, a sentence each; empty
         where it fits. Where it does not, the standard deviations would hold only if it did.
+    with_effects : WithEffects or None
+        The quantities with effects in the model that `analyze` was told of.
     """
 
     estimator: str
     clips: tuple[Clip, ...]
     configurations: tuple[Configuration, ...]
     doubts: tuple[str, ...]
+    with_effects: Optional[WithEffects] = None
 
     @property
     def configuration(self) -> Configuration:
@@ -239,13 +241,29 @@ class Analysis(Result):
         list of matplotlib.axes.Axes
             One for each clip.
         """
-        return [clip.plot(ax) for clip, ax in zip(self.clips, new_axes(len(self.clips)))]
+        return _phase_diagrams(self.clips)
 
     def _repr_html_(self) -> str:
         rows = [[one.group, f"{one.mass_kg:g}", f"{one.incline_deg:g}", *(str(getattr(one, key)) for key in QUANTITIES)]
                 for one in self.configurations]
         table = html_table(["group", "mass (kg)", "stated α (°)", "K/m", "µ", "α", "terminal velocity"], rows)
-        return table + "".join(f"<p>{html.escape(doubt)}</p>" for doubt in self.doubts)
+        doubts = "".join(f"<p>{html.escape(doubt)}</p>" for doubt in self.doubts)
+        return table + doubts + self._html_with() + html_plot(lambda: _phase_diagrams(self.clips[:_MOST_SHOWN]))
+
+    def _html_with(self) -> str:
+        if self.with_effects is None:
+            return ""
+        rows = [[one.group, f"{one.mass_kg:g}", f"{one.incline_deg:g}", *(str(getattr(one, key)) for key in QUANTITIES)]
+                for one in self.with_effects.recovered]
+        return html_table(["group", "mass (kg)", "stated α (°)", "K/m", "µ", "α", "terminal velocity"], rows,
+                          "with " + ", ".join(self.with_effects.effects))
+
+
+_MOST_SHOWN = 12  # phase diagrams of an analysis in a notebook; plot() draws all
+
+
+def _phase_diagrams(clips: Sequence[Clip]) -> list[Any]:
+    return [clip.plot(ax) for clip, ax in zip(clips, new_axes(len(clips)))]
 
 
 def _line(found: Mapping[str, Any]) -> Line:
@@ -274,25 +292,30 @@ def analysis_of(outcome: _glidelab.Outcome, motions: Sequence[Mapping[str, Any]]
     document = Result(made).to_dict()
     return Analysis(made, document["estimator"],
                     tuple(_clip(clip, arrays) for clip, arrays in zip(document["clips"], motions)),
-                    tuple(_configuration(one) for one in document["configurations"]), tuple(document["doubts"]))
+                    tuple(_configuration(one) for one in document["configurations"]), tuple(document["doubts"]),
+                    with_effects_of(document.get("with")))
 
 
 def _choices(bandwidth: Union[float, str, None], estimator: str, robust: bool, jobs: Optional[int],
-             smoother: str) -> _glidelab.AnalysisChoices:
+             smoother: str, with_effects: Sequence[str]) -> _glidelab.AnalysisChoices:
+    if isinstance(with_effects, str) or not all(isinstance(one, str) for one in with_effects):
+        raise input_error("with_effects", repr(with_effects), "a list of effects, such as [\"quadratic_drag\"]")
+    effects = list(with_effects)
     if bandwidth is None or isinstance(bandwidth, str):
-        return _glidelab.AnalysisChoices(None, bandwidth or "", estimator, robust, job_count(jobs), smoother)
+        return _glidelab.AnalysisChoices(None, bandwidth or "", estimator, robust, job_count(jobs), smoother, effects)
     if isinstance(bandwidth, bool) or not isinstance(bandwidth, (int, float, np.integer, np.floating)):
         raise input_error("bandwidth", f"a {type(bandwidth).__name__}", "a number of seconds, or the name of a rule")
-    return _glidelab.AnalysisChoices(float(bandwidth), "", estimator, robust, job_count(jobs), smoother)
+    return _glidelab.AnalysisChoices(float(bandwidth), "", estimator, robust, job_count(jobs), smoother, effects)
 
 
 def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
             x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
             force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
             bandwidth: Union[float, str, None] = None, estimator: str = DEFAULT_ESTIMATOR, robust: bool = False,
-            gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
-            progress: Progress = None, smoother: str = "local-polynomial", runs: Runs = None,
-            masses_kg: Optional[Sequence[float]] = None) -> Analysis:
+            gravity_m_s2: float = 9.80665, allow_outside: bool = False,
+            most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
+            smoother: str = "local-polynomial", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
+            with_effects: Sequence[str] = ()) -> Analysis:
     """K/m, mu, alpha and the terminal velocity from positions, or from an experiment folder.
 
     Parameters
@@ -320,6 +343,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
         With arrays.
     allow_outside : bool
         With a folder: whether it may name files outside itself.
+    most_megapixels : float, optional
+        With a folder: the largest image or frame that is read, in millions of pixels; 100.
     jobs : int, optional
         Threads; as many as there are cores.
     progress : callable, True or None
@@ -332,6 +357,9 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
         file is one clip.
     masses_kg : sequence of float, optional
         With `runs`: the mass of each, in place of `mass_kg`.
+    with_effects : sequence of str
+        Also give K/m, mu, alpha and the terminal velocity with these effects in the model (ids of
+        docs/reference/effects.md): `Analysis.with_effects`.
 
     Returns
     -------
@@ -359,13 +387,14 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
                               "force_n": force_n}
     given = source_of(source, x_m, **stated)
-    choices = _choices(bandwidth, estimator, robust, jobs, smoother)
+    choices = _choices(bandwidth, estimator, robust, jobs, smoother, with_effects)
     if given.paths:
         refuse({"force_n": force_n})
-        files = file_options(given.paths, allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg,
-                             runs=runs, masses_kg=masses_kg)
+        files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
+                             incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
         return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, files, teller(progress)))
-    refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg},
+    refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
+                                       "most_megapixels": most_megapixels},
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
     return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), gravity_m_s2, name, choices,
                                                  teller(progress)))

@@ -32,3 +32,10 @@ def frozen(array: Any) -> Any:
     """The array, which can no longer be written to: results do not change."""
     array.flags.writeable = False
     return array
+
+
+def refuse_numpy(pybind11: tuple[int, int], numpy_version: str) -> None:
+    """ImportError where the module was made with a pybind11 that does not know this numpy: it would read arrays wrongly."""
+    if pybind11 < (2, 12) and int(numpy_version.split(".")[0]) >= 2:
+        raise ImportError(f"glidelab was built with pybind11 {pybind11[0]}.{pybind11[1]}, which knows numpy below 2, and "
+                          f"this is numpy {numpy_version}: install numpy<2, or build with pybind11 2.12 or later")

@@ -10,9 +10,8 @@ from typing import Any, Optional, Union
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR
 from ._errors import input_error
-from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller
+from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller, whole
 from ._results import Made, Result, frame_of, html_table
-from ._studies import whole
 
 
 @dataclass(frozen=True)
@@ -170,8 +169,8 @@ def _change(found: Mapping[str, Any]) -> ChangedTwin:
 
 def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, estimator: str = DEFAULT_ESTIMATOR,
             bandwidth_s: Optional[float] = None, seed: Optional[int] = None, allow_outside: bool = False,
-            jobs: Optional[int] = None, progress: Progress = None, column: str = "", mass_kg: Optional[float] = None,
-            incline_deg: Optional[float] = None, runs: Runs = None,
+            most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
+            column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
             masses_kg: Optional[Sequence[float]] = None) -> Certificate:
     """Records and analyses twins of a recording: do its intervals hold, what limits it, what would help?
 
@@ -187,7 +186,7 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
         Of the phase diagram; chosen clip by clip.
     seed : int, optional
         Of the twins' noise, clock and calibration; 1.
-    allow_outside, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
+    allow_outside, most_megapixels, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
         As in `analyze`.
 
     Returns
@@ -199,13 +198,17 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
     ------
     InputError
         Wrong input, or motions that no scenario can record again.
+
+    Notes
+    -----
+    docs/guide/trust.md describes the twins: a parametric bootstrap (Efron and Tibshirani 1993) of the whole analysis.
     """
     names: list[PathLike] = [source] if isinstance(source, (str, os.PathLike)) else list(source)
     if not names or not all(is_path(one) for one in names):
         raise input_error("source", f"a {type(source).__name__}", "names of folders or files")
     paths = [os.fspath(one) for one in names]
-    files = file_options(paths, allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg, runs=runs,
-                         masses_kg=masses_kg)
+    files = file_options(paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
+                         incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
     if bandwidth_s is not None and not bandwidth_s > 0.0:
         raise input_error("bandwidth_s", f"{bandwidth_s:g}", "seconds, above 0")
     made = Made(_glidelab.certify(paths, whole("twins", twins, 20, 200), estimator, bandwidth_s, checked_seed(seed),

@@ -10,12 +10,12 @@ from typing import Any, Optional, Union
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._analysis import QUANTITIES
 from ._arrays import Vector, frozen
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_scenario, given_tracks,
                       job_count, refuse, refuse_of_arrays, source_of, teller)
-from ._results import Made, Quantity, Result, frame_of, html_table, new_axes, quantity_of
+from ._recovered import Recovered, recovered_of
+from ._results import Made, Result, frame_of, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
@@ -52,20 +52,6 @@ class Cause:
     share: Optional[float]
     share_interval95: Optional[tuple[float, float]]
     gap_after: Optional[float]
-
-
-@dataclass(frozen=True)
-class Recovered:
-    """K/m, mu, alpha and the terminal velocity of one configuration, with the causes `with_causes` in the model."""
-
-    group: str
-    mass_kg: float
-    incline_deg: float
-    with_causes: tuple[str, ...]
-    k_over_m_1_s: Quantity
-    mu: Quantity
-    alpha_deg: Quantity
-    v_lim_m_s: Quantity
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,12 +151,7 @@ class Diagnosis(Result):
     def _repr_html_(self) -> str:
         rows = [[one.id, f"{one.joint_probability:.3g}", ", ".join(one.equivalent_to)] for one in self.effects]
         head = f"<p><b>{html.escape(self.summary)}</b></p>"
-        return head + (html_table(["effect", "probability", "or"], rows) if rows else "")
-
-
-def _recovered(found: Mapping[str, Any]) -> Recovered:
-    quantities = {key: quantity_of(found, key, unit) for key, unit in QUANTITIES.items()}
-    return Recovered(found["group"], found["mass_kg"], found["incline_deg"], tuple(found["with"]), **quantities)
+        return head + (html_table(["effect", "probability", "or"], rows) if rows else "") + html_plot(self.plot)
 
 
 def _interval(found: Optional[Sequence[float]]) -> Optional[tuple[float, float]]:
@@ -190,7 +171,7 @@ def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, An
         tuple(Cause(one["id"], one["share"], _interval(one.get("share_interval95")), one["gap_after"])
               for one in found["explained"]),
         gap.get("before"), gap.get("after"),
-        tuple(_recovered(one) for one in found["recovered"]), found["next_experiment"],
+        tuple(recovered_of(one) for one in found["recovered"]), found["next_experiment"],
         tuple(Residuals(**{key: value if key == "clip" else frozen(value) for key, value in one.items()})
               for one in residuals),
         twin, tuple(found["notes"]))
@@ -199,9 +180,9 @@ def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, An
 def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
              x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
              force_n: Optional[ArrayLike] = None, name: str = "", without: Sequence[str] = (),
-             gravity_m_s2: float = 9.80665, allow_outside: bool = False, jobs: Optional[int] = None,
-             progress: Progress = None, column: str = "", runs: Runs = None,
-             masses_kg: Optional[Sequence[float]] = None) -> Diagnosis:
+             gravity_m_s2: float = 9.80665, allow_outside: bool = False,
+             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
+             column: str = "", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None) -> Diagnosis:
     """Which effect, if any, the law of viscous drag and Coulomb friction lacks.
 
     Parameters
@@ -217,7 +198,7 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
         With arrays: what the experiment is called in results.
     without : sequence of str
         Effects to leave out, by the ids of docs/reference/effects.md.
-    gravity_m_s2, allow_outside, jobs, progress, column, runs, masses_kg
+    gravity_m_s2, allow_outside, most_megapixels, jobs, progress, column, runs, masses_kg
         As in `analyze`.
 
     Returns
@@ -239,11 +220,12 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
     given = source_of(source, x_m, **stated)
     if given.paths:
         refuse({"force_n": force_n})
-        files = file_options(given.paths, allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg,
-                             runs=runs, masses_kg=masses_kg)
+        files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
+                             incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
         return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), list(without), job_count(jobs), files,
                                                       teller(progress)))
-    refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg},
+    refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
+                                       "most_megapixels": most_megapixels},
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
     return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), gravity_m_s2, name, list(without),
                                                    job_count(jobs), teller(progress)))
@@ -332,6 +314,10 @@ def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[f
     ------
     InputError
         Wrong input; nothing moves freely.
+
+    Notes
+    -----
+    The size that shows is four standard deviations, with the other parameters free; docs/guide/diagnosis.md.
     """
     tracks = [source] if isinstance(source, Track) else source
     if isinstance(tracks, Sequence) and not isinstance(tracks, str):

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import math
+import signal
+import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Any, Optional, TypeVar, Union
 
+import numpy as np
+
 from . import _glidelab
-from ._analysis import DEFAULT_ESTIMATOR, QUANTITIES, analyze
+from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
-from ._results import Quantity, frame_of, html_table, rounded
+from ._recovered import QUANTITIES
+from ._results import NORMAL95, Quantity, frame_of, html_table, rounded
 
 Found = Union[float, tuple[float, float], Quantity, None]
 Estimator = Callable[[Sequence[Track]], Mapping[str, Found]]
 _Function = TypeVar("_Function", bound=Estimator)
 
 _registered: dict[str, Estimator] = {}
-_NORMAL95 = 1.959964  # the normal distribution's 97.5 % quantile
 
 
 def estimator(function: _Function) -> _Function:
@@ -36,6 +41,11 @@ def estimator(function: _Function) -> _Function:
     -------
     callable
         The function.
+
+    Raises
+    ------
+    InputError
+        The function has the name of a built-in estimator.
     """
     name = function.__name__
     if name in _glidelab.estimator_names():
@@ -55,7 +65,8 @@ class Judged:
     truth : float
         What the scenario put in.
     answered, failed : int
-        Replicates with a value, and those in which the estimator raised something.
+        Replicates with a value, and those in which the estimator failed: it raised something, gave no answer as
+        `estimator` describes it, or took too long.
     bias, sd, rms : float or None
         Mean error, standard deviation and root mean square of the errors; None without an answer.
     stated : int
@@ -90,7 +101,7 @@ class Judgement:
     seconds : dict of str to float
         Mean time that an estimator took for an experiment.
     failures : dict of str to str
-        What an estimator raised first.
+        How an estimator failed first.
     """
 
     replicates: int
@@ -105,7 +116,8 @@ class Judgement:
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a quantity."""
         return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
-            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered")})
+            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered")},
+                        ("truth", "bias", "sd", "rms"))
 
     def _table(self) -> list[list[str]]:
         def text(value: Optional[float]) -> str:
@@ -148,33 +160,124 @@ class _Tally:
             self.held += quantity.interval95[0] <= truth <= quantity.interval95[1]
 
 
-def _quantity(found: Found, of: str, key: str) -> Quantity:
-    """What an estimator said; InputError for what is no number."""
-    if found is None:
+class _Wrong(Exception):
+    """An answer that is none, in words."""
+
+
+class _TooLong(BaseException):
+    """The time of a call is over. No Exception: an estimator that catches all of these does not catch this one."""
+
+
+def _number(said: Any, key: str) -> float:
+    """A finite number, NaN or an infinity; _Wrong for what is no number, texts of digits included."""
+    if not isinstance(said, (str, bytes, bool)):
+        try:
+            return float(said)
+        except (TypeError, ValueError, OverflowError):
+            pass
+    raise _Wrong(f"{key}: found {said!r:.60}, expected a number, a pair of number and standard deviation, or None")
+
+
+def _sd(said: Any, key: str) -> float:
+    sd = _number(said, key)
+    if not (math.isfinite(sd) and sd >= 0.0):
+        raise _Wrong(f"{key}: found the standard deviation {sd:g}, expected a finite one of 0 or more")
+    return sd
+
+
+def _quantity(found: Any, key: str) -> Quantity:
+    """What an estimator said; _Wrong for what is no answer."""
+    if found is None or (isinstance(found, Quantity) and found.value is None):
         return Quantity()
+    value: Any
+    sd: Any
+    stated: Any = None
     if isinstance(found, Quantity):
-        return found
-    numbers = found if isinstance(found, tuple) else (found,)
-    if len(numbers) > 2:
-        raise input_error(f"{of}: {key}", f"{len(numbers)} numbers", "a number, or a number and its standard deviation")
-    value = float(numbers[0])
+        value, sd, stated = found.value, found.sd, found.interval95
+    elif isinstance(found, (tuple, list)):
+        if len(found) != 2:
+            raise _Wrong(f"{key}: found {len(found)} numbers, expected a number, or a number and its standard deviation")
+        value, sd = found
+    else:
+        value, sd = found, None
+    value = _number(value, key)
+    answer = Quantity(value, None if sd is None else _sd(sd, key))
     if not math.isfinite(value):
         return Quantity(why="not finite")
-    if len(numbers) == 1 or not math.isfinite(float(numbers[1])):
-        return Quantity(value)
-    half = _NORMAL95 * float(numbers[1])
-    return Quantity(value, float(numbers[1]), (value - half, value + half))
+    if stated is not None:
+        low, high = (_number(end, key) for end in stated)
+        if not low <= high:
+            raise _Wrong(f"{key}: found an interval from {low:g} to {high:g}, expected one that rises")
+        return replace(answer, interval95=(low, high))
+    if answer.sd is None:
+        return answer
+    return replace(answer, interval95=(value - NORMAL95 * answer.sd, value + NORMAL95 * answer.sd))
 
 
-def _checked(answers: Mapping[str, Mapping[str, Found]], name: str) -> dict[str, dict[str, Quantity]]:
-    """What an estimator of the user's said of each configuration; InputError for what is no answer."""
-    results = {}
-    for configuration, found in answers.items():
-        for key in found:
-            if key not in QUANTITIES:
-                raise input_error(name, f"the quantity \"{key}\"", f"one of {', '.join(QUANTITIES)}")
-        results[configuration] = {key: _quantity(found.get(key), name, key) for key in QUANTITIES}
-    return results
+def _checked(found: Any) -> dict[str, Quantity]:
+    """What an estimator of the user's said of one configuration; _Wrong for what is no answer."""
+    if not isinstance(found, Mapping):
+        raise _Wrong(f"the answer: found {found!r:.60}, expected a dict of quantities")
+    for key in found:
+        if key not in QUANTITIES:
+            raise _Wrong(f"found the quantity {key!r:.60}, expected one of {', '.join(QUANTITIES)}")
+    return {key: _quantity(found.get(key), key) for key in QUANTITIES}
+
+
+def _checked_seconds(seconds: Optional[float]) -> None:
+    if seconds is None:
+        return
+    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not 0.0 < seconds < math.inf:
+        raise input_error("seconds", repr(seconds), "a number of seconds above 0, or None")
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        raise input_error("seconds", repr(seconds), "None where judge() does not run in Python's main thread on a Unix "
+                          "system: nowhere else can a call be interrupted")
+
+
+@contextmanager
+def _at_most(seconds: Optional[float]) -> Iterator[None]:
+    """Raises _TooLong in what it surrounds once the time is over; a timer that ran before runs on afterwards."""
+    if seconds is None:
+        yield
+        return
+
+    def ring(_number: int, _frame: object) -> None:
+        raise _TooLong
+
+    begin = time.monotonic()
+    left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0)
+    before = signal.signal(signal.SIGALRM, ring)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        yield
+    finally:
+        try:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        finally:  # it may ring just before
+            signal.signal(signal.SIGALRM, signal.SIG_DFL if before is None else before)
+        if left > 0.0:
+            signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - begin), 1e-6), interval)
+
+
+def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float, jobs: int,
+              seconds: Optional[float]) -> Union[dict[str, dict[str, Quantity]], str]:
+    """What an estimator says of each configuration of an experiment, or how it failed. Its positions are its own."""
+    try:
+        if isinstance(one, str):
+            with _at_most(seconds):
+                return _built_in(one, tracks, gravity_m_s2, jobs)
+        results = {}
+        for configuration, of in tracks.items():
+            with _at_most(seconds):
+                found = one([replace(track, t_s=np.array(track.t_s), x_m=np.array(track.x_m)) for track in of])
+            results[configuration] = _checked(found)
+        return results
+    except _Wrong as wrong:
+        return str(wrong)
+    except _TooLong:
+        return f"not done after {seconds:g} s"
+    except Exception as error:  # pylint: disable=broad-exception-caught  # whatever an estimator raises is its failure
+        return f"{type(error).__name__}: {error}"
 
 
 def _built_in(name: str, tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float,
@@ -192,7 +295,8 @@ def _built_in(name: str, tracks: Mapping[str, Sequence[Track]], gravity_m_s2: fl
 
 
 def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float, replicates: int = 100,
-          seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Judgement:
+          seconds: Optional[float] = None, seed: Optional[int] = None, jobs: Optional[int] = None,
+          progress: Progress = None) -> Judgement:
     """Runs estimators over replicates of a scenario's motions with noise, and compares what they say with the truth.
 
     Parameters
@@ -206,6 +310,11 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         Standard deviation of a position in metres, white and normal.
     replicates : int
         How many experiments; each with noise of its own, the same for all estimators.
+    seconds : float, optional
+        How long one call of an estimator may take, on the clock; a longer one is ended and counts as a failure. A
+        signal ends it, so judge() has to run in Python's main thread, a call of C code ends only when it returns to
+        Python, and one that catches BaseException may not end at all. What bounds any code, and its memory, is a
+        process of its own: ``estimator_command=`` of `validate`, `coverage` and `sweep`.
     seed : int, optional
         Of the first replicate; the scenario's. The others follow it.
     jobs, progress
@@ -214,12 +323,18 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
     Returns
     -------
     Judgement
-        Errors, coverage of the intervals, time. What an estimator raises is counted as a failure, and told.
+        Errors, coverage of the intervals, time. An estimator that fails ends nothing: what it raises (KeyboardInterrupt
+        and SystemExit excepted), an answer that is none, and a call that takes too long are counted as failures of
+        that experiment, and the first is told.
 
     Raises
     ------
     InputError
-        A wrong scenario or option; an estimator's answer that is no number.
+        A wrong scenario or option.
+
+    Notes
+    -----
+    The interval of a value with a standard deviation and no interval of its own is value ± 1.96 sd.
 
     Examples
     --------
@@ -239,6 +354,7 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         named[name] = one
     if isinstance(replicates, bool) or not isinstance(replicates, int) or replicates < 2:
         raise input_error("replicates", repr(replicates), "a whole number of 2 or more")
+    _checked_seconds(seconds)
     maker = _glidelab.TrackMaker(given_scenario(scenario), noise_m)
     first = checked_seed(seed)
     first = maker.seed if first is None else first
@@ -246,7 +362,7 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
 
     tallies: dict[tuple[str, str, str], _Tally] = {}
     truth_of: dict[tuple[str, str], float] = {}
-    seconds = dict.fromkeys(named, 0.0)
+    mean_s = dict.fromkeys(named, 0.0)
     failures: dict[str, str] = {}
     for replicate in range(replicates):
         fields, truths, gravity_m_s2 = maker.make((first + replicate) % 2**64)
@@ -254,32 +370,24 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         configurations = {name: [tracks[clip] for clip in clips] for name, clips, _ in truths}
         for name, one in named.items():
             begin = time.perf_counter()
-            found: Optional[dict[str, dict[str, Quantity]]] = None
-            answers: Optional[dict[str, Mapping[str, Found]]] = None
-            try:
-                if isinstance(one, str):
-                    found = _built_in(one, configurations, gravity_m_s2, threads)
-                else:
-                    answers = {configuration: one(list(of)) for configuration, of in configurations.items()}
-            except (ArithmeticError, ValueError, RuntimeError, LookupError, TypeError) as error:
-                failures.setdefault(name, f"{type(error).__name__}: {error}")
-            if answers is not None:
-                found = _checked(answers, name)
-            seconds[name] += (time.perf_counter() - begin) / replicates
+            found = _answered(one, configurations, gravity_m_s2, threads, seconds)
+            mean_s[name] += (time.perf_counter() - begin) / replicates
+            if isinstance(found, str):
+                failures.setdefault(name, found)
             for configuration, _, quantities in truths:
                 for key, truth in quantities.items():
                     if truth is None:
                         continue
                     truth_of[configuration, key] = truth
                     tally = tallies.setdefault((configuration, key, name), _Tally())
-                    if found is None:
+                    if isinstance(found, str):
                         tally.failed += 1
                     else:
                         tally.add(found.get(configuration, {}).get(key, Quantity()), truth)
         if told is not None:
             told("judging", (replicate + 1) / replicates)
     rows = tuple(_judged(key, tally, truth_of[key[0], key[1]]) for key, tally in tallies.items())
-    return Judgement(replicates, rows, seconds, failures)
+    return Judgement(replicates, rows, mean_s, failures)
 
 
 def _judged(key: tuple[str, str, str], tally: _Tally, truth: float) -> Judged:

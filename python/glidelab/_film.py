@@ -96,6 +96,10 @@ def render(scenario: Scenario, *, seed: Optional[int] = None, jobs: Optional[int
     InputError
         Everything that is wrong with the scenario.
 
+    Notes
+    -----
+    The sensor is that of the standard EMVA 1288; docs/reference/scenario.md has lens, exposure and shutter.
+
     Examples
     --------
     >>> clip = next(iter(glidelab.render("scenarios/tutorial.toml").values())) # doctest: +SKIP
@@ -142,6 +146,10 @@ def render_folder(scenario: Scenario, folder: PathLike, *, seed: Optional[int] =
         Something is in the folder; everything that is wrong with the scenario.
     SystemFailure
         A codec is missing, the disk is full.
+
+    Notes
+    -----
+    docs/reference/experiment-folder.md has the form of the folder.
     """
     if not os.fspath(folder):
         raise input_error("folder", "nothing", "the name of a folder")

@@ -145,8 +145,16 @@ def refuse_of_arrays(of_numbers: bool, of_files: Mapping[str, object], of_motion
         refuse(of_motion)
 
 
-def file_options(paths: Sequence[str], allow_outside: bool, *, column: str = "", mass_kg: Optional[float] = None,
-                 incline_deg: Optional[float] = None, runs: Runs = None,
+def _megapixels(most: Optional[float]) -> Optional[float]:
+    most_decoded = 1000.0  # OpenCV decodes no image of more than 2^30 pixels
+    if most is not None and (isinstance(most, bool) or not isinstance(most, (int, float, np.integer, np.floating))
+                             or not 0.0 < most <= most_decoded):
+        raise input_error("most_megapixels", repr(most), f"millions of pixels, above 0 and at most {most_decoded:g}")
+    return None if most is None else float(most)
+
+
+def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Optional[float], *, column: str = "",
+                 mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
                  masses_kg: Optional[Sequence[float]] = None) -> _glidelab.FileOptions:
     """What is stated beside files with a track; a folder's experiment.toml says the same of its clips."""
     steepest_deg = 90.0  # a fall
@@ -165,7 +173,8 @@ def file_options(paths: Sequence[str], allow_outside: bool, *, column: str = "",
         raise input_error("incline_deg", f"{incline_deg:g}", "degrees, from -90 to 90")
     return _glidelab.FileOptions(column, None if mass_kg is None else _positive("mass_kg", mass_kg),
                                  None if incline_deg is None else float(incline_deg), _runs_text(runs),
-                                 [_positive("masses_kg", one) for one in masses_kg or ()], allow_outside)
+                                 [_positive("masses_kg", one) for one in masses_kg or ()], allow_outside,
+                                 _megapixels(most_megapixels))
 
 
 def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:
@@ -210,6 +219,13 @@ def load_scenario(file: PathLike) -> dict[str, Any]:
     return scenario
 
 
+def whole(name: str, value: int, least: int, most: int) -> int:
+    """A whole number within limits, InputError for another."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise input_error(name, repr(value), f"a whole number from {least} to {most}")
+    return value
+
+
 def job_count(jobs: Optional[int]) -> int:
     """How many threads: as many as there are cores, where nothing is said."""
     if jobs is None:
@@ -242,14 +258,15 @@ class _Bar:
 
     def __call__(self, stage: str, fraction: float) -> None:
         if stage != self._stage:
-            self.close()
+            self._finish()
             self._stage = stage
             self._bar = self._tqdm(total=100, desc=stage, bar_format="{desc}: {percentage:3.0f}% |{bar}| {elapsed}")
         self._bar.update(100.0 * fraction - self._bar.n)
 
-    def close(self) -> None:
-        """Leaves the bar as it is."""
+    def _finish(self) -> None:
+        """A stage that another one follows is done, whatever was last said of it."""
         if self._bar is not None:
+            self._bar.update(100.0 - self._bar.n)
             self._bar.close()
 
 

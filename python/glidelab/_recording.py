@@ -60,16 +60,16 @@ class RecordingCheck(Result):
         return html_table(["", "about", "found", "advice"], rows, "usable" if self.usable else "not usable as it is")
 
 
-def check(source: PathLike, *, allow_outside: bool = False, jobs: Optional[int] = None, progress: Progress = None,
-          column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
-          masses_kg: Optional[Sequence[float]] = None) -> RecordingCheck:
+def check(source: PathLike, *, allow_outside: bool = False, most_megapixels: Optional[float] = None,
+          jobs: Optional[int] = None, progress: Progress = None, column: str = "", mass_kg: Optional[float] = None,
+          incline_deg: Optional[float] = None, runs: Runs = None, masses_kg: Optional[Sequence[float]] = None) -> RecordingCheck:
     """A look at a recording before any analysis: pattern, marker, exposure, blur, frame times, statements.
 
     Parameters
     ----------
     source : str or path
         An experiment folder, or a file with a track.
-    allow_outside, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
+    allow_outside, most_megapixels, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
         As in `analyze`.
 
     Returns
@@ -81,10 +81,14 @@ def check(source: PathLike, *, allow_outside: bool = False, jobs: Optional[int] 
     ------
     InputError
         There is no such folder or file, or it cannot be read.
+
+    Notes
+    -----
+    docs/reference/check.md lists what is looked at, with its limits.
     """
     path = os.fspath(source)
-    files = file_options([path], allow_outside, column=column, mass_kg=mass_kg, incline_deg=incline_deg, runs=runs,
-                         masses_kg=masses_kg)
+    files = file_options([path], allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
+                         incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
     made = Made(_glidelab.check(path, files, job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     return RecordingCheck(made, found["name"], found["usable"], tuple(

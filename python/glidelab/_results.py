@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import base64
 import html
 import importlib
+import importlib.util
+import io
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any, Optional
 
 from ._glidelab import Outcome
 from ._inputs import PathLike, Progress, teller
+
+
+NORMAL95 = 1.959964  # the normal distribution's 97.5 % quantile
 
 
 class Made:
@@ -143,22 +150,25 @@ def quantity_of(holder: Mapping[str, Any], key: str, unit: str) -> Quantity:
         smoothing_correction=found.get("smoothing_correction"))
 
 
-UNITS = {
-    "k_over_m_1_s": "1/s", "mu": "", "alpha_deg": "°", "v_lim_m_s": "m/s", "a0_m_s2": "m/s²",
-    "t_s": "s", "x_m": "m", "v_m_s": "m/s", "a_m_s2": "m/s²", "mass_kg": "kg", "incline_deg": "°",
+_UNITS = {  # by the end of a column's name, the longer first
+    "_m_s2": "m/s²", "_m_s": "m/s", "_1_s": "1/s", "_deg": "°", "_kg": "kg", "_eur": "EUR", "_hz": "Hz", "_px": "px",
+    "_n": "N", "_s": "s", "_m": "m",
 }
+BY_ROW = "as the column unit says"
 
 
 def unit_of(column: str) -> str:
-    """The unit of a table's column, by the end of its name: "sd_v_m_s" is in m/s; empty for a pure number."""
-    for name, unit in UNITS.items():
-        if unit and (column == name or column.removesuffix("_sd").endswith(name)):
-            return unit
-    return ""
+    """The unit of a table's column, by the end of its name: "sd_v_m_s" and "v_m_s_sd" are in m/s; empty for a pure
+    number."""
+    name = column.removesuffix("_sd")
+    return next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
 
 
-def frame_of(columns: Mapping[str, Sequence[Any]]) -> Any:
+def frame_of(columns: Mapping[str, Sequence[Any]], by_row: Sequence[str] = ()) -> Any:
     """A pandas.DataFrame, with ``attrs["units"]``.
+
+    With `by_row`, columns in the unit of their row's quantity: there is a column ``unit`` then, made of the column
+    ``quantity``.
 
     Raises
     ------
@@ -166,8 +176,13 @@ def frame_of(columns: Mapping[str, Sequence[Any]]) -> Any:
         pandas is not installed.
     """
     pandas = importlib.import_module("pandas")
-    frame = pandas.DataFrame(dict(columns))
-    frame.attrs["units"] = {name: unit_of(name) for name in columns}
+    units = {name: BY_ROW if name in by_row else unit_of(name) for name in columns}
+    table = dict(columns)
+    if by_row:
+        table["unit"] = [unit_of(name) for name in columns["quantity"]]
+        units["unit"] = ""
+    frame = pandas.DataFrame(table)
+    frame.attrs["units"] = units
     return frame
 
 
@@ -179,6 +194,9 @@ def html_table(header: Sequence[str], rows: Sequence[Sequence[str]], caption: st
     return f"<table>{head}<thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
 
 
+_shown = ContextVar("_shown", default=True)  # whether figures are pyplot's, which shows them
+
+
 def new_axes(count: int) -> list[Any]:
     """`count` axes of matplotlib, three in a row at most, in a figure of their own.
 
@@ -187,13 +205,30 @@ def new_axes(count: int) -> list[Any]:
     ModuleNotFoundError
         matplotlib is not installed.
     """
-    pyplot = importlib.import_module("matplotlib.pyplot")
     columns = max(1, min(count, 3))
     rows = -(-count // columns)
     width, height = (6.0, 4.0) if columns == 1 else (4.0, 3.2)
-    _, grid = pyplot.subplots(rows, columns, figsize=(width * columns, height * rows), squeeze=False,
-                              layout="constrained")
-    axes = list(grid.flat)
+    size = (width * columns, height * rows)
+    make = importlib.import_module("matplotlib.pyplot").figure if _shown.get() else importlib.import_module(
+        "matplotlib.figure").Figure
+    axes = list(make(figsize=size, layout="constrained").subplots(rows, columns, squeeze=False).flat)
     for unused in axes[count:]:
         unused.set_axis_off()
     return axes[:count]
+
+
+def html_plot(plot: Callable[[], Any]) -> str:
+    """What `plot` draws, as an image for a notebook; empty without matplotlib. No window opens."""
+    if importlib.util.find_spec("matplotlib") is None:
+        return ""
+    before = _shown.set(False)
+    try:
+        drawn = plot()
+    finally:
+        _shown.reset(before)
+    axes = drawn if isinstance(drawn, list) else [drawn]
+    if not axes:
+        return ""
+    picture = io.BytesIO()
+    axes[0].figure.savefig(picture, format="png", dpi=90)
+    return f'<img alt="plot" src="data:image/png;base64,{base64.b64encode(picture.getvalue()).decode()}">'

@@ -10,7 +10,7 @@ import numpy as np
 from . import _glidelab
 from ._arrays import Vector, frozen
 from ._inputs import Progress, Scenario, Track, given_scenario, teller
-from ._results import Made, Result, frame_of, html_table, new_axes
+from ._results import Made, Result, frame_of, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,8 @@ class Simulation(Result):
     def _repr_html_(self) -> str:
         rows = [[one.name, one.configuration, str(len(one.t_s)), f"{one.x_m[0]:.4f}", f"{one.x_m[-1]:.4f}",
                  f"{one.v_m_s[-1]:+.4f}"] for one in self.clips]
-        return html_table(["clip", "configuration", "states", "from x (m)", "to x (m)", "last v (m/s)"], rows)
+        return html_table(["clip", "configuration", "states", "from x (m)", "to x (m)", "last v (m/s)"],
+                          rows) + html_plot(self.plot)
 
 
 def simulate(scenario: Scenario, *, rate_hz: Optional[float] = None, progress: Progress = None) -> Simulation:
@@ -132,6 +133,10 @@ def simulate(scenario: Scenario, *, rate_hz: Optional[float] = None, progress: P
         Everything that is wrong with the scenario.
     NumericalError
         The integrator failed; with time, step and tolerance.
+
+    Notes
+    -----
+    CVODES (Hindmarsh and others 2005), from event to event. docs/reference/scenario.md has the force laws.
     """
     outcome, states = _glidelab.simulate(given_scenario(scenario), rate_hz, teller(progress))
     made = Made(outcome)

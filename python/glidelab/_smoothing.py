@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Optional
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, vector
 from ._errors import input_error
-from ._results import frame_of
+from ._results import NORMAL95, frame_of, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,11 +71,51 @@ class Smoothed:
     bandwidth_s: float
     strength: Optional[Strength] = None
 
+    def plot(self, ax: Any = None) -> Any:
+        """a over t; dark the 95 % band of each point, light (of ``kalman`` and ``spline``) that of all together.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            `ax`, or new ones.
+        """
+        ax = new_axes(1)[0] if ax is None else ax
+        if self.sd_a_m_s2 is not None:
+            bands = [] if self.strength is None else [(self.strength.simultaneous_a, 0.2)]
+            for factor, alpha in [*bands, (NORMAL95, 0.35)]:
+                ax.fill_between(self.t_s, self.a_m_s2 - factor * self.sd_a_m_s2, self.a_m_s2 + factor * self.sd_a_m_s2,
+                                color="C0", alpha=alpha, linewidth=0)
+        ax.plot(self.t_s, self.a_m_s2, color="C0")
+        for at in [] if self.strength is None else self.strength.breaks_s.tolist():
+            ax.axvline(at, color="0.6", linestyle="--")
+        ax.set_xlabel("t (s)")
+        ax.set_ylabel("a (m/s²)")
+        return ax
+
+    def _repr_html_(self) -> str:
+        rows = [["points", str(len(self.t_s))], ["bandwidth (s)", f"{self.bandwidth_s:.4g}"]]
+        if self.strength is not None:
+            rows += [["chosen by", self.strength.method], ["smoothing time (s)", f"{self.strength.time_s:.4g}"],
+                     ["noise of a position (m)", f"{self.strength.noise_m:.3g}"],
+                     ["breaks (s)", ", ".join(f"{at:.4g}" for at in self.strength.breaks_s)],
+                     ["simultaneous 95 % band of a", f"± {self.strength.simultaneous_a:.3g} sd"]]
+        names = {"x_m": "x (m)", "v_m_s": "v (m/s)", "a_m_s2": "a (m/s²)"}
+        for name, words in names.items():
+            values, sd = getattr(self, name), getattr(self, f"sd_{name}")
+            rows.append([words, _span(values) + ("" if sd is None else f", sd {_span(sd)}")])
+        return html_table(["", ""], rows) + html_plot(self.plot)
+
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a time, with units in ``attrs["units"]``."""
         names = ("t_s", "x_m", "sd_x_m", "v_m_s", "sd_v_m_s", "a_m_s2", "sd_a_m_s2")
         columns = {name: getattr(self, name) for name in names}
         return frame_of({name: values for name, values in columns.items() if values is not None})
+
+
+def _span(values: Vector) -> str:
+    """"-0.31 to 1.2", without the NaNs."""
+    finite = values[np.isfinite(values)]
+    return "none" if finite.size == 0 else f"{finite.min():.3g} to {finite.max():.3g}"
 
 
 def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, *, order: int = 3,
@@ -164,7 +205,17 @@ class BandwidthRule:
 
 
 def bandwidth_rules() -> tuple[BandwidthRule, ...]:
-    """The rules that `choose_bandwidth` and `analyze` know (docs/guide/bandwidth.md)."""
+    """The rules that `choose_bandwidth` and `analyze` know.
+
+    Returns
+    -------
+    tuple of BandwidthRule
+        The default first.
+
+    Notes
+    -----
+    docs/guide/bandwidth.md names the source of each.
+    """
     return tuple(BandwidthRule(*rule) for rule in _glidelab.bandwidth_rules())
 
 
@@ -213,6 +264,12 @@ def choose_bandwidth(t_s: ArrayLike, x_m: ArrayLike, rule: str = "plug-in", *,
     ------
     InputError
         Wrong numbers, an unknown rule, a motion that is too short for any bandwidth.
+
+    Notes
+    -----
+    ``plug-in``: Ruppert, Sheather and Wand 1995; Fan and Gijbels 1996, section 4.2. ``ebbs``: Ruppert 1997. ``ici``:
+    Goldenshluger and Nemirovski 1997. ``rsc``: Fan and Gijbels 1995. ``cv``: Stone 1974. ``gcv``: Craven and Wahba 1979.
+    ``cv-correlated``: De Brabanter and others 2011. docs/guide/bandwidth.md says what each assumes.
     """
     t, x = vector("t_s", t_s), vector("x_m", x_m)
     pick = _glidelab.choose_bandwidth(t, x, rule, noise_m)
@@ -239,5 +296,10 @@ def position_noise(t_s: ArrayLike, x_m: ArrayLike) -> float:
     ------
     InputError
         Wrong numbers.
+
+    Notes
+    -----
+    For even times it is the fourth difference over sqrt(70), whose variance for white noise is that of one position.
+    Only the smaller half of the squares counts, so that outliers and impacts do not.
     """
     return _glidelab.position_noise(vector("t_s", t_s), vector("x_m", x_m))

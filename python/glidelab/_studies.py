@@ -1,23 +1,16 @@
-"""validate(), coverage(), require() and sweep(): estimates beside the truth of a scenario."""
+"""validate() and coverage(): estimates beside the truth of a scenario."""
 
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
-from ._errors import input_error
-from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario, job_count, teller
-from ._results import Made, Result, frame_of, html_table
-
-
-def whole(name: str, value: int, least: int, most: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise input_error(name, repr(value), f"a whole number from {least} to {most}")
-    return value
+from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller, whole
+from ._outside import OutsideRuns, given_command, outside_runs
+from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
@@ -56,12 +49,15 @@ class Validation(Result):
         Of all clips, and those in which the marker was found.
     analysis_json : str
         results.json of the analysis.
+    outside : OutsideRuns or None
+        How the runs of the estimator went that was given as a command.
     """
 
     quantities: tuple[Recovery, ...]
     frames: int
     detected: int
     analysis_json: str
+    outside: Optional[OutsideRuns] = None
 
     def analysis_dict(self) -> dict[str, Any]:
         """results.json of the analysis as a dict."""
@@ -71,23 +67,59 @@ class Validation(Result):
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a value."""
         return frame_of({name: [getattr(one, name) for one in self.quantities] for name in (
-            "configuration", "estimator", "quantity", "truth", "value", "sd", "error", "cramer_rao_sd")})
+            "configuration", "estimator", "quantity", "truth", "value", "sd", "error", "cramer_rao_sd")},
+                        ("truth", "value", "sd", "error", "cramer_rao_sd"))
+
+    def plot(self) -> list[Any]:
+        """Errors with 95 % bars, in the quantity's unit, an axis a quantity and a colour an estimator.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            One for each quantity with an error.
+        """
+        erring = [one for one in self.quantities if one.error is not None]
+        names = list(dict.fromkeys(one.quantity for one in erring))
+        estimators = list(dict.fromkeys(one.estimator for one in self.quantities))
+        places = list(dict.fromkeys(one.configuration for one in self.quantities))
+        axes = new_axes(len(names))
+        for axis, name in zip(axes, names):
+            for number, estimator in enumerate(estimators):
+                rows = [one for one in erring if (one.quantity, one.estimator) == (name, estimator)]
+                if rows:
+                    axis.errorbar([places.index(one.configuration) + 0.15 * number for one in rows],
+                                  [one.error for one in rows], [NORMAL95 * (one.sd or 0.0) for one in rows], fmt="o",
+                                  color=f"C{number}", label=estimator)
+            axis.axhline(0.0, color="0.8", zorder=0)
+            axis.set_xticks(range(len(places)), places)
+            axis.set_ylabel(f"error of {name}")
+            axis.legend()
+        return axes
 
     def _repr_html_(self) -> str:
         rows = [[one.configuration, one.estimator, one.quantity,
                  *("" if number is None else f"{number:.5g}" for number in (one.truth, one.value, one.sd, one.error))]
                 for one in self.quantities]
-        return html_table(["configuration", "estimator", "quantity", "truth", "found", "sd", "error"], rows)
+        return html_table(["configuration", "estimator", "quantity", "truth", "found", "sd", "error"],
+                          rows) + html_plot(self.plot)
 
 
-def validate(scenario: Scenario, *, seed: Optional[int] = None, jobs: Optional[int] = None,
-             progress: Progress = None) -> Validation:
+def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, estimator_name: str = "",
+             estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
+             seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Validation:
     """Films a scenario, analyses the images, and compares the results with the truth.
 
     Parameters
     ----------
     scenario : str, path or dict
         A scenario file (docs/reference/scenario.md), or what `load_scenario` makes of one.
+    estimator_command : str, optional
+        Also judge an estimator of your own: a program that reads the experiment folder ``{folder}`` and writes
+        ``{out}/results.json``, such as ``"python3 mine.py {folder} {out}"`` (docs/reference/own-estimator.md).
+    estimator_name : str
+        Its name in results; the name of its file.
+    estimator_seconds, estimator_megabytes : float
+        The longest time that a run of it may take, and the memory of each of its processes.
     seed : int, optional
         Of the camera's noise; the scenario's.
     jobs, progress
@@ -102,16 +134,21 @@ def validate(scenario: Scenario, *, seed: Optional[int] = None, jobs: Optional[i
     Raises
     ------
     InputError, NumericalError, SystemFailure
-        What rendering and analysis raise.
+        What rendering and analysis raise. An estimator_command that fails raises nothing: `Validation.outside` tells.
+
+    Notes
+    -----
+    docs/guide/trust.md; the least standard deviation is the Cramér-Rao bound (Rao 1945) of these frames and this noise.
     """
-    outcome, analysis = _glidelab.validate(given_scenario(scenario), checked_seed(seed), job_count(jobs),
+    command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
+    outcome, analysis = _glidelab.validate(given_scenario(scenario), command, checked_seed(seed), job_count(jobs),
                                            teller(progress))
     made = Made(outcome)
     found = Result(made).to_dict()
     names = ("truth", "value", "sd", "error", "cramer_rao_sd")
     return Validation(made, tuple(
         Recovery(one["configuration"], one["estimator"], one["quantity"], *(one.get(name) for name in names))
-        for one in found["quantities"]), found["frames"], found["detected"], analysis)
+        for one in found["quantities"]), found["frames"], found["detected"], analysis, outside_runs(found))
 
 
 @dataclass(frozen=True)
@@ -158,21 +195,60 @@ class Coverage(Result):
         How many experiments were made.
     rows : tuple of CoverageRow
         Every quantity of every configuration by every estimator.
+    outside : OutsideRuns or None
+        How the runs of the estimator went that was given as a command.
     """
 
     replicates: int
     rows: tuple[CoverageRow, ...]
+    outside: Optional[OutsideRuns] = None
 
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a quantity."""
         return frame_of({name: [getattr(one, name) for one in self.rows] for name in (
             "configuration", "estimator", "quantity", "truth", "determined", "covered", "bias", "sd", "stated_sd",
-            "coverage", "p_value")})
+            "coverage", "p_value")}, ("truth", "bias", "sd", "stated_sd"))
+
+    def plot(self) -> Any:
+        """How often the 95 % intervals hold, with the interval of that count, a bar a quantity.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Rows as in `rows`, those without an interval left out.
+        """
+        counted = [one for one in self.rows if one.coverage is not None and one.interval95 is not None]
+        ax = new_axes(1)[0]
+        for number, one in enumerate(counted):
+            low, high = one.interval95 or (0.0, 0.0)
+            ax.barh(number, 100.0 * (one.coverage or 0.0), color="0.85")
+            ax.plot([100.0 * low, 100.0 * high], [number, number], color="C0" if low <= 0.95 <= high else "C3", linewidth=3)
+        ax.axvline(95.0, color="0.4", linestyle="--")
+        ax.set_yticks(range(len(counted)), [f"{one.configuration} {one.quantity} {one.estimator}" for one in counted],
+                      fontsize=7)
+        ax.invert_yaxis()
+        ax.set_xlim(min([70.0, *(100.0 * (one.interval95 or (1.0,))[0] for one in counted)]), 100.0)
+        ax.set_xlabel("95 % intervals that hold the truth (%)")
+        return ax
+
+    def _repr_html_(self) -> str:
+        def text(number: Optional[float]) -> str:
+            return "" if number is None else f"{number:.3g}"
+
+        rows = [[one.configuration, one.estimator, one.quantity, f"{one.determined} of {self.replicates}",
+                 text(one.bias), text(one.sd), text(one.stated_sd),
+                 "" if one.coverage is None else f"{100.0 * one.coverage:.1f} %",
+                 "" if one.interval95 is None else
+                 f"{100.0 * one.interval95[0]:.1f} to {100.0 * one.interval95[1]:.1f} %"] for one in self.rows]
+        return html_table(["configuration", "estimator", "quantity", "answers", "mean error", "sd", "stated sd",
+                           "95 % intervals that hold", "of that"], rows) + html_plot(self.plot)
 
 
 def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates: int = 1000,
-             levels: Sequence[float] = (), bandwidth_s: Optional[float] = None, seed: Optional[int] = None,
-             jobs: Optional[int] = None, progress: Progress = None) -> Coverage:
+             levels: Sequence[float] = (), bandwidth_s: Optional[float] = None,
+             estimator_command: Optional[str] = None, estimator_name: str = "",
+             estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
+             seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Coverage:
     """Analyses many replicates of a scenario's motions, and counts how often the intervals hold the truth.
 
     Parameters
@@ -187,6 +263,8 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
         Of the intervals that are counted, above 0 and below 1; 0.5, 0.68, 0.9, 0.95, 0.99.
     bandwidth_s : float, optional
         Of the phase diagram; chosen clip by clip.
+    estimator_command, estimator_name, estimator_seconds, estimator_megabytes
+        As in `validate`.
     seed, jobs, progress
         As in `validate`.
 
@@ -199,9 +277,14 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
     ------
     InputError
         Wrong input, or a camera that cannot see the marker.
+
+    Notes
+    -----
+    docs/evidence/coverage.md. Intervals of a count are those of Clopper and Pearson (1934).
     """
+    command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
     made = Made(_glidelab.coverage(given_scenario(scenario), noise_m, whole("replicates", replicates, 1, 1000000),
-                                   [float(level) for level in levels], bandwidth_s, checked_seed(seed),
+                                   [float(level) for level in levels], bandwidth_s, command, checked_seed(seed),
                                    job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     rows = []
@@ -211,178 +294,4 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
             one["configuration"], one["estimator"], one["quantity"], one.get("truth"), one["determined"],
             one["covered"], one.get("bias"), one.get("sd"), one.get("stated_sd"), one.get("coverage"),
             None if interval is None else (interval[0], interval[1]), one.get("p_value")))
-    return Coverage(made, found["replicates"], tuple(rows))
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """One camera or setting of a sweep, as a requirement judges it.
-
-    Attributes
-    ----------
-    name, verdict : str
-        Of the sweep's point, and what is said of it.
-    reached : bool
-        Whether it reaches every target.
-    price_eur, frame_rate_hz, noise_m : float or None
-        What it costs, how it is set, and the noise of its positions.
-    errors, error_sds, bounds : tuple of (float or None)
-        Of each target, in the target's unit and measure: the error by runs with its standard deviation (None: not run),
-        and the least that noise and frame rate allow.
-    """
-
-    name: str
-    reached: bool
-    verdict: str
-    price_eur: Optional[float]
-    frame_rate_hz: Optional[float]
-    noise_m: Optional[float]
-    errors: tuple[Optional[float], ...] = ()
-    error_sds: tuple[Optional[float], ...] = ()
-    bounds: tuple[Optional[float], ...] = ()
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Requirement(Result):
-    """Which cameras and settings reach a target.
-
-    Attributes
-    ----------
-    name : str
-        Of the sweep.
-    candidates : tuple of Candidate
-        The cheapest first.
-    targets : tuple of str
-        What was asked for, in words: "mu 95 % error 0.0001".
-    """
-
-    name: str
-    candidates: tuple[Candidate, ...]
-    targets: tuple[str, ...] = ()
-
-    @property
-    def cheapest(self) -> Optional[Candidate]:
-        """The first that reaches the target; None where nothing does."""
-        return next((one for one in self.candidates if one.reached), None)
-
-    def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a candidate; of several targets the first target's error and bound."""
-        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in (
-            "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")}
-        columns["error"] = [one.errors[0] if one.errors else None for one in self.candidates]
-        columns["bound"] = [one.bounds[0] if one.bounds else None for one in self.candidates]
-        return frame_of(columns)
-
-    def _repr_html_(self) -> str:
-        header = ["camera", "price (EUR)", "verdict"]
-        for target in self.targets:
-            header += [f"error ({target})", "at best"]
-        rows = []
-        for one in self.candidates:
-            row = [one.name, "" if one.price_eur is None else f"{one.price_eur:g}", one.verdict]
-            for error, sd, bound in zip(one.errors, one.error_sds, one.bounds):
-                row += ["" if error is None else rounded_error(error, sd), "" if bound is None else f"{bound:.2g}"]
-            rows.append(row)
-        return html_table(header, rows)
-
-
-def rounded_error(error: float, sd: Optional[float]) -> str:
-    """"3.6e-06 ± 1.0e-06": errors are small numbers, of which two digits count."""
-    return f"{error:.2g}" if sd is None else f"{error:.2g} ± {sd:.1g}"
-
-
-def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks", runs: int = 12, track_runs: int = 200,
-            seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Requirement:
-    """Which cameras and settings of a sweep reach a target, the cheapest first, and what limits the others.
-
-    Parameters
-    ----------
-    sweep : str or path
-        A sweep file over cameras or settings (docs/reference/sweep.md).
-    targets : sequence of str
-        ``"mu=0.0005"``, ``"k_over_m_1_s:error95=0.01"``, ``"mu:bias=0.0001"``.
-    confirm : {"tracks", "clips", "none"}
-        How what the Cramer-Rao bound allows is confirmed.
-    runs, track_runs : int
-        Rendered runs, with ``confirm="clips"``, and runs as tracks of each candidate.
-    seed, jobs, progress
-        As in `validate`.
-
-    Returns
-    -------
-    Requirement
-        As ``glidelab require`` writes it. A target that nothing reaches is no exception.
-
-    Raises
-    ------
-    InputError
-        A wrong sweep or target.
-    """
-    if isinstance(targets, str):
-        targets = [targets]
-    if not targets:
-        raise input_error("targets", "none", "one or more, such as \"mu=0.0005\"")
-    made = Made(_glidelab.require(os.fspath(sweep), list(targets), confirm, whole("runs", runs, 2, 100000),
-                                  whole("track_runs", track_runs, 2, 1000000), checked_seed(seed), job_count(jobs),
-                                  teller(progress)))
-    found = Result(made).to_dict()
-    of_targets = [{name: tuple(target.get(name) for target in one["targets"])
-                   for name in ("found", "found_sd", "bound")} for one in found["candidates"]]
-    return Requirement(made, found["name"], tuple(
-        Candidate(one["name"], one["reached"], one["verdict"], one.get("price_eur"), one.get("frame_rate_hz"),
-                  one.get("noise_m"), of["found"], of["found_sd"], of["bound"])
-        for one, of in zip(found["candidates"], of_targets)), tuple(found["targets"]))
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Sweep(Result):
-    """Errors over all runs of a sweep, and over each key that varies.
-
-    Attributes
-    ----------
-    name : str
-        Of the sweep.
-    runs, failed : int
-        In the database, and of these without a result.
-    database : str
-        The SQLite file with every run.
-    """
-
-    name: str
-    runs: int
-    failed: int
-    database: str
-
-    def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a quantity and an estimator, over all runs."""
-        rows = self.to_dict()["overall"]
-        return frame_of({name: [row.get(name) for row in rows] for name in (rows[0] if rows else ())})
-
-
-def sweep(file: PathLike, folder: PathLike, *, seed: Optional[int] = None, jobs: Optional[int] = None,
-          progress: Progress = None) -> Sweep:
-    """Runs a scenario many times with varied values. Called again with the same folder, it goes on where it stopped.
-
-    Parameters
-    ----------
-    file : str or path
-        A sweep file (docs/reference/sweep.md).
-    folder : str or path
-        Where its database ``sweep.sqlite`` lies or is made. After Ctrl-C the runs that are finished stay there.
-    seed, jobs, progress
-        As in `validate`.
-
-    Returns
-    -------
-    Sweep
-        As ``glidelab sweep --json`` prints it.
-
-    Raises
-    ------
-    InputError
-        A wrong sweep, or a database of another one.
-    """
-    made = Made(_glidelab.sweep(os.fspath(file), os.fspath(folder), checked_seed(seed), job_count(jobs),
-                                teller(progress)))
-    found = Result(made).to_dict()
-    return Sweep(made, found["name"], found["runs"], found["failed"], os.path.join(os.fspath(folder), "sweep.sqlite"))
+    return Coverage(made, found["replicates"], tuple(rows), outside_runs(found))

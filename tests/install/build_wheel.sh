@@ -25,3 +25,9 @@ version=$(sed -n 's/^project(glidelab VERSION \([0-9.]*\).*/\1/p' "$source/CMake
 for file in py.typed _glidelab.pyi; do
   [ -e "$work/installed/glidelab/$file" ] || { echo "not installed: $file"; exit 1; }
 done
+# The bound on numpy is that of the pybind11 that made the module.
+PYTHONPATH=$work/installed "$python" -c "
+import glidelab._glidelab, importlib.metadata
+said = [one for one in importlib.metadata.requires('glidelab') if 'extra' not in one]
+assert len(said) == 1 and said[0].startswith('numpy'), said
+assert '>=1.24' in said[0] and ('<2' in said[0]) == (glidelab._glidelab.pybind11_version < (2, 12)), said"

@@ -1,5 +1,8 @@
 """judge(): an estimator of the user's own beside the built-in ones."""
 
+import signal
+import threading
+import time
 import unittest
 
 import numpy as np
@@ -47,7 +50,7 @@ class Judging(unittest.TestCase):
         for row in glidelab.judge(SCENARIO, knowing, noise_m=2e-5, replicates=3).of("knowing", "mu"):
             self.assertEqual((row.bias, row.rms, row.covered), (0.0, 0.0, 1.0))
 
-    def test_what_an_estimator_raises_is_counted_and_told(self):
+    def test_what_it_raises_once_is_counted_once_and_told(self):
         calls = []
 
         def moody(tracks):
@@ -60,12 +63,90 @@ class Judging(unittest.TestCase):
         self.assertEqual({row.failed for row in judged.rows}, {1})
         self.assertEqual(judged.failures, {"moody": "ZeroDivisionError: not today"})
 
-    def test_an_answer_that_is_none_is_refused(self):
-        for answer in ({"K": 1.0}, {"mu": (1.0, 2.0, 3.0)}):
-            with self.assertRaises(glidelab.InputError):
-                glidelab.judge(SCENARIO, lambda tracks, said=answer: said, noise_m=2e-5, replicates=2)
+    def test_whatever_an_estimator_raises_ends_nothing(self):
+        class Own(Exception):
+            """Not one of Python's."""
+
+        def singular(tracks):
+            return {"mu": np.linalg.inv(np.zeros((2, 2)))[0, 0]}
+
+        def misspelt(tracks):
+            return {"mu": tracks[0].position.mean()}
+
+        def own(tracks):
+            raise Own("of my own")
+
+        def hungry(tracks):
+            raise MemoryError
+
+        judged = glidelab.judge(SCENARIO, singular, misspelt, own, hungry, "phase-diagram", noise_m=2e-5, replicates=2)
+        for row in judged.rows:
+            self.assertEqual((row.answered, row.failed), (2, 0) if row.estimator == "phase-diagram" else (0, 2))
+            self.assertIsNone(row.rms if row.failed else None)
+        self.assertEqual(judged.failures["singular"], "LinAlgError: Singular matrix")
+        self.assertIn("AttributeError", judged.failures["misspelt"])
+        self.assertEqual(judged.failures["own"], "Own: of my own")
+        self.assertIn("own failed first with: Own: of my own", str(judged))
+
+    def test_who_wants_to_stop_is_not_held(self):
+        for wanted in (KeyboardInterrupt, SystemExit):
+            def stopping(tracks, stop=wanted):
+                raise stop
+
+            with self.assertRaises(wanted):
+                glidelab.judge(SCENARIO, stopping, noise_m=2e-5, replicates=2)
+
+    def test_an_answer_that_is_none_is_counted_and_told(self):
+        nan = float("nan")
+        for answer, told in ((None, "a dict of quantities"), ([0.01], "a dict of quantities"),
+                             ({"K": 1.0}, "the quantity 'K'"), ({1: 1.0}, "the quantity 1"),
+                             ({"mu": (1.0, 2.0, 3.0)}, "mu: found 3 numbers"), ({"mu": ()}, "mu: found 0 numbers"),
+                             ({"mu": "0.01"}, "mu: found '0.01'"), ({"mu": True}, "mu: found True"),
+                             ({"mu": 1j}, "mu: found 1j"), ({"mu": np.zeros(3)}, "mu: found array"),
+                             ({"mu": (None, 0.1)}, "mu: found None"), ({"mu": (0.01, "small")}, "mu: found 'small'"),
+                             ({"mu": (0.01, -1.0)}, "mu: found the standard deviation -1"),
+                             ({"mu": (0.01, nan)}, "mu: found the standard deviation nan"),
+                             ({"mu": (nan, -1.0)}, "mu: found the standard deviation -1"),
+                             ({"mu": (0.01, float("inf"))}, "mu: found the standard deviation inf"),
+                             ({"mu": glidelab.Quantity(0.01, -0.1)}, "mu: found the standard deviation -0.1"),
+                             ({"mu": glidelab.Quantity(0.01, 0.1, (0.2, 0.0))}, "an interval from 0.2 to 0")):
+            with self.subTest(answer):
+                judged = glidelab.judge(SCENARIO, lambda tracks, said=answer: said, noise_m=2e-5, replicates=2)
+                self.assertEqual({(row.answered, row.failed, row.stated) for row in judged.rows}, {(0, 2, 0)})
+                self.assertIn(told, judged.failures["<lambda>"])
         with self.assertRaises(glidelab.InputError):
             glidelab.judge(SCENARIO, "best", noise_m=2e-5)
+
+    def test_what_cannot_be_determined_is_no_failure(self):
+        for answer in ({}, {"mu": None}, {"mu": float("nan")}, {"mu": glidelab.Quantity(why="no reason")}):
+            judged = glidelab.judge(SCENARIO, lambda tracks, said=answer: said, noise_m=2e-5, replicates=2)
+            self.assertEqual({(row.answered, row.failed) for row in judged.rows}, {(0, 0)})
+            self.assertEqual(judged.failures, {})
+
+    def test_a_standard_deviation_makes_an_interval_of_it_unless_one_is_stated(self):
+        def holds(answer):
+            rows = glidelab.judge(SCENARIO, lambda tracks: {"mu": answer}, noise_m=2e-5, replicates=2).rows
+            return {(row.stated, row.covered) for row in rows if row.quantity == "mu"}
+
+        # A truth that is 1.95 standard deviations off lies in the interval of 1.96, one that is 1.97 off does not.
+        off = {row.truth for row in glidelab.judge(SCENARIO, lambda tracks: {"mu": 1.0}, noise_m=2e-5,
+                                                   replicates=2).rows if row.quantity == "mu"}
+        far, near = max(1.0 - truth for truth in off), min(1.0 - truth for truth in off)
+        self.assertEqual(holds((1.0, far / 1.95)), {(2, 1.0)})
+        self.assertEqual(holds([1.0, near / 1.97]), {(2, 0.0)})
+        self.assertEqual(holds(glidelab.Quantity(1.0, far / 1.95)), {(2, 1.0)})
+        self.assertEqual(holds(glidelab.Quantity(1.0, near / 1.97)), {(2, 0.0)})
+        self.assertEqual(holds(glidelab.Quantity(1.0, 9.0, (0.9, 1.1))), {(2, 0.0)})
+        self.assertEqual(holds(np.float64(1.0)), {(0, None)})
+
+    def test_the_positions_of_the_others_cannot_be_spoilt(self):
+        def spoiling(tracks):
+            tracks[0].x_m[:] = 0.0
+            return {}
+
+        alone = glidelab.judge(SCENARIO, crude, noise_m=2e-5, replicates=2)
+        judged = glidelab.judge(SCENARIO, spoiling, crude, noise_m=2e-5, replicates=2)
+        self.assertEqual(judged.of("crude", "mu"), alone.of("crude", "mu"))
 
     def test_a_registered_one_is_judged_by_default(self):
         @glidelab.estimator
@@ -75,3 +156,60 @@ class Judging(unittest.TestCase):
         judged = glidelab.judge(SCENARIO, noise_m=2e-5, replicates=2)
         self.assertEqual(set(judged.seconds), {"phase-diagram", "mine"})
         self.assertEqual(mine([]), {"alpha_deg": 4.0})
+
+
+class Patience(unittest.TestCase):
+    @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
+    def test_a_call_that_takes_too_long_is_ended_and_counted(self):
+        def endless(tracks):
+            while True:
+                try:
+                    time.sleep(60.0)
+                except Exception:  # one that holds on to whatever it can
+                    continue
+
+        def quick(tracks):
+            return {"mu": 0.01}
+
+        begin = time.monotonic()
+        judged = glidelab.judge(SCENARIO, endless, quick, noise_m=2e-5, replicates=2, seconds=0.2)
+        self.assertLess(time.monotonic() - begin, 30.0)  # one call of each experiment; the first that fails ends it
+        self.assertEqual({row.failed for row in judged.of("endless", "mu")}, {2})
+        self.assertEqual({(row.answered, row.failed) for row in judged.of("quick", "mu")}, {(2, 0)})
+        self.assertEqual(judged.failures, {"endless": "not done after 0.2 s"})
+
+    @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
+    def test_a_limit_holds_of_a_built_in_one_and_of_any_length(self):
+        before = signal.getsignal(signal.SIGALRM)
+        for seconds in (1e-6, 1e-5, 1e-4, 1e-3):  # a fit of all motions takes longer
+            judged = glidelab.judge(SCENARIO, "trajectory", noise_m=2e-5, replicates=2, seconds=seconds)
+            self.assertEqual({row.failed for row in judged.rows}, {2})
+            self.assertIn("not done after", judged.failures["trajectory"])
+            self.assertEqual(signal.getsignal(signal.SIGALRM), before)
+            self.assertEqual(signal.getitimer(signal.ITIMER_REAL), (0.0, 0.0))
+
+    @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
+    def test_a_timer_of_the_caller_s_rings_all_the_same(self):
+        rung = threading.Event()
+        before = signal.signal(signal.SIGALRM, lambda number, frame: rung.set())
+        self.addCleanup(signal.signal, signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        glidelab.judge(SCENARIO, lambda tracks: time.sleep(0.1), noise_m=2e-5, replicates=2, seconds=10.0)
+        self.assertTrue(rung.wait(10.0))
+
+    def test_where_a_limit_cannot_be_kept_it_is_refused(self):
+        def judged():
+            try:
+                glidelab.judge(SCENARIO, lambda tracks: {}, noise_m=2e-5, replicates=2, seconds=1.0)
+            except glidelab.InputError as error:
+                refused.append(error)
+
+        refused: list[glidelab.InputError] = []
+        thread = threading.Thread(target=judged)
+        thread.start()
+        thread.join()
+        self.assertIn("main thread", refused[0].expected)
+        for seconds in (0.0, -1.0, float("nan"), True, "1"):
+            with self.assertRaises(glidelab.InputError) as caught:
+                glidelab.judge(SCENARIO, lambda tracks: {}, noise_m=2e-5, replicates=2, seconds=seconds)
+            self.assertEqual(caught.exception.key, "seconds")

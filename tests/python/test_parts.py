@@ -1,5 +1,6 @@
 """The smoother, the rules, the calibration and the marker's fit on their own; films; studies; a check."""
 
+import json
 import math
 
 import numpy as np
@@ -156,6 +157,76 @@ class Studies(InFolder):
         self.assertEqual(mine.rows[0].interval95, tuple(mine.to_dict()["quantities"][0]["coverage_interval95"]))
         run("coverage", path, "--noise-m", "2e-5", "--replicates", "10", "--seed", "3", "-q", "-o", self.folder / "out")
         self.assertEqual(mine.to_json(), (self.folder / "out" / "coverage.json").read_text())
+
+    def test_a_program_of_one_s_own_is_judged_as_the_command_judges_it(self):
+        command = f'/usr/bin/python3 "{SOURCE}/examples/estimators/finite_differences.py" {{folder}} {{out}}'
+        mine = {"estimator_command": command, "estimator_name": "mine", "estimator_seconds": 120.0}
+        its = ("--estimator-command", command, "--estimator-name", "mine", "--estimator-seconds", "120")
+        timed = ("mean_s", "longest_s")
+
+        def without_times(document):
+            document["outside"] = {key: value for key, value in document["outside"].items() if key not in timed}
+            document.pop("wall_s", None)
+            return document
+
+        path = SOURCE / "scenarios" / "paper" / "inclined.toml"
+        run("coverage", path, "--noise-m", "2e-5", "--replicates", "3", "-q", *its, "-o", self.folder / "c")
+        coverage = glidelab.coverage(path, noise_m=2e-5, replicates=3, **mine)
+        self.assertEqual(without_times(coverage.to_dict()), without_times(read_json(self.folder / "c/coverage.json")))
+        self.assertEqual((coverage.outside.name, coverage.outside.command, coverage.outside.runs,
+                          coverage.outside.failed, coverage.outside.failures),
+                         ("mine", command.replace('"', ""), 3, 0, {}))
+        self.assertGreater(coverage.outside.longest_s, 0.0)
+        self.assertTrue(any(row.estimator == "mine" and row.determined == 3 for row in coverage.rows))
+
+        from glidelab._toml import toml_text
+        (self.folder / "scenario.toml").write_text(toml_text(small_scenario()))
+        run("validate", self.folder / "scenario.toml", "-q", *its, "-o", self.folder / "v")
+        validation = glidelab.validate(self.folder / "scenario.toml", **mine)
+        self.assertEqual(without_times(validation.to_dict()), without_times(read_json(self.folder / "v/comparison.json")))
+        self.assertEqual((validation.outside.runs, validation.outside.failed), (1, 0))
+        validation.write(self.folder / "written")
+        self.assertEqual((self.folder / "written/results-mine.json").read_text(),
+                         (self.folder / "v/results-mine.json").read_text())
+
+        (self.folder / "sweep.toml").write_text(
+            f'format = 1\nname = "short"\nscenario = "{path}"\nreplicates = 1\nseed = 2\nestimators = '
+            '["phase-diagram"]\n[tracks]\nnoise_m = 2e-5\n[[vary]]\nkey = "camera.frame_rate_hz"\nvalues = [100.0, 200.0]\n')
+        sweep = glidelab.sweep(self.folder / "sweep.toml", self.folder / "mine", **mine)
+        said = json.loads(run("sweep", self.folder / "sweep.toml", "-q", "--json", *its, "-o", self.folder / "its"))
+        self.assertEqual(without_times(sweep.to_dict()), without_times(said))
+        self.assertEqual((sweep.outside.runs, sweep.outside.failed), (2, 0))
+
+    def test_a_program_that_fails_is_counted_and_a_wrong_command_is_refused(self):
+        path = SOURCE / "scenarios" / "paper" / "inclined.toml"
+        judged = glidelab.coverage(path, noise_m=2e-5, replicates=2, estimator_seconds=0.3,
+                                   estimator_command="sh -c 'sleep 60' sleeper {folder} {out}")
+        self.assertEqual((judged.outside.runs, judged.outside.failed), (2, 2))
+        self.assertEqual(judged.outside.failures["time_out"].count, 2)
+        self.assertIn("0.3 s", judged.outside.failures["time_out"].first)
+        self.assertIsNone(glidelab.coverage(path, noise_m=2e-5, replicates=2).outside)
+        for wrong in ({"estimator_command": "sh mine"}, {"estimator_command": "no-such-program {folder} {out}"},
+                      {"estimator_command": 3}, {"estimator_name": "mine"},
+                      {"estimator_command": "sh {folder} {out}", "estimator_seconds": 0.0},
+                      {"estimator_command": "sh {folder} {out}", "estimator_megabytes": math.nan},
+                      {"estimator_command": "sh {folder} {out}", "estimator_name": "trajectory"}):
+            with self.assertRaises(glidelab.InputError):
+                glidelab.coverage(path, noise_m=2e-5, replicates=2, **wrong)
+
+    def test_an_image_that_is_too_large_is_refused(self):
+        glidelab.render_folder(small_scenario(), self.folder / "made")  # 400 x 300 pixels
+        small = glidelab.check(self.folder / "made", most_megapixels=0.1)
+        self.assertFalse(small.usable)
+        self.assertIn("400 x 300 pixels", str(small))
+        for call in (glidelab.analyze, glidelab.diagnose, glidelab.certify):
+            with self.assertRaises(glidelab.InputError) as caught:
+                call(self.folder / "made", most_megapixels=0.1)
+            self.assertIn("400 x 300 pixels", str(caught.exception))
+            with self.assertRaises(glidelab.InputError) as caught:
+                call(self.folder / "made", most_megapixels=0.0)
+            self.assertEqual(caught.exception.key, "most_megapixels")
+        self.assertEqual(glidelab.check(self.folder / "made", most_megapixels=0.2).to_json(),
+                         glidelab.check(self.folder / "made").to_json())
 
     def test_a_sweep_goes_on_where_it_stopped(self):
         (self.folder / "scenario.toml").write_text((SOURCE / "scenarios" / "paper" / "inclined.toml").read_text())

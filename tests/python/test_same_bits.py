@@ -67,6 +67,66 @@ class SameBits(InFolder):
         self.assertEqual(glidelab.explain(diagnosis), run("diagnose", folder, "-q", "--no-page", "-o",
                                                           self.folder / "out"))
 
+    def test_analyze_with_effects(self):
+        tracks = made_tracks()
+        folder = self.write_experiment(tracks)
+        said = run("analyze", folder, "-q", "--json", "--with", "quadratic_drag", "--with", "track_bow", "-o",
+                   self.folder / "out")
+        found = glidelab.analyze(folder, with_effects=["quadratic_drag", "track_bow"])
+        self.assertEqual(found.to_json(), said)
+        self.assertEqual(glidelab.analyze(tracks, name="made", with_effects=["quadratic_drag", "track_bow"]).to_json(),
+                         said)
+        self.assertEqual(list(found.with_effects.effects), ["quadratic_drag", "track_bow"])
+        self.assertEqual(len(found.with_effects.recovered), len(found.configurations))
+        self.assertIn("with quadratic_drag, track_bow", found._repr_html_())
+        self.assertEqual(str(found), run("analyze", folder, "-q", "--with", "quadratic_drag", "--with", "track_bow",
+                                         "-o", self.folder / "out"))
+        found.write(self.folder / "written")
+        for name in ("results.json", "report.html"):
+            self.assertEqual((self.folder / "written" / name).read_bytes(), (self.folder / "out" / name).read_bytes())
+        self.assertIsNone(glidelab.analyze(tracks).with_effects)
+        for wrong in (["gremlins"], ["track_bow", "track_bow"], "track_bow", [3]):
+            with self.assertRaises(glidelab.InputError) as caught:
+                glidelab.analyze(tracks, with_effects=wrong)
+            self.assertEqual(caught.exception.key, "with_effects")
+
+    def test_blind(self):
+        for options, choices in (((), {}), (("--everyday", "--only", "dropped_frames"),
+                                            {"everyday": True, "only": "dropped_frames"})):
+            with self.subTest(choices):
+                name = "everyday" if choices else "tracks"
+                its, mine = self.folder / f"{name}-its", self.folder / f"{name}-mine"
+                run("blind", "--cases", "1", "--seed", "3", *options, "-q", "-o", its)
+                blind = glidelab.blind(1, mine, seed=3, **choices)
+                wanted, said = read_json(its / "blind.json"), blind.to_dict()
+                for document in (wanted, said):  # all but how long a diagnosis took
+                    document.get("everyday", {}).pop("seconds", None)
+                    document["outcomes"][0].pop("seconds", None)
+                    document["targets"] = [one for one in document["targets"] if "seconds" not in one["what"]]
+                self.assertEqual(said, wanted)
+                for part in ("cases/0000/experiment.toml", "diagnoses/0000/diagnosis.json", "truth/0000.json"):
+                    self.assertEqual((mine / part).read_bytes(), (its / part).read_bytes())
+                case = blind.cases[0]
+                self.assertEqual((case.verdict, list(case.causes)),
+                                 (said["outcomes"][0]["verdict"], [one["id"] for one in said["outcomes"][0]["truth"]]))
+                self.assertIn("1 blind cases, seed 3", blind._repr_html_())
+                blind.write(mine)
+                self.assertIn("<html", (mine / "report.html").read_text())
+                self.assertEqual(glidelab.blind(1, mine, seed=3, **choices).to_dict()["outcomes"],
+                                 blind.to_dict()["outcomes"])  # kept, not made again
+        for wrong in ({"only": "gremlins"}, {"everyday": True, "pictures": True}, {"seed": 4}, {"cases": 0}):
+            with self.assertRaises(glidelab.InputError):
+                glidelab.blind(**{"cases": 1, "folder": self.folder / "tracks-mine", "seed": 3, **wrong})
+
+    def test_require(self):
+        (self.folder / "two.toml").write_text(
+            f'format = 1\nname = "two"\nscenario = "{SCENARIO}"\nlevel = "tracks"\nreplicates = 1\n'
+            '[[vary]]\nkey = "tracks.noise_m"\nvalues = [1e-5, 4e-5]\n')
+        said = run("require", self.folder / "two.toml", "--target", "mu=0.001", "--track-runs", "20", "--seed", "5",
+                   "-q", "--json", "-o", self.folder / "out")
+        self.assertEqual(glidelab.require(self.folder / "two.toml", ["mu=0.001"], track_runs=20, seed=5).to_json(),
+                         said)
+
     def test_certify(self):
         folder = self.write_experiment(made_tracks())
         said = run("certify", folder, "-q", "--json", "--twins", "20", "--seed", "3", "-o", self.folder / "out")

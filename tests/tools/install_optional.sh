@@ -29,8 +29,10 @@ wanted=$(grep -v '^#' "$source/tools/packages-optional.txt" | grep -vx chromium 
 [ "$(sort "$work/installed")" = "$wanted" ] || { echo "installed:"; cat "$work/installed"; exit 1; }
 echo "$said" | grep -qx '== Not installed, so that tests which need them will be skipped: chromium'
 
-# And what a log of tests says of skipped ones, each reason once; the command of a test that ran, and what another one
+# And what a log of tests says of skipped ones, and of what others left out, each reason once; the command of a test that ran, and what another one
 # printed in the middle of a line, are none.
 printf '  skipped: no zsh program\nfine\n  skipped: no zsh program\n' > "$work/log"
 printf 'Command: "sh" "-c" "echo skipped: no room"\n== Not installed, tests will be skipped: tac\n' >> "$work/log"
-[ "$(bash -c ". '$source/tools/setup.sh'; skipped_in '$work/log'")" = "skipped: no zsh program" ]
+printf '  not run: sparse.py, no pysindy\nthis was not run: a command\n' >> "$work/log"
+[ "$(bash -c ". '$source/tools/setup.sh'; skipped_in '$work/log'")" = "not run: sparse.py, no pysindy
+skipped: no zsh program" ]

@@ -1,0 +1,174 @@
+"""blind(): experiments whose cause is withheld, diagnosed by another process, and scored."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from . import _glidelab
+from ._apart import interpreter
+from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
+from ._results import Made, Result, frame_of, html_table
+
+MOST_CASES = 100000
+
+
+@dataclass(frozen=True)
+class BlindTarget:
+    """What a diagnosis should reach.
+
+    Attributes
+    ----------
+    what : str
+        In words.
+    of, yes : int or None
+        Cases that bear on it, and those that are as wanted; None for a target that is not a share.
+    value : float or None
+        The share, or the number; None without a case.
+    at_least, at_most : float or None
+        What is wanted.
+    met : bool or None
+        None without a case.
+    """
+
+    what: str
+    of: Optional[int]
+    yes: Optional[int]
+    value: Optional[float]
+    at_least: Optional[float]
+    at_most: Optional[float]
+    met: Optional[bool]
+
+
+@dataclass(frozen=True)
+class BlindCase:
+    """One experiment: what was in it, and what the diagnosis said.
+
+    Attributes
+    ----------
+    case : int
+        Its number, from 0 on.
+    kind : str
+        ``"none"``, ``"single"``, ``"pair"`` or ``"outside"``: how many causes, or one that is not on the list.
+    causes : tuple of str
+        Ids of what was put in.
+    verdict : str
+        ``"none"``, ``"effect"``, ``"unknown"``, or ``"failed"``.
+    named : tuple of str
+        Ids of what the verdict names.
+    """
+
+    case: int
+    kind: str
+    causes: tuple[str, ...]
+    verdict: str
+    named: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Blind(Result):
+    """How often diagnoses of withheld causes are right.
+
+    Attributes
+    ----------
+    seed : int
+        Of the cases.
+    failed : int
+        Cases that could not be diagnosed.
+    targets : tuple of BlindTarget
+        What a diagnosis should reach, and what it reached.
+    calibration_error : float
+        Mean difference between stated probabilities and how often they are right.
+    cases : tuple of BlindCase
+        All of them.
+    folder : str
+        Where experiments, diagnoses and truths lie.
+    """
+
+    seed: int
+    failed: int
+    targets: tuple[BlindTarget, ...]
+    calibration_error: float
+    cases: tuple[BlindCase, ...]
+    folder: str
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, a row a case."""
+        return frame_of({name: [getattr(one, name) for one in self.cases]
+                         for name in ("case", "kind", "causes", "verdict", "named")})
+
+    def _repr_html_(self) -> str:
+        rows = [[one.what, _found_text(one), _wanted_text(one), "" if one.met is None else "met" if one.met else "missed"]
+                for one in self.targets]
+        return html_table(["", "found", "wanted", ""], rows, f"{len(self.cases)} blind cases, seed {self.seed}")
+
+
+def _found_text(target: BlindTarget) -> str:
+    if target.value is None:
+        return ""
+    return f"{target.value:.3g}" if not target.of else f"{100.0 * target.value:.0f} % ({target.yes} of {target.of})"
+
+
+def _wanted_text(target: BlindTarget) -> str:
+    return " and ".join(f"{words} {limit:g}" for words, limit in (("at least", target.at_least),
+                                                                  ("at most", target.at_most)) if limit is not None)
+
+
+def _target(found: Mapping[str, Any]) -> BlindTarget:
+    of, yes = found.get("of"), found.get("yes")
+    value = found.get("value", yes / of if of and yes is not None else None)
+    return BlindTarget(found["what"], of, yes, value, found.get("at_least"), found.get("at_most"), found.get("met"))
+
+
+def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = False, pictures: bool = False,
+          leave_out: bool = False, seed: int = 1, jobs: Optional[int] = None, progress: Progress = None) -> Blind:
+    """Makes experiments whose cause is withheld, has another process diagnose each, and scores the diagnoses.
+
+    Parameters
+    ----------
+    cases : int
+        How many, 1 to 100000. Called again with the same folder and more cases, it goes on where it stopped.
+    folder : str or path
+        Where experiments, diagnoses and truths lie or are made.
+    only : str
+        An effect (docs/reference/effects.md) that every case has; without it none, one, two, or one that is not on the
+        list.
+    everyday : bool
+        Tracks as students record them: causes as above, and three to five small imperfections.
+    pictures : bool
+        Rendered clips instead of tracks.
+    leave_out : bool
+        Diagnose each case of one effect again with that effect taken off the list.
+    seed : int
+        Of the cases.
+    jobs, progress
+        As in `analyze`; jobs are cases at a time.
+
+    Returns
+    -------
+    Blind
+        As ``glidelab blind`` writes it. Missed targets are no exception.
+
+    Raises
+    ------
+    InputError
+        Choices that exclude each other, an unknown effect, or a folder of another run.
+    SystemFailure
+        The folder cannot be written.
+
+    Notes
+    -----
+    Each case is diagnosed by an interpreter of its own, started with the name of the experiment folder and nothing else;
+    the truth is written afterwards. docs/evidence/blind-tracks.md has what a large run says.
+    """
+    made = Made(_glidelab.blind(interpreter(), os.fspath(folder), whole("cases", cases, 1, MOST_CASES),
+                                checked_seed(seed) or 0, only, bool(everyday), bool(pictures), bool(leave_out),
+                                job_count(jobs), teller(progress)))
+    found = Result(made).to_dict()
+    return Blind(made, found["seed"], found["failed"], tuple(_target(one) for one in found["targets"]),
+                 found["expected_calibration_error"], tuple(
+                     BlindCase(one["case"], one["kind"], tuple(cause["id"] for cause in one["truth"]), one["verdict"],
+                               tuple(cause["id"] for cause in one["named"])) for one in found["outcomes"]),
+                 os.fspath(folder))

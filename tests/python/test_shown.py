@@ -1,0 +1,191 @@
+"""What a notebook shows of a result: tables with its numbers, and plots where matplotlib is; and how columns are labelled."""
+
+import re
+import unittest
+from unittest import mock
+
+import numpy as np
+
+import glidelab
+from glidelab._results import BY_ROW, html_plot, unit_of
+from tests.python.support import SOURCE, InFolder, damped, needs
+
+SCENARIO = SOURCE / "scenarios" / "paper" / "inclined.toml"
+PLOT = '<img alt="plot" src="data:image/png;base64,'
+
+
+def made_sweep(folder, values="[100.0, 200.0]", key="camera.frame_rate_hz"):
+    (folder / "sweep.toml").write_text(
+        f'format = 1\nname = "short"\nscenario = "{SCENARIO}"\nreplicates = 2\nseed = 2\nestimators = '
+        f'["phase-diagram"]\n[tracks]\nnoise_m = 2e-5\n[[vary]]\nkey = "{key}"\nvalues = {values}\n')
+    return glidelab.sweep(folder / "sweep.toml", folder / "out")
+
+
+class Shown(InFolder):
+    @classmethod
+    def setUpClass(cls):
+        cls.coverage = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=5)
+        t, x = damped()
+        cls.smooth = glidelab.smooth(t, x, smoother="kalman", breaks_s=[0.6])
+        cls.local = glidelab.smooth(t, x, 0.03, noise_m=2e-5)
+
+    def shown(self, result):
+        """Its HTML, which has a table and no text as it was printed."""
+        said = result._repr_html_()
+        self.assertIn("<table>", said)
+        self.assertNotIn("<pre>", said)
+        return said
+
+    def test_coverage(self):
+        said = self.shown(self.coverage)
+        for row in self.coverage.rows:
+            self.assertIn(f"<td>{row.determined} of 5</td>", said)
+            self.assertIn(f"{100.0 * row.interval95[0]:.1f} to {100.0 * row.interval95[1]:.1f} %", said)
+        self.assertEqual(said.count("<tr>"), len(self.coverage.rows) + 1)
+
+    def test_sweep(self):
+        sweep = made_sweep(self.folder)
+        said = self.shown(sweep)
+        document = sweep.to_dict()
+        for row in [*document["overall"], *document["axes"][0]["groups"]]:
+            self.assertIn(f"<td>{row['rms_error']:.3g}</td>", said)
+        self.assertIn("<th>camera.frame_rate_hz</th>", said)
+
+    def test_smoothed(self):
+        said = self.shown(self.smooth)
+        self.assertIn(f"{self.smooth.strength.time_s:.4g}", said)
+        self.assertIn(f"{self.smooth.a_m_s2.min():.3g} to {self.smooth.a_m_s2.max():.3g}", said)
+        self.assertIn("0.03", self.shown(self.local))
+        order_1 = glidelab.smooth(*damped(), 0.03, order=1)  # which has no a
+        self.assertIn("<td>none</td>", self.shown(order_1))
+
+    @needs("matplotlib")
+    def test_plots_stand_in_it_and_no_window_opens(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+        pyplot.close("all")
+        t, x = damped()
+        analysis = glidelab.analyze([glidelab.Track(t, x, mass_kg=0.3)])
+        for result in (self.coverage, self.smooth, self.local, made_sweep(self.folder), analysis,
+                       glidelab.simulate(SCENARIO), glidelab.diagnose(t, x)):
+            said = result._repr_html_()
+            self.assertNotIn("<pre>", said)
+            self.assertEqual(said.count(PLOT), 1)
+            self.assertEqual(pyplot.get_fignums(), [])
+        self.coverage.plot()
+        self.assertEqual(len(pyplot.get_fignums()), 1)
+        pyplot.close("all")
+
+    def test_without_matplotlib_the_tables_are_there(self):
+        with mock.patch("importlib.util.find_spec", return_value=None):
+            self.assertNotIn("<img", self.shown(self.coverage))
+        self.assertEqual(html_plot(list), "")
+
+    @needs("matplotlib")
+    def test_coverage_s_bars_are_its_numbers(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        ax = self.coverage.plot()
+        self.assertEqual([bar.get_width() for bar in ax.patches],
+                         [100.0 * row.coverage for row in self.coverage.rows if row.coverage is not None])
+        spans = [tuple(line.get_xdata()) for line in ax.lines if len(set(line.get_ydata())) == 1]
+        self.assertEqual(spans, [tuple(100.0 * end for end in row.interval95) for row in self.coverage.rows
+                                 if row.coverage is not None])
+
+    @needs("matplotlib")
+    def test_a_sweep_s_curves_are_its_numbers_words_one_after_the_other(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        sweep = made_sweep(self.folder)
+        axes = sweep.plot()
+        groups = sweep.to_dict()["axes"][0]["groups"]
+        quantities = list(dict.fromkeys(row["quantity"] for row in groups))
+        self.assertEqual(len(axes), len(quantities))
+        for ax, quantity in zip(axes, quantities):
+            self.assertEqual(list(ax.lines[0].get_xdata()), [100.0, 200.0])
+            self.assertEqual(list(ax.lines[0].get_ydata()),
+                             [row["rms_error"] for row in groups if row["quantity"] == quantity])
+        from glidelab._sweeps import _numbers
+        self.assertEqual(_numbers(["1", "2.5"]), [1.0, 2.5])
+        self.assertEqual(_numbers(["lens a", "lens b"]), [0.0, 1.0])
+
+    @needs("matplotlib")
+    def test_bands_of_a_are_as_wide_as_stated(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        for smooth, factors in ((self.smooth, [self.smooth.strength.simultaneous_a, 1.959964]), (self.local, [1.959964])):
+            ax = smooth.plot()
+            self.assertEqual(len(ax.collections), len(factors))
+            for band, factor in zip(ax.collections, factors):
+                outline = band.get_paths()[0].vertices
+                middle = np.nonzero(outline[:, 0] == smooth.t_s[100])[0]
+                width = np.ptp(outline[middle, 1])
+                self.assertAlmostEqual(width / (2.0 * factor * smooth.sd_a_m_s2[100]), 1.0, places=9)
+
+    @needs("matplotlib")
+    def test_errors_of_a_validation_and_of_a_requirement(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        found = tuple(glidelab.Recovery("m1", name, "mu", 0.01, 0.011, 0.001, 0.001, 0.0005) for name in ("a", "b"))
+        made = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2)._made
+        validation = glidelab.Validation(made, found, 1, 1, "{}")
+        (ax,) = validation.plot()
+        self.assertEqual(ax.get_ylabel(), "error of mu")
+        self.assertIn(PLOT, validation._repr_html_())
+        requirement = glidelab.Requirement(made, "r", (glidelab.Candidate("c", True, "yes", 1.0, 2.0, 1e-5, (1e-4,),
+                                                                          (1e-5,), (5e-5,)),), ("mu",))
+        self.assertEqual(len(requirement.plot()), 1)
+        self.assertIn(PLOT, requirement._repr_html_())
+
+    def test_an_explanation_shows_itself_as_it_reads(self):
+        said = glidelab.explain(self.coverage)
+        self.assertEqual(said, str(self.coverage))
+        self.assertEqual(repr(said), str(self.coverage))
+        self.assertGreater(len(said.splitlines()), 5)
+
+    @needs("IPython")
+    def test_so_does_it_in_a_notebook(self):
+        from IPython.lib.pretty import pretty
+        said = glidelab.explain(self.coverage)
+        self.assertEqual(pretty(said), str(self.coverage))
+
+
+class Units(unittest.TestCase):
+    def test_they_are_those_that_the_name_ends_with(self):
+        for column, unit in (("bandwidth_s", "s"), ("noise_m", "m"), ("frame_rate_hz", "Hz"), ("price_eur", "EUR"),
+                             ("mass_kg", "kg"), ("k_over_m_1_s", "1/s"), ("k_over_m_1_s_sd", "1/s"), ("v_m_s", "m/s"),
+                             ("sd_a_m_s2", "m/s²"), ("alpha_deg", "°"), ("u_px", "px"), ("force_n", "N"), ("mu", ""),
+                             ("mu_sd", ""), ("bias_sds", ""), ("replicates", ""), ("coverage", ""), ("name", "")):
+            self.assertEqual(unit_of(column), unit, column)
+
+    @needs("pandas")
+    def test_where_they_differ_from_row_to_row_a_column_says_them(self):
+        judged = glidelab.judge(SCENARIO, "phase-diagram", noise_m=2e-5, replicates=2).to_frame()
+        coverage = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2).to_frame()
+        for table, columns in ((judged, ("truth", "bias", "sd", "rms")), (coverage, ("truth", "bias", "sd", "stated_sd"))):
+            for column in columns:
+                self.assertEqual(table.attrs["units"][column], BY_ROW)
+            self.assertEqual(dict(zip(table["quantity"], table["unit"])),
+                             {"k_over_m_1_s": "1/s", "mu": "", "alpha_deg": "°", "v_lim_m_s": "m/s"})
+
+
+class Bar(unittest.TestCase):
+    @needs("tqdm")
+    def test_true_is_a_bar_of_tqdm_for_each_stage(self):
+        import contextlib
+        import io
+        t, x = damped()
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            glidelab.diagnose(t, x, progress=True)
+        stages = list(dict.fromkeys(re.findall(r"([\w -]+): +\d+%", said.getvalue())))
+        self.assertGreater(len(stages), 1)
+        for stage in stages[:-1]:  # each is full before the next begins
+            self.assertRegex(said.getvalue().split(f"{stages[stages.index(stage) + 1]}: ")[0], rf"{stage}: 100%")
+
+    def test_without_tqdm_it_is_refused(self):
+        with mock.patch("importlib.import_module", side_effect=ModuleNotFoundError):
+            with self.assertRaises(glidelab.InputError) as caught:
+                glidelab.judge(SCENARIO, "phase-diagram", noise_m=2e-5, replicates=2, progress=True)
+        self.assertEqual(caught.exception.key, "progress")
