@@ -1,4 +1,4 @@
-/// check: a look at a recording before any analysis. FileOptions: what a track file does not state.
+/// check: checks a recording before it is analysed. FileOptions: what a track file does not state.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 

@@ -350,7 +350,7 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     progress : callable, True or None
         Called as ``progress(stage, fraction)``; True: a bar of tqdm.
     smoother : {"local-polynomial", "kalman", "spline"}
-        What makes v(t) and a(t) of the positions (`smooth`); the last two find their own strength and take no
+        How v(t) and a(t) are computed from the positions (`smooth`); the last two find their own strength and take no
         `bandwidth`.
     runs : "all" or sequence of int, optional
         With a file of several runs (or masses): which of them become clips, by their numbers from 1 on. Without it the

@@ -169,7 +169,7 @@ class _TooLong(BaseException):
 
 
 def _number(said: Any, key: str) -> float:
-    """A finite number, NaN or an infinity; _Wrong for what is no number, texts of digits included."""
+    """A finite number, NaN or an infinity; _Wrong if it is not a number; a text of digits is not one."""
     if not isinstance(said, (str, bytes, bool)):
         try:
             return float(said)
@@ -186,7 +186,7 @@ def _sd(said: Any, key: str) -> float:
 
 
 def _quantity(found: Any, key: str) -> Quantity:
-    """What an estimator said; _Wrong for what is no answer."""
+    """An estimator's answer, checked; _Wrong if it is not a valid answer."""
     if found is None or (isinstance(found, Quantity) and found.value is None):
         return Quantity()
     value: Any
@@ -215,7 +215,7 @@ def _quantity(found: Any, key: str) -> Quantity:
 
 
 def _checked(found: Any) -> dict[str, Quantity]:
-    """What an estimator of the user's said of one configuration; _Wrong for what is no answer."""
+    """The answer of a user's estimator for one configuration, checked; _Wrong if it is not a valid answer."""
     if not isinstance(found, Mapping):
         raise _Wrong(f"the answer: found {found!r:.60}, expected a dict of quantities")
     for key in found:

@@ -47,7 +47,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class FilmedClip:
-    """One clip of a film; iterate over it for its frames, of which one is in memory at a time.
+    """One clip of a film; iterate over it for its frames. Only one frame is in memory at a time.
 
     Attributes
     ----------

@@ -132,7 +132,7 @@ def _runs_text(runs: Runs) -> str:
 
 
 def refuse(options: Mapping[str, object]) -> None:
-    """What is given and has no meaning here."""
+    """Arguments that do not apply here."""
     for key, value in options.items():
         if value is not None:
             raise input_error(key, repr(value), "nothing: a Track or a file states its own, and column is for files")
@@ -271,7 +271,7 @@ class _Bar:
 
 
 def teller(progress: Progress) -> Optional[Callable[[str, float], object]]:
-    """The function that is told of the progress; none where nobody wants to know."""
+    """The function that is told of the progress; None for no progress."""
     if progress is None or progress is False:
         return None
     if progress is True:

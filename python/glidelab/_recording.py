@@ -1,4 +1,4 @@
-"""check(): a look at a recording before any analysis."""
+"""check(): checks a recording before it is analysed."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ NORMAL95 = 1.959964  # the normal distribution's 97.5 % quantile
 
 
 class Made:
-    """The C++ side's outcome, of which pickling keeps JSON and text."""
+    """The result on the C++ side. Pickling keeps its JSON and text."""
 
     def __init__(self, outcome: Outcome) -> None:
         self.json: str = outcome.json

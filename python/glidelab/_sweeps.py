@@ -21,7 +21,7 @@ class Candidate:
     Attributes
     ----------
     name, verdict : str
-        Of the sweep's point, and what is said of it.
+        The point of the sweep and its verdict.
     reached : bool
         Whether it reaches every target.
     price_eur, frame_rate_hz, noise_m : float or None
@@ -111,7 +111,7 @@ class Requirement(Result):
 
 
 def rounded_error(error: float, sd: Optional[float]) -> str:
-    """"3.6e-06 ± 1.0e-06": errors are small numbers, of which two digits count."""
+    """"3.6e-06 ± 1.0e-06": errors are small numbers, given to two significant digits."""
     return f"{error:.2g}" if sd is None else f"{error:.2g} ± {sd:.1g}"
 
 
