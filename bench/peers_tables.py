@@ -48,16 +48,34 @@ def recording_table(rows, configurations):
     return markdown(["clips", "method", "K/m (1/s)", "spread", "µ", "α (°)", "time (s)"], body)
 
 
+def signal_summary(rows, which, quantity):
+    """A signal and noise a row: Glidelab's smoothers, the best peer by its own choice, and what is best in hindsight."""
+    body = []
+    for signal, noise in dict.fromkeys((row["signal"], row["noise_m"]) for row in rows):
+        here = [row for row in rows if (row["signal"], row["noise_m"]) == (signal, noise) and row["errors"][which] is not None]
+        own = {row["method"]: row["errors"][which] for row in here if row["self_choosing"]}
+        hindsight = {row["method"]: row["errors"][which] for row in here if not row["self_choosing"]}
+        peers = {name: error for name, error in own.items() if not name.startswith("Glidelab")}
+        if not here:
+            continue
+
+        def best(errors):
+            name = min(errors, key=errors.get, default=None)
+            return "–" if name is None else f"{number(errors[name])} {name}"
+
+        body.append([f"{signal}, {noise:g}", number(own.get("Glidelab, kalman")), number(own.get("Glidelab, spline")), best(peers), best(hindsight)])
+    return markdown([f"error of {quantity}", "kalman", "spline", "best peer by its own choice", "best in hindsight"], body)
+
+
 def signal_tables(rows):
-    """A table for methods that choose by themselves, and one for those that are set in hindsight: errors of v and a inside (and of all frames)."""
-    text = ""
+    """Errors of v and a inside, and in brackets of all frames: a table for methods that choose by themselves, one for those set in hindsight."""
+    text = signal_summary(rows, 0, "v inside") + "\n" + signal_summary(rows, 1, "a inside") + "\n"
     kinds = list(dict.fromkeys((row["signal"], row["noise_m"]) for row in rows))
     for quantity, which in (("v", 0), ("a", 1)):
         for chosen in (True, False):
-            methods = [row["method"] for row in rows if row["self_choosing"] == chosen]
             header = [f"{quantity}, {'by its own choice' if chosen else 'the best in hindsight'}", *(f"{signal}, {noise:g}" for signal, noise in kinds)]
             body = []
-            for method in dict.fromkeys(methods):
+            for method in dict.fromkeys(row["method"] for row in rows if row["self_choosing"] == chosen):
                 of = {(row["signal"], row["noise_m"]): row["errors"] for row in rows if (row["method"], row["self_choosing"]) == (method, chosen)}
                 cells = [of.get(kind, [None] * 4) for kind in kinds]
                 body.append([method, *(f"{number(e[which])} ({number(e[which + 2])})" for e in cells)])
