@@ -115,6 +115,13 @@ class Methods(unittest.TestCase):
         off[200, 1] = np.nan
         self.assertIsNone(signals.errors("two sines", [truth + off], truth)[0])
 
+    def test_the_best_peer_by_its_own_choice_is_none_of_glidelab_and_none_in_hindsight(self):
+        def row(method, error, self_choosing=True):
+            return {"signal": "s", "noise_m": 0.1, "method": method, "self_choosing": self_choosing, "errors": [error] * 4}
+
+        rows = [row("Glidelab, kalman", 1.0), row("Glidelab, spline", 2.0), row("a", 4.0), row("b", 3.0), row("c", 0.5, False)]
+        self.assertEqual(tables.signal_summary(rows, 0, "v").splitlines()[-1], "| s, 0.1 | 1 | 2 | 3 b | 0.5 c |")
+
     def test_kalman_of_order_three_follows_a_parabola(self):
         """Its noise-free motions are parabolas; the ends are left out. Of noise of 1e-9 m v keeps some 1e-8 / (60 H)."""
         x = 0.2 - 1.5 * T + 0.8 * T**2 + 1e-9 * np.random.default_rng(6).standard_normal(len(T))
