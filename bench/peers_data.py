@@ -9,9 +9,22 @@ import sys
 import tomllib
 
 import numpy as np
+from peers_methods import EXAMPLES as FOLDER_OF_EXAMPLES
+from peers_methods import Missing
 
 ESTIMATORS = ("phase-diagram", "phase-diagram-gls", "trajectory")
 SMOOTHERS = ("kalman", "spline")  # that find their own strength
+# Of examples/estimators, each a whole estimator of its own; what they are.
+EXAMPLES = {
+    "finite_differences": "Tracker's formulas",
+    "savitzky_golay": "scipy's savgol_filter, 0.16 s",
+    "smoothing_spline": "scipy's UnivariateSpline",
+    "kernel_smoother": "R's KernSmooth, 0.03 s",
+    "kalman_smoother": "Kalman filter and RTS smoother, order 3",
+    "chosen_by_pynumdiff": "PyNumDiff and its optimiser",
+    "sparse_regression": "pysindy",
+    "fit_of_motion": "solve_ivp and least_squares",
+}
 GRAVITY_M_S2 = 9.80665
 CLIP_KEYS = ("mass_kg", "incline_deg", "incline_sd_deg", "mass_sd_kg", "launched", "start_s", "end_s", "group")
 
@@ -72,6 +85,23 @@ def estimates(glidelab, folder):
     """By each of Glidelab's estimators, and by each smoother."""
     found = {name: analysis(glidelab, folder, name, "--estimator", name) for name in ESTIMATORS}
     return found | {name: analysis(glidelab, folder, name, "--smoother", name) for name in SMOOTHERS}
+
+
+def example_estimate(name, folder):
+    """What an estimator of examples/estimators makes of the tracks: results.json and its seconds of processor time."""
+    out = f"{folder}-{name}"
+    os.makedirs(out, exist_ok=True)
+    before = os.times()
+    program = os.path.join(FOLDER_OF_EXAMPLES, f"{name}.py")
+    done = subprocess.run([sys.executable, "-B", program, folder, out], capture_output=True, text=True, check=False)
+    after = os.times()
+    if done.returncode:
+        if done.stderr.startswith("skipped: no "):
+            raise Missing(done.stderr.strip().removeprefix("skipped: no "))
+        sys.exit(f"{program}: exit status {done.returncode}\n{done.stderr[-2000:]}")
+    with open(os.path.join(out, "results.json"), encoding="utf-8") as text:
+        results = json.load(text)
+    return results, sum(after[2:4]) - sum(before[2:4])
 
 
 def smoothed(table, folder, name):
@@ -173,10 +203,11 @@ def parameters(clips, motions):
     return found
 
 
-def own_parameters(results):
-    """K/m, mu, alpha of a results.json, with the stated standard deviations."""
+def own_parameters(results, order=None):
+    """K/m, mu, alpha of a results.json, with the stated standard deviations; its configurations in the order of another's."""
+    of_clip = {configuration["clips"][0]: configuration for configuration in results["configurations"]}
     found = []
-    for configuration in results["configurations"]:
+    for configuration in [of_clip[one["clips"][0]] for one in (order or results)["configurations"]]:
         entry = {"spread": None}
         for short, name in (("k_over_m", "k_over_m_1_s"), ("mu", "mu"), ("alpha_deg", "alpha_deg")):
             quantity = configuration.get(name)

@@ -5,15 +5,19 @@ x (m), v (m/s), a (m/s^2), NaN where the method gives nothing, and the seconds o
 not installed.
 """
 
+import importlib
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
+import types
 
 import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+EXAMPLES = os.path.join(os.path.dirname(HERE), "examples", "estimators")
 
 
 class Missing(Exception):
@@ -119,3 +123,77 @@ def kernsmooth(runs, bandwidths_s, degree=None):
         with open(names[2], encoding="utf-8") as text:
             took = float(text.read())
     return [rows[rows[:, 0] == i, 1:] for i in range(len(runs))], took
+
+
+def example(module):
+    """A module of examples/estimators, which ends the program where its package is not installed."""
+    if EXAMPLES not in sys.path:
+        sys.path.append(EXAMPLES)
+    try:
+        return importlib.import_module(module)
+    except SystemExit as missing:
+        raise Missing(str(missing.code).removeprefix("skipped: no ")) from missing
+
+
+def inner_points(derivatives, run):
+    """Of an example's v and a, which leave out as many points at either end, in the middle of the run."""
+    out = np.full((len(run["x"]), 3), np.nan)
+    v, a = derivatives(types.SimpleNamespace(t_s=list(run["t"]), x_m=list(run["x"])))
+    ends = (len(out) - len(v)) // 2
+    if len(v):
+        out[ends : ends + len(v), 1], out[ends : ends + len(v), 2] = v, a
+    return out
+
+
+def kalman_of_order_three(runs):
+    """The Kalman filter and RTS smoother of examples/estimators, a Wiener process in a, its size by likelihood."""
+    module = example("kalman_smoother")
+    return timed(lambda run: inner_points(module.derivatives, run), runs)
+
+
+def pynumdiff(runs):
+    """PyNumDiff's Savitzky-Golay filter by its own optimiser, as in examples/estimators."""
+    module = example("chosen_by_pynumdiff")
+    return timed(lambda run: inner_points(module.derivatives, run), runs)
+
+
+def module_of(program):
+    """Glidelab's Python module, of the build that the program is from."""
+    folder = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(program))), "python")
+    if os.path.isdir(folder) and folder not in sys.path:
+        sys.path.insert(0, folder)
+    try:
+        return importlib.import_module("glidelab")
+    except ImportError as missing:
+        raise Missing(f"module glidelab ({missing})") from missing
+
+
+def glidelab_smoother(program, name):
+    """Glidelab's smoother that finds its own strength."""
+
+    def smoothed(runs):
+        module = module_of(program)
+
+        def one(run):
+            found = module.smooth(run["t"], run["x"], smoother=name)
+            return np.column_stack([found.x_m, found.v_m_s, found.a_m_s2])
+
+        return timed(one, runs)
+
+    return smoothed
+
+
+def glidelab_cubic(program):
+    """Glidelab's local cubic, its bandwidth by the plug-in rule or given."""
+
+    def smoothed(runs, bandwidth_s=None):
+        module = module_of(program)
+
+        def one(run):
+            chosen = bandwidth_s or module.choose_bandwidth(run["t"], run["x"]).bandwidth_s
+            found = module.smooth(run["t"], run["x"], chosen)
+            return np.column_stack([found.x_m, found.v_m_s, found.a_m_s2])
+
+        return timed(one, runs)
+
+    return smoothed

@@ -1,4 +1,4 @@
-"""The tables and the plot of bench/peers: peers.md, readme.md (the same, shortened), errors.csv, parameters.csv, peers.svg."""
+"""The tables and the plot of bench/peers: peers.md, readme.md (the same, shortened), errors.csv, parameters.csv, signals.csv, peers.svg."""
 
 import csv
 import os
@@ -46,6 +46,41 @@ def recording_table(rows, configurations):
                 body.append([name, row["method"], with_sd(p, "k_over_m", 4), number(p["spread"], digits=2), with_sd(p, "mu", 3),
                              with_sd(p, "alpha_deg", 4), number(row["seconds"], digits=2)])
     return markdown(["clips", "method", "K/m (1/s)", "spread", "µ", "α (°)", "time (s)"], body)
+
+
+def signal_summary(rows, which, quantity):
+    """A signal and noise a row: Glidelab's smoothers, the best peer by its own choice, and what is best in hindsight."""
+    body = []
+    for signal, noise in dict.fromkeys((row["signal"], row["noise_m"]) for row in rows):
+        here = [row for row in rows if (row["signal"], row["noise_m"]) == (signal, noise) and row["errors"][which] is not None]
+        own = {row["method"]: row["errors"][which] for row in here if row["self_choosing"]}
+        hindsight = {row["method"]: row["errors"][which] for row in here if not row["self_choosing"]}
+        peers = {name: error for name, error in own.items() if not name.startswith("Glidelab")}
+        if not here:
+            continue
+
+        def best(errors):
+            name = min(errors, key=errors.get, default=None)
+            return "–" if name is None else f"{number(errors[name])} {name}"
+
+        body.append([f"{signal}, {noise:g}", number(own.get("Glidelab, kalman")), number(own.get("Glidelab, spline")), best(peers), best(hindsight)])
+    return markdown([f"error of {quantity}", "kalman", "spline", "best peer by its own choice", "best in hindsight"], body)
+
+
+def signal_tables(rows):
+    """Errors of v and a inside, and in brackets of all frames: a table for methods that choose by themselves, one for those set in hindsight."""
+    text = signal_summary(rows, 0, "v inside") + "\n" + signal_summary(rows, 1, "a inside") + "\n"
+    kinds = list(dict.fromkeys((row["signal"], row["noise_m"]) for row in rows))
+    for quantity, which in (("v", 0), ("a", 1)):
+        for chosen in (True, False):
+            header = [f"{quantity}, {'by its own choice' if chosen else 'the best in hindsight'}", *(f"{signal}, {noise:g}" for signal, noise in kinds)]
+            body = []
+            for method in dict.fromkeys(row["method"] for row in rows if row["self_choosing"] == chosen):
+                of = {(row["signal"], row["noise_m"]): row["errors"] for row in rows if (row["method"], row["self_choosing"]) == (method, chosen)}
+                cells = [of.get(kind, [None] * 4) for kind in kinds]
+                body.append([method, *(f"{number(e[which])} ({number(e[which + 2])})" for e in cells)])
+            text += markdown(header, body) + "\n"
+    return text
 
 
 def in_readme(row):
@@ -122,12 +157,17 @@ def write_csv(path, header, rows):
         writer.writerows([["" if cell is None else cell for cell in row] for row in rows])
 
 
-def write(out, clips, recordings):
+def write(out, clips, recordings, signals=()):
     text = ""
     for scenario, rows in clips:
         text += f"## {scenario}\n\n{truth_table(rows)}\n"
     for name, rows, configurations in recordings:
         text += f"## {name}\n\n{recording_table(rows, configurations)}\n"
+    if signals:
+        text += f"## test signals\n\n{signal_tables(signals)}"
+        write_csv(os.path.join(out, "signals.csv"),
+                  ["signal", "noise_m", "method", "own_choice", "v_inside_m_s", "a_inside_m_s2", "v_m_s", "a_m_s2"],
+                  [[row["signal"], row["noise_m"], row["method"], row["self_choosing"], *row["errors"]] for row in signals])
     with open(os.path.join(out, "peers.md"), "w", encoding="utf-8") as page:
         page.write(text)
     with open(os.path.join(out, "readme.md"), "w", encoding="utf-8") as page:

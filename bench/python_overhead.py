@@ -70,7 +70,7 @@ def main() -> None:
 
     t = np.arange(1000) / 200.0
     x = np.sin(t)
-    for steps in (4, 8):
+    for steps in range(2, 13):
         bandwidth_s = steps / 200.0
         whole = least_s(lambda: glidelab.smooth(t, x, bandwidth_s))
         inside = least_s(lambda: _glidelab.smooth(t, x, bandwidth_s, 3, "gaussian", None))

@@ -24,6 +24,7 @@ SOURCE, GLIDELAB = sys.argv[1:3]
 sys.path.insert(0, os.path.join(SOURCE, "bench"))
 import peers_data as data  # noqa: E402
 import peers_methods as methods  # noqa: E402
+import peers_signals as signals  # noqa: E402
 import peers_tables as tables  # noqa: E402
 
 loader = importlib.machinery.SourceFileLoader("peers", os.path.join(SOURCE, "bench", "peers"))
@@ -102,6 +103,33 @@ class Methods(unittest.TestCase):
         self.assertAlmostEqual(methods.noise(0.3 * t + 0.1 * t**2 + white) / 2e-5, 1.0, delta=0.03)
 
 
+    def test_test_signals_count_errors_inside_and_at_the_ends(self):
+        """An error of 0.1 at either end alone is one of the whole: of 10 frames in 400."""
+        runs, truth = signals.made_runs("two sines", 0.0, 2)
+        np.testing.assert_array_equal(runs[0]["x"], truth[:, 0])
+        off = np.zeros_like(truth)
+        off[[0, 1, 2, 3, 4, -1, -2, -3, -4, -5], 2] = 0.1
+        found = signals.errors("two sines", [truth + off, truth + off], truth)
+        np.testing.assert_allclose(found, [0.0, 0.0, 0.0, 0.1 * math.sqrt(10.0 / 400.0)], atol=1e-12)
+        self.assertEqual(signals.errors("triangle", [truth], truth)[1::2], [None, None])
+        off[200, 1] = np.nan
+        self.assertIsNone(signals.errors("two sines", [truth + off], truth)[0])
+
+    def test_the_best_peer_by_its_own_choice_is_none_of_glidelab_and_none_in_hindsight(self):
+        def row(method, error, self_choosing=True):
+            return {"signal": "s", "noise_m": 0.1, "method": method, "self_choosing": self_choosing, "errors": [error] * 4}
+
+        rows = [row("Glidelab, kalman", 1.0), row("Glidelab, spline", 2.0), row("a", 4.0), row("b", 3.0), row("c", 0.5, False)]
+        self.assertEqual(tables.signal_summary(rows, 0, "v").splitlines()[-1], "| s, 0.1 | 1 | 2 | 3 b | 0.5 c |")
+
+    def test_kalman_of_order_three_follows_a_parabola(self):
+        """Its noise-free motions are parabolas; the ends are left out. Of noise of 1e-9 m v keeps some 1e-8 / (60 H)."""
+        x = 0.2 - 1.5 * T + 0.8 * T**2 + 1e-9 * np.random.default_rng(6).standard_normal(len(T))
+        (found,) = self.of(methods.kalman_of_order_three, [run_of(x)])
+        self.assertTrue(np.isnan(found[[0, -1], 1]).all())
+        np.testing.assert_allclose(found[5:-5, 1], (-1.5 + 1.6 * T)[5:-5], atol=1e-5)
+
+
 class Data(unittest.TestCase):
     def test_a_missing_frame_ends_a_run_and_joined_puts_values_back(self):
         x = T.copy()
@@ -175,6 +203,9 @@ class Whole(unittest.TestCase):
                 self.assertLess(abs(found["k_over_m"] - k), 5.0 * found["k_over_m_sd"])
             for row in rows:
                 row["off"] = data.parameter_errors(row["parameters"], [{"k_over_m": k, "mu": 0.0071, "alpha_deg": 4.311}])
+            # The fit by solve_ivp and `trajectory` minimise the same squares; solve_ivp's to 1e-8.
+            found, own = (of[name]["parameters"][0]["k_over_m"] for name in ("fit_of_motion.py", "Glidelab, trajectory"))
+            self.assertAlmostEqual(found, own, delta=0.3 * of["Glidelab, trajectory"]["parameters"][0]["k_over_m_sd"])
             tables.write(place, [("made", rows)], [])
             errors = data.columns(os.path.join(place, "errors.csv"))
             self.assertEqual(errors["method"], [row["method"] for row in rows])

@@ -112,7 +112,10 @@ std::pair<double, AtTau> add_members(const PartedMotion<N>& motion, const AtTau&
   return chosen;
 }
 
-double cross_validation(const SmoothedSums& sums) {
+template <int N>
+double cross_validation_of(const PartedMotion<N>& motion, const AtTau& at) {
+  const SmoothedSums sums = sums_of(motion.posteriors(at.how), motion.parts());
+  if (sums.points <= kCostOfParameter * sums.trace) return kInfinity;
   return sums.points * sums.squares_m2 / std::pow(sums.points - kCostOfParameter * sums.trace, 2);
 }
 
@@ -120,10 +123,7 @@ double cross_validation(const SmoothedSums& sums) {
 template <int N>
 std::pair<double, AtTau> by_cross_validation(const PartedMotion<N>& motion, Rate rate,
                                              const std::vector<double>& rates_1_s) {
-  const auto criterion = [&](const AtTau& at) {
-    const SmoothedSums sums = sums_of(motion.posteriors(at.how), motion.parts());
-    return sums.points > kCostOfParameter * sums.trace ? cross_validation(sums) : kInfinity;
-  };
+  const auto criterion = [&](const AtTau& at) { return cross_validation_of(motion, at); };
   const std::vector<AtTau> along = along_tau(motion, kInfinity, rate, rates_1_s);
   std::pair<double, AtTau> best{kInfinity, along.front()};
   std::size_t of_best = 0;
@@ -303,17 +303,24 @@ class WienerSmoother final : public Smoother {
  private:
   static Choice cross_validated(const MotionParts& parts, const std::vector<Choice>& orders) {
     Choice best;
+    AtTau of_least_order;
     double least = kInfinity;
     for_orders([&](auto order) {
       for (const Rate rate : {Rate::none, Rate::any}) {
         const auto [value, at] =
             by_cross_validation(PartedMotion<order>(parts), rate, {0.0, likeliest(orders).at.how.rate_1_s});
+        if (order == kLeastOrder) of_least_order = at;
         if (best.order != 0 && value >= least) continue;
         best = {order, at};
         least = value;
       }
     });
-    return best;
+    // A motion under constant and viscous friction stands unless another is better by more than noise makes it.
+    const PartedMotion<kLeastOrder> motion(parts);
+    Choice plain{kLeastOrder, exact(motion, of_least_order)};
+    plain.at.how.tau_s = std::max(plain.at.how.tau_s, 0.5 * parts.longest_s);
+    const double gain = parts.points * std::log(cross_validation_of(motion, plain.at) / least);
+    return gain > std::log(parts.points) ? best : plain;
   }
 
   template <int N>

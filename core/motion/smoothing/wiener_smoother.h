@@ -10,7 +10,9 @@
 ///     if it is not stated.
 ///  spline: N and tau make  n sum ((y - x)/f)^2 / (n - 1.4 trace)^2  least (generalised cross-validation, Craven and
 ///     Wahba 1979, Numer. Math. 31, 377; 1.4: Kim and Gu 2004, J. R. Stat. Soc. B 66, 337), k is the most likely one, a
-///     has a free jump at a break, s^2 = sum ((y - x)/f)^2 / (n - trace).
+///     has a free jump at a break, s^2 = sum ((y - x)/f)^2 / (n - trace). The motion of N = 3 without noise stands
+///     unless the least is below its value by more than a factor n^(1/n) (as by Schwarz 1978, Ann. Stat. 6, 461):
+///     by cross-validation alone one clip in fifty gets a needless order, with 8 times the error of a.
 ///
 /// Standard deviations of both are those of the curve's error over all N, k and tau that the positions leave possible
 /// (smoothing_ensemble.h). Breaks lie where the smoothed v is 0; they are found again with each smoothing, until they
