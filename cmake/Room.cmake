@@ -59,25 +59,38 @@ function(glidelab_precompile target)
   endif()
 endfunction()
 
-# glidelab_unity(TARGET SOURCES…): a folder's sources are compiled together, where GLIDELAB_UNITY is on.
+# glidelab_unity(TARGET SOURCES <sources…> [TOGETHER <units…>]): a folder's sources are compiled together, where GLIDELAB_UNITY is
+# on; a unit "a b/c" puts the sources of those folders together too. Every unit reads the precompiled header and what its folders
+# include anew, one to three seconds, so that small folders share one.
 function(glidelab_unity target)
+  cmake_parse_arguments(UNITY "" "" "SOURCES;TOGETHER" ${ARGN})
   if(NOT GLIDELAB_UNITY)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  foreach(source ${ARGN})
+  foreach(source ${UNITY_SOURCES})
     get_filename_component(folder ${source} DIRECTORY)
+    file(RELATIVE_PATH within ${CMAKE_CURRENT_SOURCE_DIR} ${folder})
+    if(within STREQUAL "")
+      set(within .)
+    endif()
     file(RELATIVE_PATH folder ${GLIDELAB_ROOT} ${folder})
     string(MAKE_C_IDENTIFIER "${folder}" group)
+    foreach(unit IN LISTS UNITY_TOGETHER)
+      separate_arguments(folders UNIX_COMMAND "${unit}")
+      if(within IN_LIST folders)
+        string(MAKE_C_IDENTIFIER "${target}_${unit}" group)
+      endif()
+    endforeach()
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
   endforeach()
 endfunction()
 
-# glidelab_room(NAME [WORDS] [FOLDERS <folders…>] LINK <public libraries…>): all sources of the folders (default: this one) make
+# glidelab_room(NAME [WORDS] [FOLDERS <folders…>] [TOGETHER <units…>] LINK <public libraries…>): all sources of the folders (default: this one) make
 # glidelab::NAME, included as "room/suite/header.h". WORDS: a room that writes tables, pages and messages or has others compute, and
 # computes nothing at length itself; it is compiled with -O1, in two thirds of the time.
 function(glidelab_room name)
-  cmake_parse_arguments(ROOM "WORDS" "" "FOLDERS;LINK" ${ARGN})
+  cmake_parse_arguments(ROOM "WORDS" "" "FOLDERS;TOGETHER;LINK" ${ARGN})
   if(NOT ROOM_FOLDERS)
     set(ROOM_FOLDERS .)
   endif()
@@ -96,7 +109,7 @@ function(glidelab_room name)
   set_target_properties(glidelab_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_options(glidelab_${name} PRIVATE -fno-semantic-interposition)
   glidelab_warnings(glidelab_${name})
-  glidelab_unity(glidelab_${name} ${sources})
+  glidelab_unity(glidelab_${name} SOURCES ${sources} TOGETHER ${ROOM_TOGETHER})
   if(ROOM_WORDS)
     target_compile_options(glidelab_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
