@@ -40,8 +40,8 @@ validate::Requirement cameras() {
 TEST_CASE("the first line of require says what to buy, how to set it and what to expect, on screen and page") {
   const std::string line =
       "Buy: board (OV5647), 8-25 EUR; set it to 640 x 480 pixels, 90 frames/s, exposure 2 ms, H.264 at 8 Mbit/s; "
-      "expect µ ± 0.00006 (95 % of 20 rendered experiments, analysed by the fit of the whole motion; µ ± 0.0001 was "
-      "asked for).";
+      "expect µ ± 0.00006 (95 % of 20 rendered experiments, analysed by the fit of the whole motion; the target was "
+      "µ ± 0.0001).";
   CHECK(report::requirement_answer(cameras()) == line);
   CHECK(report::requirement_text(cameras()).starts_with(line + "\n"));
   CHECK(report::enough_words(cameras()).empty());

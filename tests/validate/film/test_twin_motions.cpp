@@ -139,7 +139,7 @@ TEST_CASE("a twin of something without a name says that it lacks it") {
   REQUIRE(twin.lacks.size() == 1);
   CHECK(twin.lacks.front().what == "what is missing");
   CHECK(twin.toml.find("# Not in it: what is missing (it has no name).") != std::string::npos);
-  CHECK(twin.toml.find("# Assumed: the whole camera") != std::string::npos);
+  CHECK(twin.toml.find("# Assumed: the camera, except for its frame rate") != std::string::npos);
 }
 
 TEST_CASE("a twin with a wrong scale lies on the data beside it, and one without what is missing does not") {
