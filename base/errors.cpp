@@ -16,7 +16,7 @@ std::string join(const std::vector<Issue>& issues) {
     if (!text.empty()) text += '\n';
     text += describe(issues[i]);
   }
-  if (issues.size() > kMostLines) text += fmt::format("\nand {} more errors", issues.size() - kMostLines);
+  if (issues.size() > kMostLines) text += fmt::format("\nand {} more", issues.size() - kMostLines);
   return text;
 }
 

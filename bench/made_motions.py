@@ -156,7 +156,7 @@ def glider(kind, random, length_s):
     c = random.uniform(0.3, 2.0)
     turn = random.uniform(0.35, 0.65) * length_s
     made = {
-        "viscous, level": lambda: viscous(-friction, k, fast),
+        "viscous and one constant force": lambda: viscous(-friction, k, fast),
         "viscous, from rest down": lambda: viscous(slope, k, 0.0),
         "viscous, with a reversal": lambda: turning(slope + friction, slope - friction, k, turn),
         "viscous, near the terminal velocity": lambda: viscous(slope, k, slope / k * random.uniform(0.8, 1.2)),
@@ -171,7 +171,7 @@ def glider(kind, random, length_s):
 
 
 GLIDERS = (
-    "viscous, level", "viscous, from rest down", "viscous, with a reversal", "viscous, near the terminal velocity", "constant friction",
+    "viscous and one constant force", "viscous, from rest down", "viscous, with a reversal", "viscous, near the terminal velocity", "constant friction",
     "friction that falls with v", "drag by v², level", "drag by v², from rest down", "drag by v^1.5", "damped spring",
 )
 

@@ -104,7 +104,7 @@ void add_require(CLI::App& app, Command& chosen) {
                           ->type_name("N")
                           ->check(CLI::Range(2, 100000))
                           ->capture_default_str();
-  command->add_option("--track-runs", options->track_runs, "Number of simulated tracks per camera")
+  command->add_option("--track-runs", options->track_runs, "Number of runs by simulated tracks per camera")
       ->type_name("N")
       ->check(CLI::Range(2, 1000000))
       ->capture_default_str();

@@ -311,7 +311,10 @@ StagedOutput::StagedOutput(fs::path final_dir)
   clear_leftovers(final_);
   made_parents_ = missing_parents(staging_);
   fs::create_directories(staging_, error);
-  if (error) throw_system_error(final_.string(), "output folder cannot be written", error.value());
+  if (error) {
+    remove_empty_folders(made_parents_);
+    throw_system_error(final_.string(), "output folder cannot be written", error.value());
+  }
   remember_passing_folder(staging_, made_parents_);
 }
 
@@ -319,7 +322,7 @@ StagedOutput::~StagedOutput() {
   try {
     std::error_code ignored;  // a destructor cannot report errors
     fs::remove_all(staging_, ignored);
-    for (const fs::path& parent : made_parents_) fs::remove(parent, ignored);  // only an empty one
+    remove_empty_folders(made_parents_);
     forget_passing_folder(staging_);
   } catch (const std::bad_alloc&) {  // the next run to the same output removes it
   }

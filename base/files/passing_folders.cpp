@@ -1,5 +1,8 @@
 #include "base/files/passing_folders.h"
 
+#include <unistd.h>
+#include <map>
+
 #include <map>
 #include <mutex>
 #include <system_error>
@@ -32,6 +35,10 @@ void forget_passing_folder(const fs::path& folder) {
   passing().folders.erase(folder);
 }
 
+void remove_empty_folders(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders) ::rmdir(folder.c_str());
+}
+
 void begin_publishing() {
   const std::lock_guard lock(passing().mutex);
   passing().publishing = true;
@@ -46,7 +53,7 @@ bool discard_passing_folders() {
   for (const auto& [folder, parents] : passing().folders) {
     std::error_code ignored;  // what another thread writes in the meantime stays, as after a kill
     fs::remove_all(folder, ignored);
-    for (const fs::path& parent : parents) fs::remove(parent, ignored);  // only an empty one
+    remove_empty_folders(parents);
   }
   return true;
 }

@@ -12,6 +12,9 @@ void remember_passing_folder(const std::filesystem::path& folder,
                              const std::vector<std::filesystem::path>& parents = {});
 void forget_passing_folder(const std::filesystem::path& folder);
 
+/// Removes those of these folders that are empty; what is none, or is not empty, stays.
+void remove_empty_folders(const std::vector<std::filesystem::path>& folders);
+
 /// From now on results are being put in place; the process then ends by itself.
 void begin_publishing();
 

@@ -53,11 +53,15 @@ std::vector<TableLine> read_lines(const std::filesystem::path& file) {
 
 namespace {
 
-/// The first line that is neither empty nor a comment names the lines' K/m.
+/// The first line that is neither empty nor a comment names the lines' K/m. Only the head of a file is read.
 bool is_table_of_lines(const std::filesystem::path& file) {
   std::ifstream in(file);
+  std::string head(64 * 1024, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  std::istringstream lines(head);
   std::string line;
-  while (std::getline(in, line)) {
+  while (std::getline(lines, line)) {
     const std::size_t first = line.find_first_not_of(" \t\r");
     if (first == std::string::npos || line[first] == '#') continue;
     return line.find("k_over_m_1_s") != std::string::npos;

@@ -334,7 +334,9 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   }
   diagnosis.levels = levels_of(gap_set, gap_nominal, jobs);
   if (by_air) diagnosis.notes.emplace_back(FallsThroughAir{over_viscous});
-  if (const std::optional<double> ratio = only_falls(set) ? ratio_of_densities(diagnosis) : std::nullopt) {
+  constexpr double kLeastRatio = 0.01;  // air has 0.001 of the density of what falls through it, or less
+  if (const std::optional<double> ratio = only_falls(set) ? ratio_of_densities(diagnosis) : std::nullopt;
+      ratio && *ratio > kLeastRatio) {
     diagnosis.notes.emplace_back(BuoyancyLooksAlike{*ratio});
   }
   Explanations explanations{{&reported, sizes, 1.0}};

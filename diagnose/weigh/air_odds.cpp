@@ -15,6 +15,7 @@ constexpr double kViscousOdds = 0.05, kDrivingOdds = 0.001;
 constexpr double kDecades = 9.2;    // ln 10^4
 constexpr double kLeastSeen = 2.0;  // standard deviations
 constexpr double kMostAirAlong_kg = 0.011;
+constexpr double kDragAndWheelOdds = 0.05;  // two causes that have nothing to do with one another
 
 /// Whether the inertia of a fit is certainly larger than that of air.
 bool turns_a_wheel(const MotionFit& fit) {
@@ -31,7 +32,9 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
   const auto has_law = [&](EffectSlot slot) {
     return std::find(fit.effects.begin(), fit.effects.end(), slot.effect) != fit.effects.end();
   };
-  if (!set.through_air || has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag))) return 0.0;
+  if (!set.through_air) return 0.0;
+  if (has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag)))
+    return turns_a_wheel(fit) ? std::log(kDragAndWheelOdds) : 0.0;
   // A drag of some other kind, or the air that moves along with what it does not brake.
   for (const EffectSlot slot :
        {slot_of(ids::eddy_rolloff), slot_of(ids::damping_gradient), slot_of(ids::configuration_drag),

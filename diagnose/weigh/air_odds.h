@@ -15,6 +15,8 @@
 ///
 ///     8/3 rho r³ = 11 g     for r = 0.15 m and rho = 1.2 kg/m³.
 ///
+/// Such an inertia beside a quadratic drag is a second cause (odds of 1/20), not the air of that drag.
+///
 /// In an explanation with a quadratic drag, that drag takes the place of K (fit/drag_of_air.h). Explanations with
 /// either drag then have the same kind of prior for its size.
 #pragma once
@@ -23,8 +25,8 @@
 
 namespace glidelab::diagnose {
 
-/// Log of these odds for the model of a fit; 0 for one with a quadratic drag or a power law of the drag, and where
-/// nothing falls through air.
+/// Log of these odds for the model of a fit; 0 for one with a quadratic drag or a power law of the drag and
+/// no wheel, and where nothing falls through air.
 double log_odds_without_air(const TrackSet& set, const MotionFit& fit);
 
 /// Whether the quadratic drag alone asks for more than air can do to a square metre: 0.6 kg/m, half the density of air

@@ -224,11 +224,14 @@ def _checked(found: Any) -> dict[str, Quantity]:
     return {key: _quantity(found.get(key), key) for key in QUANTITIES}
 
 
+_MOST_SECONDS = 1e9  # thirty years; more than a timer of the system may take
+
+
 def _checked_seconds(seconds: Optional[float]) -> None:
     if seconds is None:
         return
-    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not 0.0 < seconds < math.inf:
-        raise input_error("seconds", repr(seconds), "a number of seconds above 0, or None")
+    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not 0.0 < seconds <= _MOST_SECONDS:
+        raise input_error("seconds", repr(seconds), f"a number of seconds above 0, at most {_MOST_SECONDS:g}, or None")
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         raise input_error("seconds", repr(seconds), "None where judge() does not run in Python's main thread on a Unix "
                           "system: nowhere else can a call be interrupted")
@@ -248,7 +251,7 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
     left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0)
     before = signal.signal(signal.SIGALRM, ring)
     try:
-        signal.setitimer(signal.ITIMER_REAL, seconds)
+        signal.setitimer(signal.ITIMER_REAL, seconds, seconds)  # rings again where the first is swallowed
         yield
     finally:
         try:
@@ -257,6 +260,14 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
             signal.signal(signal.SIGALRM, signal.SIG_DFL if before is None else before)
         if left > 0.0:
             signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - begin), 1e-6), interval)
+
+
+def _said_by(error: Exception) -> str:
+    """Kind and text of an exception; the kind alone where its text cannot be had."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except Exception:  # pylint: disable=broad-exception-caught  # __str__ is the estimator's own, too
+        return type(error).__name__
 
 
 def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float, jobs: int,
@@ -277,7 +288,7 @@ def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]],
     except _TooLong:
         return f"not done after {seconds:g} s"
     except Exception as error:  # pylint: disable=broad-exception-caught  # whatever an estimator raises is its failure
-        return f"{type(error).__name__}: {error}"
+        return _said_by(error)
 
 
 def _built_in(name: str, tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float,

@@ -205,6 +205,8 @@ def new_axes(count: int) -> list[Any]:
     ModuleNotFoundError
         matplotlib is not installed.
     """
+    if count == 0:
+        return []
     columns = max(1, min(count, 3))
     rows = -(-count // columns)
     width, height = (6.0, 4.0) if columns == 1 else (4.0, 3.2)

@@ -140,6 +140,7 @@ TEST_CASE("a named pipe in place of a text file is refused, not waited for") {
     const tests::ProcessResult result = tests::glidelab(words, temp.path());
     CHECK(result.status == 1);
     CHECK_THAT(result.err, Catch::Contains("experiment.toml: found a named pipe"));
+    CHECK_FALSE(fs::exists(temp / "out"));
   }
 }
 

@@ -151,7 +151,7 @@ struct Sentence {
         "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, leave this "
         "out (--without quadratic_drag).";
     if (!of.over_viscous) return words;
-    if (*of.over_viscous > kClearly) return words + " The positions by themselves prefer it to a viscous drag, too.";
+    if (*of.over_viscous > kClearly) return words + " The positions alone also prefer it to a viscous drag.";
     return words + (*of.over_viscous < -kClearly
                         ? " The positions by themselves prefer a viscous drag: the name rests on what air does."
                         : " The positions by themselves do not tell it from a viscous drag: the name rests on what air "

@@ -123,6 +123,9 @@ TEST_CASE("an output that is not published leaves nothing behind") {
   }
   CHECK(read_file(temp / "runs/notes.txt") == "mine");
   CHECK(entries(temp / "runs") == 1);
+  // nor where the folder itself cannot be made: its name is too long with what is added to it
+  CHECK_THROWS_AS(StagedOutput(temp / "other/deeper" / std::string(230, 'n')), EnvironmentError);
+  CHECK_FALSE(fs::exists(temp / "other"));
   fs::create_directories(temp / "empty");
   { StagedOutput output(temp / "empty/out"); }
   CHECK(fs::exists(temp / "empty"));  // made by somebody else

@@ -10,6 +10,7 @@
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/verdict/diagnose.h"
+#include "diagnose/weigh/air_odds.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
@@ -129,6 +130,31 @@ TEST_CASE("the inertia of a pulley or of a Maxwell wheel is no air, and is named
     const diagnose::DiagnosedParameter& found = diagnosis.effects.front().parameters.front();
     CHECK(std::abs(found.value - fall.added_kg) < 4.0 * found.sd);
   }
+}
+
+TEST_CASE("a wheel's inertia beside a quadratic drag is a second cause, the inertia of air is not") {
+  const auto odds = [](double added_kg) {
+    Fall fall;
+    fall.masses_kg = {0.06, 0.1};
+    fall.c_kg_m = 0.05;
+    fall.added_kg = added_kg;
+    fall.noise_m = 2e-4;
+    fall.rate_hz = 60.0;
+    fall.frames = 90;
+    const tests::MadeExperiment made = fallen(fall, 24);
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    REQUIRE(set.through_air);
+    const std::size_t drag = diagnose::effect_index(diagnose::ids::quadratic_drag),
+                      inertia = diagnose::effect_index(diagnose::ids::rotational_inertia);
+    const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+    const diagnose::MotionFit turning =
+        diagnose::fit_with_effect(set, nominal, inertia, diagnose::with_effect(set, nominal, inertia, {added_kg}, {}));
+    const diagnose::MotionFit both =
+        diagnose::fit_with_effect(set, turning, drag, diagnose::with_effect(set, turning, drag, {fall.c_kg_m}, {}));
+    return diagnose::log_odds_without_air(set, both);
+  };
+  CHECK(odds(0.003) == 0.0);
+  CHECK(odds(0.2) < -2.0);
 }
 
 TEST_CASE("a fall with a buoyancy is a wrong scale, and a note says which densities would do the same") {
