@@ -6,9 +6,11 @@ import math
 import signal
 import threading
 import time
+import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
@@ -45,8 +47,10 @@ def estimator(function: _Function) -> _Function:
     Raises
     ------
     InputError
-        The function has the name of a built-in estimator.
+        It is not a function, or has the name of a built-in estimator.
     """
+    if not callable(function):
+        raise input_error("estimator", repr(function), "a function")
     name = function.__name__
     if name in _glidelab.estimator_names():
         raise input_error("estimator", f"the name \"{name}\"", "one that is not a built-in estimator's")
@@ -251,7 +255,7 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
     left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0)
     before = signal.signal(signal.SIGALRM, ring)
     try:
-        signal.setitimer(signal.ITIMER_REAL, seconds, seconds)  # rings again where the first is swallowed
+        signal.setitimer(signal.ITIMER_REAL, seconds)
         yield
     finally:
         try:
@@ -263,11 +267,13 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
 
 
 def _said_by(error: Exception) -> str:
-    """Kind and text of an exception; the kind alone where its text cannot be had."""
+    """Kind, text and place of an exception; no text where it cannot be had."""
     try:
-        return f"{type(error).__name__}: {error}"
+        text = f"{type(error).__name__}: {error}"
     except Exception:  # pylint: disable=broad-exception-caught  # __str__ is the estimator's own, too
-        return type(error).__name__
+        text = type(error).__name__
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{text} ({Path(last.filename).name}, line {last.lineno})"
 
 
 def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float, jobs: int,
@@ -360,6 +366,8 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         name = one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__)
         if isinstance(one, str) and one not in _glidelab.estimator_names():
             raise input_error("estimators", f"\"{one}\"", f"a function, or one of {', '.join(_glidelab.estimator_names())}")
+        if not callable(one) and not isinstance(one, str):
+            raise input_error("estimators", repr(one), "a function, or the name of a built-in estimator")
         if name in named:
             raise input_error("estimators", f"\"{name}\" a second time", "each once, with a name of its own")
         named[name] = one
