@@ -153,8 +153,8 @@ struct Sentence {
     if (!of.over_viscous) return words;
     if (*of.over_viscous > kClearly) return words + " The positions alone also prefer it to a viscous drag.";
     return words + (*of.over_viscous < -kClearly
-                        ? " The positions by themselves prefer a viscous drag: the name rests on what air does."
-                        : " The positions by themselves do not tell it from a viscous drag: the name rests on what air "
+                        ? " The positions alone prefer a viscous drag: the name rests on what air does."
+                        : " The positions alone do not tell it from a viscous drag: the name rests on what air "
                           "does.");
   }
   std::string operator()(const diagnose::BuoyancyLooksAlike& of) const {

@@ -56,7 +56,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::TableOfLines{12}, "The table of 12 lines"},
       {diagnose::OnlyFalls{}, "not determined"},
       {diagnose::FallsThroughAir{}, "without any drag"},
-      {diagnose::FallsThroughAir{7.0}, "prefer it to a viscous drag, too"},
+      {diagnose::FallsThroughAir{7.0}, "alone also prefer it to a viscous drag"},
       {diagnose::FallsThroughAir{1.0}, "do not tell it from a viscous drag"},
       {diagnose::FallsThroughAir{-4.0}, "prefer a viscous drag: the name rests"},
       {diagnose::BuoyancyLooksAlike{0.163}, "0.16 of the density of the body"}};
