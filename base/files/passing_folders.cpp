@@ -1,7 +1,6 @@
 #include "base/files/passing_folders.h"
 
 #include <unistd.h>
-#include <map>
 
 #include <map>
 #include <mutex>

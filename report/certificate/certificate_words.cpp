@@ -33,8 +33,8 @@ struct LackWords {
   }
   std::string operator()(const validate::lacking::Noise& of) const {
     return fmt::format(
-        "noise as in the recording (its positions scatter by {:.3g} m, the twin's by {:.3g} m: another cause than the "
-        "pixels' noise)",
+        "noise as in the recording (its positions scatter by {:.3g} m, the twin's by {:.3g} m: something other than "
+        "pixel noise is at work)",
         of.recorded_m, of.twin_m);
   }
 };

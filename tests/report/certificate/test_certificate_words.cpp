@@ -177,8 +177,8 @@ TEST_CASE("everything that twins may lack has words and a reason, an error of se
       {lacking::Images{"twin: no view\nof the track"}, "images and calibration (twin: no view of the track)"},
       {lacking::ClipScatter{}, "what differs from clip to clip (filming leaves as much)"},
       {lacking::Noise{5e-4, 1.23456e-5},
-       "noise as in the recording (its positions scatter by 0.0005 m, the twin's by 1.23e-05 m: another cause than the "
-       "pixels' noise)"}};
+       "noise as in the recording (its positions scatter by 0.0005 m, the twin's by 1.23e-05 m: something other than "
+       "pixel noise is at work)"}};
   std::vector<bool> seen(std::variant_size_v<validate::NotInTwins>, false);
   for (const auto& [lack, words] : lacks) {
     CHECK(report::lack_words(lack) == words);
