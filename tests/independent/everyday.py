@@ -26,6 +26,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import everyday_effects as effects  # noqa: E402
 import everyday_physics as physics  # noqa: E402
 import everyday_score  # noqa: E402
+import everyday_unlisted as unlisted  # noqa: E402
 
 CLASSES = (("one", 0.5), ("two", 0.2), ("none", 0.15), ("off", 0.15))
 
@@ -142,7 +143,7 @@ def draw_causes(rng, kind, driven, d, glider):
     if kind == "none":
         return []
     if kind == "off":
-        kinds = [effects.OFF_LIST[rng.integers(len(effects.OFF_LIST))]]
+        kinds = [unlisted.OFF_LIST[rng.integers(len(unlisted.OFF_LIST))]]
     elif driven:
         kinds = [effects.DRIVEN[rng.integers(len(effects.DRIVEN))]]
         if kind == "two":
@@ -174,7 +175,7 @@ def draw_case(rng, kind):
     elif causes:
         maker.set_size(causes[0], target)
     small = []
-    pieces = [k for k in rng.permutation(effects.IMPERFECTIONS)][:rng.integers(3, 6)]
+    pieces = [k for k in rng.permutation(unlisted.IMPERFECTIONS)][:rng.integers(3, 6)]
     weights = rng.dirichlet(np.full(len(pieces), 4.0))
     fraction = 1.0 if kind == "none" else rng.uniform(0.02, 0.30)
     for k, weight in zip(pieces, weights):

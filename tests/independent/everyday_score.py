@@ -1,7 +1,6 @@
 """Diagnoses made experiments and compares the verdicts with the truth."""
 
 import json
-import os
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path

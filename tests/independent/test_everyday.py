@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import everyday  # noqa: E402  exits with 77 without numpy or scipy
 import everyday_effects as effects  # noqa: E402
 import everyday_physics as physics  # noqa: E402
+import everyday_unlisted as unlisted  # noqa: E402
 import numpy as np  # noqa: E402
 
 GLIDELAB = sys.argv.pop(1)
@@ -66,7 +67,7 @@ class Law(unittest.TestCase):
     def test_an_effect_does_nothing_at_size_0_and_something_at_its_own(self):
         glider, clips = some_clips()
         d = effects.design(clips)
-        for kind in effects.LIST + effects.OFF_LIST + effects.IMPERFECTIONS:
+        for kind in effects.LIST + unlisted.OFF_LIST + unlisted.IMPERFECTIONS:
             with self.subTest(kind.id):
                 effect = kind.draw(np.random.default_rng(1), d, glider)
                 self.assertIsNotNone(effect)
