@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/held_fit.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/scan/effect_scan.h"
@@ -58,7 +59,24 @@ bool is_worth(const ExplainedCause& cause) {
   return cause.share > kLeastShare && (!cause.share_interval95 || cause.share_interval95->low > 0.0);
 }
 
-/// The fit to `set` with these effects, started from a fit that has all of them, and perhaps more.
+/// The parameters of effects that are no sizes: where a cable tightens, until when a hand pushes, how fast a table
+/// shakes.
+std::vector<std::size_t> shapes_of(const ParameterLayout& layout) {
+  std::vector<std::size_t> shapes;
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const ParameterLayout::Global& of = layout.globals()[g];
+    if (of.kind != ParameterLayout::Global::Kind::effect || of.parameter->each != Each::experiment) continue;
+    const EffectInfo& info = effect_list()[of.effect];
+    const std::size_t parameter = of.parameter->slot.parameter;
+    const bool is_size = parameter >= info.law.size && parameter < info.law.size + info.law.sizes;
+    if (!is_size && info.search != Search::spread) shapes.push_back(g);
+  }
+  return shapes;
+}
+
+/// The fit to `set` with these effects, started from a fit that has all of them. If that has more, the shapes stay as
+/// they are there: a hand that pushes for half a second, where a law is missing, is not the hand of a tenth of a second
+/// that was found beside the law, and what it takes is not the share of that hand.
 std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, const std::vector<std::size_t>& effects,
                                   const Lateness& late) {
   const ParameterLayout layout(set, effects);
@@ -85,7 +103,8 @@ std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, co
     }
     start.own.push_back(kept);
   }
-  MotionFit fit = fit_motions(set, effects, start, late);
+  const bool is_part = effects.size() < from.effects.size();
+  MotionFit fit = fit_held(set, effects, start, late, is_part ? shapes_of(layout) : std::vector<std::size_t>());
   if (!std::isfinite(fit.cost)) return {};
   return fit;
 }
@@ -191,6 +210,11 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     here = std::move(best->second);
     steps.emplace_back(left[which], here);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
+  }
+  if (!steps.empty() && here.fit.effects.size() < named.effects.size()) {
+    // These are all that is named, so their shapes are free again.
+    here = step_of(set, fit_motions(set, here.fit.effects, here.fit.at, here.fit.late));
+    steps.back().second = here;
   }
   sequence.named = here.fit;
   const std::size_t named_steps = steps.size();

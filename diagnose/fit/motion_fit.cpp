@@ -11,6 +11,7 @@
 #include "base/math/levenberg_marquardt.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/held_fit.h"
 #include "diagnose/fit/integrated_start.h"
 
 namespace glidelab::diagnose {
@@ -245,6 +246,11 @@ FitPoint step_from(const MotionFit& fit, double damping) {
 
 namespace {
 
+/// Holds a parameter of an effect where it starts: by a ten-millionth of its range.
+FitStatement held_at(std::size_t global, double value, const ParameterRange& range) {
+  return {global, value, 1e-7 * (range.high - range.low), {}, false};
+}
+
 /// A K, a gravity or an inclination that stopped at an edge stays there in whatever is linear about the fit.
 void hold_at_edges(MotionFit& fit) {
   constexpr double kHeld = 1e-4;  // of the prior's standard deviation
@@ -260,7 +266,7 @@ void hold_at_edges(MotionFit& fit) {
 }
 
 MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
-                   const Lateness& late, const base::FitOptions& options) {
+                   const Lateness& late, const base::FitOptions& options, const std::vector<std::size_t>& held = {}) {
   MotionFit fit;
   fit.effects = effects;
   ParameterLayout layout(set, effects);
@@ -270,6 +276,9 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   round_to_edges(*fit.layout, fit.at.global);  // K may come from a fit in which it was free
   fit.late = late;
   fit.statements = statements_of(set, *fit.layout);
+  for (const std::size_t g : held) {
+    fit.statements.push_back(held_at(g, fit.at.global[static_cast<Eigen::Index>(g)], fit.layout->globals()[g].range));
+  }
   linearise_all(set, fit, Derivatives::none);
   fit.cost = cost_of(fit);
   struct Point {
@@ -350,6 +359,11 @@ double drag_of_air_like(const MotionFit& fit, double least) {
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late) {
   return fit_from(set, effects, start, late, descent_options());
+}
+
+MotionFit fit_held(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
+                   const Lateness& late, const std::vector<std::size_t>& held) {
+  return fit_from(set, effects, start, late, descent_options(), held);
 }
 
 MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit) {

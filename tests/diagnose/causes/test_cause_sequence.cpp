@@ -3,8 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/held_fit.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
+#include "diagnose/scan/effect_scan.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -57,4 +60,52 @@ TEST_CASE(
   }
   CHECK(clear == 0);
   CHECK(beyond_two > 0);
+}
+
+TEST_CASE("the share of a hand is that of the hand beside the law, not of one that follows what the law does") {
+  // Friction that grows by 2.5 % from clip to clip, and a hand that pushes for the first 80 ms.
+  std::size_t clip = 0;
+  double before = 1.0;
+  tests::MadeEffect both;
+  both.force = [&](double m, double, double v, double t) {
+    if (t < before - 0.1) ++clip;
+    before = t;
+    const double more = 0.025 * (static_cast<double>(clip) - 3.5) * 0.02 * m * 9.80665;
+    return (v > 0.0 ? -more : v < 0.0 ? more : 0.0) + (t < 0.08 ? 2.4 * m * (clip % 2 == 0 ? 1.0 : -0.7) : 0.0);
+  };
+  std::vector<tests::MadeLaunch> launches;
+  for (int c = 0; c < 6; ++c) launches.push_back({0.4, 4.0, c % 2 == 0 ? 0.3 : -0.6, c % 2 == 0 ? -1.1 : 0.6});
+  const tests::MadeExperiment made =
+      tests::made_experiment(launches, both, 3, 5e-5, 150, 100.0, 0.05, 0.0, {.k_n_s_m = 0.2, .mu = 0.02});
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto with = [&](const diagnose::MotionFit& fit, const char* id) {
+    const std::size_t effect = diagnose::effect_index(id);
+    const diagnose::EffectScan scan = diagnose::scan_effect(diagnose::ScoreSpace(set, fit), effect);
+    REQUIRE_FALSE(scan.values.empty());
+    return diagnose::fit_with_effect(set, fit, effect, diagnose::with_effect(set, fit, effect, scan.values, scan.own));
+  };
+  const diagnose::MotionFit named = with(with(nominal, "friction_drift"), "late_release");
+  const diagnose::MotionFit hand = with(nominal, "late_release");
+  const auto until_of = [](const diagnose::MotionFit& fit) {
+    return static_cast<Eigen::Index>(fit.layout->first_of(diagnose::effect_index("late_release")));
+  };
+  const double until = named.at.global[until_of(named)];
+  CHECK(until == Approx(0.08).margin(0.02));
+  diagnose::FitPoint start = hand.at;
+  start.global[until_of(hand)] = until;
+  const diagnose::MotionFit held =
+      diagnose::fit_held(set, hand.effects, start, {}, {static_cast<std::size_t>(until_of(hand))});
+  CHECK(held.at.global[until_of(held)] == Approx(until).margin(1e-6));
+  const double before_all = diagnose::held_out_excess(set, nominal);
+  const double by_hand = 1.0 - diagnose::held_out_excess(set, held) / before_all;
+  // A hand by itself pushes for longer, and takes part of what the drift explains.
+  CHECK(hand.at.global[until_of(hand)] > until);
+  CHECK(1.0 - diagnose::held_out_excess(set, hand) / before_all > by_hand + 0.002);
+  const diagnose::CauseSequence sequence = diagnose::sequence_of(set, nominal, set, named, {}, 0.02);
+  double told = 0.0;
+  for (const diagnose::ExplainedCause& cause : sequence.causes) told += cause.id == "late_release" ? cause.share : 0.0;
+  REQUIRE(sequence.causes.size() >= 2);
+  CHECK(sequence.causes.front().id == "late_release");
+  CHECK(told == Approx(by_hand).margin(1e-3));  // the floor may lie a little below 1
 }
