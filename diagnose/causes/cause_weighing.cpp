@@ -32,6 +32,8 @@ constexpr double kNearlyAsLikely = 0.1;       // relative to the probability of 
 constexpr std::size_t kMostBeside = 8;        // explanations beside which a function without a name is weighed
 constexpr std::size_t kWithScatter = 3;       // laws that are weighed together with clip scatter
 constexpr double kMuchLeft = 0.1;             // of the excess: a law that leaves less needs no clip scatter beside it
+constexpr int kMostSettling = 3;              // fits of an explanation beside its own remainder
+constexpr double kSettledEvidence = 0.5;      // log evidence: a smaller change decides nothing
 constexpr double kNotWeighed = 1e3;           // log evidence by which an explanation without a fit is behind
 
 struct Profile {
@@ -49,6 +51,35 @@ Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const Rema
   profile.chi2 = space.chi2(profile.best.sizes);
   profile.log_evidence = profile.best.log_likelihood + log_prior(set, noise_alone, space.solve(profile.best.sizes));
   return profile;
+}
+
+/// A fit and its remainder.
+struct Settled {
+  MotionFit noise_alone;
+  Profile profile;
+};
+
+/// An explanation at the minimum under its own remainder. The likelihood of a remainder is that of the linear
+/// neighbourhood of a fit. A fit by the noise alone, or by the remainder of another explanation, may lie so far from
+/// the minimum that the linear model promises what the motion cannot do, or hides what it can: the evidence of two
+/// explanations would then differ by where their fits happen to stand.
+Settled settled(const TrackSet& set, MotionFit from, const RemainderSizes& start) {
+  Settled here{linearise_again(set, from), {}};
+  here.profile = profile_of(set, here.noise_alone, &start);
+  for (int round = 0; round < kMostSettling && std::isfinite(here.profile.log_evidence); ++round) {
+    TrackSet with = set;
+    add_remainder(here.noise_alone, here.profile.best.sizes, with);
+    const MotionFit& at = here.noise_alone;
+    const MotionFit anew = fit_motions(with, at.effects, at.at, at.late);
+    if (!std::isfinite(anew.cost)) break;
+    Settled next{linearise_again(set, anew), {}};
+    next.profile = profile_of(set, next.noise_alone, &here.profile.best.sizes);
+    if (!std::isfinite(next.profile.log_evidence)) break;
+    const double change = std::abs(next.profile.log_evidence - here.profile.log_evidence);
+    here = std::move(next);
+    if (change < kSettledEvidence) break;
+  }
+  return here;
 }
 
 /// Takes off what a gain over the nominal model's chi² is worth less where few positions show the noise.
@@ -269,8 +300,9 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   excess.of_fits.assign(comparison.fits.size(), std::numeric_limits<double>::quiet_NaN());
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
     const std::size_t f = worth[k];
-    noise_alone[f] = linearise_again(set, comparison.fits[f]);
-    profiles[f] = profile_of(set, noise_alone[f], &sizes);
+    Settled own = settled(set, comparison.fits[f], sizes);
+    noise_alone[f] = std::move(own.noise_alone);
+    profiles[f] = std::move(own.profile);
   });
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
     const std::size_t f = worth[k];
@@ -306,24 +338,39 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   excess.without_drag = excess_without_drag(set, excess.of_fits.front());
   set_air_odds(weighed.set, comparison);
   if (const std::size_t scatter = effect_index(ids::clip_scatter); searched && !without.contains(scatter)) {
-    const std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess);
-    std::vector<std::optional<MotionFit>> found(laws.size());
+    std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess);
+    std::vector<std::optional<MotionFit>> pairs(laws.size());
     base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
-      found[k] = with_clip_scatter(set, noise_alone[static_cast<std::size_t>(laws[k].fit)]);
+      pairs[k] = with_clip_scatter(set, noise_alone[static_cast<std::size_t>(laws[k].fit)]);
+    });
+    // Where clips scatter most of all, the law shows beside the scatter alone.
+    if (const Hypothesis* alone = find(comparison, {scatter})) {
+      const auto fit = static_cast<std::size_t>(alone->fit);
+      std::set<std::size_t> others = without;
+      for (const Hypothesis& law : laws) others.insert(law.effects.front());
+      for (MotionFit& pair : laws_beside_scatter(set, noise_alone[fit], profiles[fit].best.sizes, others)) {
+        laws.push_back(*alone);
+        laws.back().effects = {pair.effects.back()};
+        pairs.emplace_back(std::move(pair));
+      }
+    }
+    std::vector<std::optional<Settled>> found(laws.size());
+    base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
+      if (pairs[k]) found[k] = settled(set, *pairs[k], profiles[static_cast<std::size_t>(laws[k].fit)].best.sizes);
     });
     for (std::size_t k = 0; k < laws.size(); ++k) {
       if (!found[k]) continue;
       const auto law = static_cast<std::size_t>(laws[k].fit), fit = comparison.fits.size();
-      excess.of_fits.push_back(held_out_excess(set, *found[k]));
-      noise_alone.push_back(linearise_again(set, *found[k]));
-      profiles.push_back(profile_of(set, noise_alone.back(), &profiles[law].best.sizes));
+      excess.of_fits.push_back(std::min(held_out_excess(set, *pairs[k]), held_out_excess(set, found[k]->noise_alone)));
+      noise_alone.push_back(std::move(found[k]->noise_alone));
+      profiles.push_back(std::move(found[k]->profile));
       allow_for_unknown_noise(set, profiles.front(), profiles.back());
-      comparison.fits.push_back(linearise_again(weighed.set, *found[k]));
+      comparison.fits.push_back(linearise_again(weighed.set, *pairs[k]));
       worth.push_back(fit);
       Hypothesis both = laws[k];
       both.effects.push_back(scatter);
       both.fit = static_cast<int>(fit);
-      both.converged = found[k]->converged;
+      both.converged = pairs[k]->converged;
       both.gain += 0.5 * (noise_alone[law].cost - noise_alone[fit].cost);
       both.log_evidence =
           std::isfinite(profiles[fit].log_evidence) ? profiles[fit].log_evidence - nothing : -kNotWeighed;

@@ -18,6 +18,8 @@ constexpr int kWidthsTried = 13;        // three per decade, over four decades
 constexpr double kLeastWidth_sd = 2.0;  // standard deviations: a smaller width cannot be told from none
 constexpr double kRoundingOfSum = 1e-13;
 constexpr int kRoundsOfWidths = 4;
+constexpr double kShowsBeside = 3.0;           // log evidence beside the scatter, above which a law is fitted
+constexpr std::size_t kMostBesideScatter = 3;  // laws
 
 class Density {
  public:
@@ -105,6 +107,29 @@ std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit&
       set, law, scatter, fit_motions(set, effects, with_effect(set, law, scatter, scan.values, scan.own), law.late));
   if (!std::isfinite(fit.cost)) return {};
   return fit;
+}
+
+std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit& scatter, const RemainderSizes& sizes,
+                                           const std::set<std::size_t>& without) {
+  std::set<std::size_t> others = without;
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (differs_between_clips(e) || !shows_in_motion(effect_list()[e].search)) others.insert(e);
+  }
+  TrackSet with = set;
+  add_remainder(scatter, sizes, with);
+  std::vector<EffectScan> scans = scan_effects(ScoreSpace(with, linearise_again(with, scatter)), others, 1);
+  std::erase_if(scans, [](const EffectScan& scan) {
+    return !scan.visible || scan.values.empty() || !(scan.log_evidence > kShowsBeside);
+  });
+  std::sort(scans.begin(), scans.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
+  if (scans.size() > kMostBesideScatter) scans.resize(kMostBesideScatter);
+  std::vector<MotionFit> fits;
+  for (const EffectScan& scan : scans) {
+    MotionFit fit =
+        fit_with_effect(set, scatter, scan.effect, with_effect(set, scatter, scan.effect, scan.values, scan.own));
+    if (std::isfinite(fit.cost)) fits.push_back(std::move(fit));
+  }
+  return fits;
 }
 
 }  // namespace glidelab::diagnose

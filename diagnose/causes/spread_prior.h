@@ -4,7 +4,9 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <vector>
+#include "diagnose/causes/remainder.h"
 #include "diagnose/fit/motion_fit.h"
 
 namespace glidelab::diagnose {
@@ -35,5 +37,11 @@ double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& cov
 /// The fit of `law` together with clip_scatter, by the noise of `set` alone. Empty if these clips cannot show it, or if
 /// the fit fails.
 std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit& law);
+
+/// The laws that show best beside clips that scatter, whose fit is `scatter` and whose remainder is `sizes`, each
+/// fitted together with them by the noise alone. A law that takes less than the scatter does hardly shows by itself, so
+/// the likeliest laws by themselves may be others. `without` are indices of effects that are left out.
+std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit& scatter, const RemainderSizes& sizes,
+                                           const std::set<std::size_t>& without);
 
 }  // namespace glidelab::diagnose

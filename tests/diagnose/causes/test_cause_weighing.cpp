@@ -242,6 +242,21 @@ TEST_CASE("a law beside clips that scatter is weighed as one explanation of both
   CHECK(*pair->left < 0.1);
   CHECK(*alone->left > 0.2);
   CHECK(pair->probability > alone->probability);
+  // The evidence is that of the linear neighbourhood of a fit, so each fit is to stand at its minimum under its own
+  // remainder. Those of the search, by a remainder that all share, stand farther off, in standard deviations.
+  const auto farthest = [&](const diagnose::MotionFit& fit, const diagnose::RemainderSizes& sizes) {
+    const auto found = diagnose::RemainderSpace(set, fit).solve(sizes);
+    return (found.change.array() / found.covariance.diagonal().array().max(1e-30).sqrt()).abs().maxCoeff();
+  };
+  double settled = 0.0, of_search = 0.0;
+  for (std::size_t f = 0; f < weighed.fits.size(); ++f) {
+    if (!weighed.fits[f]) continue;
+    const diagnose::RemainderSizes& sizes = weighed.fits[f]->sizes;
+    settled += farthest(weighed.fits[f]->noise_alone, sizes);
+    of_search += farthest(diagnose::linearise_again(set, weighed.comparison.fits[f]), sizes);
+  }
+  CAPTURE(settled, of_search);
+  CHECK(settled < 0.5 * of_search);
   // An effect that is left out is part of no explanation.
   const diagnose::WeighedCauses without =
       diagnose::weigh_causes(set, diagnose::compare_hypotheses(set, {scatter}), {scatter}, 2, nullptr, [](double) {});
