@@ -300,6 +300,11 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   excess.of_fits.assign(comparison.fits.size(), std::numeric_limits<double>::quiet_NaN());
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
     const std::size_t f = worth[k];
+    if (!searched) {
+      noise_alone[f] = linearise_again(set, comparison.fits[f]);
+      profiles[f] = profile_of(set, noise_alone[f], &sizes);
+      return;
+    }
     Settled own = settled(set, comparison.fits[f], sizes);
     noise_alone[f] = std::move(own.noise_alone);
     profiles[f] = std::move(own.profile);

@@ -113,7 +113,8 @@ std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit&
                                            const std::set<std::size_t>& without) {
   std::set<std::size_t> others = without;
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
-    if (differs_between_clips(e) || !shows_in_motion(effect_list()[e].search)) others.insert(e);
+    const bool is_law = !differs_between_clips(e) && !follows_each_clip(e);
+    if (!is_law || !shows_in_motion(effect_list()[e].search)) others.insert(e);
   }
   TrackSet with = set;
   add_remainder(scatter, sizes, with);
