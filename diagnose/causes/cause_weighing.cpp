@@ -344,19 +344,28 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
   set_air_odds(weighed.set, comparison);
   if (const std::size_t scatter = effect_index(ids::clip_scatter); searched && !without.contains(scatter)) {
     std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess);
+    const auto by_noise = [&](std::size_t fit) {  // the weighed fits stand at the minimum beside their remainder
+      const MotionFit& of = noise_alone[fit];
+      return fit_motions(set, of.effects, of.at, of.late);
+    };
     std::vector<std::optional<MotionFit>> pairs(laws.size());
+    std::vector<double> without_it(laws.size());  // chi² of each law by the noise alone
     base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
-      pairs[k] = with_clip_scatter(set, noise_alone[static_cast<std::size_t>(laws[k].fit)]);
+      const MotionFit law = by_noise(static_cast<std::size_t>(laws[k].fit));
+      without_it[k] = law.cost;
+      pairs[k] = with_clip_scatter(set, law);
     });
     // Where clips scatter most of all, the law shows beside the scatter alone.
     if (const Hypothesis* alone = find(comparison, {scatter})) {
       const auto fit = static_cast<std::size_t>(alone->fit);
       std::set<std::size_t> others = without;
       for (const Hypothesis& law : laws) others.insert(law.effects.front());
-      for (MotionFit& pair : laws_beside_scatter(set, noise_alone[fit], profiles[fit].best.sizes, others)) {
+      const MotionFit clips = by_noise(fit);
+      for (MotionFit& pair : laws_beside_scatter(set, clips, profiles[fit].best.sizes, others)) {
         laws.push_back(*alone);
         laws.back().effects = {pair.effects.back()};
         pairs.emplace_back(std::move(pair));
+        without_it.push_back(clips.cost);
       }
     }
     std::vector<std::optional<Settled>> found(laws.size());
@@ -365,7 +374,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     });
     for (std::size_t k = 0; k < laws.size(); ++k) {
       if (!found[k]) continue;
-      const auto law = static_cast<std::size_t>(laws[k].fit), fit = comparison.fits.size();
+      const std::size_t fit = comparison.fits.size();
       excess.of_fits.push_back(std::min(held_out_excess(set, *pairs[k]), held_out_excess(set, found[k]->noise_alone)));
       noise_alone.push_back(std::move(found[k]->noise_alone));
       profiles.push_back(std::move(found[k]->profile));
@@ -376,7 +385,7 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
       both.effects.push_back(scatter);
       both.fit = static_cast<int>(fit);
       both.converged = pairs[k]->converged;
-      both.gain += 0.5 * (noise_alone[law].cost - noise_alone[fit].cost);
+      both.gain += std::max(0.0, 0.5 * (without_it[k] - pairs[k]->cost));
       both.log_evidence =
           std::isfinite(profiles[fit].log_evidence) ? profiles[fit].log_evidence - nothing : -kNotWeighed;
       std::erase_if(comparison.all, [&](const Hypothesis& one) {
