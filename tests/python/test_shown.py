@@ -175,7 +175,7 @@ class Units(unittest.TestCase):
         from glidelab._results import Made
         from glidelab._sweeps import Candidate, Requirement
         for target, unit in (("k_over_m_1_s 95 % error 0.01", "1/s"), ("mu sd 0.0001", ""), ("alpha_deg bias 0.01", "°")):
-            made = Requirement(Made.__new__(Made), "cameras", (Candidate("a", True, "reached"),), (target,))
+            made = Requirement(Made.__new__(Made), "cameras", (Candidate("a", True, "reached", None, None, None),), (target,))
             self.assertEqual(made.to_frame().attrs["units"]["error"], unit)
             self.assertEqual(made.to_frame().attrs["units"]["bound"], unit)
             self.assertEqual(made.to_frame().attrs["units"]["price_eur"], "EUR")
