@@ -12,6 +12,7 @@
 #include "core/experiment/file_names.h"
 #include "core/track/number_field.h"
 #include "core/track/table_columns.h"
+#include "core/track/text_encoding.h"
 
 namespace glidelab::core {
 namespace {
@@ -393,13 +394,15 @@ void drop_empty_columns_at_end(ColumnTable& table) {
 }  // namespace
 
 ColumnTable read_column_table(const std::filesystem::path& file) {
-  const std::string text = base::read_file(file);
+  const std::string bytes = base::read_file(file);
   ColumnTable table;
   table.file = file.string();
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  const NoTable other = no_table_in(bytes);
+  if (!other.what.empty()) throw base::InputError(base::Issue{table.file, 0, "", other.what, other.advice});
+  const std::string text = as_utf8(bytes);
+  const std::string_view rest = text;
   if (rest.find('\0') != std::string_view::npos) {
-    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (UTF-16, or no text)",
+    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (no text)",
                                        "text in UTF-8 with a track; a video goes into a folder, which glidelab new "
                                        "FOLDER makes"});
   }

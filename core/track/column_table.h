@@ -54,7 +54,8 @@ struct ColumnTable {
   std::vector<int> line;             ///< of each data line, 1-based
 };
 
-/// InputError if the file does not have two columns of numbers, is UTF-16, or has text between the numbers (up to ten
+/// The text may be UTF-8, UTF-16 or Latin-1 (text_encoding.h). InputError if the file does not have two columns of
+/// numbers, is no text (a spreadsheet's own format, JSON), or has text between the numbers (up to ten
 /// issues, with line and column).
 ColumnTable read_column_table(const std::filesystem::path& file);
 

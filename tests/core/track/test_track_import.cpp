@@ -284,6 +284,20 @@ TEST_CASE("a decimal comma goes with a comma between fields if it is in quotes")
   check_motion(Made("t,x\n" + rows("\"0,{0}\",\"{1},0E-2\"\n")).read());
 }
 
+TEST_CASE("a table in UTF-16 or Latin-1 is read as one in UTF-8") {
+  std::string wide = "\xFF\xFE";
+  for (const char c : "t (s)\tx (m)\n" + rows("0.{0}\t{1}E-2\n")) wide += {c, '\0'};
+  check_motion(Made(wide).read());
+  // Of two lengths the one called Posición is x.
+  check_motion(Made("Tiempo (s);Posici\xF3n (m);Error (m)\n" + rows("0,{0};{1}E-2;0,001\n")).read());
+}
+
+TEST_CASE("formats that are no text are named, with what to do") {
+  CHECK_THROWS_WITH(Made("\xD0\xCF\x11\xE0\xA1\xB1").read(),
+                    Contains("an Excel file") && Contains("save the sheet as CSV"));
+  CHECK_THROWS_WITH(Made("[{\"t\": 0.0, \"x\": 0.1}]\n").read(), Contains("JSON") && Contains("two columns"));
+}
+
 TEST_CASE("if no line is read, the message shows one and says what ails it") {
   CHECK_THROWS_WITH(Made("t,x,y\n0 .000,0,\"-1,70E+01\"\n").read(),
                     Contains(":2: ") && Contains("the first with digits is 0 .000,0,"));
