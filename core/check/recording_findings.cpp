@@ -173,7 +173,12 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     judge_lighting(clip, book);
     judge_times(experiment, clip, book);
   } else if (clip.seen < kFewSightings) {
-    book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change, found::FewPositions{clip.seen});
+    found::FewPositions few{clip.seen};
+    for (const Note& note : clip.notes) {
+      const auto* const incomplete = std::get_if<RowsIncomplete>(&note);
+      if (incomplete != nullptr && incomplete->rows > clip.seen) few.unmarked = incomplete->rows;
+    }
+    book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change, few);
   }
   for (const Note& note : clip.notes) {
     const bool reported =
