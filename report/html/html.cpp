@@ -155,6 +155,7 @@ td.why { white-space: normal; color: var(--soft); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 0.6rem; margin: 1rem 0; padding: 0; }
 .tile { background: var(--tint); border: 1px solid var(--line); border-radius: 8px; padding: 0.55rem 0.8rem; }
 .tile b { display: block; font-size: 1.25rem; font-variant-numeric: tabular-nums; }
+@media (max-width: 480px) { .tile b { font-size: 1.1rem; } }
 .tile span { color: var(--soft); font-size: 0.88rem; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(340px, 100%), 1fr)); gap: 0.8rem;
            align-items: start; margin: 0.8rem 0; }
@@ -318,7 +319,11 @@ Html figures(const std::vector<Plot>& plots) {
 }
 
 std::string tile(const std::string& number, const std::string& words) {
-  return "<div class=\"tile\"><b>" + escape(number) + "</b><span>" + escape(words) + "</span></div>";
+  std::string text = escape(number);
+  // A narrow tile breaks before the ±, and hides no digit.
+  const std::size_t at = text.find(kPlusMinus);
+  if (at != std::string::npos) text.insert(at, "<wbr>");
+  return "<div class=\"tile\"><b>" + text + "</b><span>" + escape(words) + "</span></div>";
 }
 
 std::string question_heading(std::string_view about, std::string_view question) {
