@@ -155,7 +155,6 @@ td.why { white-space: normal; color: var(--soft); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 0.6rem; margin: 1rem 0; padding: 0; }
 .tile { background: var(--tint); border: 1px solid var(--line); border-radius: 8px; padding: 0.55rem 0.8rem; }
 .tile b { display: block; font-size: 1.25rem; font-variant-numeric: tabular-nums; }
-@media (max-width: 480px) { .tile b { font-size: 1.1rem; } }
 .tile span { color: var(--soft); font-size: 0.88rem; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(340px, 100%), 1fr)); gap: 0.8rem;
            align-items: start; margin: 0.8rem 0; }
