@@ -35,6 +35,16 @@ bool is_acceleration(const TableColumn& column) {
          name.find("aceler") != std::string::npos || name.find("acc\xC3\xA9l") != std::string::npos;
 }
 
+bool is_speed(const TableColumn& column) {
+  const std::string name = lower(column.name);
+  // English, German, French, Spanish, Portuguese.
+  for (const char* word : {"velocity", "speed", "geschwindigkeit", "vitesse", "velocidad", "velocidade"}) {
+    if (name.find(word) != std::string::npos) return true;
+  }
+  return name == "v" || name == "vx" || name == "v_x" || column.unit == "m/s" || column.unit == "cm/s" ||
+         column.unit == "mm/s" || column.unit == "km/h";
+}
+
 constexpr std::size_t kMostNamedColumns = 20;
 
 std::string columns_text(const ColumnTable& table) {
@@ -80,6 +90,15 @@ void refuse_without_positions(const ColumnTable& table) {
                      "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
                      "integrated, and a phone on an incline measures gravity besides. Film the glider, or record its "
                      "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
+}
+
+/// Speeds added up are positions whose errors grow, which no stated interval allows for.
+void refuse_speeds(const ColumnTable& table) {
+  if (std::none_of(table.columns.begin(), table.columns.end(), is_speed)) return;
+  throw wrong_column(table, "speeds without positions, " + columns_text(table),
+                     "positions over time: the errors of speeds that are added up grow with time, and the stated "
+                     "intervals would be too narrow. Export the distance as well: an encoder counts it, a motion "
+                     "sensor measures it. A radar measures speeds alone, and its tracks cannot be analysed");
 }
 
 /// The positions in a plane at which a body was seen, first to last.
@@ -268,6 +287,7 @@ ChosenColumns place_columns(const ColumnTable& table, std::vector<Note>& notes) 
   const std::vector<std::size_t> lengths =
       columns_that(table, [](const TableColumn& column) { return metres_per(column.unit).has_value(); });
   if (found.empty() && heights.empty() && lengths.size() == 1) return only(lengths.front());  // "s (m)", "d / cm"
+  if (found.empty() && heights.empty()) refuse_speeds(table);
   throw wrong_column(
       table, columns_text(table),
       fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
@@ -301,10 +321,11 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
         "a column of times: divide the numbers of the frames by the frame rate, and call the column "
         "t (s)");
   }
-  throw wrong_column(table,
-                     fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
-                                 columns_text(table)),
-                     "one, called t or time or with a unit of time");
+  throw wrong_column(
+      table,
+      fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
+                  columns_text(table)),
+      "one, called t or time or with a unit of time; numbers of frames are to be divided by the frame rate");
 }
 
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),

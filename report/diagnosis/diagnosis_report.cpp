@@ -332,8 +332,7 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
 }  // namespace
 
 std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
-  std::string text =
-      fmt::format("verdict: {}\n\n{}\n", verdict_id(diagnosis.verdict), wrapped(verdict_words(diagnosis)));
+  std::string text = fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), verdict_id(diagnosis.verdict));
   const std::string sequence = diagnosis.lines ? std::string() : sequence_lines(diagnosis);
   if (!sequence.empty()) text += sequence + "next: " + wrapped(next_step_words(diagnosis.next)) + "\n";
   std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "ln evidence"}};

@@ -319,7 +319,11 @@ Html figures(const std::vector<Plot>& plots) {
 }
 
 std::string tile(const std::string& number, const std::string& words) {
-  return "<div class=\"tile\"><b>" + escape(number) + "</b><span>" + escape(words) + "</span></div>";
+  std::string text = escape(number);
+  // A narrow tile breaks before the ±, and hides no digit.
+  const std::size_t at = text.find(kPlusMinus);
+  if (at != std::string::npos) text.insert(at, "<wbr>");
+  return "<div class=\"tile\"><b>" + text + "</b><span>" + escape(words) + "</span></div>";
 }
 
 std::string question_heading(std::string_view about, std::string_view question) {

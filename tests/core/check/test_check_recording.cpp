@@ -5,7 +5,9 @@
 #include <cmath>
 #include <variant>
 
+#include "base/errors.h"
 #include "base/files/file_io.h"
+#include "core/analysis/clip_to_track.h"
 #include "core/check/check_clip.h"
 #include "core/check/recording_findings.h"
 #include "tests/catch.h"
@@ -160,6 +162,36 @@ TEST_CASE("a marker that is not found for its size is looked for in others, and 
     // A disc of 12 px, found by another size to a pixel.
     for (const core::ClipCheck& clip : check.clips) CHECK(std::abs(clip.marker_px - 12.0) < 1.0);
   }
+}
+
+TEST_CASE("a length in a wrong unit, and a marker that is nowhere, are told without reading a clip dozens of times") {
+  const tests::TempDir dir;
+  write_clip(dir / "clip.mkv");
+  std::vector<cv::Mat> plain(60, cv::Mat(kSize, CV_64F, cv::Scalar(kBackground)));
+  tests::write_video(dir / "plain.mkv", plain, kRate, kNoise);
+  std::atomic<int> opened = 0;
+  const core::FrameOpener counting = [&](const std::filesystem::path& file, const core::CameraSettings& camera,
+                                         bool with_color, std::optional<cv::Size> size) {
+    ++opened;
+    return core::open_frames(file, camera, with_color, size);
+  };
+  const auto read = [&](const core::Experiment& experiment) {
+    opened = 0;
+    CHECK_FALSE(core::check_recording(experiment, 1, base::no_progress, counting).usable);
+    return opened.load();
+  };
+  // One frame of the first clip, then of each alone.
+  core::Experiment in_mm = experiment_of({dir / "clip.mkv", dir / "plain.mkv"});
+  in_mm.marker->diameter_m *= 1000.0;
+  CHECK(read(in_mm) <= 1 + 2);
+  in_mm.marker->diameter_m *= 1e-6;
+  CHECK(read(in_mm) <= 1 + 2 + 6);
+  // Alone in its folder, the clip is not searched once more; six other sizes are tried, bright and dark.
+  const core::Experiment nowhere = experiment_of({dir / "plain.mkv"});
+  opened = 0;
+  CHECK_THROWS_AS(core::tracks_of(nowhere, 1, base::no_progress, counting), base::InputError);
+  const int thorough = opened;
+  CHECK(read(nowhere) <= thorough + 2 * 6);
 }
 
 TEST_CASE("what is found is said once, and in the words of the folder that it is about") {

@@ -136,6 +136,15 @@ TEST_CASE("accelerations alone are refused with the reason") {
   CHECK_THROWS_WITH(phone.read(), Contains("accelerations without positions") && Contains("integrated"));
 }
 
+TEST_CASE("speeds alone are refused with the reason, and beside positions they are no matter") {
+  for (const char* name : {"Velocity (m/s)", "Geschwindigkeit (m/s)", "v (cm/s)", "v", "Speed"}) {
+    INFO(name);
+    const Made radar(fmt::format("\"Time (s)\",\"{}\"\n", name) + rows("0.{0},0.{0}\n"));
+    CHECK_THROWS_WITH(radar.read(), Contains("speeds without positions") && Contains("too narrow"));
+  }
+  check_motion(Made("\"Time (s)\",\"Position (cm)\",\"Velocity (m/s)\"\n" + rows("0.{0},{1},0.1\n")).read());
+}
+
 TEST_CASE("a name that only contains t_s, as zeit_s, is another program's and imported") {
   check_motion(Made("zeit_s,weg_mm\n" + rows("0.{0},{1}0\n")).read());
   check_motion(Made("t_sec,x_mm\n" + rows("0.{0},{1}0\n")).read());
