@@ -187,8 +187,9 @@ class Finder:
         if sign in SWAPPED:
             self.add(from_a, to_b, with_sign(SWAPPED[sign]), "operator", form)
         if sign in TERMS:
-            self.add(from_a, to_b, b"(" + a + b")", "term", form)
-            self.add(from_a, to_b, {b"-": b"(-(" + b + b"))", b"/": b"(1 / (" + b + b"))"}.get(sign, b"(" + b + b")"), "term", form)
+            self.add(from_a, to_b, self.as_truth(cursor, sides[0], b"(" + a + b")"), "term", form)
+            other = {b"-": b"(-(" + b + b"))", b"/": b"(1 / (" + b + b"))"}.get(sign, b"(" + b + b")")
+            self.add(from_a, to_b, self.as_truth(cursor, sides[1], other), "term", form)
         if sign in TURNED:
             self.add(from_a, to_b, with_sign(TURNED[sign]), "bound", form)
         if sign in NEARLY and (from_a, to_b) not in self.loops and any(type_of(core_of(side)) in WHOLE for side in sides):
@@ -211,7 +212,14 @@ class Finder:
         start, end = self.extent(cursor)
         if self.source[start:start + 1] in (b"-", b"!"):
             kind = "sign" if self.source[start:start + 1] == b"-" else "operator"
-            self.add(start, end, b"(" + self.source[start + 1:end] + b")", kind, "value" if type_of(cursor) in ARITHMETIC else "")
+            inner, written = next(iter(cursor.get_children()), cursor), b"(" + self.source[start + 1:end] + b")"
+            self.add(start, end, self.as_truth(cursor, inner, written), kind, "value" if type_of(cursor) in ARITHMETIC else "")
+
+    def as_truth(self, cursor, part, written):
+        """An operand in place of a truth value: beside that value an std::optional would make one of its own of both."""
+        part = core_of(part)
+        made = type_of(part) != TypeKind.BOOL or part.spelling == "operator bool"
+        return b"(!!" + written + b")" if type_of(cursor) == TypeKind.BOOL and made else written
 
     def negated(self, cursor):
         value = list(cursor.get_children())[-1:]

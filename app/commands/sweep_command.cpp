@@ -5,6 +5,7 @@
 #include <charconv>
 #include <memory>
 
+#include "app/shell/build_version.h"
 #include "app/shell/cli.h"
 #include "app/shell/common_options.h"
 #include "app/shell/run_control.h"
@@ -19,7 +20,6 @@
 #include "validate/study/sweep/design/sweep_scenario.h"
 #include "validate/study/sweep/run_sweep.h"
 #include "validate/study/sweep/sweep_summary.h"
-#include "version_of_build.h"
 
 namespace glidelab::app {
 namespace {
@@ -142,7 +142,7 @@ void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const va
              const fs::path& out) {
   const base::TemporaryFolder elsewhere("dry-run");
   const bool there = fs::exists(out / database_name(shard));
-  validate::SweepDatabase database((there ? out : elsewhere.path()) / database_name(shard), sweep, GLIDELAB_VERSION,
+  validate::SweepDatabase database((there ? out : elsewhere.path()) / database_name(shard), sweep, build_version(),
                                    shard);
   fs::path disk = out, made = out;  // the nearest existing folder, and what would be made in it
   for (; !fs::exists(disk) && disk.has_relative_path(); disk = disk.parent_path()) made = disk;
@@ -164,7 +164,7 @@ void merge(const SweepOptions& options, const validate::Sweep& sweep, const fs::
   const fs::path file = out / database_name({});
   const bool was_there = fs::exists(file);
   try {
-    validate::SweepDatabase(file, sweep, GLIDELAB_VERSION, {}).merge_runs_of(others);
+    validate::SweepDatabase(file, sweep, build_version(), {}).merge_runs_of(others);
   } catch (...) {
     std::error_code ignored;  // the error of the merge is the one to report
     if (!was_there) fs::remove(file, ignored);
@@ -221,7 +221,7 @@ void sweep_command(const SweepOptions& options) {
     progress("merging", 0.0);
     merge(options, sweep, out);
   }
-  validate::SweepDatabase database(out / database_name(shard), sweep, GLIDELAB_VERSION, shard);
+  validate::SweepDatabase database(out / database_name(shard), sweep, build_version(), shard);
   keep_on_interrupt([&] { fill(options, sweep, shard, database, out, progress, display); },
                     [&] {
                       return fmt::format("{} of {} runs are kept in {}; the same command continues with the rest",

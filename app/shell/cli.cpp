@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/shell/build_version.h"
 #include "app/shell/common_options.h"
 #include "app/shell/program_texts.h"
 #include "app/shell/run_control.h"

@@ -294,6 +294,7 @@ void check_bare_options(const core::TrackFileOptions& options, const std::vector
 namespace {
 
 constexpr double kMegabyte = 1048576.0;  // bytes
+constexpr double kMostMegabytes = 1e9;   // no computer has as much
 
 }  // namespace
 
@@ -327,6 +328,7 @@ void add_outside_options(CLI::App& command, OutsideOptions& options, const std::
   command.add_option("--estimator-megabytes", options.megabytes, "Most memory that one of its processes may use")
       ->type_name("MB")
       ->check(check_above_0)
+      ->check(CLI::Range(0.0, kMostMegabytes))
       ->needs(judged)
       ->capture_default_str();
 }

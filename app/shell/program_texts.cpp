@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "app/shell/build_version.h"
 #include "base/text/nearest_word.h"
-#include "version_of_build.h"
 
 namespace glidelab::app {
 namespace {
@@ -265,17 +265,13 @@ std::string options_of(const CLI::App& app) {
 
 }  // namespace
 
-std::string version_text() {
-  return "glidelab " GLIDELAB_VERSION "\nbuilt with " GLIDELAB_LIBRARIES;
-}
-
 std::string man_page(const CLI::App& app) {
   std::string text = fmt::format(
       ".TH GLIDELAB 1 \"\" \"glidelab {}\" \"User Commands\"\n"
       ".SH NAME\nglidelab \\- rehearse and analyse video experiments on friction\n"
       ".SH SYNOPSIS\n.B glidelab\n\\fICOMMAND\\fR [\\fIOPTIONS\\fR] [\\fIFILES\\fR]\n"
       ".SH DESCRIPTION\n{}\n.SH OPTIONS\n{}.SH COMMANDS\n",
-      GLIDELAB_VERSION, roff(app.get_description()), options_of(app));
+      build_version(), roff(app.get_description()), options_of(app));
   for (const CLI::App* command : app.get_subcommands({})) {
     text += fmt::format(".SS glidelab {}\n{}\n", roff(command->get_name()), roff(command->get_description()));
     text += options_of(*command);

@@ -34,9 +34,6 @@ class App;
 
 namespace glidelab::app {
 
-/// The program's version, and on a second line the libraries with which it was built.
-std::string version_text();
-
 /// A manual page of section 1 (roff, man(7)).
 std::string man_page(const CLI::App& app);
 

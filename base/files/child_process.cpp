@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -74,13 +75,21 @@ pid_t spawned(const std::string& program, std::vector<std::string> arguments, co
   return child;
 }
 
+/// What is wanted, or less where this program itself may not have as much (ulimit): nobody may raise a hard limit.
+template <typename Resource>
+std::uint64_t within(Resource resource, std::uint64_t wanted) {
+  rlimit own = {};
+  if (::getrlimit(resource, &own) != 0 || own.rlim_max == RLIM_INFINITY) return wanted;
+  return std::min<std::uint64_t>(wanted, own.rlim_max);
+}
+
 /// util-linux's prlimit starts the program under its limits, so that they hold from its first instruction.
 std::vector<std::string> under_limits(const std::string& program, const ProgramLimits& limits) {
   const double cores = std::max(1U, std::thread::hardware_concurrency());
   const auto cpu_s = static_cast<std::uint64_t>(std::ceil(limits.wall_s * cores)) + 1;
-  return {fmt::format("--as={}", limits.memory_bytes),
-          fmt::format("--fsize={}", limits.memory_bytes),
-          fmt::format("--cpu={}", cpu_s),
+  return {fmt::format("--as={}", within(RLIMIT_AS, limits.memory_bytes)),
+          fmt::format("--fsize={}", within(RLIMIT_FSIZE, limits.memory_bytes)),
+          fmt::format("--cpu={}", within(RLIMIT_CPU, cpu_s)),
           "--core=0",
           "--",
           program};

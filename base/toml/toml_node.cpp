@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <regex>
 #include <utility>
+
+#include "base/text/pattern.h"
 
 namespace glidelab::base {
 namespace {
@@ -44,9 +45,9 @@ std::string line_of(std::string_view text, std::size_t number) {
 
 /// "mass_kg = 0.335" for "mass_kg = 0,335"; empty for a line whose value is not such a number.
 std::string with_decimal_point(const std::string& line) {
-  static const std::regex kComma(R"(^(\s*[A-Za-z0-9_-]+\s*=\s*[-+]?[0-9]+),([0-9]+)\s*(#.*)?$)");
-  std::smatch parts;
-  return std::regex_match(line, parts, kComma) ? parts[1].str() + "." + parts[2].str() : std::string();
+  static const Pattern kComma(R"(^(\s*[A-Za-z0-9_-]+\s*=\s*[-+]?[0-9]+),([0-9]+)\s*(#.*)?$)");
+  const std::vector<Captured> found = kComma.matches(line);
+  return found.empty() ? std::string() : found.front()[1] + "." + found.front()[2];
 }
 
 }  // namespace

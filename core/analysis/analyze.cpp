@@ -53,13 +53,16 @@ void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipS
 }
 
 void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetup>& setups,
-                      const std::vector<const Experiment*>& experiment_of,
-                      std::vector<ConfigurationResult>& configurations) {
-  for (ConfigurationResult& configuration : configurations) {
+                      const std::vector<const Experiment*>& experiment_of, AnalysisResults& results) {
+  for (ConfigurationResult& configuration : results.configurations) {
     for (std::size_t i = 0; i < setups.size(); ++i) {
       if (setups[i].name != configuration.clips.front() || !is_bare_track(experiment_of[i]->file)) continue;
       AssumedStatements assumed{{}, !stated.incline_deg};
       if (setups[i].mass_assumed) assumed.mass_kg = setups[i].mass_kg;
+      for (const Note& note : results.clips[i].notes) {
+        const auto* const taken = std::get_if<HeightTaken>(&note);
+        if (assumed.level && taken != nullptr) configuration.notes.emplace_back(*taken);  // it may be a fall
+      }
       if (assumed.mass_kg || assumed.level) configuration.notes.emplace_back(assumed);
       break;
     }
@@ -102,7 +105,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = experiment_of[i]->name;
   results.calibrations = std::move(calibrations);
   results.plumbs = std::move(plumbs);
-  note_assumptions(options.bare, setups, experiment_of, results.configurations);
+  note_assumptions(options.bare, setups, experiment_of, results);
   return results;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/long_work.h"
+#include "base/text/number_text.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/second_look.h"
 #include "core/pictures/marker/sphere/still_background.h"
@@ -100,6 +101,19 @@ struct AnyShape {
   }
 };
 
+/// A marker larger than the image, or far smaller than a pixel, is a length in another unit: no search can find it.
+void require_visible(const ClipSetup& clip, const Restitution& restitution, cv::Size size) {
+  constexpr double kLeastRadiusPx = 0.25;
+  const auto radius_px = restitution.marker_radius_px({0.5 * size.width, 0.5 * size.height});
+  if (!radius_px || (*radius_px >= kLeastRadiusPx && 2.0 * *radius_px <= std::min(size.width, size.height))) return;
+  throw base::InputError(
+      base::Issue{clip.file.string(), 0, "marker",
+                  fmt::format("a marker of {} px across, by its stated size, in images of {} x {} px",
+                              base::number_text(2.0 * *radius_px, 2), size.width, size.height),
+                  "a marker of some pixels that fits into the image; diameter_m, height_m and square_m are in metres, "
+                  "px_per_m counts the pixels of a metre"});
+}
+
 SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
                   const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
                   const AnyShape* any = nullptr) {
@@ -125,6 +139,7 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
   }
   while (const auto frame = look_at_scene || any != nullptr ? source->next() : source->next_in_parts()) {
     seen.size = frame->grey.size();
+    if (seen.frame_t_s.empty()) require_visible(clip, restitution, seen.size);
     seen.frame_t_s.push_back(frame->t_s);
     tracker.add(any != nullptr ? any->seen_in(*frame) : *frame);
     if (scene) {

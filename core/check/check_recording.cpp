@@ -113,6 +113,22 @@ Experiment alone(Experiment experiment, std::size_t clip) {
   return experiment;
 }
 
+struct FailedClip {
+  std::size_t clip = 0;
+  std::string failure;
+};
+
+/// The clip that has no marker, unless several share its file.
+std::optional<FailedClip> clip_without_marker(const Experiment& experiment, const NoMarker& none) {
+  std::optional<FailedClip> failed;
+  for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
+    if (experiment.clips[i].file.string() != none.issues().front().file) continue;
+    if (failed) return std::nullopt;
+    failed = {i, none.what()};
+  }
+  return failed;
+}
+
 /// All tracks at once, as in the analysis; if that fails, one by one, to see which clip is the cause.
 std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, const base::Progress& progress,
                                      ClipWatches& watches, const SeenPattern* seen_pattern, RecordingCheck& check) {
@@ -127,24 +143,36 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
       attempts[first + i].fits = std::move(seen.fits[i]);
     }
   };
+  // A length that is a hundred times too large leaves nothing to find, and the long searches are spared.
+  const bool explained = explains_failures(experiment);
+  const MarkerSearch stated_search = explained ? MarkerSearch::disc : MarkerSearch::thorough;
+  std::optional<FailedClip> without_marker;  // known from the first attempt
   try {
-    attempt(experiment, 0, MarkerSearch::thorough);
+    attempt(experiment, 0, stated_search);
     return attempts;
+  } catch (const NoMarker& none) {
+    without_marker = clip_without_marker(experiment, none);
+    check.plumb_failure = none.what();
   } catch (const base::InputError& error) {
     check.plumb_failure = error.what();  // unless a clip fails by itself
   }
-  for (std::size_t i = 0; i < attempts.size(); ++i) {
-    try {
-      attempt(alone(experiment, i), i, MarkerSearch::thorough);
-    } catch (const base::InputError& error) {
-      attempts[i].failure = error.what();
-      check.plumb_failure.clear();
-    }
-  }
   // Clips share the marker: the size that one of them shows is looked for in the others first.
   std::vector<double> factors(kOtherSizes.begin(), kOtherSizes.end());
+  bool other_size = false, no_size = explained;
+  const auto failure_of = [&](std::size_t i) -> std::string {
+    if (without_marker && without_marker->clip == i) return without_marker->failure;
+    try {
+      attempt(alone(experiment, i), i, other_size ? MarkerSearch::disc : stated_search);
+      return {};
+    } catch (const base::InputError& error) {
+      return error.what();
+    }
+  };
   for (std::size_t i = 0; i < attempts.size(); ++i) {
-    if (attempts[i].failure.empty() || experiment.clips[i].file.empty()) continue;
+    attempts[i].failure = failure_of(i);
+    if (attempts[i].failure.empty()) continue;
+    check.plumb_failure.clear();
+    if (no_size || experiment.clips[i].file.empty()) continue;
     const auto found = std::find_if(factors.begin(), factors.end(), [&](double factor) {
       Experiment other = alone(experiment, i);
       other.marker->diameter_m *= factor;
@@ -155,9 +183,11 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
         return false;
       }
     });
-    if (found == factors.end())
-      break;  // a marker that is not found in any size in one clip will hardly be found in the others, and each attempt
-              // takes time
+    // A marker that is not found in any size in one clip will hardly be found in the others, and each attempt takes
+    // time.
+    no_size = found == factors.end();
+    if (no_size) continue;
+    other_size = true;
     attempts[i].track.notes.emplace_back(NotOfStatedSize{std::exchange(attempts[i].failure, {})});
     std::rotate(factors.begin(), found, found + 1);
   }

@@ -127,6 +127,7 @@ struct NotTracked {
 /// A track from a file is short.
 struct FewPositions {
   std::size_t positions = 0;
+  std::size_t unmarked = 0;  ///< rows between them that lack a time or x, if they are more
 };
 
 /// The marker is seen in few frames.

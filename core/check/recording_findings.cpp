@@ -173,7 +173,12 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     judge_lighting(clip, book);
     judge_times(experiment, clip, book);
   } else if (clip.seen < kFewSightings) {
-    book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change, found::FewPositions{clip.seen});
+    found::FewPositions few{clip.seen};
+    for (const Note& note : clip.notes) {
+      const auto* const incomplete = std::get_if<RowsIncomplete>(&note);
+      if (incomplete != nullptr && incomplete->rows > clip.seen) few.unmarked = incomplete->rows;
+    }
+    book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change, few);
   }
   for (const Note& note : clip.notes) {
     const bool reported =
@@ -301,6 +306,19 @@ std::vector<Root> stated_roots(const Experiment& experiment, double longest_m) {
   return roots;
 }
 
+/// By the stated inclination, if both directions show the acceleration without friction; else by the usual distance.
+LengthUnit track_unit(const Experiment& experiment, const RecordingCheck& check, double distance_m) {
+  const bool assumed = std::any_of(experiment.clips.begin(), experiment.clips.end(),
+                                   [](const ClipSetup& clip) { return clip.incline_assumed; });
+  for (const ConfigurationResult& configuration : check.configurations) {
+    const auto off = incline_contradiction(configuration, experiment.gravity_m_s2, stated_incline(configuration));
+    if (assumed || !off || !off->beyond_gravity || std::abs(configuration.incline_deg) < kSameAngle_deg) continue;
+    const double sine = std::sin(std::abs(configuration.incline_deg) / base::kDegreesPerRad);
+    return likely_unit(std::abs(*off->beyond_gravity), experiment.gravity_m_s2 * sine);
+  }
+  return likely_unit(distance_m, kUsualRun_m);
+}
+
 /// Tracks with accelerations that no incline causes and distances that no track has.
 std::optional<Root> long_tracks(const Experiment& experiment, const RecordingCheck& check) {
   std::vector<std::string> names;
@@ -314,7 +332,7 @@ std::optional<Root> long_tracks(const Experiment& experiment, const RecordingChe
   if (names.empty()) return std::nullopt;
   return Root{{Severity::unusable,
                {Subject::Part::clips, std::move(names)},
-               found::TrackInUnit{distance_m, likely_unit(distance_m, kUsualRun_m)}},
+               found::TrackInUnit{distance_m, track_unit(experiment, check, distance_m)}},
               kByLength};
 }
 
@@ -360,6 +378,13 @@ std::vector<Finding> unit_findings(const Experiment& experiment, double longest_
   std::vector<Finding> findings;
   for (Root& root : stated_roots(experiment, longest_m)) findings.push_back(std::move(root.finding));
   return findings;
+}
+
+bool explains_failures(const Experiment& experiment) {
+  const std::vector<Root> roots = stated_roots(experiment, 0.0);
+  return std::any_of(roots.begin(), roots.end(), [](const Root& root) {
+    return std::find(root.explains.begin(), root.explains.end(), Topic::failure) != root.explains.end();
+  });
 }
 
 std::vector<Finding> with_root_causes(const Experiment& experiment, const RecordingCheck& check,

@@ -23,6 +23,9 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
 /// distance that a clip covers, 0 if it is not known; beyond 20 m, which no glider covers, any mass is accepted.
 std::vector<Finding> unit_findings(const Experiment& experiment, double longest_m);
 
+/// Whether a length is stated in a wrong unit, so that no marker of the stated size can be found.
+bool explains_failures(const Experiment& experiment);
+
 /// The findings with each root cause in place of those that follow from it, which move into its `follow`.
 std::vector<Finding> with_root_causes(const Experiment& experiment, const RecordingCheck& check,
                                       std::vector<Finding> findings);

@@ -85,7 +85,7 @@ struct ExplanationsDiffer {};
 /// A fall has no normal force, and so no friction.
 struct FreeFall {};
 
-/// The forces balance at no speed downhill.
+/// The forces balance at no speed downhill below 100 m/s, the fastest that is looked for.
 struct NoBalance {};
 
 /// A body that falls through air: its drag grows with the square of the speed.

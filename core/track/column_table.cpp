@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/experiment/file_names.h"
+#include "core/track/number_field.h"
 #include "core/track/table_columns.h"
+#include "core/track/text_encoding.h"
 
 namespace glidelab::core {
 namespace {
@@ -265,26 +265,12 @@ bool is_missing(std::string_view field) {
   return field.empty() || field == "NaN" || field == "nan" || field == "NAN";
 }
 
-std::optional<double> number(std::string_view field, char decimal) {
-  std::string text(field);
-  if (decimal == ',') {
-    if (text.find('.') != std::string::npos) return {};
-    std::replace(text.begin(), text.end(), ',', '.');
-  }
-  const char* first = text.data();
-  if (text.starts_with("+")) ++first;
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(first, text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
-
 /// Numbers or nothing in all fields, and two numbers or more.
 bool is_data(const std::vector<std::string_view>& fields, char decimal) {
   int numbers = 0;
   for (const std::string_view field : fields) {
     if (is_missing(field)) continue;
-    if (!number(field, decimal)) return false;
+    if (!number_in(field, decimal)) return false;
     ++numbers;
   }
   return numbers >= 2;
@@ -343,7 +329,8 @@ std::optional<Format> format_of(const std::vector<Line>& lines) {
   std::optional<Format> best;
   std::size_t most = 0;
   for (const Format& format : {Format{'\t', '.'}, Format{'\t', ','}, Format{';', '.'}, Format{';', ','},
-                               Format{',', '.'}, Format{kBlanks, '.'}, Format{kBlanks, ','}}) {
+                               Format{',', '.'}, Format{kBlanks, '.'}, Format{kBlanks, ','},
+                               Format{',', ','}}) {  // the last with quotes around each number that has a comma
     std::size_t count = 0;
     for (const Line& line : lines) count += is_data(split(line.text, format.delimiter), format.decimal);
     if (count > most) {
@@ -352,6 +339,46 @@ std::optional<Format> format_of(const std::vector<Line>& lines) {
     }
   }
   return best;
+}
+
+bool has_digit(std::string_view text) {
+  return text.find_first_of("0123456789") != std::string_view::npos;
+}
+
+/// Why no line of the file is read, with the line that a reader should look at.
+base::Issue no_numbers(const std::string& file, const std::vector<Line>& lines) {
+  const auto numbers_of = [](const Line& line, char decimal) {
+    std::size_t most = 0;
+    for (const char delimiter : {'\t', ';', kBlanks}) {
+      const auto fields = split(line.text, delimiter);
+      most = std::max(most, static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), [&](auto field) {
+                        return field.find(decimal) != std::string_view::npos && number_in(field, decimal);
+                      })));
+    }
+    return most;
+  };
+  base::Issue issue{file, 0, "", "no line with two numbers",
+                    "columns of numbers, with tabs, semicolons, commas or blanks between them"};
+  const Line* shown = nullptr;
+  bool dates = false, both_signs = false;
+  for (const Line& line : lines) {
+    if (shown == nullptr && has_digit(line.text)) shown = &line;
+    for (const std::string_view field : split(line.text, ';')) dates |= is_month_and_number(field);
+    both_signs |= numbers_of(line, '.') > 0 && numbers_of(line, ',') > 0;
+  }
+  if (shown == nullptr) return issue;
+  constexpr std::size_t kMostShown = 60;
+  issue.line = shown->number;
+  issue.found = fmt::format("no line with two numbers; the first with digits is {}{}",
+                            shown->text.substr(0, kMostShown), shown->text.size() > kMostShown ? "…" : "");
+  if (dates) {
+    issue.expected +=
+        "; a spreadsheet has turned some of these numbers into dates: export them again from the program "
+        "that measured them";
+  } else if (both_signs) {
+    issue.expected += "; decimal points and decimal commas do not go together in one file";
+  }
+  return issue;
 }
 
 /// A delimiter at the end of each line makes a column without a name and without values.
@@ -367,13 +394,15 @@ void drop_empty_columns_at_end(ColumnTable& table) {
 }  // namespace
 
 ColumnTable read_column_table(const std::filesystem::path& file) {
-  const std::string text = base::read_file(file);
+  const std::string bytes = base::read_file(file);
   ColumnTable table;
   table.file = file.string();
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  const NoTable other = no_table_in(bytes);
+  if (!other.what.empty()) throw base::InputError(base::Issue{table.file, 0, "", other.what, other.advice});
+  const std::string text = as_utf8(bytes);
+  const std::string_view rest = text;
   if (rest.find('\0') != std::string_view::npos) {
-    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (UTF-16, or no text)",
+    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (no text)",
                                        "text in UTF-8 with a track; a video goes into a folder, which glidelab new "
                                        "FOLDER makes"});
   }
@@ -381,8 +410,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   const std::vector<Line>& lines = read.all;
   const auto format = format_of(lines);
   if (!format) {
-    throw base::InputError(base::Issue{table.file, 0, "", "no line with two numbers",
-                                       "columns of numbers, with tabs, semicolons, commas or blanks between them"});
+    throw base::InputError(no_numbers(table.file, lines));
   }
   std::vector<std::vector<std::string_view>> rows;
   for (const Line& line : lines) rows.push_back(split(line.text, format->delimiter));
@@ -421,7 +449,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
       const std::string_view field = c < rows[r].size() ? rows[r][c] : std::string_view{};
       std::optional<double> value;
       if (!is_missing(field)) {
-        value = number(field, format->decimal);
+        value = number_in(field, format->decimal);
         if (!value) {
           issues.push_back({table.file, lines[r].number, fmt::format("column {}", c + 1), fmt::format("\"{}\"", field),
                             fmt::format("a number with a decimal {}", format->decimal == ',' ? "comma" : "point")});

@@ -6,8 +6,9 @@
 /// header after a '#'; one to three header lines (a padded line of runs, or of bodies that several columns belong to;
 /// names, short names, units); channels as "Position, Ch 1 (m)"; units as "Time (s)", "x [cm]", "x_mm", "x / cm", "x in
 /// cm" or in a line of their own; runs as "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of
-/// different lengths; NaN for no value. The delimiter and the decimal sign are chosen so that most lines consist only
-/// of numbers.
+/// different lengths; NaN for no value; a minus sign of its own (U+2212); blanks between thousands. A decimal comma
+/// goes with a comma between fields if each number that has one is in quotes. The delimiter and the decimal sign are
+/// chosen so that most lines consist only of numbers.
 #pragma once
 
 #include <filesystem>
@@ -53,7 +54,8 @@ struct ColumnTable {
   std::vector<int> line;             ///< of each data line, 1-based
 };
 
-/// InputError if the file does not have two columns of numbers, is UTF-16, or has text between the numbers (up to ten
+/// The text may be UTF-8, UTF-16 or Latin-1 (text_encoding.h). InputError if the file does not have two columns of
+/// numbers, is no text (a spreadsheet's own format, JSON), or has text between the numbers (up to ten
 /// issues, with line and column).
 ColumnTable read_column_table(const std::filesystem::path& file);
 

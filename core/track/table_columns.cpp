@@ -35,6 +35,16 @@ bool is_acceleration(const TableColumn& column) {
          name.find("aceler") != std::string::npos || name.find("acc\xC3\xA9l") != std::string::npos;
 }
 
+bool is_speed(const TableColumn& column) {
+  const std::string name = lower(column.name);
+  // English, German, French, Spanish, Portuguese.
+  for (const char* word : {"velocity", "speed", "geschwindigkeit", "vitesse", "velocidad", "velocidade"}) {
+    if (name.find(word) != std::string::npos) return true;
+  }
+  return name == "v" || name == "vx" || name == "v_x" || column.unit == "m/s" || column.unit == "cm/s" ||
+         column.unit == "mm/s" || column.unit == "km/h";
+}
+
 constexpr std::size_t kMostNamedColumns = 20;
 
 std::string columns_text(const ColumnTable& table) {
@@ -61,13 +71,34 @@ bool is_asked(const TableColumn& column, std::size_t index, const std::string& a
          small == lower(column.run + ": " + column.text) || small == lower(column.run + ": " + column.name);
 }
 
-/// Accelerations alone are not a track, and a user who exported them from a phone should know why.
-void refuse_accelerations(const ColumnTable& table) {
-  if (std::none_of(table.columns.begin(), table.columns.end(), is_acceleration)) return;
+bool is_force(const TableColumn& column) {
+  return column.unit == "N" || lower(column.name) == "force";
+}
+
+/// Accelerations or forces alone are not a track, and a user who exported them should know why.
+void refuse_without_positions(const ColumnTable& table) {
+  if (std::none_of(table.columns.begin(), table.columns.end(), is_acceleration)) {
+    const bool times = std::any_of(table.columns.begin(), table.columns.end(), is_time_column);
+    const bool others = std::any_of(table.columns.begin(), table.columns.end(), [](const TableColumn& column) {
+      return !is_time_column(column) && !is_force(column);
+    });
+    if (!times || others) return;
+    throw wrong_column(table, "forces without positions, " + columns_text(table),
+                       "positions over time: record where the body is, with a motion sensor or a video");
+  }
   throw wrong_column(table, "accelerations without positions, " + columns_text(table),
                      "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
                      "integrated, and a phone on an incline measures gravity besides. Film the glider, or record its "
                      "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
+}
+
+/// Speeds added up are positions whose errors grow, which no stated interval allows for.
+void refuse_speeds(const ColumnTable& table) {
+  if (std::none_of(table.columns.begin(), table.columns.end(), is_speed)) return;
+  throw wrong_column(table, "speeds without positions, " + columns_text(table),
+                     "positions over time: the errors of speeds that are added up grow with time, and the stated "
+                     "intervals would be too narrow. Export the distance as well: an encoder counts it, a motion "
+                     "sensor measures it. A radar measures speeds alone, and its tracks cannot be analysed");
 }
 
 /// The positions in a plane at which a body was seen, first to last.
@@ -125,36 +156,96 @@ double sagitta_of(const Path& path) {
                   parabola_sagitta(travelled / travelled[travelled.size() - 1], across));
 }
 
-/// The angle between the x axis and the line that fits the path best, 0 to 90 degrees.
+/// The angle from the x axis to the line that fits the path best, -90 to 90 degrees.
 double slant_deg(const Path& path) {
   const auto n = static_cast<Eigen::Index>(path.x_m.size());
   Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(path.x_m.data(), n),
                  y = Eigen::Map<const Eigen::ArrayXd>(path.y_m.data(), n);
   x -= x.mean();
   y -= y.mean();
-  const double angle = 0.5 * std::atan2(2.0 * (x * y).sum(), (x.square() - y.square()).sum());
-  return std::abs(angle) * base::kDegreesPerRad;
+  return 0.5 * std::atan2(2.0 * (x * y).sum(), (x.square() - y.square()).sum()) * base::kDegreesPerRad;
 }
 
-/// The column, x or y, along which the body moves.
-std::size_t along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<Note>& notes) {
-  const Path path = path_of(table.columns[x], table.columns[y]);
-  if (path.x_m.size() < kFewestOfPath) return x;
+/// InputError if the path is curved.
+void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const Path& path) {
   const double bend = sagitta_of(path);
-  if (bend > kStraightPath) {
-    throw wrong_column(table,
-                       fmt::format("a curved path: the sagitta of (x, y) is {:.2g} % of its length", 100.0 * bend),
-                       "the motion of a body along a straight line, not a free flight, a swing or a turn; if y is no "
-                       "place, say which column is x (--column)");
-  }
+  if (!(bend > kStraightPath)) return;
+  const std::string &of_x = table.columns[x].name, &of_y = table.columns[y].name;
+  throw wrong_column(
+      table, fmt::format("a curved path: the sagitta of ({}, {}) is {:.2g} % of its length", of_x, of_y, 100.0 * bend),
+      fmt::format("the motion of a body along a straight line, not a free flight, a swing or a turn; if {} is no "
+                  "place, say which column is x (--column)",
+                  of_y));
+}
+
+/// The column, x or y, along which the body moves; both if its path makes an angle with the axes.
+ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<Note>& notes) {
+  ChosenColumns chosen;
+  chosen.place = x;
+  const Path path = path_of(table.columns[x], table.columns[y]);
+  if (path.x_m.size() < kFewestOfPath) return chosen;
+  refuse_curve(table, x, y, path);
   const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
   const bool upright = range_y > kOtherAxis * range_x;
-  if (upright) notes.emplace_back(MotionAlongY{range_y, range_x});
-  const double off_deg = upright ? 90.0 - slant_deg(path) : slant_deg(path);
-  if (off_deg > kSlanted_deg) {
-    notes.emplace_back(SlantedPath{off_deg, 1.0 / std::cos(off_deg / base::kDegreesPerRad), upright});
+  if (upright) {
+    notes.emplace_back(MotionAlongY{range_y, range_x});
+    chosen.place = y;
   }
-  return upright ? y : x;
+  const double from_x_deg = slant_deg(path);
+  const double off_deg = upright ? 90.0 - std::abs(from_x_deg) : std::abs(from_x_deg);
+  if (off_deg > kSlanted_deg) {
+    const double off = off_deg / base::kDegreesPerRad;
+    chosen.across = Across{upright ? x : y, std::cos(off), std::copysign(std::sin(off), from_x_deg)};
+    notes.emplace_back(SlantedPath{off_deg, 1.0 / std::cos(off), upright});
+  }
+  return chosen;
+}
+
+/// Whether the integral of `rate` over the times is `place`, apart from a constant: a column of speeds.
+bool is_rate_of(const TableColumn& rate, const TableColumn& place, const TableColumn& times) {
+  constexpr double kMostOff = 0.1;  // of the range of the place, rms
+  std::vector<double> off, places;
+  double integral = 0.0;
+  std::optional<std::size_t> last;
+  for (std::size_t row = 0; row < times.values.size(); ++row) {
+    if (!rate.values[row] || !place.values[row] || !times.values[row]) continue;
+    if (last) {
+      integral += 0.5 * (*rate.values[row] + *rate.values[*last]) * (*times.values[row] - *times.values[*last]);
+    }
+    last = row;
+    off.push_back(*place.values[row] - integral);
+    places.push_back(*place.values[row]);
+  }
+  if (off.size() < kFewestOfPath) return false;
+  const Eigen::Map<const Eigen::ArrayXd> apart(off.data(), static_cast<Eigen::Index>(off.size()));
+  return std::sqrt((apart - apart.mean()).square().mean()) < kMostOff * range_of(places);
+}
+
+/// Three columns without a header whose first are times: t, x and perhaps y, as Tracker writes them. Empty if they are
+/// not, or if the third covers so much more than the second that the body moves along it.
+std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vector<Note>& notes) {
+  if (table.has_header || table.columns.size() != 3) return {};
+  const TableColumn &times = table.columns[0], &second = table.columns[1], &third = table.columns[2];
+  std::optional<double> last;
+  for (const std::optional<double>& time : times.values) {
+    if (!time || (last && *time <= *last)) return {};
+    last = time;
+  }
+  ChosenColumns chosen;
+  chosen.place = 1;
+  if (is_rate_of(third, second, times)) return chosen;
+  const Path path = path_of(second, third);
+  if (path.x_m.size() < kFewestOfPath || range_of(path.y_m) > kOtherAxis * range_of(path.x_m)) return {};
+  refuse_curve(table, 1, 2, path);
+  // Only if the third follows the second is it a place in the same plane.
+  const auto n = static_cast<Eigen::Index>(path.x_m.size());
+  Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(path.x_m.data(), n),
+                 y = Eigen::Map<const Eigen::ArrayXd>(path.y_m.data(), n);
+  x -= x.mean();
+  y -= y.mean();
+  constexpr double kFollows = 0.99;  // squared correlation
+  const bool follows = std::pow((x * y).sum(), 2) > kFollows * x.square().sum() * y.square().sum();
+  return follows ? along_path(table, 1, 2, notes) : chosen;
 }
 
 std::vector<std::size_t> columns_that(const ColumnTable& table, bool (*is)(const TableColumn&)) {
@@ -175,24 +266,41 @@ std::size_t asked_column(const ColumnTable& table, const std::string& asked) {
                      "one of the " + columns_text(table));
 }
 
-std::size_t place_column(const ColumnTable& table, std::vector<Note>& notes) {
-  if (!table.has_header && table.columns.size() == 2) return 1;
+/// A choice without its time.
+ChosenColumns only(std::size_t place) {
+  ChosenColumns chosen;
+  chosen.place = place;
+  return chosen;
+}
+
+ChosenColumns place_columns(const ColumnTable& table, std::vector<Note>& notes) {
+  if (!table.has_header && table.columns.size() == 2) return only(1);
+  if (const std::optional<ChosenColumns> unnamed = unnamed_columns(table, notes)) return *unnamed;
   const std::vector<std::size_t> found = columns_that(table, is_place_column),
                                  heights = columns_that(table, is_height_column);
-  if (found.empty() && heights.size() == 1) return heights.front();
+  if (found.empty() && heights.size() == 1) return only(heights.front());
   if (found.size() == 1) {
     const bool plane = heights.size() == 1 && lower(table.columns[heights.front()].name).find('y') != std::string::npos;
-    return plane ? along_path(table, found.front(), heights.front(), notes) : found.front();
+    return plane ? along_path(table, found.front(), heights.front(), notes) : only(found.front());
   }
-  if (found.empty()) refuse_accelerations(table);
+  if (found.empty()) refuse_without_positions(table);
   const std::vector<std::size_t> lengths =
       columns_that(table, [](const TableColumn& column) { return metres_per(column.unit).has_value(); });
-  if (found.empty() && heights.empty() && lengths.size() == 1) return lengths.front();  // "s (m)", "d / cm"
+  if (found.empty() && heights.empty() && lengths.size() == 1) return only(lengths.front());  // "s (m)", "d / cm"
+  if (found.empty() && heights.empty()) refuse_speeds(table);
   throw wrong_column(
       table, columns_text(table),
       fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
                   "experiment.toml) by its header or its number{}",
                   found.empty() ? "one" : "just one", found.empty() ? "" : ", or take all as clips (--runs all)"));
+}
+
+/// "frame", "Bild", "fotograma": counts images and is no time.
+bool is_frame_column(const TableColumn& column) {
+  static constexpr std::array<std::string_view, 14> kNames{
+      "frame",  "frames",    "frame number", "frame no", "frame #",    "frame_number", "framenumber",
+      "imagen", "fotograma", "bild",         "image",    "fotogramma", "klatka",       "cuadro"};
+  return column.unit.empty() && std::find(kNames.begin(), kNames.end(), lower(column.name)) != kNames.end();
 }
 
 std::size_t time_column(const ColumnTable& table, std::size_t place) {
@@ -205,10 +313,19 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
   const auto right = std::lower_bound(times.begin(), times.end(), place);
   if (right != times.begin()) return *std::prev(right);
   if (times.size() == 1) return times.front();
-  throw wrong_column(table,
-                     fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
-                                 columns_text(table)),
-                     "one, called t or time or with a unit of time");
+  const auto frames = std::find_if(table.columns.begin(), table.columns.end(), is_frame_column);
+  if (times.empty() && frames != table.columns.end()) {
+    throw wrong_column(
+        table,
+        fmt::format("no times for \"{}\", only numbers of frames (\"{}\")", table.columns[place].text, frames->text),
+        "a column of times: divide the numbers of the frames by the frame rate, and call the column "
+        "t (s)");
+  }
+  throw wrong_column(
+      table,
+      fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
+                  columns_text(table)),
+      "one, called t or time or with a unit of time; numbers of frames are to be divided by the frame rate");
 }
 
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),
@@ -225,15 +342,14 @@ double factor_of(const ColumnTable& table, const TableColumn& column, std::optio
 }  // namespace
 
 ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes) {
-  ChosenColumns chosen;
-  chosen.place = asked.empty() ? place_column(table, notes) : asked_column(table, asked);
+  ChosenColumns chosen = asked.empty() ? place_columns(table, notes) : only(asked_column(table, asked));
   chosen.time = time_column(table, chosen.place);
   chosen.is_height = asked.empty() && is_height_column(table.columns[chosen.place]);
   if (chosen.is_height) {
     notes.emplace_back(HeightTaken{table.columns[chosen.place].text});
   }
   for (const TableColumn& column : table.columns) {
-    if (column.unit != "N" && lower(column.name) != "force") continue;
+    if (!is_force(column)) continue;
     notes.emplace_back(ForceUnused{column.text});
     break;
   }

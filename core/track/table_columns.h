@@ -3,7 +3,12 @@
 /// x is the requested column, given by its header, its name or its number from 1 on; otherwise the one named x,
 /// position, distance or displacement (or the equivalent in other languages), if there is just one; if there is none,
 /// the one named y or height. If both x and y are present (Tracker writes both), x is the one along which the body
-/// moves: y if its extent is three times as large. A curved path of the two is not motion along a line, and is refused.
+/// moves: y if its extent is three times as large. If its straight path makes an angle of more than 5 degrees with that
+/// axis, positions are taken along the path, from both columns. A curved path of the two is not motion along a line,
+/// and is refused.
+///
+/// Three columns without a header are t, x and a third: y, if it follows x along a line; a third that is neither this
+/// nor the speed dx/dt is not used, and one that makes a curve with x is refused.
 ///
 /// Its time is the nearest column to the left that is named t or time or has a unit of time, of the same run if runs
 /// are stated; otherwise the only one. In a file without a header the first column is the time.
@@ -19,8 +24,15 @@
 
 namespace glidelab::core {
 
+/// The second column of a path at an angle to the axes: positions are cos * place + sin * this column.
+struct Across {
+  std::size_t column = 0;
+  double cos = 1.0, sin = 0.0;
+};
+
 struct ChosenColumns {
   std::size_t place = 0, time = 0;
+  std::optional<Across> across = {};
   bool is_height = false;  ///< x is a height that was not requested: its sign is not stated
 };
 

@@ -118,15 +118,35 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
   return track;
 }
 
+namespace {
+
+/// The positions without jumps to wrong echoes, or to where a tracker lost the object: no step is longer than a few
+/// times the long ones. Only the direction of the motion is read from them.
+std::vector<double> without_jumps(const std::vector<double>& x_m) {
+  constexpr double kJump = 4.0, kLongStep = 0.8;  // times the quantile of the steps
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < x_m.size(); ++i) steps.push_back(std::abs(x_m[i] - x_m[i - 1]));
+  const double longest = kJump * quantile(steps, kLongStep);
+  if (!(longest > 0.0)) return x_m;
+  std::vector<double> smooth = {0.0};
+  for (std::size_t i = 1; i < x_m.size(); ++i) {
+    smooth.push_back(smooth.back() + std::clamp(x_m[i] - x_m[i - 1], -longest, longest));
+  }
+  return smooth;
+}
+
+}  // namespace
+
 void count_along_motion(TrackData& track) {
-  const auto [low, high] = std::minmax_element(track.x_m.begin(), track.x_m.end());
-  double displacement = track.x_m.back() - track.x_m.front();
+  const std::vector<double> x_m = without_jumps(track.x_m);
+  const auto [low, high] = std::minmax_element(x_m.begin(), x_m.end());
+  double displacement = x_m.back() - x_m.front();
   if (std::abs(displacement) < kHardlyTurns * (*high - *low)) {
     // From the positions at both ends and at the middle of the time: the direction of the acceleration.
     const double middle_s = 0.5 * (track.t_s.front() + track.t_s.back());
     const auto at =
         static_cast<std::size_t>(std::lower_bound(track.t_s.begin(), track.t_s.end(), middle_s) - track.t_s.begin());
-    displacement = track.x_m.front() + track.x_m.back() - 2.0 * track.x_m[at];
+    displacement = x_m.front() + x_m.back() - 2.0 * x_m[at];
   }
   if (!(displacement < 0.0)) return;
   for (double& x : track.x_m) x = -x;
@@ -140,6 +160,9 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   TrackData track;
   const ChosenColumns chosen = choose_columns(table, column, track.notes);
   const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
+  const Across across = chosen.across.value_or(Across{chosen.place});
+  const TableColumn& y = table.columns[across.column];
+  const double y_metres = downhill.value_or(1) * metres_per(y.unit).value_or(1.0);
   const double metres = downhill.value_or(1) * metres_of(table, x, track.notes);
   const double seconds = seconds_of(table, t, track.notes);
   if (table.columns.size() > 2) {
@@ -155,7 +178,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   std::vector<int> lines;
   std::size_t missing = 0, missing_so_far = 0;
   for (std::size_t row = 0; row < table.line.size(); ++row) {
-    if (!x.values[row] || !t.values[row]) {
+    if (!x.values[row] || !y.values[row] || !t.values[row]) {
       ++missing_so_far;
       continue;
     }
@@ -167,7 +190,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
                         fmt::format("{}", *t.values[row]), fmt::format("a time above that of line {}", lines.back())});
     }
     track.t_s.push_back(at);
-    track.x_m.push_back(*x.values[row] * metres);
+    track.x_m.push_back(across.cos * metres * *x.values[row] + across.sin * y_metres * *y.values[row]);
     lines.push_back(table.line[row]);
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));

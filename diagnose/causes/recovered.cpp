@@ -131,8 +131,11 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
       return one;
     };
     const auto model_at = [&, i = motion](const FitPoint& point) { return model_of(set, *fit.layout, point, i); };
-    const auto rate = [&](const FitPoint& point) { return model_at(point).k_n_s_m / model_at(point).mass_kg; };
-    const auto mu = [&](const FitPoint& point) { return model_at(point).mu; };
+    const auto rate = [&](const FitPoint& point) {
+      const TrackModel model = model_at(point);
+      return own_law(model).k_n_s_m / model.mass_kg;
+    };
+    const auto mu = [&](const FitPoint& point) { return own_law(model_at(point)).mu; };
     const auto alpha = [&](const FitPoint& point) { return model_at(point).alpha_rad; };
     RecoveredSet one;
     one.of = of;

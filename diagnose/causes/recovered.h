@@ -1,4 +1,5 @@
 /// K/m, mu, alpha and the terminal velocity (limit velocity) of each configuration, with the named causes in the model.
+/// K and mu are the configuration's own (own_law() of the track model).
 ///
 /// The parameters are those at the minimum in the linear neighbourhood of the fit when the remainder counts as noise
 /// (remainder.h). Their covariance is that of this model or that from the scatter of the clips' scores, whichever gives

@@ -289,6 +289,14 @@ Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& 
 
 }  // namespace
 
+namespace {
+
+bool is_followed(const Moved& motion) {
+  return std::all_of(motion.x_m.begin(), motion.x_m.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
 FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
                     const Lateness& late, Derivatives derivatives) {
   const TrackedMotion& data = set.motions[i];
@@ -311,17 +319,26 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
   of.own = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(2 + layout.own().size()));
   FitPoint near = at;
   const bool central = derivatives == Derivatives::central;
+  // Beside parameters with which the motion cannot be followed, the derivative is that towards the other side; it is 0
+  // if neither side can be followed.
   const auto fill = [&](double& parameter, double step, auto column) {
     const double kept = parameter;
     parameter = kept + step;
     const Moved above = moved(set, layout, near, i, late);
-    parameter = kept - step;
-    const Moved below = central ? moved(set, layout, near, i, late) : base;
+    const bool has_above = is_followed(above);
+    Moved below;
+    if (central || !has_above) {
+      parameter = kept - step;
+      below = moved(set, layout, near, i, late);
+    }
     parameter = kept;
-    const double apart = central ? 2.0 * step : step;
+    const bool has_below = (central || !has_above) && is_followed(below);
+    const double apart = (has_above ? step : 0.0) + (has_below ? step : 0.0);
+    if (apart == 0.0) return;
+    const std::vector<double>&high = has_above ? above.x_m : base.x_m, &low = has_below ? below.x_m : base.x_m;
     for (Eigen::Index p = 0; p < n; ++p) {
       const auto q = static_cast<std::size_t>(p);
-      column[p] = weight[q] * (above.x_m[q] - below.x_m[q]) / apart;
+      column[p] = weight[q] * (high[q] - low[q]) / apart;
     }
   };
   for (std::size_t g = 0; g < globals.size(); ++g) {

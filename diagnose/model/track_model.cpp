@@ -374,4 +374,26 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   return moved;
 }
 
+OwnLaw own_law(const TrackModel& model) {
+  const GliderConstants glider = constants_of(model);
+  const GliderState middle{model.x_mid_m, 0.0, 0.0, 0.0, false};
+  Resistance resistance{.slope = 0.0};
+  DryFriction friction{.mu = model.mu};
+  double along = 1.0;
+  const std::vector<EffectInfo>& list = effect_list();
+  for (std::size_t e = 0; e < list.size(); ++e) {
+    const EffectLaw& law = list[e].law;
+    const double* p = model.effects.of(e);
+    if (!law.acts(p)) continue;
+    const bool own = list[e].parameters[law.size].each == Each::configuration;
+    if (own && law.friction != nullptr) law.friction(p, glider, middle, friction);
+    if (law.resistance == nullptr) continue;
+    if (own) law.resistance(p, glider, middle, resistance);
+    Resistance here{.slope = 0.0};
+    law.resistance(p, glider, middle, here);
+    along *= here.drag_along;
+  }
+  return {.k_n_s_m = model.k_n_s_m * resistance.drag_factor * along, .mu = friction.mu};
+}
+
 }  // namespace glidelab::diagnose

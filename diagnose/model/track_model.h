@@ -62,6 +62,13 @@ struct Moved {
 /// frames count as 100.
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
+/// K (N s/m) and mu of the configuration that the model belongs to: with the effects that give each configuration a drag
+/// or a friction of its own, and in the middle of the set-up's positions if the drag changes along the track.
+struct OwnLaw {
+  double k_n_s_m = 0.0, mu = 0.0;
+};
+OwnLaw own_law(const TrackModel& model);
+
 /// Building blocks of the track model's integrator: one step that spans several frames, and a sine wave at equally
 /// spaced instants without a call of sin for each. They are in a header because they are the innermost loop of all
 /// fits. SI units.

@@ -1,6 +1,7 @@
 #include "diagnose/result/diagnosis.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace glidelab::diagnose {
 
@@ -10,6 +11,15 @@ bool only_statements_fail(const Diagnosis& diagnosis) {
       diagnosis.gap && diagnosis.gap->before < 1.0 + kMostErrorsAtFloor * diagnosis.gap->standard_error;
   return diagnosis.verdict == Verdict::unknown && explained &&
          !(diagnosis.limits.driving.empty() && diagnosis.limits.contradicted.empty());
+}
+
+std::optional<FitsCutOff> fits_cut_off(const std::vector<RankedExplanation>& ranking) {
+  constexpr double kLeast = 0.01;  // less likely ones change nothing that a reader sees
+  FitsCutOff cut_off;
+  for (const RankedExplanation& ranked : ranking) {
+    if (!ranked.converged && ranked.probability >= kLeast) cut_off.of.push_back(ranked.explanation);
+  }
+  return cut_off.of.empty() ? std::nullopt : std::optional(std::move(cut_off));
 }
 
 namespace {

@@ -295,6 +295,10 @@ struct Diagnosis {
   std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
 };
 
+/// The explanations of the ranking with a probability of 1 % or more whose fits did not reach a minimum; none if all
+/// did.
+std::optional<FitsCutOff> fits_cut_off(const std::vector<RankedExplanation>& ranking);
+
 /// Whether the nominal model follows the positions to within their noise, and the verdict is unknown only because of a
 /// statement: an inclination that the motion contradicts, or a drag or friction below zero.
 bool only_statements_fail(const Diagnosis& diagnosis);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/result/analysis_note.h"
+#include "diagnose/result/explanation.h"
 #include "diagnose/result/gap_place.h"
 
 namespace glidelab::diagnose {
@@ -86,6 +87,11 @@ struct BuoyancyLooksAlike {
   double density_ratio = 0.0;  ///< of the fluid to the body
 };
 
+/// Explanations whose fits reached the most steps that a fit may take before they reached a minimum.
+struct FitsCutOff {
+  std::vector<Explanation> of;
+};
+
 /// Clips of one set-up state different inclinations.
 struct SplitSetUps {
   std::vector<std::string> groups;
@@ -138,10 +144,11 @@ struct TableOfLines {
   std::size_t lines = 0;
 };
 
-using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside,
-                             PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
-                             SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
-                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike>;
+using AnyNote =
+    std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
+                 QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps, OppositeLaunch,
+                 NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity, MeanIncline, TableOfLines,
+                 OnlyFalls, FallsThroughAir, BuoyancyLooksAlike, FitsCutOff>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

@@ -91,6 +91,9 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     }
   }
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
+  if (std::optional<FitsCutOff> cut_off = fits_cut_off(diagnosis.ranking)) {
+    diagnosis.notes.emplace_back(std::move(*cut_off));
+  }
   add_speeds(results, diagnosis.measured);
   for (const core::CalibrationResult& of : results.calibrations) {
     diagnosis.calibrations.push_back({of.experiment, of.rests});

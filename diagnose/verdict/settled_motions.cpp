@@ -23,13 +23,13 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFewestWithoutHand = 25;  // positions that are left: fewer are better kept whole
-constexpr std::size_t kFewestPoints = 12;       // of a piece of a driven motion
-constexpr double kLeastContradictionSds = 5.0;  // standard deviations between two statements
-constexpr double kLatestLaunch_s = 0.2;         // a motion that starts later is not the launch
-constexpr std::size_t kFirstPoints = 8;         // which show the direction of the launch,
-constexpr double kOpposite_sd = 10.0;           // by a displacement of so many standard deviations of a position
-constexpr double kMostChi2PerPosition = 1.5;    // chi² per position above which the motion counts as not explained
+constexpr std::size_t kFewestWithoutHand = 25;   // positions that are left: fewer are better kept whole
+constexpr std::size_t kFewestDrivenPoints = 12;  // of a piece of a driven motion
+constexpr double kLeastContradictionSds = 5.0;   // standard deviations between two statements
+constexpr double kLatestLaunch_s = 0.2;          // a motion that starts later is not the launch
+constexpr std::size_t kFirstPoints = 8;          // which show the direction of the launch,
+constexpr double kOpposite_sd = 10.0;            // by a displacement of so many standard deviations of a position
+constexpr double kMostChi2PerPosition = 1.5;     // chi² per position above which the motion counts as not explained
 
 std::size_t points_of(const TrackSet& set) {
   std::size_t points = 0;
@@ -202,7 +202,7 @@ TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<c
   check(setups, set);
   note_limits(setups, set);
   note_readings(results, set);
-  cut_driven_motions(set, kFewestPoints);
+  cut_driven_motions(set, kFewestDrivenPoints);
   return set;
 }
 
@@ -212,7 +212,7 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
   if (points_of(set) < kFewestWithoutHand) return {};
   note_limits(setups, set);
   note_readings(results, set);
-  cut_driven_motions(set, kFewestPoints);
+  cut_driven_motions(set, kFewestDrivenPoints);
   set.notes.emplace_back(HandLeftOut{disputed});
   return set;
 }

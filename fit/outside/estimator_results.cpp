@@ -12,6 +12,7 @@
 
 #include "base/errors.h"
 #include "base/math/angles.h"
+#include "base/text/json_text.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
 
@@ -42,7 +43,7 @@ class Findings {
 /// A value as a message shows it: short values themselves, others by their type.
 std::string shown(const json& value) {
   constexpr std::size_t kMostShown = 40;
-  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = base::replaced_json_text(value, base::kOnOneLine);
   return text.size() <= kMostShown ? text : value.type_name();
 }
 
@@ -204,7 +205,7 @@ core::AnalysisResults read_estimator_results(std::string_view text, const std::f
   Findings findings(file);
   json document;
   try {
-    document = json::parse(text);
+    document = base::parsed_json(text);
   } catch (const json::exception& error) {
     findings.add("", error.what(), "JSON");
     findings.throw_if_any();

@@ -21,9 +21,21 @@ def interpreter() -> list[str]:
     """
     if not sys.executable:
         raise SystemFailure("no Python interpreter is known that another process could run")
-    package = str(Path(__file__).absolute().parent.parent)
-    return [sys.executable, "-P", "-c", f"import sys; sys.path.insert(0, {package!r}); "
-                                  "from glidelab._apart import main; sys.exit(main(sys.argv[1:]))"]
+    package = Path(__file__).absolute().parent
+    return [sys.executable, "-P", "-c", _START.format(folder=str(package), beside=str(package.parent))]
+
+
+# This package and no other of its name; what stands beside it comes last, and hides no module of Python.
+_START = """
+import importlib.util, sys
+sys.path.append({beside!r})
+found = importlib.util.spec_from_file_location("glidelab", {folder!r} + "/__init__.py",
+                                               submodule_search_locations=[{folder!r}])
+sys.modules["glidelab"] = importlib.util.module_from_spec(found)
+found.loader.exec_module(sys.modules["glidelab"])
+from glidelab._apart import main
+sys.exit(main(sys.argv[1:]))
+"""
 
 
 def main(words: Sequence[str]) -> int:

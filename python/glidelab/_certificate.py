@@ -135,7 +135,8 @@ class Certificate(Result):
     def to_frame(self) -> Any:
         """A pandas.DataFrame, a row a quantity."""
         return frame_of({name: [getattr(one, name) for one in self.quantities] for name in (
-            "quantity", "asked", "failed", "coverage", "bias_sds", "rms", "stated_sd", "too_narrow")})
+            "quantity", "asked", "failed", "coverage", "bias_sds", "rms", "stated_sd", "too_narrow")},
+                        ("rms", "stated_sd"))
 
     def _repr_html_(self) -> str:
         rows = [[one.quantity, "" if one.coverage is None else f"{100.0 * one.coverage:.0f} %",

@@ -10,6 +10,7 @@ from typing import Any, Optional
 from . import _glidelab
 from ._errors import input_error
 
+_MOST_MEGABYTES = 1e9  # as of the command's --estimator-megabytes: no computer has as much
 
 @dataclass(frozen=True)
 class OutsideFailures:
@@ -60,6 +61,8 @@ def given_command(command: Optional[str], name: str, seconds: float,
     for key, value in (("estimator_seconds", seconds), ("estimator_megabytes", megabytes)):
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
             raise input_error(key, repr(value), "a number above 0")
+    if megabytes > _MOST_MEGABYTES:
+        raise input_error("estimator_megabytes", repr(megabytes), f"at most {_MOST_MEGABYTES:g}")
     if command is None:
         if name:
             raise input_error("estimator_name", repr(name), "estimator_command= beside it")

@@ -66,12 +66,16 @@ class Requirement(Result):
         return next((one for one in self.candidates if one.reached), None)
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a candidate; of several targets the first target's error and bound."""
+        """A pandas.DataFrame, a row a candidate, with units in ``attrs["units"]``; of several targets the first target's
+        error and bound."""
         columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in (
             "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")}
         columns["error"] = [one.errors[0] if one.errors else None for one in self.candidates]
         columns["bound"] = [one.bounds[0] if one.bounds else None for one in self.candidates]
-        return frame_of(columns)
+        frame = frame_of(columns)
+        for column in ("error", "bound"):
+            frame.attrs["units"][column] = unit_of(self.targets[0].split()[0]) if self.targets else ""
+        return frame
 
     def _repr_html_(self) -> str:
         header = ["camera", "price (EUR)", "verdict"]

@@ -14,6 +14,7 @@
 #include "base/long_work.h"
 #include "base/math/angles.h"
 #include "base/text/csv.h"
+#include "base/text/json_text.h"
 #include "base/toml/toml_set.h"
 #include "render/film/clip_renderer.h"
 #include "render/scenario/clip_motion.h"
@@ -146,7 +147,7 @@ std::string truth_json(const Scenario& scenario, std::uint64_t seed) {
   const nlohmann::ordered_json truth = {{"format", 1},    {"name", scenario.motion.name},
                                         {"seed", seed},   {"configurations", configurations},
                                         {"clips", clips}, {"camera", sections_truth(scenario)}};
-  return truth.dump(2) + "\n";
+  return base::json_text(truth) + "\n";
 }
 
 std::optional<Ellipse> image_of_sphere(const Eigen::Vector3d& center_C, double radius_m) {

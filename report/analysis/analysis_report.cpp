@@ -169,7 +169,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
   const std::vector<std::string> doubts = doubts_about(results);
   const std::string mark = doubts.empty() ? "" : " *";
   std::vector<std::vector<std::string>> rows = {{"mass (kg)", "incline (°)", "group", "K/m (1/s)" + mark, "µ" + mark,
-                                                 "α (°)" + mark, "v_lim (m/s)" + mark, "R² v<0", "R² v>0"}};
+                                                 "α (°)" + mark, "terminal velocity (m/s)" + mark, "R² v<0", "R² v>0"}};
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), c.group,

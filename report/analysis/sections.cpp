@@ -265,7 +265,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
   const bool in_doubt = !doubts_about(results).empty();
   const std::string mark = in_doubt ? " *" : "";
   HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)" + mark, "µ" + mark, "α (°)" + mark,
-                   "v<sub>lim</sub> (m/s)" + mark, "R² (v &lt; 0)", "R² (v &gt; 0)"});
+                   "terminal velocity (m/s)" + mark, "R² (v &lt; 0)", "R² (v &gt; 0)"});
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),

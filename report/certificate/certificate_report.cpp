@@ -36,11 +36,12 @@ std::string share_text(const validate::RunShare& share) {
   return share.of == 0 ? "–" : percent_text(share.share, share.low, share.high);
 }
 
-/// "94 % (90 to 97 %)" less; where the error more than doubles, the factor by which it grows: "× 240 (20 to 2900)".
+/// "94 % (90 to 97 %)" less; where the error more than doubles, the factor by which it grows: "240 times larger (20 to
+/// 2900)".
 std::string fall_text(const validate::RunFall& fall) {
   if (fall.value < -1.0) {
-    return fmt::format("× {} ({} to {})", base::number_text(1.0 - fall.value, 2), base::number_text(1.0 - fall.high, 2),
-                       base::number_text(1.0 - fall.low, 2));
+    return fmt::format("{} times larger ({} to {})", base::number_text(1.0 - fall.value, 2),
+                       base::number_text(1.0 - fall.high, 2), base::number_text(1.0 - fall.low, 2));
   }
   return percent_text(fall.value, fall.low, fall.high);
 }
@@ -378,8 +379,8 @@ std::string limits_table(const Certificate& certificate) {
   return table.str() +
          fmt::format(
              "<p class=\"soft\">How much smaller the rms error becomes, with its 95 % interval, over the same "
-             "twins with one change each ({} of them). Below 0 it becomes larger; if it more than doubles, × is the "
-             "factor by which it grows. Together: K/m, µ and α alike. Bold: above 0 by more than chance, over all "
+             "twins with one change each ({} of them). Below 0 it becomes larger; if it more than doubles, the "
+             "table has the factor. Together: K/m, µ and α alike. Bold: above 0 by more than chance, over all "
              "changes.</p>\n",
              certificate.changes.front().runs);
 }

@@ -277,7 +277,8 @@ Html pattern_section(const core::RecordingCheck& check) {
   for (const std::string& file : pattern.without) {
     table.row({escape(file), "<span class=\"bad\">not found</span>", "–", "–"});
   }
-  return text + table.str();
+  text += folded("Each image of the pattern", table.str());
+  return text;
 }
 
 /// Rows of the clips' table: the name, and its text.

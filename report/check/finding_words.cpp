@@ -89,7 +89,10 @@ struct FindingSentence {
                 : "repair the file, or state what it lacks"};
   }
   FindingWords operator()(const found::FewPositions& of) const {
-    return {fmt::format("the track has {} points", of.positions), "record at a higher rate"};
+    const std::string points = fmt::format("the track has {} points", of.positions);
+    if (of.unmarked == 0) return {points, "record at a higher rate"};
+    return {fmt::format("{}, and {} rows between them hold none", points, of.unmarked),
+            "mark the object in every frame: the recording has them"};
   }
   FindingWords operator()(const found::FewSightings& of) const {
     return {fmt::format("the marker is seen in only {} frames", of.frames),
@@ -300,7 +303,7 @@ struct FindingSentence {
     return {
         fmt::format("from {:.6g} s on {} positions are all {:.6g} m, {:.3g} m from the one before: the object was lost "
                     "there",
-                    of.from_s, of.count, of.x_m, of.off_m),
+                    of.from_s, of.count, of.x_m + 0.0, of.off_m),  // no "-0"
         "delete these rows from the file, or state end_s"};
   }
   FindingWords operator()(const found::Gaps& of) const {

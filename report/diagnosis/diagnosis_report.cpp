@@ -155,7 +155,7 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
       gap.floor < 1.0
           ? " (below 1, because what the causes remove had raised the noise estimated from neighbouring positions)"
           : "",
-      gap.shrink ? "The gap shrinks by " + shrink_text(gap) + " of the excess over the floor."
+      gap.shrink ? "The gap " + shrink_text(gap) + " of the excess over the floor."
                  : std::string("It is at the floor."),
       !over_clips.too_few
           ? "The intervals show how much these numbers would differ with other clips of the same kind (jackknife: each "
@@ -278,7 +278,7 @@ std::string wrapped(const std::string& text) {
 std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
   std::string text;
-  if (gap.shrink) text += "  it shrinks by " + shrink_text(gap) + " of the excess over the floor\n";
+  if (gap.shrink) text += "  it " + shrink_text(gap) + " of the excess over the floor\n";
   if (!over_clips.too_few) {
     text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
                         interval_text(over_clips.after));
@@ -332,8 +332,7 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
 }  // namespace
 
 std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
-  std::string text =
-      fmt::format("verdict: {}\n\n{}\n", verdict_id(diagnosis.verdict), wrapped(verdict_words(diagnosis)));
+  std::string text = fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), verdict_id(diagnosis.verdict));
   const std::string sequence = diagnosis.lines ? std::string() : sequence_lines(diagnosis);
   if (!sequence.empty()) text += sequence + "next: " + wrapped(next_step_words(diagnosis.next)) + "\n";
   std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "ln evidence"}};

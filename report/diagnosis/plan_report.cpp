@@ -89,7 +89,7 @@ std::string plan_json(const diagnose::Plan& plan) {
 std::string plan_text(const diagnose::Plan& plan) {
   std::vector<std::vector<std::string>> rows = {{"effect", "seen from", "indistinguishable from"}};
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    rows.push_back({effect.id, seen_text(effect), alike_text(effect.alike)});
+    rows.push_back({effect_name(effect.id), seen_text(effect), alike_text(effect_names(effect.alike))});
   }
   std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
   if (!advice(plan).empty()) text += fmt::format("\n{}\n", advice(plan));

@@ -10,11 +10,11 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <regex>
 
 #include "base/errors.h"
 #include "base/files/child_process.h"
 #include "base/files/file_io.h"
+#include "base/text/pattern.h"
 
 namespace glidelab::report {
 namespace {
@@ -133,12 +133,9 @@ constexpr std::array<std::string_view, 12> kNothingToShow = {"value undefined",
 /// "all points y value undefined!" for a log that ends with `"01-x.gp" line 12: all points y value undefined!`, if the
 /// message is about numbers; otherwise "".
 std::string why_nothing(const std::string& log) {
-  static const std::regex kMessage("\",? line [0-9]+: ([^\n]*)");
-  std::smatch found;
-  std::string message;
-  for (auto at = log.cbegin(); std::regex_search(at, log.cend(), found, kMessage); at = found.suffix().first) {
-    message = found[1].str();
-  }
+  static const base::Pattern kMessage("\",? line [0-9]+: ([^\n]*)");
+  const std::vector<base::Captured> found = kMessage.matches(log);
+  const std::string message = found.empty() ? std::string() : found.back()[1];
   const bool of_numbers = std::any_of(kNothingToShow.begin(), kNothingToShow.end(),
                                       [&](std::string_view words) { return message.find(words) != std::string::npos; });
   return of_numbers ? message : std::string();

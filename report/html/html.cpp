@@ -6,9 +6,10 @@
 #include <cassert>
 #include <cctype>
 #include <cstdint>
-#include <regex>
+
 #include "base/files/file_io.h"
 #include "base/text/number_text.h"
+#include "base/text/pattern.h"
 #include "report/html/gnuplot.h"
 
 namespace glidelab::report {
@@ -318,7 +319,11 @@ Html figures(const std::vector<Plot>& plots) {
 }
 
 std::string tile(const std::string& number, const std::string& words) {
-  return "<div class=\"tile\"><b>" + escape(number) + "</b><span>" + escape(words) + "</span></div>";
+  std::string text = escape(number);
+  // A narrow tile breaks before the ±, and hides no digit.
+  const std::size_t at = text.find(kPlusMinus);
+  if (at != std::string::npos) text.insert(at, "<wbr>");
+  return "<div class=\"tile\"><b>" + text + "</b><span>" + escape(words) + "</span></div>";
 }
 
 std::string question_heading(std::string_view about, std::string_view question) {
@@ -330,8 +335,10 @@ std::string meaning_section(const std::string& html) {
 }
 
 std::string symbols_html(std::string_view text) {
-  static const std::regex kSymbol("(^|[^A-Za-z0-9_/])([A-Za-z])_([A-Za-z0-9]+)(?![A-Za-z0-9_/])");
-  return std::regex_replace(escape(text), kSymbol, "$1$2<sub>$3</sub>");
+  static const base::Pattern kSymbol("(^|[^A-Za-z0-9_/])([A-Za-z])_([A-Za-z0-9]+)(?![A-Za-z0-9_/])");
+  return kSymbol.replaced(escape(text), [](const base::Captured& part) {
+    return fmt::format("{}{}<sub>{}</sub>", part[1], part[2], part[3]);
+  });
 }
 
 namespace {

@@ -218,7 +218,10 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
   }
   if (!answer.unanswered_s.empty()) {
     std::string values;
-    for (const double h : answer.unanswered_s) values += (values.empty() ? "" : ", ") + base::number_text(h, 3);
+    for (const double h : answer.unanswered_s) {
+      const bool last = h == answer.unanswered_s.back();
+      values += (values.empty() ? "" : last ? " and " : ", ") + base::number_text(h, 3);
+    }
     answer.text += fmt::format("; with {} s some clips have no line", values);
   }
   answer.text += rule_words(summary, curves, answer.use_s) + fit_words(summary, curves, answer.use_s) + ".";

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <set>
 #include <utility>
@@ -126,6 +127,11 @@ std::string parameter_text(std::string_view key, double value, double sd) {
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
   if (!parameter.text.empty()) return fmt::format("{} = {}", parameter.key, parameter.text);
   if (parameter.why) return fmt::format("{}: not known: {}", parameter.key, core::why_words(parameter.why));
+  constexpr double kUndetermined_sd = 10.0;  // over the value: then it says nothing about the size
+  if (parameter.sd > kUndetermined_sd * std::abs(parameter.value)) {
+    const std::string named = parameter_text(parameter.key, parameter.value, parameter.sd);
+    return named.substr(0, named.find(" = ")) + " not determined";
+  }
   return parameter_text(parameter.key, parameter.value, parameter.sd);
 }
 
@@ -136,9 +142,13 @@ std::string interval_text(const std::optional<diagnose::GapInterval>& interval) 
 
 std::string shrink_text(const diagnose::GapSizes& gap) {
   if (!gap.shrink) return "";
-  std::string text = fmt::format("{:.1f} %", 100.0 * *gap.shrink);
-  if (const auto& of = gap.interval95.shrink)
-    text += fmt::format(" ({:.1f} to {:.1f} %)", 100.0 * of->low, 100.0 * of->high);
+  const bool grows = *gap.shrink < 0.0;
+  const double percent = grows ? -100.0 : 100.0;
+  std::string text = fmt::format("{} by {:.1f} %", grows ? "grows" : "shrinks", percent * *gap.shrink);
+  if (const auto& of = gap.interval95.shrink) {
+    text += fmt::format(" ({:.1f} to {:.1f} %)", percent * (grows ? of->high : of->low),
+                        percent * (grows ? of->low : of->high));
+  }
   return text;
 }
 

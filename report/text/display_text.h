@@ -84,14 +84,14 @@ using base::size_text;
 
 /// "line = 30.67 ± 0.34 µs" for the key "line_s"; for a single set-up ("x_mid_m.NAME") "x_mid.NAME = …".
 std::string parameter_text(std::string_view key, double value, double sd);
-/// The same for a fitted one: "codec = libx264" if it is a word, "line: not known: …" if the data do not determine it.
+/// A fitted one: "codec = libx264" for a word, "line: not known: …", "line not determined" if sd > 10 times the value.
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter);
 
 /// "22.1 to 28"; "–" if there is none.
 std::string interval_text(const std::optional<diagnose::GapInterval>& interval);
 
-/// The fraction of the gap above the noise floor that disappears: "96.9 % (95.8 to 98.0 %)"; "" if the gap is at the
-/// noise floor.
+/// The fraction of the gap above the noise floor that disappears or is added: "shrinks by 96.9 % (95.8 to 98.0 %)",
+/// "grows by 12.0 %"; "" if the gap is at the noise floor.
 std::string shrink_text(const diagnose::GapSizes& gap);
 
 /// "a, b and c", or with another last word: "a, b, or c".

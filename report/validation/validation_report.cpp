@@ -383,6 +383,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   Html body = question_heading(title, "How well are the true values recovered?") +
               "<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the images alone by the lines "
               "of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n";
+  body += meaning_of(comparison);
   body += "<div class=\"tiles\">" +
           tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +
           (comparison.frames_out_of_view == 0
@@ -392,7 +393,6 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
                "position error (rms)") +
           tile(comparison.lines.empty() ? "–" : base::r2_text(lowest_r2), "lowest R² of a line") +
           tile(fmt::format("{:.1f} s", comparison.wall_s), "to render and analyse") + "</div>\n";
-  body += meaning_of(comparison);
   body += "<h2 id=\"comparison\">Truth and recovered values</h2>\n" + comparison_table(comparison);
   body +=
       "<p class=\"soft\">sd is the standard deviation that the analysis states, camera and scale included; least sd is "
@@ -400,8 +400,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
       "noise)².</p>\n";
   if (comparison.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*comparison.outside)));
   body += figures(validation_plots(results, comparison));
-  body += phase_section(results);
-  body += recovered_section(results);
+  body += folded("Phase diagrams and recovered values", phase_section(results) + recovered_section(results));
   body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));
   return page(title, body);
 }

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <utility>
 
+#include "base/text/json_text.h"
+#include "base/text/pattern.h"
 #include "report/html/html.h"
 #include "teach/page/page_texts.h"
 
@@ -30,7 +31,7 @@ const std::map<std::string, std::string>& texts_of(const std::string& language) 
   static const std::map<std::string, std::map<std::string, std::string>> all = [] {
     std::map<std::string, std::map<std::string, std::string>> read;
     for (const auto& [code, json] : files()) {
-      read[code] = nlohmann::json::parse(json).get<std::map<std::string, std::string>>();
+      read[code] = base::parsed_json(json).get<std::map<std::string, std::string>>();
     }
     return read;
   }();
@@ -38,20 +39,15 @@ const std::map<std::string, std::string>& texts_of(const std::string& language) 
 }
 
 std::string text_in(const std::string& language, const std::string& key, const WordValues& values) {
-  static const std::regex kPlace("\\{([a-z_0-9]+)\\}");
-  const std::string& text = texts_of(language).at(key);
-  std::string filled;
-  auto from = text.cbegin();
-  for (std::sregex_iterator at(text.begin(), text.end(), kPlace); at != std::sregex_iterator(); ++at) {
-    filled.append(from, (*at)[0].first).append(values.at((*at)[1]));
-    from = (*at)[0].second;
-  }
-  return filled.append(from, text.cend());
+  static const base::Pattern kPlace("\\{([a-z_0-9]+)\\}");
+  return kPlace.replaced(texts_of(language).at(key), [&](const base::Captured& place) { return values.at(place[1]); });
 }
 
 std::string words(const std::string& key, const WordValues& values) {
   const std::string numbers =
-      values.empty() ? "" : fmt::format(" data-values=\"{}\"", report::escape(nlohmann::json(values).dump()));
+      values.empty() ? ""
+                     : fmt::format(" data-values=\"{}\"",
+                                   report::escape(base::json_text(nlohmann::json(values), base::kOnOneLine)));
   return fmt::format("<span data-text=\"{}\"{}>{}</span>", key, numbers,
                      report::symbols_html(text_in("en", key, values)));
 }

@@ -208,10 +208,26 @@ class Studies(InFolder):
         for wrong in ({"estimator_command": "sh mine"}, {"estimator_command": "no-such-program {folder} {out}"},
                       {"estimator_command": 3}, {"estimator_name": "mine"},
                       {"estimator_command": "sh {folder} {out}", "estimator_seconds": 0.0},
+                      {"estimator_command": "sh {folder} {out}", "estimator_megabytes": 1e10},
                       {"estimator_command": "sh {folder} {out}", "estimator_megabytes": math.nan},
                       {"estimator_command": "sh {folder} {out}", "estimator_name": "trajectory"}):
             with self.assertRaises(glidelab.InputError):
                 glidelab.coverage(path, noise_m=2e-5, replicates=2, **wrong)
+
+    def test_another_interpreter_finds_this_package_and_the_modules_of_python(self):
+        import os
+        import subprocess
+        from pathlib import Path
+        from unittest import mock
+        from glidelab import _apart
+        (self.folder / "random.py").write_text("raise SystemExit('hidden')\n")  # numpy reads the one of Python
+        (self.folder / "glidelab").symlink_to(Path(_apart.__file__).parent)
+        with mock.patch.object(_apart, "__file__", str(self.folder / "glidelab" / "_apart.py")):
+            command = _apart.interpreter()
+        done = subprocess.run([*command, "diagnose", "no-such-folder", str(self.folder)], capture_output=True, text=True,
+                              cwd=self.folder, env={name: value for name, value in os.environ.items() if name != "PYTHONPATH"})
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("no-such-folder", done.stderr)
 
     def test_an_image_that_is_too_large_is_refused(self):
         glidelab.render_folder(small_scenario(), self.folder / "made")  # 400 x 300 pixels

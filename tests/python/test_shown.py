@@ -170,6 +170,17 @@ class Units(unittest.TestCase):
                              {"k_over_m_1_s": "1/s", "mu": "", "alpha_deg": "°", "v_lim_m_s": "m/s"})
 
 
+    @needs("pandas")
+    def test_errors_of_cameras_are_in_the_unit_of_their_target(self):
+        from glidelab._results import Made
+        from glidelab._sweeps import Candidate, Requirement
+        for target, unit in (("k_over_m_1_s 95 % error 0.01", "1/s"), ("mu sd 0.0001", ""), ("alpha_deg bias 0.01", "°")):
+            made = Requirement(Made.__new__(Made), "cameras", (Candidate("a", True, "reached", None, None, None),), (target,))
+            self.assertEqual(made.to_frame().attrs["units"]["error"], unit)
+            self.assertEqual(made.to_frame().attrs["units"]["bound"], unit)
+            self.assertEqual(made.to_frame().attrs["units"]["price_eur"], "EUR")
+
+
 class Bar(unittest.TestCase):
     @needs("tqdm")
     def test_true_is_a_bar_of_tqdm_for_each_stage(self):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """usage: mutate_toy.py SOURCE-FOLDER
-tools/mutate on a project of two functions, of which one is tested: what it finds, refuses, and leaves as it was."""
+tools/mutate on a project of three small sources, of which one is not tested: what it finds, refuses, and leaves as it was."""
 import re
 import subprocess
 import sys
@@ -22,13 +22,15 @@ FILES = {
     "CMakeLists.txt": """cmake_minimum_required(VERSION 3.25)
 project(toy LANGUAGES CXX)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-add_library(toy STATIC toy/area.cpp toy/length.cpp)
+set(CMAKE_CXX_STANDARD 20)
+add_library(toy STATIC toy/area.cpp toy/half.cpp toy/length.cpp)
 target_include_directories(toy PUBLIC ${CMAKE_SOURCE_DIR})
 target_compile_options(toy PRIVATE -Wall -Werror)
 add_subdirectory(tests)
 """,
     "tests/CMakeLists.txt": "add_executable(test_toy toy/test_area.cpp)\ntarget_link_libraries(test_toy toy)\n",
-    "toy/shapes.h": "#pragma once\ndouble area(double a, double b);\nint sum_to(int n);\ndouble length(double a, double b);\n",
+    "toy/shapes.h": "#pragma once\n#include <optional>\ndouble area(double a, double b);\nint sum_to(int n);\n"
+                    "double length(double a, double b);\ndouble half(const std::optional<double>& a, bool wanted);\n",
     "toy/area.cpp": """#include "toy/shapes.h"
 
 double area(double a, double b) {
@@ -45,6 +47,13 @@ int sum_to(int n) {
   return sum;
 }
 """,
+    "toy/half.cpp": """#include "toy/shapes.h"
+
+double half(const std::optional<double>& a, bool wanted) {
+  if (!a || !wanted) return 0.0;
+  return 0.5 * a.value();
+}
+""",
     "toy/length.cpp": """#include "toy/shapes.h"
 
 double length(double a, double b) {
@@ -52,11 +61,12 @@ double length(double a, double b) {
   return unused_if_left_out + b;
 }
 """,
-    # Every change of area.cpp that can be noticed is.
+    # Every change of area.cpp and half.cpp that can be noticed is.
     "tests/toy/test_area.cpp": """#include "toy/shapes.h"
 
 int main() {
   if (area(3.0, 2.0) != 6.0 || area(-3.0, 2.0) != 0.0 || area(0.5, 4.0) != 2.0 || area(1.5, 4.0) != 6.0) return 1;
+  if (half({}, true) != 0.0 || half(3.0, true) != 1.5 || half(3.0, false) != 0.0) return 1;
   return sum_to(4) != 10 || sum_to(3) != 6 || sum_to(1) != 1 || sum_to(0) != 0;
 }
 """,
@@ -100,6 +110,10 @@ assert re.search(r"Score \d+ % \(95 % interval \d+ to 100 %\)|Score \d+ %", done
 assert "time limit" in done.stderr, done.stderr
 left = survivors(done.stdout)
 assert all(line == "4" for _, line, _, _ in left), left
+
+# A truth value that was made of something else stays one: half({}, true) is no half of anything.
+done = mutate("toy/half.cpp", "1000", status=0)
+assert not survivors(done.stdout), done.stdout
 
 # What is not tested survives, whatever is left unused.
 done = mutate("toy/length.cpp", "1000", status=4)

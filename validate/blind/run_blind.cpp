@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/long_work.h"
+#include "base/text/json_text.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_filmed_effects.h"
 #include "validate/blind/case/everyday_causes.h"
@@ -59,14 +60,15 @@ void check_same_run(const BlindOptions& options, const fs::path& out) {
                                          "an empty folder, or that of an earlier run (it has a run.json)"});
     }
     base::StagedOutput staged(out);
-    base::write_file(staged.dir() / "run.json", wanted.dump(2) + "\n");
+    base::write_file(staged.dir() / "run.json", base::json_text(wanted) + "\n");
     staged.publish_files();
     return;
   }
   const Ordered found = Ordered::parse(base::read_file(file), nullptr, false);
   if (found == wanted) return;
-  throw base::InputError(base::Issue{file.string(), 0, "", found.is_discarded() ? "no JSON" : found.dump(),
-                                     "the seed and effect of this run, " + wanted.dump() + ", or an empty folder"});
+  throw base::InputError(base::Issue{
+      file.string(), 0, "", found.is_discarded() ? "no JSON" : base::json_text(found, base::kOnOneLine),
+      "the seed and effect of this run, " + base::json_text(wanted, base::kOnOneLine) + ", or an empty folder"});
 }
 
 constexpr const char* kDiagnosis = "diagnosis.json";  // in the folder of a diagnosis,

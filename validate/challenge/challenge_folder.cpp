@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "base/files/child_process.h"
 #include "base/files/file_io.h"
+#include "base/text/json_text.h"
 #include "core/experiment/experiment.h"
 #include "core/result/quantity.h"
 #include "fit/outside/estimator_results.h"
@@ -58,7 +59,7 @@ template <typename Read>
 auto read_as(const fs::path& file, const Read& read) {
   const std::string text = base::read_file(file);
   try {
-    return read(json::parse(text));
+    return read(base::parsed_json(text));
   } catch (const json::exception& error) {
     throw base::InputError(base::Issue{file.string(), 0, "", error.what(), "a file that glidelab challenge wrote"});
   }
@@ -95,7 +96,7 @@ std::string make_challenge(ChallengeLevel level, std::uint64_t seed, std::size_t
   truth["seed"] = seed;
   truth["cases"] = Ordered::array();
   for (const auto& configurations : truths) truth["cases"].push_back(json_of(configurations));
-  const std::string text = truth.dump(2) + "\n";
+  const std::string text = base::json_text(truth) + "\n";
   const base::TemporaryFolder scratch("seal");
   base::write_file(scratch / "truth.json", text);
   Ordered challenge;
@@ -104,7 +105,7 @@ std::string make_challenge(ChallengeLevel level, std::uint64_t seed, std::size_t
   challenge["level"] = word(level);
   challenge["cases"] = cases;
   challenge["truth_sha256"] = sha256_of(scratch / "truth.json");
-  base::write_file(folder / kChallengeFile, challenge.dump(2) + "\n");
+  base::write_file(folder / kChallengeFile, base::json_text(challenge) + "\n");
   return text;
 }
 
@@ -117,7 +118,8 @@ Challenge read_challenge(const fs::path& folder) {
       refuse(file, "version", fmt::format("{}", challenge.version), fmt::format("{}", kChallengeVersion));
     }
     const auto level = challenge_level(document.at("level").get<std::string>());
-    if (!level) refuse(file, "level", document.at("level").dump(), "easy, camera, hard or everyday");
+    if (!level)
+      refuse(file, "level", base::json_text(document.at("level"), base::kOnOneLine), "easy, camera, hard or everyday");
     challenge.level = *level;
     challenge.cases = document.at("cases").get<std::size_t>();
     if (challenge.cases == 0 || challenge.cases > kMostChallengeCases) {
@@ -179,7 +181,7 @@ std::vector<fit::OutsideRun> run_challenge(const fs::path& folder, const std::st
   for (const fit::OutsideRun& run : runs) {
     document["cases"].push_back({{"failure", fit::key_of(run.failure)}, {"what", run.what}, {"seconds", run.seconds}});
   }
-  base::write_file(results / kRunFile, document.dump(2, ' ', false, Ordered::error_handler_t::replace) + "\n");
+  base::write_file(results / kRunFile, base::replaced_json_text(document) + "\n");
   return runs;
 }
 

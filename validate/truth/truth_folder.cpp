@@ -10,6 +10,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/text/csv.h"
+#include "base/text/json_text.h"
 #include "core/result/quantity.h"
 
 namespace glidelab::validate {
@@ -137,7 +138,7 @@ Truth read_truth(const fs::path& truth_dir) {
   const std::string bytes = base::read_file(file);
   json document;
   try {
-    document = json::parse(bytes);
+    document = base::parsed_json(bytes);
   } catch (const json::parse_error& error) {
     throw base::InputError(base::Issue{name, 0, fmt::format("byte {}", error.byte), "no valid JSON", "a JSON object"});
   } catch (const json::out_of_range& error) {  // a number beyond any double

@@ -112,12 +112,18 @@ Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, d
 
 double rounding_step(std::span<const double> x_m) {
   constexpr int kMostParts = 8;  // the smallest change may be several steps if the motion is never slow
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), most_change = 0.0, least_change = least;
   for (std::size_t i = 1; i < x_m.size(); ++i) {
     const double change = std::abs(x_m[i] - x_m[i - 1]);
     if (change > 1e-12 * std::abs(x_m[i])) least = std::min(least, change);
+    most_change = std::max(most_change, change);
+    least_change = std::min(least_change, change);
   }
   if (!std::isfinite(least)) return 0.0;
+  // Positions that all lie one step apart are marks, as light gates, whose times were measured: rounding would pass
+  // over one of them, or give one twice.
+  constexpr double kSameChange = 1e-6;
+  if (most_change - least_change <= kSameChange * most_change) return 0.0;
   const auto fits = [&](double step) {
     return std::all_of(x_m.begin(), x_m.end(), [&](double x) {
       const double multiple = (x - x_m[0]) / step;

@@ -34,17 +34,25 @@ cv::Rect box_around(const Signal& signal, const MarkerGuess& guess) {
   return cv::Rect(corner.x, corner.y, side, side) & cv::Rect(0, 0, signal.values.cols, signal.values.rows);
 }
 
-double distance_of(int u, int v, const MarkerGuess& guess) {
-  return std::hypot(u - guess.centre.x, v - guess.centre.y);
+/// Squared: a box around a large marker has a hundred thousand pixels.
+double distance2_of(int u, int v, const MarkerGuess& guess) {
+  const double du = u - guess.centre.x, dv = v - guess.centre.y;
+  return du * du + dv * dv;
+}
+
+double near2_of(const MarkerGuess& guess) {
+  const double near = std::max(guess.radius_px, kSmallest_px);
+  return near * near;
 }
 
 std::optional<Peak> peak_in(const Signal& signal, const cv::Rect& box, const MarkerGuess& guess) {
   std::vector<double> rim, near;
+  const double near2 = near2_of(guess), rim2 = std::pow(kMostRadiiOfMarker * guess.radius_px, 2.0);
   for (int v = box.y; v < box.br().y; ++v) {
     for (int u = box.x; u < box.br().x; ++u) {
-      const double distance = distance_of(u, v, guess);
-      if (distance > kMostRadiiOfMarker * guess.radius_px) rim.push_back(signal.at(u, v));
-      if (distance < std::max(guess.radius_px, kSmallest_px)) near.push_back(signal.at(u, v));
+      const double distance2 = distance2_of(u, v, guess);
+      if (distance2 > rim2) rim.push_back(signal.at(u, v));
+      if (distance2 < near2) near.push_back(signal.at(u, v));
     }
   }
   if (rim.size() < kFewestOfRim || near.empty()) return std::nullopt;
@@ -60,9 +68,10 @@ std::optional<Peak> peak_in(const Signal& signal, const cv::Rect& box, const Mar
 std::optional<cv::Point> brightest(const Signal& signal, const cv::Rect& box, const MarkerGuess& guess, double floor) {
   std::optional<cv::Point> found;
   double best = floor;
+  const double near2 = near2_of(guess);
   for (int v = box.y; v < box.br().y; ++v) {
     for (int u = box.x; u < box.br().x; ++u) {
-      if (distance_of(u, v, guess) > std::max(guess.radius_px, kSmallest_px)) continue;
+      if (distance2_of(u, v, guess) > near2) continue;
       if (signal.at(u, v) <= best) continue;
       best = signal.at(u, v);
       found = cv::Point(u, v);

@@ -164,6 +164,15 @@ struct Sentence {
         "image shows whether the scale is wrong, a stopwatch whether the frame rate is.",
         of.density_ratio);
   }
+  std::string operator()(const diagnose::FitsCutOff& of) const {
+    std::vector<std::string> names;
+    for (const diagnose::Explanation& one : of.of) names.push_back(explanation_name(one));
+    const bool several = names.size() > 1;
+    return fmt::format(
+        "The fit{} of {} stopped at the largest number of steps, before {} reached a minimum: {} may explain more than "
+        "is stated.",
+        several ? "s" : "", fmt::join(names, ", "), several ? "they" : "it", several ? "they" : "it");
+  }
   std::string operator()(const diagnose::SplitSetUps& of) const {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",
                        ups(of.groups));

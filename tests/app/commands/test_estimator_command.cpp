@@ -161,7 +161,9 @@ TEST_CASE("a command that cannot be an estimator's is a wrong command line, befo
         Wrong{{"--estimator-command", "sh {folder} {out}", "--estimator-name", "trajectory"},
               "an estimator of Glidelab has this name"},
         Wrong{{"--estimator-seconds", "3"}, "--estimator-command"},
-        Wrong{{"--estimator-command", "sh {folder} {out}", "--estimator-seconds", "0"}, "--estimator-seconds"}}) {
+        Wrong{{"--estimator-command", "sh {folder} {out}", "--estimator-seconds", "0"}, "--estimator-seconds"},
+        Wrong{{"--estimator-command", "sh {folder} {out}", "--estimator-megabytes", "1e10"},
+              "--estimator-megabytes"}}) {
     std::vector<std::string> arguments = {"validate", "small.toml", "--out", "out"};
     arguments.insert(arguments.end(), wrong.words.begin(), wrong.words.end());
     const tests::ProcessResult result = tests::glidelab(arguments, temp.path());

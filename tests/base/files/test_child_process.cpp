@@ -1,6 +1,10 @@
 /// Another program, run to its end or stopped.
 #include "base/files/child_process.h"
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -56,6 +60,27 @@ TEST_CASE("a program gets no more memory, and writes no larger file, than it may
   CHECK(base::how_it_failed(base::run_limited("dd", block, temp / "log", {60.0, 1024u << 20}).status).empty());
   const std::vector<std::string> file = {"if=/dev/zero", "of=" + (temp / "file").string(), "bs=1M", "count=64"};
   CHECK_FALSE(base::how_it_failed(base::run_limited("dd", file, temp / "log", {60.0, 32u << 20}).status).empty());
+}
+
+TEST_CASE("where this program has hard limits below those of an outside program, they hold for it too") {
+  const tests::TempDir temp;
+  // In a process of its own, since nothing raises a hard limit again.
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    const rlimit seconds{50, 50}, bytes{1U << 30, 1U << 30}, file{4096, 4096};
+    const bool set = ::setrlimit(RLIMIT_CPU, &seconds) == 0 && ::setrlimit(RLIMIT_AS, &bytes) == 0 &&
+                     ::setrlimit(RLIMIT_FSIZE, &file) == 0;
+    const base::ProgramEnd end = base::run_limited(
+        "sh", {"-c", "test $(ulimit -H -t) = 50 && test $(ulimit -H -v) = 1048576 && test $(ulimit -H -f) = 8"},
+        temp / "log", {});
+    ::_exit(set && base::how_it_failed(end.status).empty() ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  INFO(base::read_file(temp / "log"));
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 0);
 }
 
 TEST_CASE("a program is found by its name in PATH or by its path, and only where it can be run") {

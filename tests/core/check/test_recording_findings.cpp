@@ -146,12 +146,14 @@ core::Experiment of_one_clip(double mass_kg = 0.3) {
 }
 
 /// A slope of 4.3 degrees whose track's x is multiplied by `per_m`, checked as a folder that states `stated_deg`.
-core::RecordingCheck checked(double per_m, double stated_deg) {
+core::RecordingCheck checked(double per_m, double stated_deg, double seconds = 1.7) {
   const tests::TempDir dir;
   core::Experiment experiment;
+  tests::Filming how;
+  how.duration_s = seconds;
   for (const core::Launched launched : {core::Launched::up, core::Launched::down}) {
     const double start_m_s = launched == core::Launched::up ? -0.6 : 0.3;
-    const core::TrackData track = tests::film(tests::launch(tests::Law{4.3, 0.0071, 0.8}, start_m_s, 1.7), {});
+    const core::TrackData track = tests::film(tests::launch(tests::Law{4.3, 0.0071, 0.8}, start_m_s, 1.7), how);
     std::string csv = "t_s,x_m\n";
     for (std::size_t k = 0; k < track.t_s.size(); ++k) {
       csv += std::to_string(track.t_s[k]) + "," + std::to_string(per_m * track.x_m[k]) + "\n";
@@ -239,6 +241,15 @@ TEST_CASE("x in centimetres is named with its size in metres, and the inclinatio
   CHECK_FALSE(any_about(check.findings, Topic::length));
   CHECK(found_as<core::found::TrackInUnit>(checked(1000.0, 4.3).findings[0]).unit == LengthUnit::millimetres);
   CHECK(checked(1.0, 4.3).findings.empty());
+}
+
+TEST_CASE("a short run in millimetres is told from a long one in centimetres by the stated inclination") {
+  const core::RecordingCheck check = checked(1000.0, 4.3, 0.5);
+  REQUIRE_FALSE(check.findings.empty());
+  const auto& track = found_as<core::found::TrackInUnit>(check.findings[0]);
+  INFO(track.distance_m);
+  CHECK(track.distance_m < 316.0);  // closer to a metre as centimetres: sqrt(100 * 1000) is as far from either
+  CHECK(track.unit == LengthUnit::millimetres);
 }
 
 TEST_CASE("an inclination in radians is named, one that is only wrong is not") {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <fstream>
+
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/analysis/analyze.h"
@@ -113,4 +116,52 @@ TEST_CASE("a bare track says which mass and inclination it assumed, and accuses 
   REQUIRE(grams != nullptr);
   CHECK(grams->mass_kg == 400.0);
   CHECK_FALSE(grams->lightest_kg);
+}
+
+TEST_CASE("beside an assumed level track an analysis says that x is a height, which may be a fall") {
+  const tests::TempDir folder;
+  const std::filesystem::path file = folder / "drop.csv";
+  {
+    std::ofstream out(file);
+    out << "t (s),hauteur (m)\n";
+    for (int i = 0; i < 60; ++i) {
+      const double t = 0.01 * i;
+      out << t << ',' << 0.001 * std::round(1000.0 * (2.0 - 4.5 * t * t)) << '\n';
+    }
+  }
+  core::AnalysisOptions how;
+  const auto is_told = [&] {
+    const std::vector<core::Note> notes = core::analyze({file}, how).configurations.front().notes;
+    const auto* const height = tests::note_of<core::HeightTaken>(notes);
+    return height != nullptr && height->column == "hauteur (m)";
+  };
+  CHECK(is_told());
+  how.bare.incline_deg = 90.0;
+  CHECK_FALSE(is_told());
+}
+
+TEST_CASE("a check of a recording whose frames are hardly marked does not ask for a higher rate") {
+  const tests::TempDir folder;
+  const std::filesystem::path file = folder / "marked.txt";
+  {
+    std::ofstream out(file);
+    out << ",mass A,,\nt,x,y,\n";
+    for (int i = 0; i <= 160; ++i) {
+      const double t = 0.02 * i;
+      if (i % 10 == 0) {
+        out << t << ',' << 0.05 * t + 0.003 * t * t << ",0\n";
+      } else {
+        out << t << ",,\n";
+      }
+    }
+  }
+  std::size_t found = 0;
+  for (const core::Finding& finding : core::check_recording(core::read_tracks(file, {}), 1).findings) {
+    const auto* const few = std::get_if<core::found::FewPositions>(&finding.found);
+    if (few == nullptr) continue;
+    ++found;
+    CHECK(few->positions == 17);
+    CHECK(few->unmarked == 144);
+  }
+  CHECK(found == 1);
 }

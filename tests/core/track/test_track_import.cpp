@@ -136,6 +136,15 @@ TEST_CASE("accelerations alone are refused with the reason") {
   CHECK_THROWS_WITH(phone.read(), Contains("accelerations without positions") && Contains("integrated"));
 }
 
+TEST_CASE("speeds alone are refused with the reason, and beside positions they are no matter") {
+  for (const char* name : {"Velocity (m/s)", "Geschwindigkeit (m/s)", "v (cm/s)", "v", "Speed"}) {
+    INFO(name);
+    const Made radar(fmt::format("\"Time (s)\",\"{}\"\n", name) + rows("0.{0},0.{0}\n"));
+    CHECK_THROWS_WITH(radar.read(), Contains("speeds without positions") && Contains("too narrow"));
+  }
+  check_motion(Made("\"Time (s)\",\"Position (cm)\",\"Velocity (m/s)\"\n" + rows("0.{0},{1},0.1\n")).read());
+}
+
 TEST_CASE("a name that only contains t_s, as zeit_s, is another program's and imported") {
   check_motion(Made("zeit_s,weg_mm\n" + rows("0.{0},{1}0\n")).read());
   check_motion(Made("t_sec,x_mm\n" + rows("0.{0},{1}0\n")).read());
@@ -158,7 +167,8 @@ TEST_CASE("bad tables give one clear error each") {
       {"t (s),x (m)\n" + rows("0,{0},0,{1}\n"), "decimal comma"},
       {"t (s),y (m),z (m)\n" + rows("0.{0},{1},1\n"), "--column"},
       {"t (s),x (px)\n" + rows("0.{0},{1}\n"), "the unit \"px\""},
-      {"frame,x (m)\n" + rows("{0},{1}\n"), "0 columns of time"},
+      {"number,x (m)\n" + rows("{0},{1}\n"), "0 columns of time"},
+      {"frame,x (m)\n" + rows("{0},{1}\n"), "only numbers of frames (\"frame\")"},
       {"t (s),x (m)\n0,0\n1,1\n2,2\n", "3 points"},
       {std::string("t\0 \0x\0", 6), "zero bytes"},
   };
@@ -217,10 +227,102 @@ TEST_CASE("of x and y the one along which the body moves is x, a slanted path is
   CHECK(path->off_deg == Approx(45.0).epsilon(1e-9));
   CHECK(path->stretch == Approx(std::sqrt(2.0)).epsilon(1e-9));
   CHECK_FALSE(path->along_y);
+  for (std::size_t i = 0; i < 10; ++i) {  // positions along the path, the hypotenuse of both columns
+    CHECK(slanted.x_m[i] == Approx(std::sqrt(2.0) * 0.01 * static_cast<double>(i * i)).margin(1e-12));
+  }
+  const Made level("t,x (m),y (cm)\n" + rows("0.{0},{1}e-2,-{1}e-2\n"));  // 0.6 degrees: x alone
+  CHECK(core::read_track_csv(level.file, std::nullopt).x_m[3] == Approx(0.09).epsilon(1e-12));
   // y = x²: with x 0 to 9 and y 0 to 81 the path's sagitta is 81²/4/(9² + 81²)... of its length, far from straight.
   CHECK_THROWS_WITH(plane("0.{0}\t{0}e-1\t{1}e-2\n"), Contains("a curved path"));
   const Made flight("t\tx\ty\n" + rows("0.{0}\t{0}e-1\t{1}e-2\n"));
   CHECK(flight.read("x").x_m[3] == Approx(0.3));  // whoever asks for it has it
+}
+
+TEST_CASE("a path that leads down to the right is followed with x rising, whatever the units of its columns") {
+  std::string text = "t,x (m),y (cm)\n";
+  for (int i = 0; i < 10; ++i) text += fmt::format("0.{},{},{}\n", i, 0.04 * i * i, 90.0 - 3.0 * i * i);
+  const core::TrackData track = core::read_track_csv(Made(text).file, std::nullopt);
+  REQUIRE(tests::note_of<core::SlantedPath>(track.notes) != nullptr);
+  for (std::size_t i = 1; i < 10; ++i) {  // 3, 4 and 5
+    CHECK(track.x_m[i] - track.x_m[0] == Approx(0.05 * static_cast<double>(i * i)).epsilon(1e-9));
+  }
+  // A row without y has no place on the path.
+  const core::TrackData gap = core::read_track_csv(Made(text + "1.0,4.0,\n1.1,4.84,-273\n").file, std::nullopt);
+  CHECK(gap.x_m.size() == 11);
+}
+
+TEST_CASE("three columns without a header are t, x and y if the third follows the second") {
+  const auto read = [](const std::string& text) { return core::read_track_csv(Made(text).file, std::nullopt); };
+  const core::TrackData along = read(rows("0.{0}\t{1}e-2\t-{1}e-2\n"));
+  REQUIRE(along.x_m.size() == 10);
+  CHECK(along.x_m[9] - along.x_m[0] == Approx(std::sqrt(2.0) * 0.81));
+  CHECK(tests::note_of<core::SlantedPath>(along.notes) != nullptr);
+  const auto* const taken = tests::note_of<core::ColumnsTaken>(along.notes);
+  REQUIRE(taken != nullptr);
+  CHECK(taken->x == "column 2");
+  CHECK(taken->t == "column 1");
+  // The speed, 0.2 t for x = 0.1 t² (t = 0.1 n, x = 0.001 n²), and numbers that have nothing to do with x.
+  std::string speed, other;
+  for (int i = 0; i < 10; ++i) {
+    speed += fmt::format("0.{},{},{}\n", i, 0.001 * i * i, 0.02 * i);
+    other += fmt::format("0.{},{},{}\n", i, 0.001 * i * i, 0.01 * ((7 * i) % 5));
+  }
+  for (const std::string& text : {speed, other}) {
+    const core::TrackData track = read(text);
+    CHECK(track.x_m[9] == Approx(0.081));
+    CHECK(tests::note_of<core::SlantedPath>(track.notes) == nullptr);
+  }
+  CHECK_THROWS_WITH(read(rows("0.{0}\t{0}e-1\t{1}e-2\n")), Contains("sagitta of (column 2, column 3)"));
+  // The third covers ten times as much: it may be the fall, or no place at all.
+  CHECK_THROWS_WITH(read(rows("0.{0}\t{1}e-3\t{1}e-2\n")), Contains("say which one is x"));
+  CHECK_THROWS_WITH(read(rows("0.1\t{1}e-2\t{1}e-2\n")), Contains("say which one is x"));  // times do not rise
+}
+
+TEST_CASE("numbers of frames are no times, and the message says how to make some") {
+  const Made made("Frame,X_m,Y_m\n" + rows("{0},0.001,{1}e-2\n"));
+  CHECK_THROWS_WITH(core::read_track_csv(made.file, std::nullopt),
+                    Contains("numbers of frames (\"Frame\")") && Contains("divide the numbers of the frames"));
+}
+
+TEST_CASE("forces without positions are refused by that name") {
+  const Made made("Czas Ft\ns N\n" + rows("0,{0} 1,{0}\n"));
+  CHECK_THROWS_WITH(made.read(), Contains("forces without positions") && Contains("record where the body is"));
+}
+
+TEST_CASE("a decimal comma goes with a comma between fields if it is in quotes") {
+  check_motion(Made("t,x\n" + rows("\"0,{0}\",\"{1},0E-2\"\n")).read());
+}
+
+TEST_CASE("a table in UTF-16 or Latin-1 is read as one in UTF-8") {
+  std::string wide = "\xFF\xFE";
+  for (const char c : "t (s)\tx (m)\n" + rows("0.{0}\t{1}E-2\n")) wide += {c, '\0'};
+  check_motion(Made(wide).read());
+  // Of two lengths the one called Posición is x.
+  check_motion(Made("Tiempo (s);Posici\xF3n (m);Error (m)\n" + rows("0,{0};{1}E-2;0,001\n")).read());
+}
+
+TEST_CASE("formats that are no text are named, with what to do") {
+  CHECK_THROWS_WITH(Made("\xD0\xCF\x11\xE0\xA1\xB1").read(),
+                    Contains("an Excel file") && Contains("save the sheet as CSV"));
+  CHECK_THROWS_WITH(Made("[{\"t\": 0.0, \"x\": 0.1}]\n").read(), Contains("JSON") && Contains("two columns"));
+}
+
+TEST_CASE("if no line is read, the message shows one and says what ails it") {
+  CHECK_THROWS_WITH(Made("t,x,y\n0 .000,0,\"-1,70E+01\"\n").read(),
+                    Contains(":2: ") && Contains("the first with digits is 0 .000,0,"));
+  CHECK_THROWS_WITH(Made("0,1;0.149\n0,2;0.151\n").read(), Contains("do not go together"));
+  CHECK_THROWS_WITH(Made("0,1;01.jan\n0,2;jan.13\n").read(), Contains("into dates"));
+  CHECK_THROWS_WITH(Made("no numbers here\n").read(), Contains("no line with two numbers, expected"));
+}
+
+TEST_CASE("echoes after the landing do not turn a fall towards a sensor round") {
+  // x from 1 m down to 0.1 m, then what a sensor writes when nothing is left to see.
+  std::string text = "t,height\n";
+  for (int i = 0; i < 40; ++i) text += fmt::format("{},{}\n", 0.02 * i, 1.0 - 0.9 * i / 40.0);
+  for (int i = 40; i < 46; ++i) text += fmt::format("{},{}\n", 0.02 * i, i % 2 == 0 ? 5.8 : 2.6);
+  const core::TrackData track = core::read_track_csv(Made(text).file, std::nullopt);
+  CHECK(tests::note_of<core::CountedAlongMotion>(track.notes) != nullptr);
+  CHECK(track.x_m[39] > track.x_m[0]);
 }
 
 TEST_CASE("a table without times says so once") {

@@ -32,6 +32,10 @@ TEST_CASE("a gap below the estimated noise is the floor, and all shares together
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
     CHECK(cause.share > 0.0);
     sum += cause.share;
+    // Eight clips: a jackknife over them, about the share.
+    REQUIRE(cause.share_interval95);
+    CHECK(cause.share_interval95->low < cause.share);
+    CHECK(cause.share_interval95->high >= cause.share);
   }
   CHECK(sum == Approx(1.0).epsilon(1e-9));
   REQUIRE(diagnosis.gap->shrink);

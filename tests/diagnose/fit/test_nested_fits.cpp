@@ -4,6 +4,7 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
@@ -57,4 +58,33 @@ TEST_CASE("no explanation that was fitted gains less than nothing, and each says
     // chi² of some 1e5 to 1e7, to the rounding of its sums.
     CHECK(ranked.log_likelihood_gain >= -1e-3);
   }
+}
+
+TEST_CASE("beside a K with which the motion cannot be followed, its derivative is that towards the smaller one") {
+  const tests::MadeExperiment made = tests::made_experiment({{0.4, 4.0, 0.3, -1.1}, {0.4, 4.0, -0.6, 1.2}}, {}, 3);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto at_k = [&](double k_n_s_m) {
+    diagnose::FitPoint at = nominal.at;
+    at.global[0] = k_n_s_m;
+    return at;
+  };
+  // The largest K that the integrator follows: with a larger one a motion takes too many steps.
+  double low = 1.0, high = 1e6;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (std::isfinite(diagnose::linearise_at(set, {}, at_k(middle)).cost) ? low : high) = middle;
+  }
+  REQUIRE(std::isfinite(diagnose::linearise_at(set, {}, at_k(low)).cost));
+  REQUIRE_FALSE(std::isfinite(diagnose::linearise_at(set, {}, at_k(1.001 * low)).cost));
+  const diagnose::MotionFit edge = diagnose::linearise_at(set, {}, at_k(low));
+  const diagnose::MotionFit near = diagnose::linearise_at(set, {}, at_k(0.99 * low));
+  for (std::size_t m = 0; m < edge.motions.size(); ++m) {
+    CHECK(edge.motions[m].global.allFinite());
+    CHECK(edge.motions[m].own.allFinite());
+    // x changes with K as 1/K², so that derivatives 1 % apart differ by 2 %.
+    const double size = near.motions[m].global.col(0).norm();
+    CHECK((edge.motions[m].global.col(0) - near.motions[m].global.col(0)).norm() < 0.05 * size);
+  }
+  CHECK_NOTHROW(diagnose::ScoreSpace(set, edge));
 }

@@ -9,6 +9,7 @@
 #include "diagnose/pictures/image_recording.h"
 #include "diagnose/pictures/image_scene.h"
 #include "diagnose/pictures/image_search.h"
+#include "diagnose/verdict/verdict_details.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -280,4 +281,48 @@ TEST_CASE("a motion down the image tells exposure and light as the same motion a
   CHECK(std::get<diagnose::image::LightAlong>(light_down.fact).down);
   CHECK_FALSE(std::get<diagnose::image::LightAlong>(light_across.fact).down);
   CHECK(light_down.seen == light_across.seen);
+}
+
+TEST_CASE("what images show of a named effect is told over the variable in which it is seen", "[pictures]") {
+  using diagnose::GapKind, diagnose::GapVariable;
+  struct Seen {
+    const char* id;
+    std::vector<diagnose::FilmedClip> clips;
+    GapVariable over;
+    GapKind what;
+    double to;
+  };
+  const auto bright = with_gradient(filmed({0.006, 0.0, 0.0, 0.0}, 0.006, 4), 1.5);
+  // 480 x 180 pixels, or turned 180 x 480; 150 frames at 120 Hz; at most 400 px/s by 400 px/m.
+  for (const Seen& seen :
+       {Seen{"light_gradient", bright, GapVariable::column, GapKind::brightness, 480.0},
+        Seen{"light_gradient", turned(bright), GapVariable::row, GapKind::brightness, 480.0},
+        Seen{"exposure_blur", filmed({0.007, 0.0, 0.0, 0.0}, 0.001, 5), GapVariable::speed, GapKind::marker_width, 1.0},
+        Seen{"rolling_shutter", filmed({0.001, 3e-5, 0.0, 0.0}, 0.001, 5), GapVariable::row, GapKind::marker_shear,
+             180.0},
+        Seen{"light_flicker", filmed({0.001, 0.0, 0.02, 0.0}, 0.001, 5), GapVariable::time, GapKind::brightness,
+             149.0 / 120.0}}) {
+    INFO(seen.id);
+    const diagnose::ImageEvidence evidence = diagnose::image_evidence(seen.clips);
+    const diagnose::ImageFinding found = finding(evidence, seen.id);
+    diagnose::Diagnosis diagnosis;
+    diagnosis.effects.resize(2);
+    diagnosis.effects[0].id = seen.id;
+    diagnosis.effects[1].id = "tether";  // of which images show nothing
+    diagnose::add_image_regions(evidence, diagnosis);
+    REQUIRE(diagnosis.regions.size() == 1);
+    const diagnose::GapRegion& region = diagnosis.regions.front();
+    CHECK(region.variable == seen.over);
+    CHECK(region.what == seen.what);
+    CHECK(region.from == 0.0);
+    // A speed is that of a line through some frames, in which it changes by a part in a hundred.
+    CHECK(region.to == Approx(seen.to).epsilon(seen.over == GapVariable::speed ? 0.05 : 1e-12));
+    CHECK(region.size == found.parameters.front().value);
+    CHECK(region.unit == found.parameters.front().key);
+    CHECK(region.excess == Approx(std::sqrt(2.0 * found.log_evidence)).epsilon(1e-12));
+    diagnosis.effects.erase(diagnosis.effects.begin());
+    diagnosis.regions.clear();
+    diagnose::add_image_regions(evidence, diagnosis);
+    CHECK(diagnosis.regions.empty());
+  }
 }

@@ -69,6 +69,12 @@ std::vector<Bad> bad_documents() {
       {quantity(R"({"value": null, "sd": 0.25})"), "configurations[0].k_over_m_1_s.value"},
       {quantity(R"({"value": 2.5, "sd": 0.25, "interval95": [2.0]})"), "configurations[0].k_over_m_1_s.interval95"},
       {quantity(R"({"value": 2.5, "sd": 0.25, "interval95": 3})"), "configurations[0].k_over_m_1_s.interval95"},
+      {quantity(R"({"value": 2.5, "sd": 0.25, "interval95": ["low", 3.0]})"),
+       "configurations[0].k_over_m_1_s.interval95"},
+      {quantity(R"({"value": 2.5, "sd": 0.25, "interval95": [2.0, null]})"),
+       "configurations[0].k_over_m_1_s.interval95"},
+      {quantity(R"({"value": 2.5, "sd": 0.25, "interval95": [2.0, 3.0, 4.0]})"),
+       "configurations[0].k_over_m_1_s.interval95"},
       {document(R"("why": "because", "k_over_m_1_s": null, )" + kRest), "configurations[0].why"},
       {document(R"("why": {"mu": 3}, "k_over_m_1_s": null, )" + kRest), "configurations[0].why.mu"},
   };
@@ -86,6 +92,10 @@ std::vector<Bad> of_another_experiment() {
       {R"({"format": 1, "configurations": [{"clips": ["up"], )" + kGood + R"(}, {"clips": ["down"], )" + kGood + "}]}",
        "configurations[1].clips"},
       {document(R"("k_over_m_1_s": {"value": 2.5, "sd": 0.25, "interval95": [2.6, 2.9]}, )" + kRest),
+       "configurations[0].k_over_m_1_s.interval95"},
+      {document(R"("k_over_m_1_s": {"value": 2.5, "sd": 0.25, "interval95": [2.0, 2.4]}, )" + kRest),
+       "configurations[0].k_over_m_1_s.interval95"},
+      {document(R"("k_over_m_1_s": {"value": 2.5, "sd": 0.25, "interval95": [3.0, 2.0]}, )" + kRest),
        "configurations[0].k_over_m_1_s.interval95"},
   };
 }
@@ -134,6 +144,19 @@ TEST_CASE("what is wrong with an outside result is named by its key") {
       }
     }
   }
+}
+
+TEST_CASE("a wrong value of forty characters is shown as it is, a longer one by its type") {
+  const auto found = [](const std::string& sd) {
+    try {
+      read(document(R"("k_over_m_1_s": {"value": 2.5, "sd": ")" + sd + R"("}, )" + kRest));
+    } catch (const base::InputError& error) {
+      return error.issues().front().found;
+    }
+    return std::string("it was taken");
+  };
+  CHECK(found(std::string(38, 'x')) == '"' + std::string(38, 'x') + '"');
+  CHECK(found(std::string(39, 'x')) == "string");
 }
 
 TEST_CASE("the JSON schema takes and refuses the documents that the reader takes and refuses") {

@@ -200,3 +200,76 @@ TEST_CASE("what is stated wrong is noted beside the fit of the whole motion as i
   REQUIRE(std::holds_alternative<core::InclineContradiction>(notes[0]));
   CHECK(std::get<core::InclineContradiction>(notes[0]).stated.by == "incline_deg");
 }
+
+namespace {
+
+/// The four quantities of a fit of both directions: K/m, mu, alpha in degrees, v_lim.
+Eigen::VectorXd quantities_of(const Eigen::VectorXd& p) {
+  const double alpha = std::asin(p[1] / kGravity);
+  return Eigen::Vector4d(p[0], p[2] / (kGravity * std::cos(alpha)), alpha * 57.29577951308232, (p[1] - p[2]) / p[0]);
+}
+
+/// sd² = g' (covariance + shared errors) g with g by central differences, and its random part.
+template <typename Quantities>
+std::vector<std::pair<double, double>> variances_of(const fit::TrajectoryFit& fit, Quantities quantities) {
+  std::vector<std::pair<double, double>> all(static_cast<std::size_t>(quantities(fit.parameters).size()));
+  Eigen::MatrixXd by(quantities(fit.parameters).size(), fit.parameters.size());
+  constexpr double kStep = 1e-6;  // an error of 1e-12 times third derivatives of up to 1e2
+  for (Eigen::Index p = 0; p < fit.parameters.size(); ++p) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(fit.parameters.size(), p);
+    by.col(p) = (quantities(fit.parameters + step) - quantities(fit.parameters - step)) / (2.0 * kStep);
+  }
+  Eigen::MatrixXd total = fit.covariance;
+  for (const Eigen::VectorXd& shift : fit.shared) total += shift * shift.transpose();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Eigen::VectorXd g = by.row(static_cast<Eigen::Index>(i));
+    all[i] = {g.dot(total * g), g.dot(fit.covariance * g)};
+  }
+  return all;
+}
+
+void check_sds(const core::Quantity& quantity, double value, const std::pair<double, double>& variances) {
+  REQUIRE(quantity.estimate);
+  // The two fits start from other guesses, and stop where the cost settles to 1e-10 of itself.
+  CHECK(quantity.estimate->value == Approx(value).epsilon(1e-6));
+  CHECK(quantity.estimate->sd == Approx(std::sqrt(variances.first)).epsilon(1e-5));
+  CHECK(quantity.noise_sd.value() == Approx(std::sqrt(variances.second)).epsilon(1e-5));
+}
+
+}  // namespace
+
+TEST_CASE("every quantity has the variance of its numerical gradient, errors that the positions share included") {
+  std::mt19937 random(8);
+  Pair pair(5e-5, random);
+  for (core::FreeBlock* block : {&pair.up, &pair.down}) {
+    block->shared_m.resize(1);
+    for (const double x : block->x_m) block->shared_m[0].push_back(3e-4 * x * x);
+  }
+  core::AnalysisResults results = results_of(pair);
+  for (core::ClipResult& clip : results.clips) clip.scale_sd_relative = 2e-3;
+  core::ConfigurationResult both, down;
+  both.clips = {"up", "down"};
+  down.clips = {"down"};
+  results.configurations = {both, down};
+  const auto found = fit::with_trajectory_fits(results).configurations;
+
+  for (fit::FitBlock& block : pair.blocks) block.scale_sd_relative = 2e-3;
+  const auto of_both = fit::fit_trajectories(pair.blocks, kStart);
+  REQUIRE(of_both);
+  const Eigen::VectorXd values = quantities_of(of_both->parameters);
+  const auto variances = variances_of(*of_both, quantities_of);
+  check_sds(found[0].k_over_m_1_s, values[0], variances[0]);
+  check_sds(found[0].mu, values[1], variances[1]);
+  check_sds(found[0].alpha_deg, values[2], variances[2]);
+  check_sds(found[0].v_lim_m_s, values[3], variances[3]);
+  // Both parts count, or the test would show less.
+  for (const auto& [total, noise] : variances) CHECK(total > 1.1 * noise);
+
+  const auto of_down = fit::fit_trajectories({pair.blocks[1]}, kStart);
+  REQUIRE(of_down);
+  REQUIRE(of_down->parameters.size() == 2);
+  const auto k_and_limit = [](const Eigen::VectorXd& p) { return Eigen::VectorXd(Eigen::Vector2d(p[0], p[1] / p[0])); };
+  const auto one_way = variances_of(*of_down, k_and_limit);
+  check_sds(found[1].k_over_m_1_s, of_down->parameters[0], one_way[0]);
+  check_sds(found[1].v_lim_m_s, of_down->parameters[1] / of_down->parameters[0], one_way[1]);
+}

@@ -35,7 +35,8 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::ForceUnused{"F (N)"}, "\"F (N)\" is not used"},
       {core::MotionAlongY{0.9, 0.012}, "y covers 0.9 m and x only 0.012 m"},
       {core::SlantedPath{12.34, 1.0236, false},
-       "at 12.3° to the x axis: distances along the path are 1.02 times as long"},
+       "at 12.3° to the x axis: positions are taken along it, from x and y, where distances are 1.02 times those "
+       "along x"},
       {core::SlantedPath{12.34, 1.0236, true}, "to the y axis"},
       {core::CountedAlongMotion{}, "its sign is reversed"},
       {core::RowsIncomplete{1}, "one row between others lacks a time or x"},

@@ -97,7 +97,7 @@ TEST_CASE("only changes that stand out are given as advice, three at most, and n
   CHECK(report::certificate_page("a", made).html.find("-0 %") == std::string::npos);
   CHECK(report::certificate_page("a", made).html.find("−0 %") == std::string::npos);
   made.changes.back().together = validate::RunFall{-237.6, -2900.0, -18.7};  // 238.6 times the error
-  CHECK(report::certificate_page("a", made).html.find("× 240 (20 to 2900)") != std::string::npos);
+  CHECK(report::certificate_page("a", made).html.find("240 times larger (20 to 2900)") != std::string::npos);
   made.changes.assign(5, change(TwinLimit::few_clips, true));
   CHECK(report::best_changes(made).size() == 3);
   made.changes.assign(2, change(TwinLimit::few_clips, false));

@@ -68,6 +68,9 @@ TEST_CASE("sizes come in the unit that leaves them a readable number") {
   CHECK(report::parameter_text("x_mid_m.flat_s", 0.0123, 0.0012) == "x_mid.flat_s = 12.3 ± 1.2 mm");
   CHECK(report::parameter_text("f_hz", 6.00001, 0.00013) == "f = 6.00001 ± 0.00013 Hz");
   CHECK(report::parameter_text("e", 0.0101, 0.0012) == "e = 0.0101 ± 0.0012");
+  CHECK(report::parameter_text(diagnose::DiagnosedParameter{"x_t_m", 0.0, 10946.0}) == "x_t not determined");
+  CHECK(report::parameter_text(diagnose::DiagnosedParameter{"s", 51.0, 22065.0}) == "s not determined");
+  CHECK(report::parameter_text(diagnose::DiagnosedParameter{"s", 0.02, 0.19}) == "s = 0.02 ± 0.19");
   CHECK(report::parameter_text("intercept_s2_m_s2", 0.0052, 0.001) == "intercept = 0.0052 ± 0.0010 m/s² for each 1/s²");
 }
 

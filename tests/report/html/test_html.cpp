@@ -162,3 +162,7 @@ TEST_CASE("a page says in words where a plot has nothing to show, and keeps its 
   CHECK_FALSE(page.files.contains("plots/01-an-empty-plot.svg"));
   CHECK(page.files.contains("plots/02-a-plot.svg"));
 }
+
+TEST_CASE("a value in a tile may break before its plus-minus sign, and nowhere else") {
+  CHECK(report::tile("-0.0105 ± 0.0090", "µ").find("0.0105<wbr> ± 0.0090</b>") != std::string::npos);
+}

@@ -108,4 +108,6 @@ TEST_CASE("a bandwidth with which some clips have no line is not recommended, an
   REQUIRE(answer);
   CHECK(answer->use_s == 0.05);
   CHECK_THAT(answer->text, Contains("with 0.04 s some clips have no line"));
+  summary.overall[2].groups[0].statistics.answered = 300;
+  CHECK_THAT(report::bandwidth_answer(summary)->text, Contains(" and 0.04 s some clips have no line"));
 }

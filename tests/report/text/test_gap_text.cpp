@@ -60,13 +60,17 @@ TEST_CASE("where there are too few clips for an interval, the file and the text 
           "2 clips cannot show how much clips differ: an interval needs three or more");
   }
   CHECK(report::diagnosis_text(diagnosis).find("2 clips cannot show how much clips differ") != std::string::npos);
-  CHECK(report::shrink_text(*diagnosis.gap) == "95.0 %");
+  CHECK(report::shrink_text(*diagnosis.gap) == "shrinks by 95.0 %");
 }
 
 TEST_CASE("intervals read as from what to what") {
   CHECK(report::interval_text(diagnose::GapInterval{4.0, 6.25}) == "4.00 to 6.25");
   CHECK(report::interval_text({}) == "–");
-  CHECK(report::shrink_text(*with_gap().gap) == "95.0 % (90.0 to 100.0 %)");
+  CHECK(report::shrink_text(*with_gap().gap) == "shrinks by 95.0 % (90.0 to 100.0 %)");
+  diagnose::GapSizes larger = *with_gap().gap;
+  larger.shrink = -1.678;
+  larger.interval95.shrink = {-2.0, 0.1};
+  CHECK(report::shrink_text(larger) == "grows by 167.8 % (-10.0 to 200.0 %)");
   const std::string text = report::diagnosis_text(with_gap());
   CHECK(text.find("4.00 to 6.25 before, 1.00 to 1.44 after") != std::string::npos);
   CHECK(text.find("0.02 m/s² (0.0100 to 0.0400) before, 0.01 m/s² after") != std::string::npos);

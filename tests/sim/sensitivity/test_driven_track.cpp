@@ -135,3 +135,22 @@ TEST_CASE("a driven motion of no number is an error") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(driven_track_sensitive(nan, 0.0, 0.1, 0.0, 1.0, times(0.1, 3), uneven_drive()), base::NumericalError);
 }
+
+TEST_CASE(
+    "a motion that turns again and again is followed, and one of more than a hundred thousand turns is an error") {
+  // No friction and no drag under +1, -1, +1, …, a second each, from v = -1/2: v falls and rises as a saw between -1/2
+  // and 1/2 and turns in the middle of every piece. It never rests, so that the turns alone can count.
+  const auto turning = [](std::size_t turns) {
+    RecordedDrive saw;
+    for (std::size_t i = 0; i < turns; ++i) {
+      const double from = static_cast<double>(i), p = i % 2 == 0 ? 1.0 : -1.0;
+      saw.t_s.insert(saw.t_s.end(), {from, std::nextafter(from + 1.0, 0.0)});
+      saw.p_m_s2.insert(saw.p_m_s2.end(), {p, p});
+    }
+    return driven_track_sensitive(0.0, 0.0, 0.0, 0.0, -0.5, {{0.0, static_cast<double>(turns)}}, saw).back().x_m;
+  };
+  // Each piece brings it back, by half of the way from rest as far as by the half before. A time of 1e5 s is rounded to
+  // 1.5e-11 s in each of 1e5 pieces and v to as much in m/s, which adds up to 5e-9 m/s, in 1e5 s to less than 1e-3 m.
+  CHECK(std::abs(turning(99998)) < 1e-3);
+  CHECK_THROWS_AS(turning(100002), base::NumericalError);
+}

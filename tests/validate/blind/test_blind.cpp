@@ -254,6 +254,41 @@ TEST_CASE("a score counts names, alarms and what was not recognised") {
   CHECK(std::abs(score.calibration_error - (4.0 * 0.15 + 0.6 + 0.5) / 6.0) < 1e-6);  // as std::to_string has it
 }
 
+TEST_CASE("the methods beside the diagnosis take the largest gain, and the one that is worth its parameters") {
+  using validate::BlindKind;
+  const std::vector<validate::BlindRanked> ranking = {
+      {{"tether"}, 0.2, 30.0, 5.0, {}},
+      {{"quadratic_drag"}, 0.3, 28.0, 1.0, {}},
+      {{"quadratic_drag", "tether"}, 0.1, 40.0, 6.0, {}},
+      {{"quadratic_drag", "track_bow"}, 0.1, 36.0, 2.0, {}},
+      {{"tether", "track_bow"}, 0.1, 90.0, 3.0, {}},  // without the first, which is kept
+  };
+  const auto right = [&](const std::vector<std::string>& truth, double points, validate::DecisionMethod method) {
+    validate::BlindOutcome one;
+    one.kind = truth.empty() ? BlindKind::none : truth.size() == 1 ? BlindKind::single : BlindKind::pair;
+    for (const std::string& id : truth) one.causes.push_back({id, 1.0, {}, "x_m", 100.0});
+    one.verdict.verdict = "effect";
+    one.verdict.points = points;
+    one.verdict.ranking = ranking;
+    const auto score = validate::score_blind({one});
+    const validate::BlindMethod& of = score.methods.at(static_cast<std::size_t>(method));
+    REQUIRE(of.by == method);
+    return of.none.yes + of.pair.yes + (of.single.contains("strong") ? of.single.at("strong").yes : 0) == 1;
+  };
+  using enum validate::DecisionMethod;
+  CHECK(right({"tether"}, 1000.0, best_residual));
+  CHECK_FALSE(right({"quadratic_drag"}, 1000.0, best_residual));
+  // A parameter costs log(1000) / 2 = 3.45: 12.7 and 24.5, and beside the second 19.3 and 29.1.
+  CHECK(right({"quadratic_drag"}, 1000.0, stepwise_bic));
+  CHECK(right({"quadratic_drag", "track_bow"}, 1000.0, stepwise_bic));
+  // At 10: -20 and 18, and beside the second 16.
+  CHECK(right({"quadratic_drag"}, std::exp(20.0), stepwise_bic));
+  CHECK_FALSE(right({"quadratic_drag", "track_bow"}, std::exp(20.0), stepwise_bic));
+  // At 29 nothing is worth it.
+  CHECK(right({}, std::exp(58.0), stepwise_bic));
+  CHECK_FALSE(right({}, std::exp(54.0), stepwise_bic));
+}
+
 TEST_CASE("a cause that is drawn as one outside the list may be called by what the list has for it") {
   using validate::BlindKind;
   const auto score = validate::score_blind({

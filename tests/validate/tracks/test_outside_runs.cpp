@@ -2,6 +2,7 @@
 #include "validate/tracks/outside_runs.h"
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 
 #include "base/files/file_io.h"
@@ -41,6 +42,24 @@ TEST_CASE("the folder that an outside estimator gets has the results of the trac
     // rounding alone.
     CHECK(std::abs(one.estimate->value - other.estimate->value) < 1e-9 * std::abs(one.estimate->value));
     CHECK(std::abs(one.estimate->sd - other.estimate->sd) < 1e-6 * one.estimate->sd);
+  }
+}
+
+TEST_CASE("every position of a track is in the file that an outside estimator gets, to all digits") {
+  const tests::TempDir temp;
+  const validate::MadeTracks made = noisy_tracks();
+  validate::write_track_folder(made, temp / "folder");
+  for (std::size_t c = 0; c < made.tracks.size(); ++c) {
+    std::istringstream csv(base::read_file(temp / "folder" / "tracks" / (made.setups[c].name + ".csv")));
+    std::string line;
+    std::getline(csv, line);
+    for (std::size_t i = 0; i < made.tracks[c].t_s.size(); ++i) {
+      REQUIRE(std::getline(csv, line));
+      const std::size_t comma = line.find(',');
+      CHECK(std::stod(line.substr(0, comma)) == made.tracks[c].t_s[i]);
+      CHECK(std::stod(line.substr(comma + 1)) == made.tracks[c].x_m[i]);
+    }
+    CHECK_FALSE(std::getline(csv, line));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/math/angles.h"
+#include "base/text/json_text.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_strength.h"
 #include "validate/random_use.h"
@@ -170,7 +171,7 @@ std::string blind_truth_json(const BlindCase& one) {
   for (const BlindGroup& group : one.design.groups) truth["alpha_rad"][group.name] = group.true_rad;
   truth["mass_kg"] = nlohmann::ordered_json::array();
   for (const BlindMass& mass : one.design.masses) truth["mass_kg"].push_back(mass.true_kg);
-  return truth.dump(2) + "\n";
+  return base::json_text(truth) + "\n";
 }
 
 }  // namespace glidelab::validate

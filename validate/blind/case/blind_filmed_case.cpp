@@ -17,6 +17,7 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "base/text/json_text.h"
 #include "core/pictures/frames/frame_source.h"
 #include "diagnose/effects/effect_list.h"
 #include "render/film/clip_renderer.h"
@@ -209,7 +210,7 @@ std::string filmed_truth_json(const FilmedCase& one) {
   for (const BlindStated& stated : one.scene.stated) truth["stated"][stated.key] = stated.value;
   truth["filed_anew"] = one.scene.retouch.rewritten;
   truth["scenario"] = one.scenario();
-  return truth.dump(2) + "\n";
+  return base::json_text(truth) + "\n";
 }
 
 }  // namespace glidelab::validate

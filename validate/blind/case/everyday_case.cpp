@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/errors.h"
+#include "base/text/json_text.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_strength.h"
 #include "validate/blind/case/everyday_causes.h"
@@ -374,7 +375,7 @@ std::string everyday_truth_json(const EverydayCase& one) {
     }
     truth["configurations"].push_back(std::move(object));
   }
-  return truth.dump(2) + "\n";
+  return base::json_text(truth) + "\n";
 }
 
 }  // namespace glidelab::validate

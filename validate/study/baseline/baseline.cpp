@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "base/long_work.h"
+#include "base/text/json_text.h"
 #include "core/math/quantile.h"
 #include "fit/estimators.h"
 #include "validate/random_use.h"
@@ -166,7 +167,7 @@ std::string baseline_json(const Baseline& baseline) {
                                      {"log_a_error", record.log_a_error},
                                      {"log_a_error_sd", record.log_a_error_sd}});
   }
-  return document.dump(2) + "\n";
+  return base::json_text(document) + "\n";
 }
 
 namespace {
@@ -190,7 +191,8 @@ class BaselineReader {
   std::uint64_t count(const char* key) const {
     constexpr const char* kCount = "a whole number, 0 or more";
     const json& value = at(key, kCount);
-    if (!value.is_number_unsigned()) fail(key, value.is_number() ? value.dump() : value.type_name(), kCount);
+    if (!value.is_number_unsigned())
+      fail(key, value.is_number() ? base::json_text(value, base::kOnOneLine) : value.type_name(), kCount);
     return value;
   }
   std::string text(const char* key) const {
@@ -221,7 +223,7 @@ class BaselineReader {
 json parsed(const std::filesystem::path& file) {
   const std::string text = base::read_file(file);
   try {
-    return json::parse(text);
+    return base::parsed_json(text);
   } catch (const json::parse_error& error) {
     const std::size_t end = std::min(error.byte, text.size());
     const auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');

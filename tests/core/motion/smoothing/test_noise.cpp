@@ -92,6 +92,19 @@ TEST_CASE("rounded positions have at least the noise of their rounding, also whe
   CHECK(noise.sd_m == Approx(0.01 / std::sqrt(12.0)).epsilon(0.15));
 }
 
+TEST_CASE("marks at even distances, passed at measured times, are no rounded positions") {
+  // A fall past light gates 0.25 m apart: t = sqrt(2 x / g).
+  std::vector<double> t, x;
+  for (int i = 0; i <= 12; ++i) {
+    x.push_back(0.25 * i);
+    t.push_back(std::sqrt(2.0 * x.back() / 9.81));
+  }
+  CHECK(rounding_step(x) == 0.0);
+  CHECK(pilot_noise(t, x) < 0.01);  // rounding to 0.25 m would be 0.072 m
+  x[5] = x[4];                      // one mark twice: rounded
+  CHECK(rounding_step(x) == Approx(0.25));
+}
+
 TEST_CASE("outliers and impacts do not inflate the first figure of the noise") {
   const auto t = times(1000, 0.005);
   std::mt19937_64 random(3);

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
@@ -202,4 +206,23 @@ echo '{"format": 1, "configurations": [{"clips": ["up"], "k_over_m_1_s": {"value
   for (const validate::Sweep& changed : {without, other}) {
     CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", changed, "1", {}), Contains("estimator"));
   }
+}
+
+TEST_CASE("a number that is not there comes back as none, and zero as zero") {
+  const tests::TempDir dir;
+  validate::Database database(dir / "numbers.sqlite", validate::Database::Mode::create);
+  database.run("CREATE TABLE numbers (value REAL)");
+  const std::vector<std::optional<double>> values = {0.0, std::nullopt, -2.5, std::numeric_limits<double>::infinity()};
+  for (const std::optional<double>& value : values) {
+    validate::SqlStatement insert = database.prepare("INSERT INTO numbers VALUES (?1)");
+    insert.bind(1, value).run();
+  }
+  validate::SqlStatement rows = database.prepare("SELECT value FROM numbers ORDER BY rowid");
+  for (const std::optional<double>& value : values) {
+    REQUIRE(rows.step());
+    const bool there = value && std::isfinite(*value);  // what is not finite is none
+    CHECK(rows.maybe_number(0) == (there ? value : std::nullopt));
+    CHECK(rows.is_null(0) == !there);
+  }
+  CHECK_FALSE(rows.step());
 }

@@ -84,3 +84,39 @@ TEST_CASE("A value, a word or a camera that an axis has twice is refused") {
   CHECK_THAT(of("cameras = [\"" + cameras + "\", \"" + cameras + "/chronos-14.toml\"]\n"),
              Contains("sweep.toml:8: vary[1].cameras: found") && Contains("chronos-14.toml\" twice"));
 }
+
+TEST_CASE("each distribution of random values is read with its own keys, and those of others are refused") {
+  using Kind = validate::AxisSource::Kind;
+  struct Given {
+    const char* text;
+    Kind kind;
+    double from, to, mean, sd;
+  };
+  const std::string rate = kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nrandom = { distribution = ";
+  for (const Given& given :
+       {Given{"\"uniform\", from = 50, to = 70", Kind::uniform, 50.0, 70.0, 0.0, 0.0},
+        Given{"\"log_uniform\", from = 40, to = 80", Kind::log_uniform, 40.0, 80.0, 0.0, 0.0},
+        Given{"\"normal\", mean = 60, sd = 2", Kind::normal, 0.0, 0.0, 60.0, 2.0},
+        Given{"\"log_normal\", median = 61, sd_of_log = 0.1", Kind::log_normal, 0.0, 0.0, 61.0, 0.1}}) {
+    INFO(given.text);
+    const tests::TempDir dir;
+    const validate::Sweep sweep =
+        validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 2", rate + given.text + " }\n"));
+    REQUIRE(sweep.axes.size() == 1);
+    const validate::AxisSource& source = sweep.axes[0].source;
+    CHECK(source.kind == given.kind);
+    CHECK(source.from == given.from);
+    CHECK(source.to == given.to);
+    CHECK(source.mean == given.mean);
+    CHECK(source.sd == given.sd);
+    CHECK(source.drawn());
+  }
+  const auto refused = [&](const std::string& random) {
+    return tests::refusal_of_sweep("replicates = 2", rate + random + " }\n");
+  };
+  CHECK_THAT(refused("\"log_uniform\", from = 0, to = 70"), Contains("random.from"));
+  CHECK_THAT(refused("\"normal\", median = 60, sd = 2"), Contains("random.mean"));
+  CHECK_THAT(refused("\"normal\", mean = 60, sd = 0"), Contains("random.sd"));
+  CHECK_THAT(refused("\"log_normal\", median = -1, sd_of_log = 0.1"), Contains("random.median"));
+  CHECK_THAT(refused("\"normal\", from = 50, to = 70"), Contains("random.mean"));
+}

@@ -1,0 +1,76 @@
+#include "core/track/number_field.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace glidelab::core {
+namespace {
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+/// Without the blanks that divide digits into groups of three, "1 234,5"; unchanged if there are others.
+std::string without_groups(const std::string& text) {
+  const auto digit = [&](std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; };
+  std::string joined;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != ' ') {
+      joined += text[i];
+      continue;
+    }
+    const bool group = i > 0 && digit(i - 1) && digit(i + 1) && digit(i + 2) && digit(i + 3) && !digit(i + 4);
+    if (!group) return text;
+  }
+  return joined;
+}
+
+/// As spreadsheets write numbers in some languages: a minus sign of its own, blanks between thousands.
+std::string plain_number(std::string_view field) {
+  std::string text(field);
+  const bool ascii = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  if (!ascii) {
+    replace_all(text, "\xE2\x88\x92", "-");                                              // U+2212
+    for (const std::string_view blank : {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"}) {  // no-break, narrow, thin
+      replace_all(text, blank, " ");
+    }
+  }
+  return text.find(' ') == std::string::npos ? text : without_groups(text);
+}
+
+}  // namespace
+
+std::optional<double> number_in(std::string_view field, char decimal) {
+  std::string text = plain_number(field);
+  if (decimal == ',') {
+    if (text.find('.') != std::string::npos) return {};
+    std::replace(text.begin(), text.end(), ',', '.');
+  }
+  const char* first = text.data();
+  if (text.starts_with("+")) ++first;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(first, text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+bool is_month_and_number(std::string_view field) {
+  const auto dot = field.find('.');
+  if (dot == std::string_view::npos) return false;
+  const std::string_view before = field.substr(0, dot), after = field.substr(dot + 1);
+  const auto word = [](std::string_view text) {
+    return text.size() >= 3 && std::all_of(text.begin(), text.end(), [](char c) {
+             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
+           });
+  };
+  const auto digits = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  return (digits(before) && word(after)) || (word(before) && digits(after));
+}
+
+}  // namespace glidelab::core

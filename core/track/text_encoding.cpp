@@ -1,0 +1,78 @@
+#include "core/track/text_encoding.h"
+
+#include <cstddef>
+
+namespace glidelab::core {
+namespace {
+
+void append_utf8(char32_t code, std::string& text) {
+  const auto byte = [&](char32_t value) { text += static_cast<char>(static_cast<unsigned char>(value)); };
+  if (code < 0x80) {
+    byte(code);
+  } else if (code < 0x800) {
+    byte(0xC0 | (code >> 6));
+    byte(0x80 | (code & 0x3F));
+  } else {
+    byte(0xE0 | (code >> 12));
+    byte(0x80 | ((code >> 6) & 0x3F));
+    byte(0x80 | (code & 0x3F));
+  }
+}
+
+unsigned char byte_at(std::string_view bytes, std::size_t i) {
+  return static_cast<unsigned char>(bytes[i]);
+}
+
+/// Of the basic plane; a surrogate is written as a question mark, for no number or name of a column needs one.
+std::string from_utf16(std::string_view bytes, bool little_endian) {
+  std::string text;
+  for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+    const unsigned first = byte_at(bytes, i), second = byte_at(bytes, i + 1);
+    const char32_t code = little_endian ? first | (second << 8) : (first << 8) | second;
+    append_utf8(code >= 0xD800 && code < 0xE000 ? U'?' : code, text);
+  }
+  return text;
+}
+
+bool is_utf8(std::string_view bytes) {
+  std::size_t following = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const unsigned char byte = byte_at(bytes, i);
+    if (following > 0) {
+      if ((byte & 0xC0) != 0x80) return false;
+      --following;
+    } else if (byte >= 0x80) {
+      following = (byte & 0xE0) == 0xC0 ? 1 : (byte & 0xF0) == 0xE0 ? 2 : (byte & 0xF8) == 0xF0 ? 3 : 0;
+      if (following == 0) return false;
+    }
+  }
+  return following == 0;
+}
+
+}  // namespace
+
+std::string as_utf8(std::string_view bytes) {
+  if (bytes.starts_with("\xFF\xFE")) return from_utf16(bytes, true);
+  if (bytes.starts_with("\xFE\xFF")) return from_utf16(bytes, false);
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  if (is_utf8(bytes)) return std::string(bytes);
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); ++i) append_utf8(byte_at(bytes, i), text);
+  return text;
+}
+
+NoTable no_table_in(std::string_view bytes) {
+  if (bytes.starts_with("\xD0\xCF\x11\xE0")) {
+    return {"an Excel file (.xls)", "text: save the sheet as CSV (phyphox exports CSV itself)"};
+  }
+  if (bytes.starts_with("\x93NUMPY")) return {"an array of numpy (.npy)", "text: numpy.savetxt writes it"};
+  if (bytes.starts_with("MATLAB 5.0 MAT-file")) return {"a file of MATLAB (.mat)", "text: writematrix writes it"};
+  const auto first = bytes.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && (bytes[first] == '{' || bytes[first] == '[') &&
+      bytes.find('"') != std::string_view::npos) {
+    return {"JSON", "a table: write the times and the positions as two columns, with the header t,x"};
+  }
+  return {};
+}
+
+}  // namespace glidelab::core
