@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/held_fit.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/scan/effect_scan.h"

@@ -11,7 +11,6 @@
 #include "base/math/levenberg_marquardt.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_model.h"
-#include "diagnose/fit/held_fit.h"
 #include "diagnose/fit/integrated_start.h"
 
 namespace glidelab::diagnose {

@@ -56,6 +56,12 @@ struct MotionFit {
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late = {});
 
+/// The same, with the common parameters of these indices held at `start`: by a statement with a ten-millionth of their
+/// range. What a cause takes of a gap is measured with the shape that was found with all causes together: where a cable
+/// tightens, until when a hand pushes.
+MotionFit fit_held(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
+                   const Lateness& late, const std::vector<std::size_t>& held);
+
 /// Residuals and derivatives at a point in parameter space, without a fit.
 MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at);
 

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/held_fit.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/scan/effect_scan.h"

