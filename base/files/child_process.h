@@ -21,7 +21,7 @@ int run_program(const std::string& program, std::vector<std::string> arguments, 
                 const std::function<bool()>& stop = {});
 
 /// Upper limits on the resources of an outside program. Where this program's own hard limits are lower (ulimit, a batch
-/// system), these hold.
+/// system), the lower ones apply.
 struct ProgramLimits {
   double wall_s = 60.0;
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< address space of a process, and size of a file it writes

@@ -265,12 +265,16 @@ bool is_missing(std::string_view field) {
   return field.empty() || field == "NaN" || field == "nan" || field == "NAN";
 }
 
+Thousands thousands_of(const Format& format) {
+  return format.delimiter == ',' ? Thousands::without_plain_blanks : Thousands::with_blanks;
+}
+
 /// Numbers or nothing in all fields, and two numbers or more.
-bool is_data(const std::vector<std::string_view>& fields, char decimal) {
+bool is_data(const std::vector<std::string_view>& fields, const Format& format) {
   int numbers = 0;
   for (const std::string_view field : fields) {
     if (is_missing(field)) continue;
-    if (!number_in(field, decimal)) return false;
+    if (!number_in(field, format.decimal, thousands_of(format))) return false;
     ++numbers;
   }
   return numbers >= 2;
@@ -316,7 +320,7 @@ std::vector<std::vector<std::string>> commented_header(const std::vector<Line>& 
   for (const Line& comment : comments) {
     if (comment.number > first_data) break;
     const std::vector<std::string_view> fields = split(comment.text, format.delimiter);
-    if (fields.size() != width || is_data(fields, format.decimal)) continue;
+    if (fields.size() != width || is_data(fields, format)) continue;
     lines.emplace_back(fields.begin(), fields.end());
   }
   const std::size_t wanted = !lines.empty() && all_that_is_there(lines.back(), looks_like_a_unit) ? 2 : 1;
@@ -332,7 +336,7 @@ std::optional<Format> format_of(const std::vector<Line>& lines) {
                                Format{',', '.'}, Format{kBlanks, '.'}, Format{kBlanks, ','},
                                Format{',', ','}}) {  // the last with quotes around each number that has a comma
     std::size_t count = 0;
-    for (const Line& line : lines) count += is_data(split(line.text, format.delimiter), format.decimal);
+    for (const Line& line : lines) count += is_data(split(line.text, format.delimiter), format);
     if (count > most) {
       most = count;
       best = format;
@@ -367,10 +371,12 @@ base::Issue no_numbers(const std::string& file, const std::vector<Line>& lines) 
     both_signs |= numbers_of(line, '.') > 0 && numbers_of(line, ',') > 0;
   }
   if (shown == nullptr) return issue;
-  constexpr std::size_t kMostShown = 60;
+  std::size_t most_shown = 60;
+  const auto continues = [&](std::size_t at) { return (static_cast<unsigned char>(shown->text[at]) & 0xC0) == 0x80; };
+  while (most_shown < shown->text.size() && continues(most_shown)) --most_shown;  // no character is cut in two
   issue.line = shown->number;
   issue.found = fmt::format("no line with two numbers; the first with digits is {}{}",
-                            shown->text.substr(0, kMostShown), shown->text.size() > kMostShown ? "…" : "");
+                            shown->text.substr(0, most_shown), shown->text.size() > most_shown ? "…" : "");
   if (dates) {
     issue.expected +=
         "; a spreadsheet has turned some of these numbers into dates: export them again from the program "
@@ -402,7 +408,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   const std::string text = as_utf8(bytes);
   const std::string_view rest = text;
   if (rest.find('\0') != std::string_view::npos) {
-    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (no text)",
+    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (UTF-16 without a byte-order mark, or no text)",
                                        "text in UTF-8 with a track; a video goes into a folder, which glidelab new "
                                        "FOLDER makes"});
   }
@@ -415,8 +421,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   std::vector<std::vector<std::string_view>> rows;
   for (const Line& line : lines) rows.push_back(split(line.text, format->delimiter));
   const auto first_data = static_cast<std::size_t>(
-      std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return is_data(row, format->decimal); }) -
-      rows.begin());
+      std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return is_data(row, *format); }) - rows.begin());
   std::size_t width = 0;
   for (std::size_t r = first_data; r < rows.size(); ++r) width = std::max(width, rows[r].size());
 
@@ -449,7 +454,7 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
       const std::string_view field = c < rows[r].size() ? rows[r][c] : std::string_view{};
       std::optional<double> value;
       if (!is_missing(field)) {
-        value = number_in(field, format->decimal);
+        value = number_in(field, format->decimal, thousands_of(*format));
         if (!value) {
           issues.push_back({table.file, lines[r].number, fmt::format("column {}", c + 1), fmt::format("\"{}\"", field),
                             fmt::format("a number with a decimal {}", format->decimal == ',' ? "comma" : "point")});

@@ -14,9 +14,12 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
-/// Without the blanks that divide digits into groups of three, "1 234,5"; unchanged if there are others.
+/// Without the blanks that divide digits into groups of three, "1 234,5"; unchanged if there are others, or if the
+/// digits before the first are no group: more than three, or a zero.
 std::string without_groups(const std::string& text) {
   const auto digit = [&](std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; };
+  const std::size_t first = text.find_first_of("0123456789"), blank = text.find(' ');
+  if (first >= blank || text[first] == '0' || blank - first > 3) return text;
   std::string joined;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != ' ') {
@@ -29,9 +32,10 @@ std::string without_groups(const std::string& text) {
   return joined;
 }
 
-/// As spreadsheets write numbers in some languages: a minus sign of its own, blanks between thousands.
-std::string plain_number(std::string_view field) {
+/// As spreadsheets write numbers in some languages: the Unicode minus sign, blanks between thousands.
+std::string plain_number(std::string_view field, Thousands thousands) {
   std::string text(field);
+  if (thousands == Thousands::without_plain_blanks && text.find(' ') != std::string::npos) return text;
   const bool ascii = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   if (!ascii) {
     replace_all(text, "\xE2\x88\x92", "-");                                              // U+2212
@@ -44,8 +48,8 @@ std::string plain_number(std::string_view field) {
 
 }  // namespace
 
-std::optional<double> number_in(std::string_view field, char decimal) {
-  std::string text = plain_number(field);
+std::optional<double> number_in(std::string_view field, char decimal, Thousands thousands) {
+  std::string text = plain_number(field, thousands);
   if (decimal == ',') {
     if (text.find('.') != std::string::npos) return {};
     std::replace(text.begin(), text.end(), ',', '.');

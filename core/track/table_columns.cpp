@@ -75,30 +75,35 @@ bool is_force(const TableColumn& column) {
   return column.unit == "N" || lower(column.name) == "force";
 }
 
-/// Accelerations or forces alone are not a track, and a user who exported them should know why.
+/// Speeds, accelerations or forces alone are not a track, and a user who exported them should know why. Nothing is
+/// refused if there is a column besides.
 void refuse_without_positions(const ColumnTable& table) {
-  if (std::none_of(table.columns.begin(), table.columns.end(), is_acceleration)) {
-    const bool times = std::any_of(table.columns.begin(), table.columns.end(), is_time_column);
-    const bool others = std::any_of(table.columns.begin(), table.columns.end(), [](const TableColumn& column) {
-      return !is_time_column(column) && !is_force(column);
-    });
-    if (!times || others) return;
+  bool times = false, speeds = false, accelerations = false, forces = false;
+  for (const TableColumn& column : table.columns) {
+    const bool time = is_time_column(column), speed = is_speed(column), acceleration = is_acceleration(column),
+               force = is_force(column);
+    if (!time && !speed && !acceleration && !force) return;
+    times |= time;
+    speeds |= speed;
+    accelerations |= acceleration;
+    forces |= force;
+  }
+  if (speeds) {
+    throw wrong_column(table, "speeds without positions, " + columns_text(table),
+                       "positions over time: errors grow when speeds are integrated, and the stated intervals would be "
+                       "too narrow. Export the distance as well: an encoder counts it, a motion sensor measures it. A "
+                       "radar measures only speed, so its recordings cannot be analysed");
+  }
+  if (accelerations) {
+    throw wrong_column(table, "accelerations without positions, " + columns_text(table),
+                       "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
+                       "integrated, and a phone on an incline measures gravity besides. Film the glider, or record its "
+                       "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
+  }
+  if (times && forces) {
     throw wrong_column(table, "forces without positions, " + columns_text(table),
                        "positions over time: record where the body is, with a motion sensor or a video");
   }
-  throw wrong_column(table, "accelerations without positions, " + columns_text(table),
-                     "positions over time: an accelerometer's offset of 0.02 m/s² grows to 1 m in 10 s when it is "
-                     "integrated, and a phone on an incline measures gravity besides. Film the glider, or record its "
-                     "distance with a motion sensor (phyphox: Sonar, or Tracker on a video)");
-}
-
-/// Speeds added up are positions whose errors grow, which no stated interval allows for.
-void refuse_speeds(const ColumnTable& table) {
-  if (std::none_of(table.columns.begin(), table.columns.end(), is_speed)) return;
-  throw wrong_column(table, "speeds without positions, " + columns_text(table),
-                     "positions over time: the errors of speeds that are added up grow with time, and the stated "
-                     "intervals would be too narrow. Export the distance as well: an encoder counts it, a motion "
-                     "sensor measures it. A radar measures speeds alone, and its tracks cannot be analysed");
 }
 
 /// The positions in a plane at which a body was seen, first to last.
@@ -108,7 +113,8 @@ struct Path {
 
 Path path_of(const TableColumn& x, const TableColumn& y) {
   Path path;
-  const double x_unit = metres_per(x.unit).value_or(1.0), y_unit = metres_per(y.unit).value_or(1.0);
+  const double x_unit = metres_per(x.unit).value_or(1.0),
+               y_unit = y.unit.empty() ? x_unit : metres_per(y.unit).value_or(1.0);
   for (std::size_t row = 0; row < x.values.size(); ++row) {
     if (!x.values[row] || !y.values[row]) continue;
     path.x_m.push_back(*x.values[row] * x_unit);
@@ -182,7 +188,9 @@ void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const 
 ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<Note>& notes) {
   ChosenColumns chosen;
   chosen.place = x;
-  const Path path = path_of(table.columns[x], table.columns[y]);
+  const TableColumn& other = table.columns[y];
+  if (!other.unit.empty() && !metres_per(other.unit)) return chosen;  // in pixels, say: no length beside x
+  const Path path = path_of(table.columns[x], other);
   if (path.x_m.size() < kFewestOfPath) return chosen;
   refuse_curve(table, x, y, path);
   const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
@@ -283,11 +291,10 @@ ChosenColumns place_columns(const ColumnTable& table, std::vector<Note>& notes) 
     const bool plane = heights.size() == 1 && lower(table.columns[heights.front()].name).find('y') != std::string::npos;
     return plane ? along_path(table, found.front(), heights.front(), notes) : only(found.front());
   }
-  if (found.empty()) refuse_without_positions(table);
   const std::vector<std::size_t> lengths =
       columns_that(table, [](const TableColumn& column) { return metres_per(column.unit).has_value(); });
   if (found.empty() && heights.empty() && lengths.size() == 1) return only(lengths.front());  // "s (m)", "d / cm"
-  if (found.empty() && heights.empty()) refuse_speeds(table);
+  if (found.empty() && heights.empty() && lengths.empty()) refuse_without_positions(table);
   throw wrong_column(
       table, columns_text(table),
       fmt::format("{} that is called x or position; say which one is x (--column, or column = \"…\" in "
@@ -316,16 +323,13 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
   const auto frames = std::find_if(table.columns.begin(), table.columns.end(), is_frame_column);
   if (times.empty() && frames != table.columns.end()) {
     throw wrong_column(
-        table,
-        fmt::format("no times for \"{}\", only numbers of frames (\"{}\")", table.columns[place].text, frames->text),
-        "a column of times: divide the numbers of the frames by the frame rate, and call the column "
-        "t (s)");
+        table, fmt::format("no times for \"{}\", only frame numbers (\"{}\")", table.columns[place].text, frames->text),
+        "a column of times: divide the frame numbers by the frame rate, and call the column t (s)");
   }
-  throw wrong_column(
-      table,
-      fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
-                  columns_text(table)),
-      "one, called t or time or with a unit of time; numbers of frames are to be divided by the frame rate");
+  throw wrong_column(table,
+                     fmt::format("{} columns of time for \"{}\" among {}", times.size(), table.columns[place].text,
+                                 columns_text(table)),
+                     "one, called t or time or with a unit of time; divide frame numbers by the frame rate");
 }
 
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),

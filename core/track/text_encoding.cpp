@@ -66,9 +66,15 @@ NoTable no_table_in(std::string_view bytes) {
     return {"an Excel file (.xls)", "text: save the sheet as CSV (phyphox exports CSV itself)"};
   }
   if (bytes.starts_with("\x93NUMPY")) return {"an array of numpy (.npy)", "text: numpy.savetxt writes it"};
-  if (bytes.starts_with("MATLAB 5.0 MAT-file")) return {"a file of MATLAB (.mat)", "text: writematrix writes it"};
-  const auto first = bytes.find_first_not_of(" \t\r\n");
-  if (first != std::string_view::npos && (bytes[first] == '{' || bytes[first] == '[') &&
+  if (bytes.starts_with("MATLAB ") && bytes.substr(0, 40).find("MAT-file") != std::string_view::npos)
+    return {"a file of MATLAB (.mat)", "text: writematrix writes it"};
+  constexpr std::string_view kBlank = " \t\r\n";
+  const auto first = bytes.find_first_not_of(kBlank);
+  if (first == std::string_view::npos || (bytes[first] != '{' && bytes[first] != '[')) return {};
+  // "[Run 1]" is the title of a table.
+  const auto inside = bytes.find_first_not_of(kBlank, first + 1);
+  constexpr std::string_view kBegins = "\"{[-0123456789";
+  if (inside != std::string_view::npos && kBegins.find(bytes[inside]) != std::string_view::npos &&
       bytes.find('"') != std::string_view::npos) {
     return {"JSON", "a table: write the times and the positions as two columns, with the header t,x"};
   }

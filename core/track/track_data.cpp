@@ -162,8 +162,9 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
   const Across across = chosen.across.value_or(Across{chosen.place});
   const TableColumn& y = table.columns[across.column];
-  const double y_metres = downhill.value_or(1) * metres_per(y.unit).value_or(1.0);
   const double metres = downhill.value_or(1) * metres_of(table, x, track.notes);
+  const bool like_x = y.unit.empty() || across.column == chosen.place;
+  const double y_metres = like_x ? metres : downhill.value_or(1) * metres_of(table, y, track.notes);
   const double seconds = seconds_of(table, t, track.notes);
   if (table.columns.size() > 2) {
     const bool run_apart = !x.run.empty() && x.text.find(x.run) == std::string::npos;
@@ -204,9 +205,10 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
     throw base::InputError(base::Issue{
         table.file, 0, fmt::format("column \"{}\"", t.text),
         fmt::format("times without a unit, {:.4g} from one to the next", step_s),
-        fmt::format("their unit in the header, as \"{0} (ms)\", or \"{0} (s)\" if they are seconds; numbers of frames "
-                    "are to be divided by the frame rate",
-                    t.name.starts_with("column ") ? "t" : t.name)});
+        fmt::format(
+            "their unit in the header, as \"{0} (ms)\", or \"{0} (s)\" if they are seconds; divide frame numbers "
+            "by the frame rate",
+            t.name.starts_with("column ") ? "t" : t.name)});
   }
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
   if (chosen.is_height && !downhill) count_along_motion(track);

@@ -222,7 +222,8 @@ std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const
   std::vector<Hypothesis> laws;
   for (const Hypothesis& one : so_far.all) {  // by falling probability
     if (laws.size() == kWithScatter) break;
-    if (one.fit <= 0 || one.unnamed || one.effects.size() != 1 || one.left.value_or(0.0) < kMuchLeft) continue;
+    if (one.fit <= 0 || one.unnamed || one.effects.size() != 1) continue;
+    if (!(one.left.value_or(0.0) >= kMuchLeft)) continue;
     if (!shows_in_motion(effect_list()[one.effects.front()].search) || follows_each_clip(one.effects.front())) continue;
     if (const Hypothesis* pure = pure_of(comparison, one.fit)) laws.push_back(*pure);
   }
@@ -353,10 +354,14 @@ WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const s
     base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
       const MotionFit law = by_noise(static_cast<std::size_t>(laws[k].fit));
       without_it[k] = law.cost;
-      pairs[k] = with_clip_scatter(set, law);
+      if (std::isfinite(law.cost)) pairs[k] = with_clip_scatter(set, law);
     });
     // Where clips scatter most of all, the law shows beside the scatter alone.
-    if (const Hypothesis* alone = find(comparison, {scatter})) {
+    const Hypothesis* alone = find(comparison, {scatter});
+    const auto is_weighed = [&](int fit) {
+      return fit >= 0 && std::isfinite(profiles[static_cast<std::size_t>(fit)].log_evidence);
+    };
+    if (alone != nullptr && is_weighed(alone->fit)) {
       const auto fit = static_cast<std::size_t>(alone->fit);
       std::set<std::size_t> others = without;
       for (const Hypothesis& law : laws) others.insert(law.effects.front());

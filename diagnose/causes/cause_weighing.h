@@ -8,8 +8,8 @@
 ///     log evidence = max over the remainder's sizes of log L(positions; explanation, remainder)
 ///                    + log prior density of the effect's parameters at the fit
 ///
-/// The likelihood is that of the linear neighbourhood of a fit, so each explanation is fitted again beside its own
-/// remainder until its evidence no longer changes.
+/// The likelihood is that of the linear neighbourhood of a fit, so each explanation that is weighed is fitted again
+/// beside its own remainder, up to three times, until its log evidence changes by less than 0.5.
 ///
 /// Priors: the sizes of effects and of functions without a name are uniform in their logarithm over four decades. So is
 /// the width of the normal distribution from which sizes of one kind are drawn, such as one for each clip. Other

@@ -117,8 +117,11 @@ std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit&
     if (!is_law || !shows_in_motion(effect_list()[e].search)) others.insert(e);
   }
   TrackSet with = set;
+  if (!std::isfinite(scatter.cost)) return {};
   add_remainder(scatter, sizes, with);
-  std::vector<EffectScan> scans = scan_effects(ScoreSpace(with, linearise_again(with, scatter)), others, 1);
+  const MotionFit beside = linearise_again(with, scatter);
+  if (!std::isfinite(beside.cost)) return {};
+  std::vector<EffectScan> scans = scan_effects(ScoreSpace(with, beside), others, 1);
   std::erase_if(scans, [](const EffectScan& scan) {
     return !scan.visible || scan.values.empty() || !(scan.log_evidence > kShowsBeside);
   });

@@ -63,7 +63,8 @@ struct Moved {
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
 /// K (N s/m) and mu of the configuration that the model belongs to: with the effects that give each configuration a
-/// drag or a friction of its own, and in the middle of the set-up's positions if the drag changes along the track.
+/// drag or a friction of its own, and evaluated at the middle of the set-up's positions if the drag changes along the
+/// track.
 struct OwnLaw {
   double k_n_s_m = 0.0, mu = 0.0;
 };

@@ -78,8 +78,8 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::SlantedPath& of) const {
     return fmt::format(
-        "the path runs at {0:.1f}° to the {1} axis: positions are taken along it, from x and y, where distances are "
-        "{2:.3g} times those along {1}",
+        "the path makes an angle of {0:.1f}° with the {1} axis; positions are taken along the path, from x and y, and "
+        "distances are {2:.3g} times those along {1}",
         of.off_deg, of.along_y ? "y" : "x", of.stretch);
   }
   std::string operator()(const core::CountedAlongMotion&) const {

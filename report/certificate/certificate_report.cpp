@@ -379,8 +379,9 @@ std::string limits_table(const Certificate& certificate) {
   return table.str() +
          fmt::format(
              "<p class=\"soft\">How much smaller the rms error becomes, with its 95 % interval, over the same "
-             "twins with one change each ({} of them). Below 0 it becomes larger; if it more than doubles, the "
-             "table has the factor. Together: K/m, µ and α alike. Bold: above 0 by more than chance, over all "
+             "twins with one change each ({} of them). Below 0 it becomes larger; where it more than doubles, the "
+             "table gives the factor instead. Together: K/m, µ and α alike. Bold: above 0 by more than chance, over "
+             "all "
              "changes.</p>\n",
              certificate.changes.front().runs);
 }

@@ -91,8 +91,8 @@ struct FindingSentence {
   FindingWords operator()(const found::FewPositions& of) const {
     const std::string points = fmt::format("the track has {} points", of.positions);
     if (of.unmarked == 0) return {points, "record at a higher rate"};
-    return {fmt::format("{}, and {} rows between them hold none", points, of.unmarked),
-            "mark the object in every frame: the recording has them"};
+    return {fmt::format("{}; another {} rows are empty", points, of.unmarked),
+            "mark the object in every frame of the video"};
   }
   FindingWords operator()(const found::FewSightings& of) const {
     return {fmt::format("the marker is seen in only {} frames", of.frames),
@@ -297,7 +297,7 @@ struct FindingSentence {
   }
   FindingWords operator()(const found::SlowFrames& of) const {
     return {fmt::format("its positions are {:.3g} s apart", of.apart_s),
-            "check the unit of the times: they may be milliseconds, or numbers of frames"};
+            "check the unit of the times: they may be milliseconds, or frame numbers"};
   }
   FindingWords operator()(const core::LostPositions& of) const {
     return {

@@ -42,8 +42,8 @@ std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
   std::string text = "<h2>K/m, µ, α and terminal velocity</h2>\n";
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
     text += paragraph(fmt::format("Of each configuration, {}.{}", with_words(table.with),
-                                  diagnosis.remainder ? " The standard deviations include the remainder, and the other "
-                                                        "explanations as far as they are likely."
+                                  diagnosis.remainder ? " The standard deviations include the remainder and the spread "
+                                                        "among the other likely explanations."
                                                       : ""));
     text += html_of(table.rows);
     for (const std::string& why : table.why) text += paragraph(why + ".", " class=\"soft\"");

@@ -124,11 +124,27 @@ std::string parameter_text(std::string_view key, double value, double sd) {
   return fmt::format("{}{} = {}", of.name, member, size_and_sd_text(value, sd, of.unit));
 }
 
+namespace {
+
+/// Whether a standard deviation is larger than what the parameter may be: then the data say nothing about it.
+bool is_open(const diagnose::DiagnosedParameter& parameter) {
+  constexpr double kBeyondAny = 10.0;  // m, s or Hz: of a place, a time or a frequency, whose range is that of the data
+  double widest = 0.0;
+  for (const diagnose::EffectInfo& effect : diagnose::effect_list()) {
+    for (const diagnose::EffectParameter& of : effect.parameters) {
+      if (of.key != parameter.key) continue;
+      widest = std::max(widest, of.reach == diagnose::Reach::stated ? of.high - of.low : kBeyondAny);
+    }
+  }
+  return widest > 0.0 && parameter.sd > widest;
+}
+
+}  // namespace
+
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
   if (!parameter.text.empty()) return fmt::format("{} = {}", parameter.key, parameter.text);
   if (parameter.why) return fmt::format("{}: not known: {}", parameter.key, core::why_words(parameter.why));
-  constexpr double kUndetermined_sd = 10.0;  // over the value: then it says nothing about the size
-  if (parameter.sd > kUndetermined_sd * std::abs(parameter.value)) {
+  if (is_open(parameter)) {
     const std::string named = parameter_text(parameter.key, parameter.value, parameter.sd);
     return named.substr(0, named.find(" = ")) + " not determined";
   }

@@ -167,11 +167,9 @@ struct Sentence {
   std::string operator()(const diagnose::FitsCutOff& of) const {
     std::vector<std::string> names;
     for (const diagnose::Explanation& one : of.of) names.push_back(explanation_name(one));
-    const bool several = names.size() > 1;
     return fmt::format(
-        "The fit{} of {} stopped at the largest number of steps, before {} reached a minimum: {} may explain more than "
-        "is stated.",
-        several ? "s" : "", fmt::join(names, ", "), several ? "they" : "it", several ? "they" : "it");
+        "The fit{} of {} reached the limit on steps before a minimum; {} may account for more of the gap than stated.",
+        names.size() > 1 ? "s" : "", list_of(names), names.size() > 1 ? "these explanations" : "this explanation");
   }
   std::string operator()(const diagnose::SplitSetUps& of) const {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",

@@ -28,6 +28,9 @@ TEST_CASE("a minus sign of its own and blanks between thousands are those of spr
   CHECK_FALSE(number_in("1 23", '.'));    // two numbers
   CHECK_FALSE(number_in("1 2345", '.'));  // no group of three
   CHECK_FALSE(number_in("0 .5", '.'));
+  CHECK_FALSE(number_in("0 123", '.'));     // no group begins with a zero
+  CHECK_FALSE(number_in("1234 567", '.'));  // nor with four digits
+  CHECK_FALSE(number_in("1 234", '.', glidelab::core::Thousands::without_plain_blanks));
 }
 
 TEST_CASE("a month beside a number is a date that a spreadsheet made of a number") {

@@ -26,4 +26,6 @@ TEST_CASE("files that hold no table in text are named") {
   CHECK(no_table_in("t,x\n0,1\n").what.empty());
   CHECK(no_table_in("[s],[m]\n0,1\n").what.empty());
   CHECK(no_table_in("").what.empty());
+  CHECK(no_table_in("[Run 1]\n\"t\",\"x\"\n0,1\n").what.empty());  // a title
+  CHECK(no_table_in("MATLAB 7.3 MAT-file, Platform").what == "a file of MATLAB (.mat)");
 }

@@ -168,7 +168,7 @@ TEST_CASE("bad tables give one clear error each") {
       {"t (s),y (m),z (m)\n" + rows("0.{0},{1},1\n"), "--column"},
       {"t (s),x (px)\n" + rows("0.{0},{1}\n"), "the unit \"px\""},
       {"number,x (m)\n" + rows("{0},{1}\n"), "0 columns of time"},
-      {"frame,x (m)\n" + rows("{0},{1}\n"), "only numbers of frames (\"frame\")"},
+      {"frame,x (m)\n" + rows("{0},{1}\n"), "only frame numbers (\"frame\")"},
       {"t (s),x (m)\n0,0\n1,1\n2,2\n", "3 points"},
       {std::string("t\0 \0x\0", 6), "zero bytes"},
   };
@@ -278,10 +278,34 @@ TEST_CASE("three columns without a header are t, x and y if the third follows th
   CHECK_THROWS_WITH(read(rows("0.1\t{1}e-2\t{1}e-2\n")), Contains("say which one is x"));  // times do not rise
 }
 
-TEST_CASE("numbers of frames are no times, and the message says how to make some") {
+TEST_CASE("frame numbers are no times, and the message says how to make some") {
   const Made made("Frame,X_m,Y_m\n" + rows("{0},0.001,{1}e-2\n"));
   CHECK_THROWS_WITH(core::read_track_csv(made.file, std::nullopt),
-                    Contains("numbers of frames (\"Frame\")") && Contains("divide the numbers of the frames"));
+                    Contains("frame numbers (\"Frame\")") && Contains("divide the frame numbers"));
+}
+
+TEST_CASE("decimal commas between single blanks are not thousands") {
+  // 0,01 and 123,5; not 0, "01 123" and 5.
+  const core::TrackData track = Made(rows("0,0{0} 12{0},5\n")).read();
+  REQUIRE(track.x_m.size() > 5);
+  CHECK(track.x_m[3] - track.x_m[2] == Approx(1.0).epsilon(1e-12));
+  CHECK(track.x_m.front() > 120.0);
+  CHECK(track.x_m.front() < 130.0);
+  const core::TrackData mm = Made("t (s) x (mm)\n" + rows("4{0},5 12{0},5\n")).read();
+  CHECK(mm.x_m[3] - mm.x_m[2] == Approx(1e-3).epsilon(1e-9));
+}
+
+TEST_CASE("a table with a column besides speeds is not refused as one of speeds") {
+  CHECK_THROWS_WITH(Made("t,s,v\n" + rows("0.{0},{1},0.1\n")).read(), Contains("--column"));
+  check_motion(Made("t (s),s (m),v (m/s),a (m/s^2)\n" + rows("0.{0},{1}e-2,0.1,0.2\n")).read());
+}
+
+TEST_CASE("a y without a unit has that of x, and a y in pixels is no length beside x") {
+  // A path at 45 degrees: distances along it are sqrt(2) times those along x.
+  const auto at = [&](const char* header) { return Made(header + rows("0.{0},{1},{1}\n")).read().x_m; };
+  const auto along = at("t (s),x (cm),y\n"), alone = at("t (s),x (cm),y (px)\n");
+  CHECK(along[5] - along[4] == Approx(std::sqrt(2.0) * (alone[5] - alone[4])).epsilon(1e-9));
+  CHECK(at("t (s),x (cm),y (cm)\n")[5] == Approx(along[5]).epsilon(1e-12));
 }
 
 TEST_CASE("forces without positions are refused by that name") {

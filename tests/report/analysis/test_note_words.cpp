@@ -35,9 +35,9 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::ForceUnused{"F (N)"}, "\"F (N)\" is not used"},
       {core::MotionAlongY{0.9, 0.012}, "y covers 0.9 m and x only 0.012 m"},
       {core::SlantedPath{12.34, 1.0236, false},
-       "at 12.3° to the x axis: positions are taken along it, from x and y, where distances are 1.02 times those "
-       "along x"},
-      {core::SlantedPath{12.34, 1.0236, true}, "to the y axis"},
+       "an angle of 12.3° with the x axis; positions are taken along the path, from x and y, and distances are 1.02 "
+       "times those along x"},
+      {core::SlantedPath{12.34, 1.0236, true}, "with the y axis"},
       {core::CountedAlongMotion{}, "its sign is reversed"},
       {core::RowsIncomplete{1}, "one row between others lacks a time or x"},
       {core::RowsIncomplete{4}, "4 rows between others lack a time or x"},

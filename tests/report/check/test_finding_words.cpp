@@ -51,7 +51,7 @@ TEST_CASE("every kind of finding of a check has words, with its data in the unit
       {found::FewPositions{17}, "the track has 17 points", "higher rate"},
       {core::LostPositions{2.0, -0.0, 5.82, 4}, "from 2 s on 4 positions are all 0 m, 5.82 m from the one before",
        "delete these rows"},
-      {found::FewPositions{17, 342}, "the track has 17 points, and 342 rows between them hold none",
+      {found::FewPositions{17, 342}, "the track has 17 points; another 342 rows are empty",
        "mark the object in every frame"},
       {found::FewSightings{17}, "seen in only 17 frames", "higher rate"},
       {found::SightingsMissing{80, 100}, "seen in 80 of the 100 frames", "nothing hides it"},

@@ -60,7 +60,9 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::FallsThroughAir{1.0}, "do not tell it from a viscous drag"},
       {diagnose::FallsThroughAir{-4.0}, "prefer a viscous drag: the name rests"},
       {diagnose::BuoyancyLooksAlike{0.163}, "0.16 of the density of the body"},
-      {diagnose::FitsCutOff{{{{"tether"}, false}, {{"lens_distortion"}, true}}}, "The fits of cable that tightens"}};
+      {diagnose::FitsCutOff{{{{"tether"}, false}, {{"lens_distortion"}, true}}},
+       "The fits of cable that tightens and lens distortion + an unnamed cause reached the limit on steps before a "
+       "minimum; these explanations may account for more"}};
   std::vector<bool> seen(std::variant_size_v<diagnose::AnyNote>, false);
   for (const auto& [note, part] : notes) {
     const std::string words = report::note_words(note);
