@@ -116,8 +116,8 @@ std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit&
     const bool is_law = !differs_between_clips(e) && !follows_each_clip(e);
     if (!is_law || !shows_in_motion(effect_list()[e].search)) others.insert(e);
   }
-  TrackSet with = set;
   if (!std::isfinite(scatter.cost)) return {};
+  TrackSet with = set;
   add_remainder(scatter, sizes, with);
   const MotionFit beside = linearise_again(with, scatter);
   if (!std::isfinite(beside.cost)) return {};

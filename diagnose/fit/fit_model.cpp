@@ -287,10 +287,6 @@ Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& 
   return move(model, set.motions[i].t_s, late.empty() ? std::span<const double>() : std::span(late[i]));
 }
 
-}  // namespace
-
-namespace {
-
 bool is_followed(const Moved& motion) {
   return std::all_of(motion.x_m.begin(), motion.x_m.end(), [](double x) { return std::isfinite(x); });
 }

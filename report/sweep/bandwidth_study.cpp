@@ -217,12 +217,9 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
     answer.text += fmt::format("; {} the stated intervals are too wide", where_text(answer.wide_s, all));
   }
   if (!answer.unanswered_s.empty()) {
-    std::string values;
-    for (const double h : answer.unanswered_s) {
-      const bool last = h == answer.unanswered_s.back();
-      values += (values.empty() ? "" : last ? " and " : ", ") + base::number_text(h, 3);
-    }
-    answer.text += fmt::format("; with {} s some clips have no line", values);
+    std::vector<std::string> values;
+    for (const double h : answer.unanswered_s) values.push_back(base::number_text(h, 3));
+    answer.text += fmt::format("; with {} s some clips have no line", list_of(values));
   }
   answer.text += rule_words(summary, curves, answer.use_s) + fit_words(summary, curves, answer.use_s) + ".";
   return answer;
