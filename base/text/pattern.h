@@ -1,4 +1,5 @@
-/// Regular expressions, compiled once: every source that includes `<regex>` and uses it takes the compiler seconds more.
+/// Regular expressions, compiled once: every source that includes `<regex>` and uses it takes the compiler seconds
+/// more.
 #pragma once
 
 #include <functional>
