@@ -114,6 +114,7 @@ double price_of(const RemainderSizes& sizes) {
 
 RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra) {
   common_ = fit.at.global.size();
+  only_falls_ = only_falls(set);
   extra_ = extra != nullptr ? extra->columns.cols() : 0;
   extra_sd_ = extra != nullptr ? extra->sd : 0.0;
   stated_weight_ = Eigen::VectorXd::Zero(common_ + extra_);
@@ -301,13 +302,17 @@ RemainderSpace::Solution RemainderSpace::solve(const RemainderSizes& sizes) cons
 }
 
 RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) const {
-  // The largest sizes of the first search: a tenth of g, and seven tenths of the drag.
-  constexpr double kMostForce = 1.0, kMostDrag = 0.7, kDecades = 6.0;
+  // The largest force of the first search is a tenth of g. A drag that scatters by more than a part of itself would
+  // push in some motions, and the linear neighbourhood of a fit does not hold that far. The air brakes objects of one
+  // shape more alike than magnets or bearings brake a glider.
+  constexpr double kMostForce = 1.0, kMostDrag = 0.7, kMostDragOfAir = 0.2, kDecades = 6.0;
+  const double most_drag = only_falls_ ? kMostDragOfAir : kMostDrag;
   Best best;
   if (start != nullptr) best.sizes = *start;
   const auto look = [&](double RemainderSizes::*member, double value) {
     RemainderSizes sizes = best.sizes;
     sizes.*member = value;
+    if (sizes.drag > most_drag) return false;
     const double log = log_likelihood(sizes);
     if (log <= best.log_likelihood) return false;
     best.sizes = std::move(sizes);
@@ -326,15 +331,16 @@ RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) cons
     }
   };
   // Scatter from motion to motion takes at least two motions. With one, it would absorb the law itself.
-  const bool scatter = motions_.size() > 1;
-  if (!scatter) best.sizes.force_m_s2 = best.sizes.drag = 0.0;
+  const bool scatter = motions_.size() > 1, force_scatters = scatter && !only_falls_;
+  if (!force_scatters) best.sizes.force_m_s2 = 0.0;
+  best.sizes.drag = scatter ? std::min(best.sizes.drag, most_drag) : 0.0;
   best.log_likelihood = log_likelihood(best.sizes);
   const double q_most = kMostForce * kMostForce * part_s_;
   if (start == nullptr || start->q_m2_s3 == 0.0) along(&RemainderSizes::q_m2_s3, q_most, 2.0 * kDecades, 1.0);
-  if (scatter && (start == nullptr || start->force_m_s2 == 0.0))
+  if (force_scatters && (start == nullptr || start->force_m_s2 == 0.0))
     along(&RemainderSizes::force_m_s2, kMostForce, kDecades, 1.0);
   if (scatter && (start == nullptr || start->drag == 0.0))
-    along(&RemainderSizes::drag, kMostDrag, 0.5 * kDecades, 0.75);
+    along(&RemainderSizes::drag, most_drag, 0.5 * kDecades, 0.75);
   for (const double ratio : {3.0, 1.4}) {
     refine(&RemainderSizes::q_m2_s3, ratio * ratio);
     refine(&RemainderSizes::force_m_s2, ratio);

@@ -5,10 +5,11 @@
 ///     dv/dt = F/m + a(t),      a(t) = w(t) + f_1 + f_2 sign(v) + f_3 (K/m) v
 ///
 /// with w white noise of spectral density q (m²/s³), and f_1, f_2 ~ N(0, s_f²), f_3 ~ N(0, s_k²) drawn anew for every
-/// motion: inclination, friction and drag that scatter from motion to motion. This is the grey-box model of Kristensen,
-/// Madsen and Jørgensen (Automatica 40, 225, 2004), a stochastic differential equation whose noise stands for what the
-/// model lacks. Here a(t) is constant over each of up to 24 parts of a motion, so that its effect on x is a sum of
-/// known columns,
+/// motion: inclination, friction and drag that scatter from motion to motion. A fall has no friction, and its
+/// inclination does not matter, so that s_f is 0 where only falls were recorded. This is the grey-box model of
+/// Kristensen, Madsen and Jørgensen (Automatica 40, 225, 2004), a stochastic differential equation whose noise stands
+/// for what the model lacks. Here a(t) is constant over each of up to 24 parts of a motion, so that its effect on x is
+/// a sum of known columns,
 ///
 ///     x = x_model + B a + noise,     B_j(t) = response of dv/dt = -(K/m) v + [t in part j],     a ~ N(0, S(q, s_f,
 ///     s_k))
@@ -118,6 +119,7 @@ class RemainderSpace {
   std::vector<Ranged> ranged_;
   Eigen::Index common_ = 0, extra_ = 0;
   double extra_sd_ = 0.0, part_s_ = 0.0;
+  bool only_falls_ = false;
   Eigen::VectorXd scale_;
 };
 

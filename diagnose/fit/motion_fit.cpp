@@ -38,7 +38,24 @@ bool has_range(const Global& global) {
          global.kind == Kind::gravity;
 }
 
+/// The largest speed at which a motion can have begun: a few times the largest mean speed between two positions, noise
+/// included. Where a drag is strong and frames are few, a far faster start that is braked within a frame would only
+/// move the first position.
+double fastest_start(const TrackedMotion& motion) {
+  constexpr double kFaster = 3.0, kNoise = 5.0;
+  double fastest = 0.0;
+  for (std::size_t p = 1; p < motion.t_s.size(); ++p) {
+    const double distance =
+        std::abs(motion.x_m[p] - motion.x_m[p - 1]) + kNoise * (motion.sd_of(p - 1) + motion.sd_of(p));
+    fastest = std::max(fastest, distance / (motion.t_s[p] - motion.t_s[p - 1]));
+  }
+  return kFaster * fastest;
+}
+
 bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at) {
+  for (std::size_t i = 0; i < at.own.size(); ++i) {
+    if (!(std::abs(at.own[i][1]) <= fastest_start(set.motions[i]))) return false;
+  }
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
     const double value = at.global[static_cast<Eigen::Index>(g)];

@@ -16,6 +16,7 @@
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
+#include "diagnose/gap/size_uncertainty.h"
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
@@ -35,6 +36,7 @@ constexpr double kLeastNamed = 0.1;       // of the excess: a smaller share coun
 constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
 constexpr double kLeastMeasuredGap = 0.5;  // a gap below which the assumed noise is not that of the positions
 constexpr double kLikelierThanNot = 0.5;
+constexpr double kOpenSize = 0.25;    // the least probability of an unknown cause beside a name without a certain size
 constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
 
 double probability_of_scatter(const Comparison& comparison) {
@@ -105,6 +107,57 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
   return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
     return probability_of(comparison, best, e, set.images) >= kLikelierThanNot;
   });
+}
+
+/// A fit that counts its own remainder as noise, and the motions with that noise.
+struct Stated {
+  TrackSet set;
+  MotionFit fit;
+};
+
+/// The causes that keep their name, beside their own remainder, for the sizes that are stated. The fit of the whole
+/// explanation has other sizes: part of one cause may have gone into another that takes no part of the gap.
+Stated stated_of(const TrackSet& set, const MotionFit& named) {
+  const RemainderSizes sizes = RemainderSpace(set, named).likeliest().sizes;
+  Stated stated{set, {}};
+  add_remainder(named, sizes, stated.set);
+  stated.fit = fit_motions(stated.set, named.effects, named.at, named.late);
+  if (!std::isfinite(stated.fit.cost)) stated.fit = linearise_again(stated.set, named);
+  return stated;
+}
+
+/// Whether the size of one of these effects of a fit is larger than its standard deviation. Only sizes that all clips
+/// have in common are looked at: others count as certain.
+bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {
+  const SizeUncertainty uncertainty(set, fit);
+  const auto& globals = fit.layout->globals();
+  return std::any_of(effects.begin(), effects.end(), [&](std::size_t e) {
+    const EffectInfo& info = effect_list()[e];
+    bool has_common = false;
+    for (std::size_t g = 0; g < globals.size(); ++g) {
+      if (globals[g].parameter == nullptr || globals[g].effect != e) continue;
+      const std::size_t slot = globals[g].parameter->slot.parameter;
+      const bool is_size = slot >= info.law.size && slot < info.law.size + info.law.sizes;
+      if (!is_size || globals[g].parameter->each != Each::experiment || info.search == Search::spread) continue;
+      const auto at = static_cast<Eigen::Index>(g);
+      if (std::abs(fit.at.global[at]) > uncertainty.sd(at)) return true;
+      has_common = true;
+    }
+    return !has_common;
+  });
+}
+
+/// If some effects of an explanation have no certain size and others have, the explanation of the others alone: a drag
+/// of size 0 beside a wrong frame rate is no cause. Null if there is no such fit.
+const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+  const MotionFit& fit = comparison.fits[static_cast<std::size_t>(best.fit)];
+  std::set<std::size_t> certain;
+  for (const std::size_t e : best.effects) {
+    if (has_certain_size(set, fit, {e})) certain.insert(e);
+  }
+  if (certain.empty() || certain.size() == best.effects.size()) return nullptr;
+  const Hypothesis* others = find(comparison, certain);
+  return others != nullptr && others->fit > 0 ? others : nullptr;
 }
 
 /// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the
@@ -248,6 +301,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   const Hypothesis* found = claims || !helps ? best_named(with, by) : &*helps;
   const bool names = found != nullptr && found->fit > 0 && (weighed || claims);
   Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
+  if (const Hypothesis* sized = names && weighed ? with_certain_sizes(with, by, best) : nullptr) best = *sized;
   const auto fit_of = [&](const Hypothesis& one) -> const MotionFit& {
     return names ? by.fits[static_cast<std::size_t>(one.fit)] : nominal;
   };
@@ -278,8 +332,14 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   if (settled && !is_likelier_than_not(with, by, best)) {
     set_unknown(std::max(by.unknown, kUnknownIfLess), weighed->comparison);
   }
+  const MotionFit& of_gap = sequence.named.effects.empty() ? fit : sequence.named;
+  const Stated stated = settled ? stated_of(set, of_gap) : Stated{with, fit};
+  // A name is not confident if its effect may as well have no size at all.
+  const bool open_size =
+      names && sequence.is_gap && shows_in_gap(best) && !has_certain_size(stated.set, stated.fit, of_gap.effects);
+  if (settled && open_size) set_unknown(std::max(by.unknown, kOpenSize), weighed->comparison);
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
-    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named};
+    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, stated.set, stated.fit};
     diagnosis = verdict_of(with, by, std::move(images), &noise_alone);
   } else {
     // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
@@ -297,6 +357,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
         !is_likelier_than_not(set, first, best)) {
       set_unknown(std::max(first.unknown, kUnknownIfLess), first);
     }
+    if (!weighed && open_size && !in_images) set_unknown(std::max(first.unknown, kOpenSize), first);
     if (weighed && sequence.is_gap && !in_images) {
       // Nothing that moves the glider explains the gap.
       first.unknown += std::exchange(first.none, 0.0);
@@ -311,10 +372,10 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
         for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
       }
     }
-    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named};
+    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, stated.set, stated.fit};
     diagnosis = verdict_of(set, first, std::move(images), by_air && sequence.is_gap ? &noise_alone : nullptr);
     if (weighed && sequence.is_gap && !in_images) {
-      const NoiseAlone noise{set, nominal, nominal};
+      const NoiseAlone noise{set, nominal, nominal, set, nominal};
       diagnosis.ranking = ranking_of(with, by, &noise);
     }
   }

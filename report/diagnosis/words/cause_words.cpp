@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <variant>
 
 #include "base/text/number_text.h"
@@ -75,11 +76,20 @@ std::string left_words(const diagnose::GapRemainder& remainder) {
 /// already been mentioned.
 std::string causes_words(const diagnose::Diagnosis& diagnosis, bool gap_named = false) {
   std::string text;
+  double gap_before = 0.0;  // before this cause, for the second and later ones
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
     const std::string name = effect_name(cause.id);
     const std::string share = share_text(cause.share, cause.share_interval95);
     const bool first = text.empty();
     const bool all = cause.share > 1.0;  // the remaining gap is below the noise by chance
+    const double before = std::exchange(gap_before, cause.gap_after);
+    // Beside a drag that takes all but a trifle, a share of the whole gap says nothing.
+    if (!first && cause.share < kNothing && cause.gap_after < before) {
+      text += fmt::format("; {}{} {} what is left from {} to {}", name, sizes_aside(diagnosis, cause.id),
+                          is_plural(name) ? "reduce" : "reduces", base::number_text(before, 3),
+                          over_noise_text(cause.gap_after));
+      continue;
+    }
     text +=
         fmt::format("{}{}{} {} {}{}{}", first ? "" : "; ", first && !gap_named ? capital(name) : name,
                     sizes_aside(diagnosis, cause.id), is_plural(name) ? "explain" : "explains", first ? "" : "another ",
@@ -112,6 +122,9 @@ std::string configuration_label(const diagnose::RecoveredConfiguration& of,
 }  // namespace
 
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval) {
+  if (interval && std::max({std::abs(share), std::abs(interval->low), std::abs(interval->high)}) < kNothing) {
+    return "less than 0.1 %";
+  }
   const bool near_end = share < kNearEnd || share > 1.0 - kNearEnd;
   const int decimals = near_end && std::abs(share) >= kNothing && std::abs(share - 1.0) >= kNothing ? 1 : 0;
   std::string text = fmt::format("{:.{}f} %", kPercent * share, decimals);

@@ -221,6 +221,22 @@ TEST_CASE("a single motion has no scatter from motion to motion, whatever its la
   CHECK(space.likeliest(&scattered).sizes.drag == 0.0);
 }
 
+TEST_CASE("what differs from fall to fall is no friction and no inclination") {
+  // Of each mass another part of the weight: an acceleration that differs from motion to motion.
+  const auto differs = [](double m, double, double, double) { return (m > 0.5 ? 0.5 : -0.5) * m; };
+  const auto scatter = [&](double incline_deg) {
+    const Fitted of = fitted({{0.4, incline_deg, -0.6, 0.2}, {0.7, incline_deg, -0.6, 0.2}}, 5, {.force = differs});
+    const diagnose::RemainderSpace space(of.set, of.fit);
+    const diagnose::RemainderSizes given{0.0, 0.5, 0.0, {}};
+    const auto best = space.likeliest();
+    CHECK(space.log_likelihood(best.sizes) >
+          space.log_likelihood(diagnose::RemainderSizes{}) + 10.0);  // the falls do differ
+    return std::max(best.sizes.force_m_s2, space.likeliest(&given).sizes.force_m_s2);
+  };
+  CHECK(scatter(4.0) > 0.05);
+  CHECK(scatter(90.0) == 0.0);
+}
+
 // Two priors of g about different values, of the same fall: the ratio of their evidences is that of the integrals over
 // the range of g of the likelihood times each. The fall is so heavy and so steep that nothing else acts; x0 and v0 are
 // linear, so that chi² is a parabola in g.

@@ -40,6 +40,21 @@ TEST_CASE("the answer says how much each cause explains, with its size, and what
   CHECK(says(report::diagnosis_meaning(of), "<p><b>Quadratic drag"));
 }
 
+TEST_CASE("beside a cause that takes all but a trifle, another is told by what it leaves") {
+  diagnose::Diagnosis of = tests::two_causes();
+  of.explained[0].share = 0.999;
+  of.explained[0].gap_after = 19.3;
+  of.explained[1].share = 3e-4;
+  of.explained[1].share_interval95 = diagnose::GapInterval{-1e-4, 4e-4};
+  of.explained[1].gap_after = 15.6;
+  CHECK(says(report::sequence_words(of),
+             "; inertia without weight, mass = 0.0123 ± 0.0014 kg, reduces what is left from 19.3 to 15.6 times the "
+             "noise; "));
+  CHECK(report::share_text(3e-4, of.explained[1].share_interval95) == "less than 0.1 %");
+  of.explained[1].gap_after = 20.0;  // not less
+  CHECK(says(report::sequence_words(of), "explains another less than 0.1 %"));
+}
+
 TEST_CASE("a cause is told without what was not fitted, of each set-up by itself, or not found") {
   diagnose::Diagnosis of = tests::two_causes();
   of.effects.front().parameters = {{"x_mid_m", 0.4, 0.0},
