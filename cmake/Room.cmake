@@ -29,6 +29,8 @@ get_filename_component(GLIDELAB_ROOT ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
 if(GLIDELAB_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+  # A number that does not fit into the whole number it becomes: clang takes it for undefined behaviour, g++ only when asked.
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fsanitize=float-cast-overflow>)
   # What the sanitizers add makes g++ take members of the standard library's own <regex> for unset.
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()

@@ -238,23 +238,26 @@ void add_sweep(CLI::App& app, Command& chosen) {
       "sweep",
       "Run a scenario many times with varied values, and see how errors depend on them (docs/reference/sweep.md)");
   command->add_option("SWEEP", options->sweep, "A sweep file (docs/reference/sweep.md)")->type_name("FILE")->required();
-  command->add_option("--shard", options->shard, "Run only part I of N, into a database of its own, and write no page")
-      ->type_name("I/N")
-      ->check(check_shard);
-  command
-      ->add_option("--merge", options->merge,
-                   "Merge the databases of shards into sweep.sqlite, all or none; runs nothing")
-      ->type_name("FILE")
-      ->excludes("--shard");
-  command->add_option("--show", options->show, "Print the complete scenario of one run, camera included, and stop")
-      ->type_name("RUN")
-      ->check(check_whole_number)
-      ->excludes("--shard", "--merge");
+  CLI::Option* shard =
+      command
+          ->add_option("--shard", options->shard, "Run only part I of N, into a database of its own, and write no page")
+          ->type_name("I/N")
+          ->check(check_shard);
+  CLI::Option* merge = command
+                           ->add_option("--merge", options->merge,
+                                        "Merge the databases of shards into sweep.sqlite, all or none; runs nothing")
+                           ->type_name("FILE")
+                           ->excludes(shard);
+  CLI::Option* show =
+      command->add_option("--show", options->show, "Print the complete scenario of one run, camera included, and stop")
+          ->type_name("RUN")
+          ->check(check_whole_number)
+          ->excludes(shard, merge);
   command->add_flag("--many-runs", options->many, fmt::format("Allow more than {} runs", kManyRuns));
   command
       ->add_flag("--dry-run", options->dry_run,
                  "Print the number of runs, the time and the disk space needed, and stop")
-      ->excludes("--merge", "--show");
+      ->excludes(merge, show);
   add_outside_options(*command, options->outside);
   add_common_options(*command, options->common, "glidelab-out/sweep-<name of the sweep file>",
                      "Seed of the sweep; default: the file's");

@@ -262,6 +262,7 @@ int run_words(int argc, char** argv) {
 int run(int argc, char** argv) {
   try {
     catch_interrupts();  // first: from here on every command ends in the same way
+    report_lost_memory(kEnvironmentFailed);
     return run_words(argc, argv);
   } catch (const std::bad_alloc&) {  // before a command runs; run_command() reports those of a command
     std::fputs("glidelab: error: out of memory\n", stderr);

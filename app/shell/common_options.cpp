@@ -255,12 +255,13 @@ std::string check_incline(const std::string& text) {
 }  // namespace
 
 void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
-  command
-      .add_option(
-          "--column", options.column,
-          "For a file: the column that holds x, by header or number; default: found by its header. For a Tracker "
-          "project: the point mass; default: the only one")
-      ->type_name("NAME|NUMBER");
+  CLI::Option* column =
+      command
+          .add_option(
+              "--column", options.column,
+              "For a file: the column that holds x, by header or number; default: found by its header. For a Tracker "
+              "project: the point mass; default: the only one")
+          ->type_name("NAME|NUMBER");
   CLI::Option* mass = command.add_option("--mass", options.mass_kg, "For a file: mass of the glider in kilograms")
                           ->type_name("KG")
                           ->check(check_above_0);
@@ -271,7 +272,7 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
       command.add_option("--runs", options.runs,
                          "For a file with several runs or masses: which of them become clips, \"all\" or "
                          "their numbers, such as 1,3");
-  runs->type_name("all|N,N")->excludes("--column");
+  runs->type_name("all|N,N")->excludes(column);
   command
       .add_option("--masses", options.masses_kg, "With --runs: the mass of each in kilograms, such as 0.0088,0.0079")
       ->type_name("KG,KG")

@@ -12,7 +12,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
 #include <thread>
 
 #include "base/errors.h"
@@ -81,6 +83,44 @@ void catch_interrupts() {
   action.sa_handler = SIG_IGN;
   ::sigaction(SIGPIPE, &action, nullptr);
   ::sigaction(SIGXFSZ, &action, nullptr);
+}
+
+namespace {
+
+std::terminate_handler usual_end = nullptr;
+int lost_memory_status = 0;
+
+[[noreturn]] void end_with(const char* message) {
+  base::discard_passing_folders();
+  std::fputs(message, stderr);
+  ::_exit(lost_memory_status);
+}
+
+/// As the standard library ends a program that cannot go on, but for memory that is lost. Where g++ has put the end
+/// into the function that promised to throw nothing, the exception is not caught and its type is not known.
+[[noreturn]] void end_what_cannot_go_on() {
+  static std::atomic_flag begun = ATOMIC_FLAG_INIT;  // an exception from here leads back here
+  if (!begun.test_and_set()) {
+    try {
+      if (std::current_exception() != nullptr) throw;
+      if (std::uncaught_exceptions() > 0) {
+        end_with("glidelab: error: a library failed where it must not, most likely out of memory\n");
+      }
+    } catch (const std::bad_alloc&) {
+      end_with("glidelab: error: out of memory\n");
+    } catch (...) {
+    }
+  }
+  usual_end();
+  std::abort();
+}
+
+}  // namespace
+
+void report_lost_memory(int status) {
+  lost_memory_status = status;
+  const std::terminate_handler before = std::set_terminate(end_what_cannot_go_on);
+  if (before != end_what_cannot_go_on) usual_end = before;
 }
 
 bool interrupted() {

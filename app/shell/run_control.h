@@ -24,6 +24,10 @@ inline constexpr int kInterruptedStatus = 130;  ///< as a shell reports SIGINT
 /// process.
 void catch_interrupts();
 
+/// From now on memory that ends where no exception may pass (in a function of a library that promises to throw none)
+/// ends the process as memory that ends elsewhere does: `status`, one message, no unfinished output.
+void report_lost_memory(int status);
+
 bool interrupted();
 
 /// An interrupt of work that keeps its finished part; what() describes that part.

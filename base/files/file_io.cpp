@@ -310,12 +310,22 @@ StagedOutput::StagedOutput(fs::path final_dir)
   refuse_dangling(final_);
   clear_leftovers(final_);
   made_parents_ = missing_parents(staging_);
-  fs::create_directories(staging_, error);
-  if (error) {
+  remember_passing_folder(staging_, made_parents_);  // before it is there: this may end for want of memory
+  const auto give_up = [&] {
+    ::rmdir(staging_.c_str());
     remove_empty_folders(made_parents_);
+    forget_passing_folder(staging_);
+  };
+  try {
+    fs::create_directories(staging_, error);
+  } catch (const std::bad_alloc&) {
+    give_up();
+    throw;
+  }
+  if (error) {
+    give_up();
     throw_system_error(final_.string(), "output folder cannot be written", error.value());
   }
-  remember_passing_folder(staging_, made_parents_);
 }
 
 StagedOutput::~StagedOutput() {
@@ -364,12 +374,14 @@ class Placed {
 }  // namespace
 
 void StagedOutput::publish_files() {
-  begin_publishing();
-  std::vector<fs::path> staged;  // listed first, because exchanging changes the listed folder
+  // Listed first, because exchanging changes the listed folder, and because the standard library ends the program where
+  // it lists a folder without memory: until the publishing begins, nothing then stays.
+  std::vector<fs::path> staged;
   for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) staged.push_back(entry.path());
   for (const fs::path& path : staged) {
     if (fs::is_directory(path)) list_made_files(path);
   }
+  begin_publishing();
   if (!fs::exists(fs::symlink_status(final_))) return rename_or_throw(staging_, final_);
   Placed placed(final_);
   for (const fs::path& path : staged) {

@@ -20,7 +20,7 @@ int decimals_of(double sd) {
 }
 
 bool usable(double sd) {
-  return std::isfinite(sd) && sd > 0.0 && decimals_of(sd) <= kMostDecimals;
+  return std::isfinite(2.0 * sd) && sd > 0.0 && decimals_of(sd) <= kMostDecimals;  // rounded up it is finite too
 }
 
 /// "4.1e+02" as 410, "1.80e-05" as 0.0000180, if these are short.

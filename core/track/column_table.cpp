@@ -199,6 +199,7 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
 namespace {
 
 constexpr std::size_t kMostFieldIssues = 10;
+constexpr std::size_t kMostFields = 100'000'000;  // 1.6 GB; the largest file has 60 million of t and x
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \r");
@@ -422,8 +423,18 @@ ColumnTable read_column_table(const std::filesystem::path& file) {
   for (const Line& line : lines) rows.push_back(split(line.text, format->delimiter));
   const auto first_data = static_cast<std::size_t>(
       std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return is_data(row, *format); }) - rows.begin());
-  std::size_t width = 0;
-  for (std::size_t r = first_data; r < rows.size(); ++r) width = std::max(width, rows[r].size());
+  std::size_t width = 0, widest = first_data;
+  for (std::size_t r = first_data; r < rows.size(); ++r) {
+    if (rows[r].size() <= width) continue;
+    width = rows[r].size();
+    widest = r;
+  }
+  // Each line has a value in each column, so that one long line makes many of a short file.
+  if (width > kMostFields / (rows.size() - first_data)) {
+    throw base::InputError(base::Issue{table.file, lines[widest].number, "",
+                                       fmt::format("{} columns, in {} lines", width, rows.size() - first_data),
+                                       fmt::format("at most {} million fields in all", kMostFields / 1'000'000)});
+  }
 
   std::vector<std::vector<std::string>> header;
   for (std::size_t r = 0; r < first_data; ++r) {

@@ -30,7 +30,7 @@ UnnamedFamily own_family(const ScoreSpace& space, double apart_s, int fewest, in
     Grid grid;
     grid.add(t.front());
     grid.add(t.back());
-    grid.bumps = std::clamp(static_cast<int>((t.back() - t.front()) / apart_s), fewest, most);
+    grid.bumps = bumps_over(t.back() - t.front(), apart_s, fewest, most);
     for (int b = 0; b < grid.bumps; ++b) {
       std::vector<Eigen::VectorXd> changes(set.motions.size());
       changes[i].resize(static_cast<Eigen::Index>(t.size()));

@@ -96,6 +96,10 @@ void Grid::add(double x) {
   high = std::max(high, x);
 }
 
+int bumps_over(double length, double apart, int fewest, int most) {
+  return static_cast<int>(std::clamp<double>(length / apart, fewest, most));
+}
+
 double bump(double x, double middle, double width) {
   const double z = (x - middle) / width;
   return std::abs(z) > 5.0 ? 0.0 : std::exp(-0.5 * z * z);

@@ -43,6 +43,9 @@ struct Grid {
   double at(int i) const { return low + width() * i; }
 };
 
+/// How many bumps a length takes, so far apart, within limits; any length, also one beyond what a whole number holds.
+int bumps_over(double length, double apart, int fewest, int most);
+
 /// A Gaussian bump of unit height, as wide as the spacing of the bumps.
 double bump(double x, double middle, double width);
 

@@ -1,10 +1,10 @@
 """Every kind of call fails once: the n-th open, write, allocation, integration, query, decoded frame, …
 
-    fail_each_call.py GLIDELAB LIBRARY [COMMAND ...] [--most N]
+    fail_each_call.py GLIDELAB LIBRARY [COMMAND ...] [--most N] [--last N]
 
 LIBRARY is failing_calls. Each COMMAND (see lines_of(); default all) runs once undisturbed, which counts the
 calls of each function, and then once for each function and n, at most N of them (default 12: the first ones, the last ones, and some
-between). Allowed: the undisturbed result, or status 1 or 3 with a message, and then the output's place as it was before. A
+between), and the last ones (default 0), in which results are put in place. Allowed: the undisturbed result, or status 1 or 3 with a message, and then the output's place as it was before. A
 signal, an endless run, a half-written or another result is a finding, which is printed with the way to repeat it; the exit status is 1.
 """
 
@@ -171,6 +171,7 @@ def main():
     parser.add_argument("library", type=pathlib.Path)
     parser.add_argument("commands", nargs="*", default=["simulate", "simulate-again", "render", "analyze", "diagnose", "sweep"])
     parser.add_argument("--most", type=int, default=12)
+    parser.add_argument("--last", type=int, default=0)
     options = parser.parse_args()
     program, library = options.program.resolve(), options.library.resolve()
     found = runs = 0
@@ -185,7 +186,8 @@ def main():
             counts = trial.counts()
             whole = trial.result()
             for name, count in sorted(counts.items()):
-                for n in chosen(count, options.most):
+                last = range(max(1, count - options.last + 1), count + 1)
+                for n in sorted({*chosen(count, options.most), *last}):
                     runs += 1
                     finding = trial.finding(name, n, whole)
                     if finding:

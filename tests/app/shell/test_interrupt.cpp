@@ -6,7 +6,11 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <functional>
+#include <new>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/shell/cli.h"
@@ -82,6 +86,40 @@ TEST_CASE(
     std::filesystem::remove(dir / "said");
     CHECK(std::filesystem::is_empty(dir.path()));
   }
+}
+
+TEST_CASE(
+    "memory that ends where no exception may pass is reported and leaves nothing, and other exceptions end as ever") {
+  // Not a TempDir: a child that is ended removes the temporary folders that it knows, its parent's too.
+  std::string made = (std::filesystem::temp_directory_path() / "glidelab-lost-XXXXXX").string();
+  REQUIRE(::mkdtemp(made.data()) != nullptr);
+  const std::filesystem::path dir = made;
+  const auto ended = [&](const std::function<void()>& fails) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::signal(SIGABRT, SIG_DFL);  // Catch2 reports it otherwise
+      ::dup2(::open((dir / "said").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+      app::report_lost_memory(3);
+      const base::StagedOutput staged(dir / "results");
+      base::write_file(staged.dir() / "half", "half");
+      fails();
+      ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  };
+  const std::function<void()> no_memory = [] { throw std::bad_alloc(); };
+  const auto may_not_fail = [&]() noexcept { no_memory(); };  // the compiler ends it in either of two ways
+  const std::vector<std::function<void()>> in_vain = {may_not_fail, [&] { std::thread(no_memory).join(); }};
+  for (const std::function<void()>& fails : in_vain) {
+    CHECK(ended(fails) == 3);
+    CHECK_THAT(base::read_file(dir / "said"), Catch::Matchers::Matches("glidelab: error: .*out of memory\n"));
+    std::filesystem::remove(dir / "said");
+    CHECK(std::filesystem::is_empty(dir));
+  }
+  CHECK(ended([] { std::thread([] { throw std::runtime_error("another"); }).join(); }) == 1000 + SIGABRT);
+  std::filesystem::remove_all(dir);
 }
 
 TEST_CASE("what does not look at the first signal is ended within a second") {

@@ -49,8 +49,8 @@ TEST_CASE("bad fields are named by line and column") {
 
 TEST_CASE("a column knows what the last digit of its numbers is worth, the finest of them") {
   const glidelab::tests::TempDir temp;
-  write_file(temp / "t.csv", "a,b,c,d\n2.310,1,-2.5e-3,1E+3\n2.3,20,+1e-1,2.50e2\n");
-  const CsvTable table = read_csv(temp / "t.csv", {"a", "b", "c", "d"});
+  write_file(temp / "t.csv", "a,b,c,d,e\n2.310,1,-2.5e-3,1E+3,1.5e+4\n2.3,20,+1e-1,2.50e2,2E+4\n");
+  const CsvTable table = read_csv(temp / "t.csv", {"a", "b", "c", "d", "e"});
   const auto is = [&](const char* column, double worth) {
     CHECK(std::abs(table.last_digit_of(column) / worth - 1.0) < 1e-12);  // a power of ten, to rounding
   };
@@ -58,6 +58,7 @@ TEST_CASE("a column knows what the last digit of its numbers is worth, the fines
   is("b", 1.0);
   is("c", 1e-4);
   is("d", 1.0);
+  is("e", 1e3);
   write_file(temp / "t.csv", "a\n0.0e-2147483648\n0.0e-99999999999\n");  // exponents beyond any whole number
   CHECK(read_csv(temp / "t.csv", {"a"}).last_digit_of("a") == 0.0);
 }

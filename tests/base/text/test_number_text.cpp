@@ -1,5 +1,7 @@
 #include "base/text/number_text.h"
 
+#include <limits>
+
 #include "tests/catch.h"
 
 using namespace glidelab::base;
@@ -23,6 +25,9 @@ TEST_CASE("without a usable sd a value keeps six significant digits") {
   CHECK(value_text(2.768, 0.0) == "2.768");
   CHECK(value_text(1.0 / 3.0, -1.0) == "0.333333");
   CHECK(value_text(std::nan(""), 0.1) == "–");
+  // The largest number there is, which rounded up is none.
+  CHECK(value_text(1.0, std::numeric_limits<double>::max()) == "1");
+  CHECK(sd_text(std::numeric_limits<double>::max()) == "1.8e+308");
 }
 
 TEST_CASE("a number has plain digits where they are few, and a power of ten beyond") {
@@ -42,6 +47,8 @@ TEST_CASE("an error shows its sign, and none where it rounds to zero") {
   CHECK(error_text(-0.00001, 0.0041) == "0.0000");
   CHECK(error_text(0.0, 0.0041) == "0.0000");
   CHECK(error_text(-0.00006, 0.0041) == "-0.0001");
+  CHECK(error_text(0.0031249, 0.0) == "+0.00312");  // nothing says how many digits it has
+  CHECK(error_text(-2.0, std::numeric_limits<double>::infinity()) == "-2");
 }
 
 TEST_CASE("numbers of one column keep the zeros at their end") {

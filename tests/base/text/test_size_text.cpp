@@ -18,5 +18,6 @@ TEST_CASE("a size and its standard deviation have one unit, that of the larger")
   CHECK(base::size_and_sd_text(0.0123, 0.0012, "m") == "12.3 ± 1.2 mm");
   CHECK(base::size_and_sd_text(1e-6, 0.5, "m") == "0.00 ± 0.50 m");
   CHECK(base::size_and_sd_text(0.25, 0.0, "") == "0.25");
+  CHECK(base::size_and_sd_text(0.0025, 0.0, "m") == "2.5 mm");
   CHECK(base::size_and_sd_text(0.25, std::numeric_limits<double>::infinity(), "m") == "0.25 m");
 }

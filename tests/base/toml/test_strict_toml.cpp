@@ -1,5 +1,8 @@
 #include "base/toml/strict_toml.h"
 
+#include <map>
+#include <string>
+
 #include "base/errors.h"
 #include "tests/catch.h"
 
@@ -74,6 +77,37 @@ TEST_CASE("all errors of a file are reported together, in the order of lines") {
   CHECK(contains(message, "missing: found nothing, expected a table [missing]"));
   CHECK_FALSE(contains(message, "missing.x"));
   CHECK(message.find("b: found") < message.find("c: found"));
+}
+
+TEST_CASE("errors of one line are reported in the order in which they were found") {
+  const TomlFile file = TomlFile::parse("a = [\"x\", true]\n[t]\nd = 1\nc = 2\n", "t.toml");
+  file.root().reject("a", "the first", "another");
+  file.root().reject("a", "the second", "another");
+  file.root().ignore("t");
+  const std::string message = message_of(file);
+  CHECK(contains(message, "the second"));
+  CHECK(message.find("the first") < message.find("the second"));
+}
+
+TEST_CASE("a range says its limits: both, one or none") {
+  CHECK(between(1.0, 2.5).describe() == "a number from 1 to 2.5");
+  CHECK(between_open(1.0, 2.5).describe() == "a number above 1 and below 2.5");
+  CHECK(at_least(1.0).describe() == "a number of at least 1");
+  CHECK(above(1.0).describe() == "a number above 1");
+  CHECK(Range{.high = 2.0}.describe() == "a number of at most 2");
+  CHECK(any_number().describe() == "a finite number");
+}
+
+TEST_CASE("the scalars of a table are its numbers, texts and truth values, and those of the tables in it") {
+  const TomlFile file = TomlFile::parse("n = 2.5\ns = \"text\"\nb = true\n[t]\ni = 3\n", "t.toml");
+  const auto scalars = file.root().scalars();
+  REQUIRE(scalars.size() == 4);
+  std::map<std::string, TomlScalar> by_key(scalars.begin(), scalars.end());
+  CHECK(by_key.at("n") == TomlScalar(2.5));
+  CHECK(by_key.at("s") == TomlScalar(std::string("text")));
+  CHECK(by_key.at("b") == TomlScalar(true));
+  CHECK(by_key.at("t.i") == TomlScalar(3.0));
+  CHECK(message_of(file).empty());
 }
 
 TEST_CASE("a file that is no TOML is an error with its line") {

@@ -79,6 +79,13 @@ TEST_CASE("Paths of any spelling reach places that are called by their numbers")
   CHECK_THROWS_AS(reached("group[3].mass"), base::InputError);
 }
 
+TEST_CASE("A key may consist of any letter, digit, underscore and hyphen") {
+  for (const std::string key : {"A", "Z", "a", "z", "0", "9", "_", "-"}) {
+    INFO(key);
+    CHECK(base::TomlFile::parse(with_values("x = 1\n", "t.toml", {{key, 2.0}}), "t.toml").root().number(key) == 2.0);
+  }
+}
+
 TEST_CASE("A whole number serves for integers and for numbers, and a fraction keeps every bit") {
   const base::TomlFile file = parsed({{"bits", 12.0}, {"x", 0.1 + 0.2}});
   CHECK(file.root().integer("bits", 0, 20) == 12);

@@ -379,6 +379,17 @@ TEST_CASE("a delimiter at the end of each line is no column, and a table that a 
   check_motion(Made("\"mass A\"\n\"t\tx\ty\"\n" + rows("\"0.{0}00E0\t{1}E-2\t0.5\"\n")).read());
 }
 
+TEST_CASE("one long line does not make a short file fill the memory") {
+  // 10 999 lines of two fields and one of 10 000 make 110 million, of which 32 thousand are there.
+  std::string text = "t,x\n";
+  for (int i = 0; i < 4000; ++i) text += fmt::format("{},{}\n", i, 2 * i);
+  for (int i = 0; i < 10'000; ++i) text += i == 0 ? "4000" : ",8000";
+  text += '\n';
+  for (int i = 4001; i < 11'000; ++i) text += fmt::format("{},{}\n", i, 2 * i);
+  CHECK_THROWS_WITH(Made(text).read(),
+                    Contains(":4002: found 10000 columns, in 11000 lines, expected at most 100 million fields in all"));
+}
+
 TEST_CASE("units are also words, in several languages") {
   const auto with = [](const std::string& header) {
     const core::TrackData track = Made(header + "\n" + rows("0.{0},{1}E-2\n")).read();

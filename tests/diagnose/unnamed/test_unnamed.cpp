@@ -81,6 +81,13 @@ TEST_CASE("a hand that pushes until a moment keeps its name") {
   }
 }
 
+TEST_CASE("a long motion has the most bumps, also one that lasts for more of them than a whole number can count") {
+  CHECK(diagnose::bumps_over(1.0, 0.5, 3, 5) == 3);
+  CHECK(diagnose::bumps_over(2.4, 0.5, 3, 5) == 4);
+  CHECK(diagnose::bumps_over(60.0, 0.5, 3, 5) == 5);
+  CHECK(diagnose::bumps_over(6e11, 0.5, 3, 5) == 5);
+}
+
 TEST_CASE("places beside each other are one region, clips beside each other are not") {
   diagnose::UnnamedFamily family;
   family.at = {0.0, 1.0, 2.0, 3.0};
