@@ -11,7 +11,7 @@ from . import _glidelab
 from ._errors import input_error
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
 from ._outside import OutsideRuns, given_command, outside_runs
-from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, words_of
+from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, unit_of, words_of
 
 
 @dataclass(frozen=True)
