@@ -146,12 +146,17 @@ class Diagnosis(Result):
             axis.set_xlabel("v (m/s)")
             axis.set_ylabel("residual (µm)")
         axes[1].set_ylim(axes[0].get_ylim())
+        if 0 < len(self.residuals) <= _MOST_NAMED:
+            axes[1].legend(fontsize=7, markerscale=3)
         return axes
 
     def _repr_html_(self) -> str:
         rows = [[one.id, f"{one.joint_probability:.3g}", ", ".join(one.equivalent_to)] for one in self.effects]
         head = f"<p><b>{html.escape(self.summary)}</b></p>"
         return head + (html_table(["effect", "probability", "or"], rows) if rows else "") + html_plot(self.plot)
+
+
+_MOST_NAMED = 12  # clips in a legend; more would hide the residuals
 
 
 def _interval(found: Optional[Sequence[float]]) -> Optional[tuple[float, float]]:

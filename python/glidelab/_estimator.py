@@ -20,7 +20,7 @@ from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._recovered import QUANTITIES
-from ._results import NORMAL95, Quantity, frame_of, html_table, rounded
+from ._results import NORMAL95, Quantity, frame_of, html_table, rounded, words_of
 
 Found = Union[float, tuple[float, float], Quantity, None]
 Estimator = Callable[[Sequence[Track]], Mapping[str, Found]]
@@ -126,7 +126,7 @@ class Judgement:
     def _table(self) -> list[list[str]]:
         def text(value: Optional[float]) -> str:
             return "" if value is None else f"{value:.3g}"
-        return [[row.configuration, row.quantity, row.estimator, rounded(row.truth, None),
+        return [[row.configuration, words_of(row.quantity), row.estimator, rounded(row.truth, None),
                  f"{row.answered} of {self.replicates}", text(row.bias), text(row.rms),
                  "" if row.covered is None else f"{100.0 * row.covered:.0f} %"] for row in self.rows]
 

@@ -164,6 +164,15 @@ def unit_of(column: str) -> str:
     return next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
 
 
+_SYMBOLS = {"k_over_m_1_s": "K/m", "mu": "µ", "alpha_deg": "α", "v_lim_m_s": "terminal velocity"}
+
+
+def words_of(quantity: str, before: str = "") -> str:
+    """"error of K/m (1/s)" for "k_over_m_1_s" after "error of": what a table or an axis calls a quantity."""
+    unit = unit_of(quantity)
+    return before + _SYMBOLS.get(quantity, quantity) + (f" ({unit})" if unit else "")
+
+
 def frame_of(columns: Mapping[str, Sequence[Any]], by_row: Sequence[str] = ()) -> Any:
     """A pandas.DataFrame, with ``attrs["units"]``.
 

@@ -10,7 +10,7 @@ from typing import Any, Optional
 from . import _glidelab
 from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller, whole
 from ._outside import OutsideRuns, given_command, outside_runs
-from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, new_axes
+from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, new_axes, words_of
 
 
 @dataclass(frozen=True)
@@ -92,12 +92,12 @@ class Validation(Result):
                                   color=f"C{number}", label=estimator)
             axis.axhline(0.0, color="0.8", zorder=0)
             axis.set_xticks(range(len(places)), places)
-            axis.set_ylabel(f"error of {name}")
+            axis.set_ylabel(words_of(name, "error of "))
             axis.legend()
         return axes
 
     def _repr_html_(self) -> str:
-        rows = [[one.configuration, one.estimator, one.quantity,
+        rows = [[one.configuration, one.estimator, words_of(one.quantity),
                  *("" if number is None else f"{number:.5g}" for number in (one.truth, one.value, one.sd, one.error))]
                 for one in self.quantities]
         return html_table(["configuration", "estimator", "quantity", "truth", "found", "sd", "error"],
@@ -224,7 +224,7 @@ class Coverage(Result):
             ax.barh(number, 100.0 * (one.coverage or 0.0), color="0.85")
             ax.plot([100.0 * low, 100.0 * high], [number, number], color="C0" if low <= 0.95 <= high else "C3", linewidth=3)
         ax.axvline(95.0, color="0.4", linestyle="--")
-        ax.set_yticks(range(len(counted)), [f"{one.configuration} {one.quantity} {one.estimator}" for one in counted],
+        ax.set_yticks(range(len(counted)), [f"{one.configuration}, {words_of(one.quantity)}, {one.estimator}" for one in counted],
                       fontsize=7)
         ax.invert_yaxis()
         ax.set_xlim(min([70.0, *(100.0 * (one.interval95 or (1.0,))[0] for one in counted)]), 100.0)
@@ -235,13 +235,13 @@ class Coverage(Result):
         def text(number: Optional[float]) -> str:
             return "" if number is None else f"{number:.3g}"
 
-        rows = [[one.configuration, one.estimator, one.quantity, f"{one.determined} of {self.replicates}",
+        rows = [[one.configuration, one.estimator, words_of(one.quantity), f"{one.determined} of {self.replicates}",
                  text(one.bias), text(one.sd), text(one.stated_sd),
                  "" if one.coverage is None else f"{100.0 * one.coverage:.1f} %",
                  "" if one.interval95 is None else
                  f"{100.0 * one.interval95[0]:.1f} to {100.0 * one.interval95[1]:.1f} %"] for one in self.rows]
         return html_table(["configuration", "estimator", "quantity", "answers", "mean error", "sd", "stated sd",
-                           "95 % intervals that hold", "of that"], rows) + html_plot(self.plot)
+                           "95 % intervals that hold", "95 % interval of this share"], rows) + html_plot(self.plot)
 
 
 def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates: int = 1000,

@@ -11,7 +11,7 @@ from . import _glidelab
 from ._errors import input_error
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
 from ._outside import OutsideRuns, given_command, outside_runs
-from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, unit_of
+from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, unit_of, words_of
 
 
 @dataclass(frozen=True)
@@ -217,18 +217,18 @@ class Sweep(Result):
             axis.set_xticks(values, places, fontsize=7)
             axis.set_yscale("log")
             axis.set_xlabel(key)
-            axis.set_ylabel(f"rms error of {quantity}" + (f" ({unit_of(quantity)})" if unit_of(quantity) else ""))
+            axis.set_ylabel(words_of(quantity, "rms error of "))
             axis.legend(fontsize=7)
         return axes
 
     def _repr_html_(self) -> str:
         document = self.to_dict()
         tables = [html_table(["quantity", "estimator", *_HEADER], [
-            [row["quantity"], row["estimator"], *_cells(row)] for row in document["overall"]],
+            [words_of(row["quantity"]), row["estimator"], *_cells(row)] for row in document["overall"]],
             f"{self.name}: {self.runs} runs, {self.failed} failed")]
         for key in document["axes"]:
             tables.append(html_table([key["name"], "quantity", "estimator", *_HEADER], [
-                [row["at"], row["quantity"], row["estimator"], *_cells(row)] for row in key["groups"]]))
+                [row["at"], words_of(row["quantity"]), row["estimator"], *_cells(row)] for row in key["groups"]]))
         return "".join(tables) + html_plot(self.plot)
 
 

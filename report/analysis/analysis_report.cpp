@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "base/math/distributions.h"
@@ -92,6 +93,19 @@ std::string damping_sentence(const core::AnalysisResults& results) {
       base::number_text(mean, 4), base::number_text(100.0 * widest, 2));
 }
 
+/// Says so where not every line is straight; empty otherwise.
+std::string bent_lines_note(const core::AnalysisResults& results) {
+  double worst = 1.0;
+  for (const core::ConfigurationResult& configuration : results.configurations) {
+    for (const core::LineFit& line : configuration.lines) worst = std::min(worst, line.r2);
+  }
+  if (!(worst < kStraight)) return {};
+  return fmt::format(
+      "<p>Not every a(v) is a straight line well above its noise: the lowest R² is {}. Where the residuals "
+      "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
+      base::r2_text(worst));
+}
+
 }  // namespace
 
 std::string meaning_of(const core::AnalysisResults& results) {
@@ -107,16 +121,7 @@ std::string meaning_of(const core::AnalysisResults& results) {
     text +=
         "</ul>\n<p>A fit of that law still gives the numbers below, which need not be properties of the track or the "
         "glider; their ± would hold only if the law did.</p>\n";
-  }
-  double worst = 1.0;
-  for (const core::ConfigurationResult& configuration : results.configurations) {
-    for (const core::LineFit& line : configuration.lines) worst = std::min(worst, line.r2);
-  }
-  if (worst < kStraight) {
-    text += fmt::format(
-        "<p>Not every a(v) is a straight line well above its noise: the lowest R² is {}. Where the residuals "
-        "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
-        base::r2_text(worst));
+    text += bent_lines_note(results);
   }
   return meaning_section(text);
 }
@@ -149,8 +154,8 @@ std::string value_words(const core::AnalysisResults& results, std::size_t which)
   return fmt::format("{} = {}{}", name.symbol, values, unit_suffix(name.unit));
 }
 
-/// The answer in one line: the values, or that the law does not fit.
-std::string analysis_answer(const core::AnalysisResults& results) {
+/// The answer in one line: the values, and `doubt` if the law does not fit.
+std::string analysis_answer(const core::AnalysisResults& results, std::string_view doubt) {
   std::string values;
   for (std::size_t which = 0; which < kQuantities.size(); ++which) {
     const std::string words = value_words(results, which);
@@ -158,7 +163,7 @@ std::string analysis_answer(const core::AnalysisResults& results) {
   }
   if (values.empty())
     return "The data determine none of K/m, µ, α and the terminal velocity; the reasons are below the table.";
-  const std::string doubted = doubts_about(results).empty() ? "" : " (but the law is in doubt: see below the table)";
+  const std::string_view doubted = doubts_about(results).empty() ? "" : doubt;
   const std::size_t many = results.configurations.size();
   return fmt::format("{}{}{}.", values, many == 1 ? "" : fmt::format(" over {} configurations", many), doubted);
 }
@@ -182,7 +187,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
       }
     }
   }
-  std::string text = analysis_answer(results) + "\n\n" + text_table(rows, 3);
+  std::string text =
+      analysis_answer(results, " (but the law is in doubt: see below the table)") + "\n\n" + text_table(rows, 3);
   if (!doubts.empty()) text += fmt::format("* {}\n", kIfItHeld);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
   rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
@@ -245,9 +251,41 @@ Html fitted_section(const core::AnalysisResults& results) {
   constexpr std::size_t kMostFitted = 4;
   const std::vector<Plot> plots = fitted_plots(results, kMostFitted);
   if (plots.empty()) return {};
-  Html html = "<h2 id=\"fitted\">Does the law fit the positions?</h2>\n";
-  html += figures(plots);
-  return html;
+  return Html("<div id=\"fitted\">\n") + figures(plots) + "</div>\n";
+}
+
+/// The one plot of the page: a(v) of all configurations, whose slope is K/m and whose gap at v = 0 is Coulomb friction.
+Html answer_plot(const core::AnalysisResults& results) {
+  const std::optional<Plot> plot = phase_overview(results);
+  return plot ? Html("<div id=\"overview\">\n") + figures({*plot}) + "</div>\n" : Html();
+}
+
+/// The ranges of the values over the configurations, which the table has one by one with their ±.
+std::string ranges_answer(const core::AnalysisResults& results) {
+  std::string text;
+  for (std::size_t which = 0; which < kQuantities.size(); ++which) {
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (const core::ConfigurationResult& c : results.configurations) {
+      const core::Quantity& quantity = *quantities_of(c)[which].quantity;
+      if (!quantity.estimate) continue;
+      least = std::min(least, quantity.estimate->value);
+      most = std::max(most, quantity.estimate->value);
+    }
+    if (!(least <= most)) continue;
+    constexpr int kDigits = 3;
+    const QuantityName& name = kQuantities[which];
+    const std::string from = base::number_text(least, kDigits), to = base::number_text(most, kDigits);
+    text += fmt::format("{}{} = {}{}", text.empty() ? "" : ", ", name.symbol, from == to ? from : from + " to " + to,
+                        unit_suffix(name.unit));
+  }
+  return text.empty() ? analysis_answer(results, "")
+                      : fmt::format("{} over {} configurations.", text, results.configurations.size());
+}
+
+/// The answer in words or, for few configurations, as tiles.
+std::string answer_html(const core::AnalysisResults& results) {
+  const std::string tiles = value_tiles(results);
+  return tiles.empty() ? fmt::format("<p><b>{}</b></p>\n", escape(ranges_answer(results))) : tiles;
 }
 
 }  // namespace
@@ -259,11 +297,12 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
               fmt::format("<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n",
                           escape(estimator_name(results.estimator)), size_words(results));
   // If the law is in doubt, the doubt comes before the numbers.
-  const std::string values = value_tiles(results) + recovered_section(results), meaning = meaning_of(results);
-  body += doubts_about(results).empty() ? values + meaning : meaning + values;
-  body += with_causes;
-  body += fitted_section(results);
-  body += phase_section(results);
+  const bool in_doubt = !doubts_about(results).empty();
+  if (in_doubt) body += meaning_of(results);
+  body += answer_html(results) + answer_plot(results) + recovered_section(results) + with_causes;
+  if (!in_doubt) body += bent_lines_note(results) + folded("In words", meaning_of(results));
+  body += folded("Does the law fit the positions?", fitted_section(results));
+  body += folded("Phase diagrams: near v = 0, and what the lines leave over", phase_section(results));
   body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));
   return page(title, body);
 }

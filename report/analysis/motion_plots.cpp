@@ -400,31 +400,75 @@ std::string phase_label(const core::AnalysisResults& results, const PhaseGroup& 
   const core::ConfigurationResult& own = results.configurations[configuration];
   std::string label = own.mass_kg < 1.0 ? fmt::format("{:.6g} g", own.mass_kg * 1e3)  // readable form
                                         : fmt::format("{:.6g} kg", own.mass_kg);
-  const auto same_mass =
-      std::count_if(group.configurations.begin(), group.configurations.end(),
-                    [&](std::size_t other) { return results.configurations[other].mass_kg == own.mass_kg; });
-  if (same_mass > 1) label += ", " + own.group;
+  const auto others = [&](const auto& which) {
+    return std::ranges::any_of(group.configurations, [&](std::size_t other) {
+      return other != configuration && which(results.configurations[other]);
+    });
+  };
+  if (others([&](const core::ConfigurationResult& of) { return of.incline_deg != own.incline_deg; })) {
+    label += fmt::format(", {:.4g}°", own.incline_deg);
+  }
+  const auto same = [&](const core::ConfigurationResult& of) {
+    return of.mass_kg == own.mass_kg && of.incline_deg == own.incline_deg;
+  };
+  if (others(same)) label += ", " + own.group;
   return label;
 }
 
-std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group) {
-  const std::vector<Cloud> all = clouds(results, group);
+namespace {
+
+double fastest(const std::vector<Cloud>& all) {
   double v_max = 0.0;
   for (const Cloud& cloud : all) {
     for (const PhasePoint& point : cloud.points) v_max = std::max(v_max, std::abs(point.v_m_s));
   }
-  if (v_max == 0.0) return {};
+  return v_max;
+}
+
+const char* acceleration_axis(const std::vector<Cloud>& all) {
   const bool forced = std::any_of(all.begin(), all.end(), [](const Cloud& cloud) { return cloud.forced; });
-  const char* const y = forced ? "a − F/m  (m/s²)" : "a  (m/s²)";
+  return forced ? "a − F/m  (m/s²)" : "a  (m/s²)";
+}
+
+Plot whole_plot(const core::AnalysisResults& results, const PhaseGroup& group, const std::vector<Cloud>& all) {
   const Diagram whole = diagram(results, group, all, -HUGE_VAL, HUGE_VAL, false);
-  std::string script = std::string(kFrame) + axes(y) + ranges_of(whole.data, false) + whole.plot;
-  std::vector<Plot> plots = {{Drawing{script, whole.data},
-                              "Phase diagram: measured and smoothed points, and the lines fitted for v < 0 and v > 0 "
-                              "with their 95 % bands; bars: 95 % intervals of some points",
-                              "Acceleration over velocity with fitted lines"}};
+  const std::string script =
+      std::string(kFrame) + axes(acceleration_axis(all)) + ranges_of(whole.data, false) + whole.plot;
+  return {
+      Drawing{script, whole.data},
+      "Phase diagram: measured and smoothed points, and the lines fitted for v < 0 and v > 0 with their 95 % bands; "
+      "bars: 95 % intervals of some points",
+      "Acceleration over velocity with fitted lines"};
+}
+
+}  // namespace
+
+std::optional<Plot> phase_overview(const core::AnalysisResults& results) {
+  PhaseGroup every;
+  for (std::size_t c = 0; c < results.configurations.size(); ++c) every.configurations.push_back(c);
+  const std::vector<Cloud> all = clouds(results, every);
+  if (fastest(all) == 0.0) return std::nullopt;
+  Plot plot = whole_plot(results, every, all);
+  const bool both = std::ranges::any_of(results.configurations,
+                                        [](const core::ConfigurationResult& one) { return one.lines.size() == 2; });
+  plot.caption = fmt::format(
+      "Acceleration over velocity. The slope of the lines is −K/m{}. Bands: 95 % of each line; bars: 95 % intervals of "
+      "some points",
+      both ? "; half of the gap between the two lines of a glider at v = 0 is µ g cos α" : "");
+  plot.description = "Acceleration over velocity of all configurations";
+  if (all.size() > kColors.size()) plot.drawing.script.insert(plot.drawing.script.find("plot "), "unset key\n");
+  return plot;
+}
+
+std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group) {
+  const std::vector<Cloud> all = clouds(results, group);
+  const double v_max = fastest(all);
+  if (v_max == 0.0) return {};
+  std::vector<Plot> plots = {whole_plot(results, group, all)};
   const Window window = detail_window(results, group, v_max);
   const Diagram detail = diagram(results, group, all, window.from_v, window.to_v, false);
-  script = std::string(kFrame) + axes(y) + "unset offsets\n" + window.script + detail.plot;
+  const std::string script =
+      std::string(kFrame) + axes(acceleration_axis(all)) + "unset offsets\n" + window.script + detail.plot;
   plots.push_back({Drawing{script, detail.data},
                    std::string("Near v = 0: the gap between the lines is twice the Coulomb friction") +
                        (window.has_limit ? ", their crossing of a = 0 the terminal velocity" : ""),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,15 +29,16 @@ inline double line_at(const core::LineFit& line, double v_m_s) {
 /// frame has a position.
 std::vector<Plot> motion_plots(const core::ClipResult& clip);
 
-/// The configurations of one stated inclination, shown in one diagram.
+/// Configurations that are shown in one diagram, in general all those of one stated inclination.
 struct PhaseGroup {
-  double incline_deg = 0.0;
+  double incline_deg = 0.0;                 ///< of the first
   std::vector<std::size_t> configurations;  ///< indices into the results
 };
 /// One for each stated inclination, in order of first occurrence.
 std::vector<PhaseGroup> phase_groups(const core::AnalysisResults& results);
 
-/// "335 g", with the name of its group if another configuration of the diagram has the same mass.
+/// "335 g", with the inclination ("335 g, 4°") if the diagram has several, and with the name of its group if another of
+/// its configurations has the same mass and inclination.
 std::string phase_label(const core::AnalysisResults& results, const PhaseGroup& group, std::size_t configuration);
 
 /// Half of the 95 % interval of a line at v, in m/s²: t sqrt(var(a0) - 2 v cov(K/m, a0) + v² var(K/m)), with the t of
@@ -47,5 +49,10 @@ double line_half95_m_s2(const core::LineFit& line, double v_m_s);
 /// gap at v = 0. The diagram, its detail near v = 0, and the residuals of the lines, each with the lines' 95 % bands
 /// and the bars of some points; none if no point is used. If a known force was applied, a is replaced by a - F/m.
 std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseGroup& group);
+
+/// The a(v) diagram of all configurations, whatever their inclination: the first plot of phase_plots(), with the
+/// inclination in the labels if there are several, and without a legend if there are more configurations than colours.
+/// Nothing if no point is used.
+std::optional<Plot> phase_overview(const core::AnalysisResults& results);
 
 }  // namespace glidelab::report

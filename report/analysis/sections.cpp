@@ -266,6 +266,7 @@ std::string recovered_section(const core::AnalysisResults& results) {
   const std::string mark = in_doubt ? " *" : "";
   HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)" + mark, "µ" + mark, "α (°)" + mark,
                    "terminal velocity (m/s)" + mark, "R² (v &lt; 0)", "R² (v &gt; 0)"});
+  table.stack_when_narrow(1);
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),

@@ -359,6 +359,7 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
   }
   if (!coverage.levels.empty()) body += level_table(coverage);
   HtmlTable table({"quantity", "truth", "bias", "sd", "stated sd", "least sd", "efficiency", "coverage", "values"});
+  table.stack_when_narrow(1);
   std::string configuration, estimator;
   for (const validate::CoverageRow& row : coverage.rows) {
     if (row.configuration != configuration || row.estimator != estimator)

@@ -130,7 +130,7 @@ body { margin: 0; background: var(--paper); color: var(--ink); line-height: 1.5;
 main { max-width: 1240px; margin: 0 auto; padding: 1.2rem 1rem 3rem; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0.4rem 0 0.2rem; overflow-wrap: anywhere; }
 h1 small { display: block; font-size: 1rem; font-weight: 400; color: var(--soft); }
-h1 + p + #meaning { display: none; }
+h1 + p + #meaning, summary + #meaning { display: none; }
 h2 { font-size: 1.3rem; margin: 2.2rem 0 0.5rem; padding-bottom: 0.2rem; border-bottom: 2px solid var(--line); }
 h3 { font-size: 1.08rem; margin: 1.6rem 0 0.4rem; overflow-wrap: anywhere; }
 p, li { max-width: 78ch; overflow-wrap: anywhere; }
@@ -178,12 +178,17 @@ details.part[open] { padding-bottom: 0.8rem; }
 .good { color: var(--good); } .bad { color: var(--bad); }
 /* Plots are drawn on white paper; their hues stay, photographs and videos are as they are. */
 @media screen and (prefers-color-scheme: dark) {
-  figure img[src^="data:image/svg"] { filter: invert(0.9) hue-rotate(180deg); }
-}
+  figure img[src^="data:image/svg"] { filter: invert(0.9) hue-rotate(180deg); } }
 @media (max-width: 600px) {
   th, td { padding: 0.28rem 0.45rem; } h1 { font-size: 1.4rem; } .tile b { font-size: 1.05rem; } main { padding: 0.8rem 0.8rem 2rem; }
   th.w { min-width: 13ch; }  /* a long title: few lines, and the table scrolls */
 }
+@media screen and (max-width: 600px) {  /* a row becomes a block: its name, and each number under the title of its column */
+  table.stack, table.stack tbody { display: block; } table.stack thead { display: none; }
+  table.stack tr { display: grid; grid-template-columns: minmax(42%, auto) auto; gap: 0.1rem 0.6rem; padding: 0.45rem 0; border-bottom: 1px solid var(--line); }
+  table.stack td { border: 0; padding: 0; text-align: left; } table.stack td:not([data-title]) { grid-column: 1 / -1; font-weight: 600; white-space: normal; }
+  table.stack td[data-title]::before { content: attr(data-title); display: block; color: var(--soft); font-size: 0.82rem; white-space: normal; }
+  table.numbered td:first-child, table.numbered td:nth-child(2) { grid-row: 1; } table.numbered td:nth-child(2) { padding-left: 1.8rem; } }
 @media print {
   :root { color-scheme: light; --ink: #000000; --soft: #444444; --paper: #ffffff; --line: #bbbbbb; --tint: #f4f4f4;
           --veil: #f4f4f4; --accent: #000000; --good: #000000; --bad: #000000; }
@@ -201,6 +206,19 @@ details.part[open] { padding-bottom: 0.8rem; }
 
 constexpr std::size_t kShort = 13;  // characters that stay on one line
 constexpr std::size_t kLong = 24;
+
+/// HTML without its tags, for an attribute.
+std::string seen_text(std::string_view html) {
+  std::string text;
+  for (std::size_t i = 0; i < html.size(); ++i) {
+    if (html[i] == '<') {
+      i = std::min(html.find('>', i), html.size() - 1);
+    } else {
+      text += html[i];
+    }
+  }
+  return text;
+}
 
 /// The number of visible characters of HTML: tags do not count, an entity counts as one, and continuation bytes of
 /// UTF-8 do not count.
@@ -273,7 +291,8 @@ void HtmlTable::row(const std::vector<std::string>& cells) {
     const bool kept = cells[i].find_first_of(" -") != std::string::npos && seen_length(cells[i]) <= kShort;
     const bool prose = i > 0 && seen_length(cells[i]) > kLong;
     const char* kind = i >= first_number_ ? " class=\"n\"" : kept ? " class=\"s\"" : prose ? " class=\"t\"" : "";
-    rows_ += fmt::format("<td{}>{}</td>", kind, cells[i]);
+    const std::string title = names_ > 0 && i >= names_ ? fmt::format(" data-title=\"{}\"", seen_text(header_[i])) : "";
+    rows_ += fmt::format("<td{}{}>{}</td>", kind, title, cells[i]);
   }
   rows_ += "</tr>\n";
 }
@@ -282,14 +301,20 @@ void HtmlTable::heading(const std::string& cell) {
   rows_ += fmt::format("<tr class=\"heading\"><td colspan=\"{}\">{}</td></tr>\n", header_.size(), cell);
 }
 
+void HtmlTable::stack_when_narrow(std::size_t names) {
+  names_ = names;
+}
+
 std::string HtmlTable::str() const {
-  const char* kind = longest_name_ > kLong ? " class=\"names\"" : longest_name_ > kShort ? " class=\"name\"" : "";
-  std::string text = fmt::format("<div class=\"scroll\"><table{}><thead><tr>", kind);
+  std::string kinds = longest_name_ > kLong ? "names" : longest_name_ > kShort ? "name" : "";
+  if (names_ > 0) kinds += fmt::format("{}stack{}", kinds.empty() ? "" : " ", names_ > 1 ? " numbered" : "");
+  std::string text = fmt::format("<div class=\"scroll\"><table{}><thead><tr>",
+                                 kinds.empty() ? "" : fmt::format(" class=\"{}\"", kinds));
   for (std::size_t i = 0; i < header_.size(); ++i) {
     const char* number = i >= first_number_ ? "n" : "";
     const char* wide = i > 0 && seen_length(header_[i]) > kShort ? "w" : "";
-    const std::string kinds = fmt::format("{}{}{}", number, *number != 0 && *wide != 0 ? " " : "", wide);
-    text += fmt::format("<th{}>{}</th>", kinds.empty() ? "" : fmt::format(" class=\"{}\"", kinds), header_[i]);
+    const std::string kind = fmt::format("{}{}{}", number, *number != 0 && *wide != 0 ? " " : "", wide);
+    text += fmt::format("<th{}>{}</th>", kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), header_[i]);
   }
   return text + "</tr></thead><tbody>\n" + rows_ + "</tbody></table></div>\n";
 }

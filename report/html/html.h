@@ -41,6 +41,9 @@ class HtmlTable {
   void row(const std::vector<std::string>& cells);
   /// One cell over all columns, which names the rows that follow.
   void heading(const std::string& cell);
+  /// On a narrow screen each row becomes a block: its first `names` cells as a heading, below it every other cell under
+  /// the title of its column. Call it before the first row. For wide tables of few rows.
+  void stack_when_narrow(std::size_t names);
   bool empty() const { return rows_.empty(); }
   /// The HTML, in a box that scrolls if the table is wider than the page.
   std::string str() const;
@@ -48,6 +51,7 @@ class HtmlTable {
  private:
   std::size_t first_number_;
   std::size_t longest_name_ = 0;  ///< of the first column, in visible characters
+  std::size_t names_ = 0;         ///< cells that head a block on a narrow screen; 0: rows stay rows
   std::vector<std::string> header_;
   std::string rows_;
 };

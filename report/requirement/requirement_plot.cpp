@@ -89,6 +89,26 @@ std::vector<Label> labels_of(const std::vector<std::vector<double>>& points, dou
     label.top = std::max(label.top, row[1]);
     label.numbers.push_back(static_cast<int>(row[2]));
   }
+  // A label that would still cover a point of another takes that one's numbers in.
+  const auto covers = [&](const Label& label, const std::vector<double>& row) {
+    const double right = std::log(row[0] / label.right), up = std::log(row[1] / label.top);
+    return right > 0.0 && right < kAcross * wide && up > -0.5 * kUp * high && up < kUp * high;
+  };
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    for (std::size_t k = 0; k < labels.size(); ++k) {
+      const bool hides =
+          i != k && std::ranges::any_of(points, [&](const std::vector<double>& row) {
+            return std::ranges::count(labels[k].numbers, static_cast<int>(row[2])) > 0 && covers(labels[i], row);
+          });
+      if (!hides) continue;
+      labels[i].right = std::max(labels[i].right, labels[k].right);
+      labels[i].top = std::max(labels[i].top, labels[k].top);
+      labels[i].numbers.insert(labels[i].numbers.end(), labels[k].numbers.begin(), labels[k].numbers.end());
+      std::ranges::sort(labels[i].numbers);
+      labels.erase(labels.begin() + static_cast<std::ptrdiff_t>(k));
+      i = k = 0;
+    }
+  }
   return labels;
 }
 

@@ -159,6 +159,7 @@ std::string candidate_table(const Requirement& requirement) {
   }
   header.insert(header.end(), {"frames/s", "position noise (µm)"});
   HtmlTable table(header, first_number);
+  table.stack_when_narrow(2);
   for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
     const Candidate& candidate = requirement.candidates[i];
     const std::string verdict = escape(candidate_verdict(candidate));

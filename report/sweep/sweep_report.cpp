@@ -136,6 +136,16 @@ void add_rows(HtmlTable& table, const std::vector<validate::Series>& overall) {
 const std::vector<std::string> kHeader = {"quantity",  "estimator", "results",  "mean error",       "rms error",
                                           "stated sd", "least sd",  "coverage", "mean error in sd", "rms error in sd"};
 
+/// The errors alone; the folded table has all else.
+std::string error_table(const SweepSummary& summary) {
+  HtmlTable table({"quantity", "estimator", "rms error", "stated sd", "coverage"}, 2);
+  table.stack_when_narrow(1);
+  for (const std::vector<std::string>& row : rows_of(summary.overall)) {
+    table.row({escape(row[0]), escape(row[1]), escape(row[4]), escape(row[5]), escape(row[7])});
+  }
+  return table.str();
+}
+
 std::string overall_table(const SweepSummary& summary) {
   HtmlTable table(kHeader, 2);
   add_rows(table, summary.overall);
@@ -239,6 +249,20 @@ Html axis_plots(const SweepSummary& summary, const base::Progress& progress) {
   return body;
 }
 
+/// The error of the first quantity that has one over the first two keys along which it changes.
+Html answer_plots(const SweepSummary& summary) {
+  constexpr std::size_t kMost = 2;
+  for (const QuantityName& quantity : kQuantities) {
+    std::vector<Plot> shown;
+    for (const validate::AxisSummary& axis : summary.axes) {
+      const std::vector<Plot> plots = sweep_plots(axis, quantity.key, summary.configurations);
+      if (!plots.empty() && shown.size() < kMost) shown.push_back(plots.front());
+    }
+    if (!shown.empty()) return figures(shown);
+  }
+  return {};
+}
+
 /// "6 runs with camera.frame_rate_hz = 120: …", for each kind of reason.
 std::vector<std::string> failure_lines(const validate::FailedRuns& failures) {
   const auto runs = [](std::uint64_t n) { return fmt::format("{} {}", n, n == 1 ? "run" : "runs"); };
@@ -283,10 +307,11 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
     body += folded("Over each key of the sweep", axis_plots(summary, progress));
     return page(summary.name, body);
   }
-  Html body =
-      question_heading(summary.name, "How large are the errors, and what do they depend on?") + soft + runs_of(summary);
-  body += sweep_meaning(summary) + mass_study_section(summary.masses);
-  body += tables_of(summary) + axis_plots(summary, progress);
+  Html body = question_heading(summary.name, "How large are the errors, and what do they depend on?") + soft;
+  body += sweep_meaning(summary) + answer_plots(summary) + error_table(summary) + runs_of(summary);
+  body += mass_study_section(summary.masses);
+  body += folded("All runs, estimators and configurations", tables_of(summary));
+  body += folded("Over each key of the sweep", axis_plots(summary, progress));
   return page(summary.name, body);
 }
 

@@ -282,6 +282,7 @@ bool is_absent(const validate::QuantityComparison& of) {
 std::string comparison_table(const validate::Comparison& comparison) {
   HtmlTable table(
       {"quantity", "truth", "recovered", "sd", "error", "error / sd", "relative", "least sd", "efficiency"});
+  table.stack_when_narrow(1);
   std::string previous, estimator;
   for (const validate::QuantityComparison& q : comparison.quantities) {
     if (is_absent(q)) continue;

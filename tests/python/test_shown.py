@@ -104,6 +104,8 @@ class Shown(InFolder):
         self.assertEqual(len(axes), len(quantities))
         for ax, quantity in zip(axes, quantities):
             self.assertEqual(list(ax.lines[0].get_xdata()), [100.0, 200.0])
+            self.assertTrue(ax.get_ylabel().startswith("rms error of "))
+            self.assertNotIn("_", ax.get_ylabel())
             self.assertEqual(list(ax.lines[0].get_ydata()),
                              [row["rms_error"] for row in groups if row["quantity"] == quantity])
         from glidelab._sweeps import _numbers
@@ -131,8 +133,9 @@ class Shown(InFolder):
         made = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2)._made
         validation = glidelab.Validation(made, found, 1, 1, "{}")
         (ax,) = validation.plot()
-        self.assertEqual(ax.get_ylabel(), "error of mu")
+        self.assertEqual(ax.get_ylabel(), "error of µ")
         self.assertIn(PLOT, validation._repr_html_())
+        self.assertIn("<td>µ</td>", validation._repr_html_())
         requirement = glidelab.Requirement(made, "r", (glidelab.Candidate("c", True, "yes", 1.0, 2.0, 1e-5, (1e-4,),
                                                                           (1e-5,), (5e-5,)),), ("mu",))
         self.assertEqual(len(requirement.plot()), 1)

@@ -102,6 +102,21 @@ TEST_CASE("points of require that lie close together share one label") {
   CHECK(has(script, "set label '4' at"));
 }
 
+TEST_CASE("a label of require that would stand on the next point takes its number in") {
+  validate::Requirement requirement = one_camera("mu", 0.0005, 1.8e-5);
+  const validate::Candidate first = requirement.candidates.front();
+  // The axis is ln 100 + ln(1.2 x 1.6) = 5.26 long. Points join within 0.07 of it, 0.37, of the first: the second does,
+  // the third does not, but it lies 0.3 beside the end of their label.
+  requirement.candidates.clear();
+  for (const double cost : {10.0, 10.0 * std::exp(0.3), 10.0 * std::exp(0.6), 1000.0}) {
+    requirement.candidates.push_back(first);
+    requirement.candidates.back().pixels_s = 1e6 * cost;
+  }
+  const std::string script = report::requirement_plot(requirement).drawing.script;
+  CHECK(has(script, "set label '1-3' at"));
+  CHECK(has(script, "set label '4' at"));
+}
+
 TEST_CASE("a plan says sizes with their units, and what to do about effects that look alike") {
   diagnose::Plan plan;
   plan.clips = 2;

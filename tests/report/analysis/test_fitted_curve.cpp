@@ -81,13 +81,21 @@ TEST_CASE("a clip under a known force has no fitted curve, nor one without a law
   CHECK(report::fitted_plots(results, 4).size() == 1);
 }
 
-TEST_CASE("an analysis' page begins with the values as tiles, then one table, then x(t) under the fitted law") {
+TEST_CASE("an analysis' page has the values as tiles, one plot and one table open, and all other plots folded") {
   const std::string html = report::analysis_report("glider", moving(2.7, 0.4, 0.0), {}).html;
   const std::size_t tile = html.find("<b>2.700"), table = html.find("id=\"recovered\""),
                     fitted = html.find("id=\"fitted\"");
+  const std::string fold = "<details class=\"part\"";
   CHECK(tile < table);
-  CHECK(table < html.find("id=\"meaning\""));
+  CHECK(table < html.find(fold));
+  CHECK(html.find(fold) < html.find("id=\"meaning\""));
+  CHECK(html.find(fold) < fitted);
   CHECK(fitted < html.find("id=\"phase\""));
+  const std::string many = report::analysis_report("track", tests::made_results(), {}).html;
+  const std::string open = many.substr(0, many.find(fold));
+  CHECK(open.find("<figure>") != std::string::npos);
+  CHECK(open.find("<figure>") == open.rfind("<figure>"));
+  CHECK(open.find("<figure>") < open.find("<table"));
   CHECK(fitted != std::string::npos);
   CHECK(html.find("fit of") == std::string::npos);  // the lines' name, not that of the other estimator
 }

@@ -85,6 +85,27 @@ TEST_CASE("a phase diagram carries its lines' bands and the bars of some points,
   CHECK(block(plots[0], "bars0").rows.size() <= 13);
 }
 
+TEST_CASE("the overview has all configurations, with the inclination where there are several") {
+  core::AnalysisResults results = tests::made_results();
+  results.configurations.resize(1);
+  results.configurations.push_back(results.configurations.front());
+  results.configurations.back().incline_deg += 1.0;
+  REQUIRE(report::phase_groups(results).size() == 2);
+  const std::optional<report::Plot> plot = report::phase_overview(results);
+  REQUIRE(plot);
+  CHECK(plot->drawing.data.size() == 2 * 3);  // points, bars and lines of each
+  const report::PhaseGroup both = {4.0, {0, 1}};
+  const std::string one = report::phase_label(results, both, 0), other = report::phase_label(results, both, 1);
+  CHECK(one.ends_with("°"));
+  CHECK(one != other);
+  CHECK(plot->drawing.script.find("unset key") == std::string::npos);
+  for (std::size_t i = 0; i < report::kColors.size(); ++i)
+    results.configurations.push_back(results.configurations.front());
+  CHECK(report::phase_overview(results)->drawing.script.find("unset key") != std::string::npos);
+  results.clips.clear();
+  CHECK_FALSE(report::phase_overview(results));
+}
+
 TEST_CASE("residuals that are far below their intervals are drawn beside these") {
   core::AnalysisResults results = tests::made_results();
   // Every point on the line of its direction, as smoothers leave them that know the law's exponential.

@@ -25,6 +25,15 @@ TEST_CASE("a table of long names gives them a wide column, one of short names or
   CHECK(links.str().find("<table>") != std::string::npos);  // what is not seen takes no room
 }
 
+TEST_CASE("a table that stacks when narrow names every cell after its column, the row's own names aside") {
+  report::HtmlTable table({"no.", "camera", "a<sub>0</sub> (m/s²)", "at most"}, 2);
+  table.stack_when_narrow(2);
+  table.row({"1", "webcam", "2.0", "3.0"});
+  CHECK(table.str().find("<table class=\"stack numbered\">") != std::string::npos);
+  CHECK(table.str().find("<td>1</td><td>webcam</td><td class=\"n\" data-title=\"a0 (m/s²)\">2.0</td>"
+                         "<td class=\"n\" data-title=\"at most\">3.0</td>") != std::string::npos);
+}
+
 TEST_CASE("a long title of a column gets width for few lines, a short one and the first column's do not") {
   const std::string table = report::HtmlTable({"a long first title", "gap", "standard deviations off, before"}).str();
   CHECK(table.find("<th>a long first title</th><th class=\"n\">gap</th><th class=\"n w\">standard") !=

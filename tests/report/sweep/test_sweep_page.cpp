@@ -179,6 +179,19 @@ TEST_CASE("a sweep of two configurations has a table and an error plot of each, 
   CHECK(plots[1].drawing.data[0].rows[0][1] == 1.6 * 6e-4);
 }
 
+TEST_CASE("a sweep's page has its meaning, one plot a key and one table open, and all else folded") {
+  const std::string html = report::sweep_report(summary()).html;
+  const std::size_t folds = html.find("<details");
+  const std::string open = html.substr(0, folds);
+  CHECK(has(open, "smallest rms error"));
+  CHECK(has(open, "<figure>"));
+  CHECK(open.find("<figure>") == open.rfind("<figure>"));
+  CHECK(open.find("<table") != std::string::npos);
+  CHECK(open.find("<table") == open.rfind("<table"));
+  CHECK(folds < html.find("Over rate_hz"));
+  CHECK(folds < html.find("Each configuration"));
+}
+
 TEST_CASE("the legend of many lines has a place of its own above the plot") {
   validate::SweepSummary of = summary();
   of.axes[0].of_configurations.clear();
