@@ -158,6 +158,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   assert(!downhill || *downhill == 1 || *downhill == -1);
   const ColumnTable table = read_column_table(file);
   TrackData track;
+  if (!table.sheet.empty()) track.notes.emplace_back(SheetTaken{table.sheet});
   const ChosenColumns chosen = choose_columns(table, column, track.notes);
   const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
   const Across across = chosen.across.value_or(Across{chosen.place});

@@ -51,7 +51,7 @@ void take_rows_as_frames(TrackData& track);
 TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n,
                            const std::string& what);
 
-/// A track from a table exported by another program (column_table.h).
+/// A track from a table exported by another program (column_table.h), as text or in a workbook (workbook.h).
 ///
 /// The columns of x and t: table_columns.h. Units: m, dm, cm, mm, um, km, in, ft; s, ms, us, min. If none is stated,
 /// metres and seconds are assumed, and a note says so. Rows without time or x are left out (columns of several runs
