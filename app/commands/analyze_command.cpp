@@ -113,6 +113,7 @@ void analyze(const AnalyzeOptions& options) {
   core::AnalysisOptions how;
   how.jobs = options.common.jobs;
   how.bare = options.bare;
+  if (options.with.empty()) how.bare.speeds = core::SpeedsAlone::taken;  // causes are fitted to positions
   read_bandwidth(options.bandwidth, how);
   how.lines = estimator.lines;
   how.smoother = options.smoother;

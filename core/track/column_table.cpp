@@ -401,7 +401,13 @@ void drop_empty_columns_at_end(ColumnTable& table) {
 }  // namespace
 
 ColumnTable read_column_table(const std::filesystem::path& file) {
-  if (is_spreadsheet(file)) return read_workbook(file);
+  if (is_spreadsheet(file)) {
+    const SheetText sheet = read_sheet(file);
+    ColumnTable table = table_of_text(sheet.text, sheet.shown_as);
+    table.sheet = sheet.sheet;
+    table.dates = sheet.dates;
+    return table;
+  }
   const std::string bytes = base::read_file(file);
   const std::string name = file.string();
   const NoTable other = no_table_in(bytes);

@@ -11,6 +11,7 @@
 /// chosen so that most lines consist only of numbers.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -53,6 +54,7 @@ struct ColumnTable {
   std::vector<TableColumn> columns;  ///< two or more
   std::vector<int> line;             ///< of each data line, 1-based
   std::string sheet = {};            ///< of a workbook with several
+  std::size_t dates = 0;             ///< cells of a workbook left empty because they show a date or a time of day
 };
 
 /// `name` is the file, for messages. InputError as below.

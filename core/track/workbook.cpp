@@ -311,17 +311,6 @@ std::string text_of(const Workbook& book, const Sheet& sheet) {
   return text;
 }
 
-/// Whether there is a column of times with values, or none is named and the first has values.
-bool has_times(const ColumnTable& table) {
-  const auto has_values = [](const TableColumn& column) {
-    return std::any_of(column.values.begin(), column.values.end(), [](const auto& value) { return value.has_value(); });
-  };
-  const auto names_time = [](const TableColumn& column) { return is_time_column(column); };
-  if (std::none_of(table.columns.begin(), table.columns.end(), names_time)) return has_values(table.columns.front());
-  return std::any_of(table.columns.begin(), table.columns.end(),
-                     [&](const TableColumn& column) { return is_time_column(column) && has_values(column); });
-}
-
 }  // namespace
 
 bool is_spreadsheet(const fs::path& file) {
@@ -331,7 +320,7 @@ bool is_spreadsheet(const fs::path& file) {
          (entry_of(archive, "mimetype") != nullptr && entry_of(archive, "content.xml") != nullptr);
 }
 
-ColumnTable read_workbook(const fs::path& file) {
+SheetText read_sheet(const fs::path& file) {
   {
     const ZipArchive archive(file);
     if (entry_of(archive, kWorkbookPart) == nullptr) {
@@ -351,18 +340,22 @@ ColumnTable read_workbook(const fs::path& file) {
     }
     if (rows >= kFewestSheetRows) break;
   }
-  const std::string name = fmt::format("{}: sheet \"{}\"", file.string(), taken->name);
-  const auto refuse_dates = [&] {
-    throw base::InputError(
-        base::Issue{name, 0, "", fmt::format("{} cells with dates or times of day", taken->dates),
-                    "times in seconds as plain numbers: a time of day counts days, so multiply it by "
-                    "86400 and format the cells as numbers"});
-  };
-  if (taken->dates > 0 && taken->rows_of_numbers() == 0) refuse_dates();
-  ColumnTable table = table_of_text(text_of(book, *taken), name);
-  if (taken->dates > 0 && !has_times(table)) refuse_dates();
-  if (book.sheets() > 1) table.sheet = taken->name;
-  return table;
+  SheetText sheet;
+  sheet.shown_as = fmt::format("{}: sheet \"{}\"", file.string(), taken->name);
+  sheet.dates = taken->dates;
+  if (taken->dates > 0 && taken->rows_of_numbers() == 0) {
+    throw base::InputError(base::Issue{
+        sheet.shown_as, 0, "", fmt::format("{} cells with dates or times of day", taken->dates), dates_expectation()});
+  }
+  sheet.text = text_of(book, *taken);
+  if (book.sheets() > 1) sheet.sheet = taken->name;
+  return sheet;
+}
+
+std::string dates_expectation() {
+  return "times in seconds as plain numbers: a time of day counts days, so multiply it by 86400 and format the cells "
+         "as "
+         "numbers";
 }
 
 }  // namespace glidelab::core
