@@ -113,6 +113,7 @@ void analyze(const AnalyzeOptions& options) {
   core::AnalysisOptions how;
   how.jobs = options.common.jobs;
   how.bare = options.bare;
+  if (options.with.empty()) how.bare.speeds = core::SpeedsAlone::taken;  // causes are fitted to positions
   read_bandwidth(options.bandwidth, how);
   how.lines = estimator.lines;
   how.smoother = options.smoother;
@@ -171,7 +172,8 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->add_option(
           "EXPERIMENT", options->experiments,
           "Folders that hold an experiment.toml; several must share the glider and the track. Or track files: t_s,x_m, "
-          "an export from Tracker, Logger Pro, Capstone or phyphox, or a Tracker project (.trk, .trz)")
+          "an export from Tracker, Logger Pro, Capstone or phyphox, a workbook (.xlsx), or a Tracker project (.trk, "
+          ".trz)")
       ->type_name("DIR|FILE")
       ->required();
   command->add_option("--smoother", options->smoother, smoother_help())

@@ -63,7 +63,8 @@ struct ClipSetup {
   std::optional<double> end_s;
   std::optional<PixelPoint> start_px = {};  ///< where its marker is at start_s, or in its first frame; in place of the
                                             ///< marker's own start_px
-  std::string group;  ///< never empty once read: as given, otherwise one name for each stated inclination
+  std::string group;          ///< never empty once read: as given, otherwise one name for each stated inclination
+  bool speeds_alone = false;  ///< its track may be a table of speeds without positions
 };
 
 /// The settings specific to a set-up; those left out come from [calibration], [plumb] and [track].

@@ -276,6 +276,7 @@ void check_smoothing(const MotionOptions& options) {
 }
 
 ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const MotionOptions& options) {
+  assert(filed.v_m_s.empty());
   ClipResult clip;
   clip.lost_frames = lost_frames(filed, stated.mass_kg);
   const bool put_right = options.lost_frames == LostFrameTimes::put_right;

@@ -60,7 +60,7 @@ void check_smoothing(const MotionOptions& options);
 
 /// Smooths one clip's x(t), decides which points count, and fits a line for v < 0 and v
 /// > 0. A given bandwidth is used (InputError if it is longer than the clip); otherwise the named rule or
-/// choose_bandwidth() chooses it.
+/// choose_bandwidth() chooses it. Not for a track of speeds (asserted): speed_motion.h.
 ClipResult analyze_motion(const ClipSetup& setup, const TrackData& track, const MotionOptions& options);
 
 }  // namespace glidelab::core

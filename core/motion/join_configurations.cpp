@@ -11,6 +11,7 @@
 #include "core/math/least_squares.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/motion/lines/line_law.h"
+#include "core/motion/speed_motion.h"
 #include "core/result/estimate.h"
 
 namespace glidelab::core {
@@ -330,7 +331,8 @@ AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::
   results.clips.resize(setups.size());
   std::atomic<std::size_t> done = 0;
   base::for_each_parallel(setups.size(), jobs, [&](std::size_t i) {
-    results.clips[i] = analyze_motion(setups[i], tracks[i], options);
+    results.clips[i] = tracks[i].v_m_s.empty() ? analyze_motion(setups[i], tracks[i], options)
+                                               : analyze_speeds(setups[i], tracks[i], options);
     results.clips[i].images = tracks[i].images;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });

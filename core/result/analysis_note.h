@@ -49,6 +49,11 @@ struct EvenStamps {
 
 // About a table of positions, as it was read. Columns are named by their headers, as in the file.
 
+/// The sheet read of a workbook that has others.
+struct SheetTaken {
+  std::string sheet;
+};
+
 /// The columns read as positions and times, of a table that has others.
 struct ColumnsTaken {
   std::string x, t;
@@ -323,14 +328,15 @@ struct FitScatters {
 
 using AnyNote =
     std::variant<FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps,
-                 ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath, CountedAlongMotion,
-                 RowsIncomplete, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant, PositionsOutsideClip,
-                 PositionsFilledIn, AssumedStatements, AssumedMass, OutlyingView, NoPatternInSight, UnrefinedCorners,
-                 CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
-                 MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, DarkMarker,
-                 DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing,
-                 OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine,
-                 NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, RobustFit, FitScatters>;
+                 SheetTaken, ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath,
+                 CountedAlongMotion, RowsIncomplete, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant,
+                 PositionsOutsideClip, PositionsFilledIn, AssumedStatements, AssumedMass, OutlyingView,
+                 NoPatternInSight, UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred,
+                 PlaneViewsDisagree, MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize,
+                 MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine,
+                 ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,
+                 NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams,
+                 InclineContradiction, RobustFit, FitScatters>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

@@ -191,9 +191,12 @@ struct ClipResult {
   double scale_sd_relative = 0.0;               ///< as in TrackData
   std::optional<double> rounding_m;             ///< step to which the positions are rounded, if that matters
   bool forced = false;                          ///< a known force acts
-  std::vector<LostFrames> lost_frames;          ///< found from the motion; MotionOptions says how they are treated
-  std::vector<FreeBlock> blocks;                ///< used in the fit of the whole motion
-  std::vector<LineFit> segments;                ///< at most one for each direction
+  /// Standard deviation of one speed, of a clip whose speeds were measured in place of positions: such a clip has no x,
+  /// no noise of a position and no blocks.
+  std::optional<double> speed_noise_m_s = {};
+  std::vector<LostFrames> lost_frames;  ///< found from the motion; MotionOptions says how they are treated
+  std::vector<FreeBlock> blocks;        ///< used in the fit of the whole motion
+  std::vector<LineFit> segments;        ///< at most one for each direction
   Quantity v_lim_m_s;
   std::vector<Stretch> stretches;
   std::vector<LeftOutInterval> left_out;

@@ -94,7 +94,12 @@ std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const Cl
 }  // namespace
 
 Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options) {
-  if (!is_bare_track(path)) return read_experiment(path, options.permitted);
+  const bool speeds = options.speeds == SpeedsAlone::taken;
+  if (!is_bare_track(path)) {
+    Experiment folder = read_experiment(path, options.permitted);
+    for (ClipSetup& clip : folder.clips) clip.speeds_alone = speeds;
+    return folder;
+  }
   Experiment experiment;
   experiment.folder = path.parent_path();
   experiment.file = path;
@@ -102,6 +107,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   ClipSetup clip;
   clip.name = experiment.name;
   clip.track = path;
+  clip.speeds_alone = speeds;
   clip.column = options.column;
   clip.mass_kg = options.mass_kg.value_or(1.0);
   clip.mass_assumed = !options.mass_kg && options.masses_kg.empty();
@@ -117,14 +123,15 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   return experiment;
 }
 
-TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column) {
+TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column,
+                     SpeedsAlone speeds) {
   if (is_tracker_project(file)) return read_tracker_project(file, downhill, column);
   if (downhill && is_along_y(*downhill)) {
     throw base::InputError(base::Issue{file.string(), 0, "downhill",
                                        fmt::format("\"{}\" for a table of positions", name_of(*downhill)),
                                        "\"+X\" or \"-X\": x is the column that `column` names, whatever it is called"});
   }
-  return read_track_csv(file, downhill ? std::optional(sign_of(*downhill)) : std::nullopt, column);
+  return read_track_csv(file, downhill ? std::optional(sign_of(*downhill)) : std::nullopt, column, speeds);
 }
 
 }  // namespace glidelab::core

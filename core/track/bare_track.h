@@ -22,7 +22,8 @@ struct TrackFileOptions {
   /// Which of the runs (or masses) of the file become clips: "all", or their numbers from 1 on, "1,3". Empty: the file
   /// is one clip.
   std::string runs = {};
-  std::vector<double> masses_kg = {};  ///< of these runs, one each; empty: mass_kg for all
+  std::vector<double> masses_kg = {};         ///< of these runs, one each; empty: mass_kg for all
+  SpeedsAlone speeds = SpeedsAlone::refused;  ///< also of a folder
 };
 
 /// A regular file that is not experiment.toml.
@@ -48,6 +49,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
 /// For a Tracker project (is_tracker_project()) read_tracker_project(), for any other file read_track_csv(). `column`
 /// is the point mass in the former case and the column in the latter. A table has no Y: `downhill` along Y is an
 /// InputError there, and an empty value means that its x is positive downhill.
-TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column);
+TrackData read_track(const std::filesystem::path& file, std::optional<Downhill> downhill, const std::string& column,
+                     SpeedsAlone speeds = SpeedsAlone::refused);
 
 }  // namespace glidelab::core

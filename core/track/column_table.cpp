@@ -13,6 +13,7 @@
 #include "core/track/number_field.h"
 #include "core/track/table_columns.h"
 #include "core/track/text_encoding.h"
+#include "core/track/workbook.h"
 
 namespace glidelab::core {
 namespace {
@@ -401,19 +402,30 @@ void drop_empty_columns_at_end(ColumnTable& table) {
 }  // namespace
 
 ColumnTable read_column_table(const std::filesystem::path& file) {
+  if (is_spreadsheet(file)) {
+    const SheetText sheet = read_sheet(file);
+    ColumnTable table = table_of_text(sheet.text, sheet.shown_as);
+    table.sheet = sheet.sheet;
+    table.dates = sheet.dates;
+    return table;
+  }
   const std::string bytes = base::read_file(file);
-  ColumnTable table;
-  table.file = file.string();
+  const std::string name = file.string();
   const NoTable other = no_table_in(bytes);
-  if (!other.what.empty()) throw base::InputError(base::Issue{table.file, 0, "", other.what, other.advice});
+  if (!other.what.empty()) throw base::InputError(base::Issue{name, 0, "", other.what, other.advice});
   const std::string text = as_utf8(bytes);
-  const std::string_view rest = text;
-  if (rest.find('\0') != std::string_view::npos) {
-    throw base::InputError(base::Issue{table.file, 0, "", "zero bytes (UTF-16 without a byte-order mark, or no text)",
+  if (text.find('\0') != std::string::npos) {
+    throw base::InputError(base::Issue{name, 0, "", "zero bytes (UTF-16 without a byte-order mark, or no text)",
                                        "text in UTF-8 with a track; a video goes into a folder, which glidelab new "
                                        "FOLDER makes"});
   }
-  const Lines read = lines_of(rest);
+  return table_of_text(text, name);
+}
+
+ColumnTable table_of_text(std::string_view text, const std::string& name) {
+  ColumnTable table;
+  table.file = name;
+  const Lines read = lines_of(text);
   const std::vector<Line>& lines = read.all;
   const auto format = format_of(lines);
   if (!format) {

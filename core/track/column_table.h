@@ -11,6 +11,7 @@
 /// chosen so that most lines consist only of numbers.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -52,11 +53,16 @@ struct ColumnTable {
   bool has_header = false;
   std::vector<TableColumn> columns;  ///< two or more
   std::vector<int> line;             ///< of each data line, 1-based
+  std::string sheet = {};            ///< of a workbook with several
+  std::size_t dates = 0;             ///< cells of a workbook left empty because they show a date or a time of day
 };
 
-/// The text may be UTF-8, UTF-16 or Latin-1 (text_encoding.h). InputError if the file does not have two columns of
-/// numbers, is no text (a spreadsheet's own format, JSON), or has text between the numbers (up to ten
-/// issues, with line and column).
+/// `name` is the file, for messages. InputError as below.
+ColumnTable table_of_text(std::string_view text, const std::string& name);
+
+/// A workbook of Excel (workbook.h), or text. The text may be UTF-8, UTF-16 or Latin-1 (text_encoding.h). InputError if
+/// the file does not have two columns of numbers, is no text (a spreadsheet's own format, JSON), or has text between
+/// the numbers (up to ten issues, with line and column).
 ColumnTable read_column_table(const std::filesystem::path& file);
 
 }  // namespace glidelab::core

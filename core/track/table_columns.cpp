@@ -89,10 +89,11 @@ void refuse_without_positions(const ColumnTable& table) {
     forces |= force;
   }
   if (speeds) {
-    throw wrong_column(table, "speeds without positions, " + columns_text(table),
-                       "positions over time: errors grow when speeds are integrated, and the stated intervals would be "
-                       "too narrow. Export the distance as well: an encoder counts it, a motion sensor measures it. A "
-                       "radar measures only speed, so its recordings cannot be analysed");
+    throw wrong_column(
+        table, "speeds without positions, " + columns_text(table),
+        "positions over time, or glidelab analyze, which takes speeds as such. Where speeds are integrated, errors "
+        "grow and the stated intervals would be too narrow. Export the distance as well: an encoder counts "
+        "it, a motion sensor measures it");
   }
   if (accelerations) {
     throw wrong_column(table, "accelerations without positions, " + columns_text(table),
@@ -332,6 +333,13 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
                      "one, called t or time or with a unit of time; divide frame numbers by the frame rate");
 }
 
+std::optional<double> metres_per_second(std::string_view unit) {
+  static constexpr std::array<std::pair<std::string_view, double>, 5> kSpeeds{
+      {{"m/s", 1.0}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"km/h", 1.0 / 3.6}, {"m s-1", 1.0}}};
+  const auto at = std::ranges::find(kSpeeds, unit, &std::pair<std::string_view, double>::first);
+  return at == kSpeeds.end() ? std::nullopt : std::optional(at->second);
+}
+
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),
                  const char* kind, const char* standard, std::vector<Note>& notes) {
   if (column.unit.empty()) {
@@ -360,8 +368,30 @@ ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked,
   return chosen;
 }
 
+std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::string& asked) {
+  const auto is_other = [](const TableColumn& column) {
+    return !is_time_column(column) && !is_speed(column) && !is_acceleration(column) && !is_force(column);
+  };
+  if (std::ranges::any_of(table.columns, is_other)) return {};
+  const std::vector<std::size_t> found =
+      columns_that(table, [](const TableColumn& column) { return is_speed(column) && !is_time_column(column); });
+  if (found.empty()) return {};
+  if (asked.empty() && found.size() > 1) {
+    throw wrong_column(table, fmt::format("{} columns of speeds among {}", found.size(), columns_text(table)),
+                       "one: say which (--column, or column = \"…\" in experiment.toml)");
+  }
+  ChosenColumns chosen = only(asked.empty() ? found.front() : asked_column(table, asked));
+  if (!std::ranges::count(found, chosen.place)) return {};
+  chosen.time = time_column(table, chosen.place);
+  return chosen;
+}
+
 double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {
   return factor_of(table, column, metres_per, "m, dm, cm, mm, um, km, in or ft", "metres", notes);
+}
+
+double metres_per_second_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {
+  return factor_of(table, column, metres_per_second, "m/s, cm/s, mm/s or km/h", "metres per second", notes);
 }
 
 double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {

@@ -39,8 +39,14 @@ struct ChosenColumns {
 /// InputError: no or several candidates for x or t, a curved path.
 ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes);
 
-/// Metres (or seconds) per number of a column; adds a note if it states no unit. InputError for another unit.
+/// The columns of a table that has speeds and no positions, where `place` is the one of the speeds; empty for any other
+/// table. InputError: several speeds and none requested; no such column; no or several columns of time.
+std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::string& asked);
+
+/// Metres (or seconds, or metres a second) per number of a column; adds a note if it states no unit. InputError for
+/// another unit.
 double metres_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
+double metres_per_second_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
 double seconds_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes);
 
 /// Whether at least half of the steps are positive. Otherwise these are not times at all, rather than times with an

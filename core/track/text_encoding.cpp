@@ -63,7 +63,8 @@ std::string as_utf8(std::string_view bytes) {
 
 NoTable no_table_in(std::string_view bytes) {
   if (bytes.starts_with("\xD0\xCF\x11\xE0")) {
-    return {"an Excel file (.xls)", "text: save the sheet as CSV (phyphox exports CSV itself)"};
+    return {"an Excel file (.xls)",
+            "a workbook that is saved as .xlsx without a password, or text: save the sheet as CSV"};
   }
   if (bytes.starts_with("\x93NUMPY")) return {"an array of numpy (.npy)", "text: numpy.savetxt writes it"};
   if (bytes.starts_with("MATLAB ") && bytes.substr(0, 40).find("MAT-file") != std::string_view::npos)

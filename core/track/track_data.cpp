@@ -20,6 +20,7 @@
 #include "core/track/column_table.h"
 #include "core/track/even_times.h"
 #include "core/track/table_columns.h"
+#include "core/track/workbook.h"
 
 namespace glidelab::core {
 
@@ -137,7 +138,24 @@ std::vector<double> without_jumps(const std::vector<double>& x_m) {
 
 }  // namespace
 
+namespace {
+
+void count_along_speeds(TrackData& track) {
+  double sum = 0.0, size = 0.0;
+  for (const double v : track.v_m_s) {
+    sum += v;
+    size += std::abs(v);
+  }
+  const double along = std::abs(sum) < kHardlyTurns * size ? track.v_m_s.back() - track.v_m_s.front() : sum;
+  if (!(along < 0.0)) return;
+  for (double& v : track.v_m_s) v = -v;
+  track.notes.emplace_back(CountedAlongMotion{});
+}
+
+}  // namespace
+
 void count_along_motion(TrackData& track) {
+  if (!track.v_m_s.empty()) return count_along_speeds(track);
   const std::vector<double> x_m = without_jumps(track.x_m);
   const auto [low, high] = std::minmax_element(x_m.begin(), x_m.end());
   double displacement = x_m.back() - x_m.front();
@@ -154,21 +172,32 @@ void count_along_motion(TrackData& track) {
   track.notes.emplace_back(CountedAlongMotion{});
 }
 
-TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill) {
+TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
+                       SpeedsAlone speeds) {
   assert(!downhill || *downhill == 1 || *downhill == -1);
   const ColumnTable table = read_column_table(file);
   TrackData track;
-  const ChosenColumns chosen = choose_columns(table, column, track.notes);
+  if (!table.sheet.empty()) track.notes.emplace_back(SheetTaken{table.sheet});
+  const std::optional<ChosenColumns> of_speeds =
+      speeds == SpeedsAlone::taken ? choose_speeds(table, column) : std::nullopt;
+  const ChosenColumns chosen = of_speeds ? *of_speeds : choose_columns(table, column, track.notes);
   const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
   const Across across = chosen.across.value_or(Across{chosen.place});
   const TableColumn& y = table.columns[across.column];
-  const double metres = downhill.value_or(1) * metres_of(table, x, track.notes);
+  const double metres = downhill.value_or(1) *
+                        (of_speeds ? metres_per_second_of(table, x, track.notes) : metres_of(table, x, track.notes));
   const bool like_x = y.unit.empty() || across.column == chosen.place;
   const double y_metres = like_x ? metres : downhill.value_or(1) * metres_of(table, y, track.notes);
   const double seconds = seconds_of(table, t, track.notes);
   if (table.columns.size() > 2) {
     const bool run_apart = !x.run.empty() && x.text.find(x.run) == std::string::npos;
     track.notes.emplace_back(ColumnsTaken{x.text, t.text, run_apart ? x.run : ""});
+  }
+  const bool no_times = std::ranges::none_of(t.values, [](const auto& value) { return value.has_value(); });
+  if (table.dates > 0 && no_times) {
+    throw base::InputError(base::Issue{table.file, 0, fmt::format("column \"{}\"", t.text),
+                                       fmt::format("{} cells with dates or times of day", table.dates),
+                                       dates_expectation()});
   }
   if (!rises_mostly(t)) {
     throw base::InputError(
@@ -177,6 +206,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   }
   std::vector<base::Issue> issues;
   std::vector<int> lines;
+  std::vector<double>& values = of_speeds ? track.v_m_s : track.x_m;
   std::size_t missing = 0, missing_so_far = 0;
   for (std::size_t row = 0; row < table.line.size(); ++row) {
     if (!x.values[row] || !y.values[row] || !t.values[row]) {
@@ -191,7 +221,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
                         fmt::format("{}", *t.values[row]), fmt::format("a time above that of line {}", lines.back())});
     }
     track.t_s.push_back(at);
-    track.x_m.push_back(across.cos * metres * *x.values[row] + across.sin * y_metres * *y.values[row]);
+    values.push_back(across.cos * metres * *x.values[row] + across.sin * y_metres * *y.values[row]);
     lines.push_back(table.line[row]);
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
@@ -249,8 +279,8 @@ bool has_field(std::string_view line, std::string_view name) {
   return false;
 }
 
-/// The first line that is neither empty nor a comment has a field `t_s`.
-bool has_own_header(const std::filesystem::path& file) {
+/// The first line that is neither empty nor a comment, if it has a field `t_s`; empty otherwise.
+std::optional<std::string> own_header(const std::filesystem::path& file) {
   const std::string text = base::read_file(file);
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
@@ -260,23 +290,28 @@ bool has_own_header(const std::filesystem::path& file) {
     rest.remove_prefix(newline == std::string_view::npos ? rest.size() : newline + 1);
     const auto first = line.find_first_not_of(" \t\r");
     if (first == std::string_view::npos || line[first] == '#') continue;
-    return has_field(line, "t_s");
+    return has_field(line, "t_s") ? std::optional<std::string>(line) : std::nullopt;
   }
-  return true;  // an empty file gets the plain error
+  return "t_s,x_m";  // an empty file gets the plain error
 }
 
 }  // namespace
 
-TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill, const std::string& column) {
+TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill, const std::string& column,
+                         SpeedsAlone speeds) {
   assert(!downhill || *downhill == 1 || *downhill == -1);
-  if (!column.empty() || !has_own_header(file)) return import_track(file, column, downhill);
-  const base::CsvTable table = base::read_csv(file, {"t_s", "x_m"}, {"force_n"});
+  const std::optional<std::string> header = column.empty() ? own_header(file) : std::nullopt;
+  if (!header) return import_track(file, column, downhill, speeds);
+  const bool of_speeds = speeds == SpeedsAlone::taken && has_field(*header, "v_m_s") && !has_field(*header, "x_m");
+  const base::CsvTable table =
+      of_speeds ? base::read_csv(file, {"t_s", "v_m_s"}, {}) : base::read_csv(file, {"t_s", "x_m"}, {"force_n"});
   TrackData track;
   track.t_s = table.column("t_s");
   check_times(table, track.t_s);
   check_gaps(track, table.file, "column \"t_s\"", table.line);
-  track.x_m = table.column("x_m");
-  for (double& x : track.x_m) x *= downhill.value_or(1);
+  std::vector<double>& values = of_speeds ? track.v_m_s : track.x_m;
+  values = table.column(of_speeds ? "v_m_s" : "x_m");
+  for (double& value : values) value *= downhill.value_or(1);
   if (table.has("force_n")) {
     track.force_n = table.column("force_n");
     for (double& force : track.force_n) force *= downhill.value_or(1);

@@ -21,7 +21,11 @@ namespace glidelab::core {
 /// again are needed for the noise.
 inline constexpr std::size_t kFewestTrackPoints = 8;
 
-/// Positions along the line of motion, positive downhill. All vectors have one length; times rise strictly.
+/// Whether a table of speeds without positions is taken.
+enum class SpeedsAlone { refused, taken };
+
+/// Positions along the line of motion, positive downhill, or speeds without positions. All vectors have one length;
+/// times rise strictly.
 struct TrackData {
   std::vector<double> t_s;  ///< frames in which the marker was found, middle of exposure
   std::vector<double> x_m;
@@ -38,6 +42,7 @@ struct TrackData {
   std::shared_ptr<const ImageRecord> images;  ///< if requested
   bool dark_marker = false;                   ///< seen as darker than its surroundings, with no stated colour
   std::vector<Note> notes;
+  std::vector<double> v_m_s = {};  ///< measured speeds in place of positions: x_m and force_n are empty then
 };
 
 /// Takes every point of a track from a file as a frame in which the object was seen; the frame rate is one over the
@@ -51,7 +56,7 @@ void take_rows_as_frames(TrackData& track);
 TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std::vector<double> force_n,
                            const std::string& what);
 
-/// A track from a table exported by another program (column_table.h).
+/// A track from a table exported by another program (column_table.h), as text or in a workbook (workbook.h).
 ///
 /// The columns of x and t: table_columns.h. Units: m, dm, cm, mm, um, km, in, ft; s, ms, us, min. If none is stated,
 /// metres and seconds are assumed, and a note says so. Rows without time or x are left out (columns of several runs
@@ -60,11 +65,14 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 /// x is multiplied by `downhill`. If that is not stated and x is a height that was not requested, x is counted along
 /// the motion (count_along_motion()). InputError: no or several candidates for x, a curved path, a unit that is neither
 /// length nor time, times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than
-/// kFewestTrackPoints.
-TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill);
+/// kFewestTrackPoints. A table with speeds and no positions is an InputError, or gives v_m_s; its units are m/s, cm/s,
+/// mm/s or km/h.
+TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
+                       SpeedsAlone speeds = SpeedsAlone::refused);
 
 /// Makes x positive in the direction of motion if the body hardly turns; otherwise in the direction of acceleration. A
 /// note says so if this reverses the sign: for a height, and for the distance from a sensor towards which a body falls.
+/// Speeds likewise.
 void count_along_motion(TrackData& track);
 
 /// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or a table exported
@@ -72,8 +80,10 @@ void count_along_motion(TrackData& track);
 /// positive downhill. Times stay those of the file except for take_rows_as_frames(). InputError, up to ten issues named
 /// by line: not a number, a time that does not rise, a gap that is too long (core/math/time_gap.h), too few points.
 ///
+/// With SpeedsAlone::taken also the header `t_s,v_m_s`.
+///
 /// A file whose header has no `t_s`, or of which a column is requested, goes to import_track().
-TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill,
-                         const std::string& column = {});
+TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> downhill, const std::string& column = {},
+                         SpeedsAlone speeds = SpeedsAlone::refused);
 
 }  // namespace glidelab::core

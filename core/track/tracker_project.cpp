@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <set>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "core/track/column_table.h"
 #include "core/track/table_columns.h"
 #include "core/track/tracker_xml.h"
+#include "core/track/workbook.h"
 #include "core/track/zip_archive.h"
 
 namespace glidelab::core {
@@ -47,9 +47,9 @@ std::vector<TrackerProject> projects_of_archive(const fs::path& file) {
   }
   if (entries.empty() || entries.size() > kMostProjects) {
     const bool none = entries.empty();
-    throw base::InputError(base::Issue{
-        file.string(), 0, "", fmt::format("a zip archive with {} Tracker projects (.trk)", entries.size()),
-        none ? "one or more; a spreadsheet is read as text (CSV)" : fmt::format("at most {}", kMostProjects)});
+    throw base::InputError(
+        base::Issue{file.string(), 0, "", fmt::format("a zip archive with {} Tracker projects (.trk)", entries.size()),
+                    none ? "one or more, or a workbook of Excel (.xlsx)" : fmt::format("at most {}", kMostProjects)});
   }
   std::vector<TrackerProject> projects;
   for (const ZipArchive::Entry& entry : entries) {
@@ -58,14 +58,6 @@ std::vector<TrackerProject> projects_of_archive(const fs::path& file) {
     projects.back().name = last_part(entry.name);
   }
   return projects;
-}
-
-std::string first_bytes_of(const fs::path& file, std::size_t count) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes(count, '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(count));
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  return bytes;
 }
 
 constexpr std::size_t kLookedAt = 64;  // bytes: a byte-order mark and some blanks may come first
@@ -273,7 +265,7 @@ void take_steps_as_frames(const TrackerProject& project, const std::vector<Place
 
 bool is_tracker_project(const fs::path& file) {
   const std::string first = first_bytes_of(file, kLookedAt);
-  return is_zip_archive(first) || is_xml(first);
+  return is_zip_archive(first) ? !is_spreadsheet(file) : is_xml(first);
 }
 
 std::vector<std::string> point_masses_of(const fs::path& file) {

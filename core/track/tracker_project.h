@@ -16,7 +16,8 @@
 
 namespace glidelab::core {
 
-/// Decides by the file's first bytes: a zip archive or XML. (read_tracker_project() decides whether it is a project.)
+/// A zip archive without a spreadsheet (workbook.h), or XML, by the file's first bytes. (read_tracker_project() decides
+/// whether it is a project.) InputError if it begins like a zip archive and is none.
 bool is_tracker_project(const std::filesystem::path& file);
 
 /// `point_mass`: its name ("PROJECT.trk: NAME" if several projects have it) or its number from 1 on; empty if there is

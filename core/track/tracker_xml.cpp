@@ -10,6 +10,7 @@
 
 #include "base/errors.h"
 #include "base/math/angles.h"
+#include "core/track/xml_document.h"
 
 namespace glidelab::core {
 namespace {
@@ -149,23 +150,6 @@ class Object {
 
 constexpr const char* kWanted = "a project of Tracker (.trk, or .trz with one in it), or a table of positions as text";
 
-pugi::xml_document parsed(std::string_view xml, const std::string& shown_as) {
-  pugi::xml_document document;
-  const pugi::xml_parse_result result =
-      document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_doctype);
-  if (!result) {
-    const auto until = xml.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)));
-    const auto line = static_cast<int>(1 + std::count(until.begin(), until.end(), '\n'));
-    throw base::InputError(base::Issue{
-        shown_as, line, "", fmt::format("XML that breaks off or is damaged ({})", result.description()), kWanted});
-  }
-  for (const pugi::xml_node node : document.children()) {
-    if (node.type() != pugi::node_doctype) continue;
-    throw base::InputError(base::Issue{shown_as, 0, "", "XML with a document type", kWanted});
-  }
-  return document;
-}
-
 /// In Tracker, a value that is not fixed holds from its key frame to the next one; of a fixed value, the last one
 /// stated counts in all frames.
 std::map<long, TrackerAxes> axes_of(const Object& panel) {
@@ -227,7 +211,7 @@ bool is_xml(std::string_view first_bytes) {
 TrackerProject parse_tracker_project(std::string_view xml, const std::string& shown_as) {
   TrackerProject project;
   project.shown_as = shown_as;
-  const pugi::xml_document document = parsed(xml, shown_as);
+  const pugi::xml_document document = parse_xml(xml, shown_as, kWanted);
   const pugi::xml_node root = document.document_element();
   const Object panel(root, "", shown_as);
   if (std::strcmp(root.name(), "object") != 0 || !panel.is(kPanel)) {

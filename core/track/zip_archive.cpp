@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 
 #include "base/errors.h"
 
@@ -81,6 +82,14 @@ std::string ZipArchive::read(const Entry& entry, std::size_t most) const {
 
 bool is_zip_archive(std::string_view first_bytes) {
   return first_bytes.starts_with("PK\x03\x04") || first_bytes.starts_with("PK\x05\x06");
+}
+
+std::string first_bytes_of(const std::filesystem::path& file, std::size_t count) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes(count, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
 
 }  // namespace glidelab::core

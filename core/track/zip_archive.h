@@ -42,4 +42,7 @@ class ZipArchive {
 /// Whether the file begins like a zip archive ("PK\x03\x04", or "PK\x05\x06" for an empty one).
 bool is_zip_archive(std::string_view first_bytes);
 
+/// `count` bytes, fewer if the file has fewer or cannot be read.
+std::string first_bytes_of(const std::filesystem::path& file, std::size_t count);
+
 }  // namespace glidelab::core

@@ -1,8 +1,11 @@
 #include "fit/trajectory/trajectory_results.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.h"
 #include "base/math/angles.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
@@ -88,6 +91,12 @@ void leave_out(const core::AnyReason& why, core::ConfigurationResult& result) {
 }  // namespace
 
 core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options) {
+  for (const core::ClipResult& clip : results.clips) {
+    if (!clip.speed_noise_m_s) continue;
+    throw base::InputError(base::Issue{"", 0, fmt::format("clip \"{}\": estimator", clip.name),
+                                       fmt::format("{} for speeds without positions", kTrajectory),
+                                       fmt::format("--estimator {}", name_of(core::LineMethod::ordinary))});
+  }
   results.estimator = kTrajectory;
   for (core::ConfigurationResult& configuration : results.configurations) {
     configuration.notes.clear();  // of the lines

@@ -121,7 +121,7 @@ Plot fitted_plot(const core::ClipResult& clip, const std::vector<FittedCurve>& c
 std::vector<FittedCurve> fitted_curves(const core::ClipResult& clip, const core::ConfigurationResult& configuration,
                                        double gravity_m_s2) {
   std::vector<FittedCurve> curves;
-  if (clip.forced) return curves;
+  if (clip.forced || clip.speed_noise_m_s) return curves;
   for (const core::Stretch& stretch : clip.stretches) {
     const std::optional<Law> law = law_of(configuration, stretch.direction, gravity_m_s2);
     if (!law) continue;

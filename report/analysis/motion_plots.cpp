@@ -164,7 +164,8 @@ std::vector<Plot> motion_plots(const core::ClipResult& clip) {
     return point.smoothed || point.measured_m.has_value();
   });
   if (!any) return {};
-  std::vector<Plot> plots = {motion_plot(clip, Variable::x)};
+  std::vector<Plot> plots;
+  if (!clip.speed_noise_m_s) plots.push_back(motion_plot(clip, Variable::x));
   const bool smoothed = std::any_of(clip.motion.begin(), clip.motion.end(),
                                     [](const core::MotionPoint& point) { return point.smoothed; });
   if (smoothed) {

@@ -56,6 +56,9 @@ struct AnalysisSentence {
         of.tick_s * 1e3, of.step_s * 1e3, std::ceil(of.half_width_s / of.step_s * 1e6));
   }
 
+  std::string operator()(const core::SheetTaken& of) const {
+    return fmt::format("the table is that of sheet \"{}\", the first of the workbook that has one", of.sheet);
+  }
   std::string operator()(const core::ColumnsTaken& of) const {
     return fmt::format("x is \"{}\", its time \"{}\"{}{}", of.x, of.t, of.run.empty() ? "" : ", ", of.run);
   }

@@ -54,7 +54,9 @@ std::string phase_csv(const core::ClipResult& clip) {
   for (const core::MotionPoint& point : clip.motion) {
     if (!point.smoothed) continue;
     MotionRow row(table, clip, point.t_s);
-    for (const double value : {point.t_s, point.x_m, point.v_m_s, point.a_m_s2}) row.put(value);
+    row.put(point.t_s);
+    row.put(clip.speed_noise_m_s ? std::nullopt : std::optional(point.x_m));
+    for (const double value : {point.v_m_s, point.a_m_s2}) row.put(value);
     row.put(point.left_out == core::LeftOut::used ? 1.0 : 0.0);
     for (const double value : {point.sd_v_m_s, point.sd_a_m_s2}) row.put(value);
     row.put(point.measured_m);
@@ -72,8 +74,8 @@ std::string motion_csv(const core::ClipResult& clip) {
     const auto smoothed = [&](double value) { return point.smoothed ? std::optional(value) : std::nullopt; };
     row.put(point.t_s);
     row.put(point.measured_m);
-    row.put(smoothed(point.x_m));
-    row.put(smoothed(point.sd_x_m));
+    row.put(clip.speed_noise_m_s ? std::nullopt : smoothed(point.x_m));
+    row.put(clip.speed_noise_m_s ? std::nullopt : smoothed(point.sd_x_m));
     row.put(point.measured_m ? smoothed(*point.measured_m - point.x_m) : std::nullopt);
     row.put(smoothed(point.v_m_s));
     row.put(smoothed(point.sd_v_m_s));
@@ -148,7 +150,12 @@ Json clip_json(const core::ClipResult& clip, const std::string& phase_file) {
   put(object, "bandwidth_s", clip.bandwidth_s);
   object["bandwidth_method"] = strength_words(clip.bandwidth_method);
   if (clip.strength) object["smoothing"] = strength_json(*clip.strength);
-  put(object, "position_noise_m", clip.position_noise_m);
+  if (clip.speed_noise_m_s) {
+    put(object, "position_noise_m", std::nullopt, "speeds were measured, and no positions");
+    put(object, "speed_noise_m_s", *clip.speed_noise_m_s);
+  } else {
+    put(object, "position_noise_m", clip.position_noise_m);
+  }
   if (clip.rounding_m) put(object, "rounding_m", *clip.rounding_m);
   if (!clip.lost_frames.empty()) {
     object["lost_frames"] = Json::array();

@@ -207,7 +207,7 @@ TEST_CASE("a project in an archive is read, of several the one that has the mass
   CHECK(taken_of(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "ball")).mass == "b.trk: ball");
   CHECK(taken_of(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "b.trk: mass A")).mass == "b.trk: mass A");
   CHECK_THROWS_WITH(in({{"a.trk", one.text()}, {"b.trk", two.text()}}, "mass A"), Contains("several of the name"));
-  CHECK_THROWS_WITH(in({{"xl/workbook.xml", "<x/>"}}, ""), Contains("0 Tracker projects") && Contains("CSV"));
+  CHECK_THROWS_WITH(in({{"xl/cells.xml", "<x/>"}}, ""), Contains("0 Tracker projects") && Contains(".xlsx"));
   CHECK_THROWS_WITH(in({{"a.trk", "no XML"}}, ""), Contains("made.trz: a.trk"));
 }
 

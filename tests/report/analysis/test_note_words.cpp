@@ -28,6 +28,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::IrregularStamps{2, 37, 0.02, 0.06, false}, "the longest is 60 ms"},
       {core::RepeatedFrames{3, 40}, "3 of 40 frames are identical to the frame before"},
       {core::EvenStamps{0.001, 1.0 / 240.0, 1e-7}, "multiples of 1 ms, and frames at an even distance of 4.16667 ms"},
+      {core::SheetTaken{"Run 1"}, "the table is that of sheet \"Run 1\""},
       {core::ColumnsTaken{"x (m)", "t (s)", "Run #1"}, "x is \"x (m)\", its time \"t (s)\", Run #1"},
       {core::ColumnsTaken{"x (m)", "t (s)", ""}, "its time \"t (s)\""},
       {core::UnitAssumed{"t", "seconds"}, "\"t\" states no unit and is taken as seconds"},

@@ -35,7 +35,8 @@ namespace {
 std::vector<core::Note> evil_notes() {
   core::InclineContradiction contradiction;
   contradiction.stated.by = kEvil;
-  return {core::ColumnsTaken{kEvil, kEvil, kEvil},
+  return {core::SheetTaken{kEvil},
+          core::ColumnsTaken{kEvil, kEvil, kEvil},
           core::UnitAssumed{kEvil, "metres"},
           core::HeightTaken{kEvil},
           core::ForceUnused{kEvil},
