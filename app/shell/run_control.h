@@ -24,8 +24,8 @@ inline constexpr int kInterruptedStatus = 130;  ///< as a shell reports SIGINT
 /// process.
 void catch_interrupts();
 
-/// From now on memory that ends where no exception may pass (in a function of a library that promises to throw none)
-/// ends the process as memory that ends elsewhere does: `status`, one message, no unfinished output.
+/// From now on, if memory runs out where no exception may pass (in a function of a library that promises to throw
+/// none), the process ends as it does elsewhere without memory: with `status`, one message, and no unfinished output.
 void report_lost_memory(int status);
 
 bool interrupted();

@@ -200,7 +200,7 @@ std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::st
 namespace {
 
 constexpr std::size_t kMostFieldIssues = 10;
-constexpr std::size_t kMostFields = 100'000'000;  // 1.6 GB; the largest file has 60 million of t and x
+constexpr std::size_t kMostFields = 100'000'000;  // 1.6 GB; a file of 1 GiB holds about 60 million of t and x
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \r");

@@ -302,8 +302,8 @@ RemainderSpace::Solution RemainderSpace::solve(const RemainderSizes& sizes) cons
 }
 
 RemainderSpace::Best RemainderSpace::likeliest(const RemainderSizes* start) const {
-  // The largest force of the first search is a tenth of g. A drag that scatters by more than a part of itself would
-  // push in some motions, and the linear neighbourhood of a fit does not hold that far. The air brakes objects of one
+  // The largest force of the first search is a tenth of g. A drag that scatters too widely would be negative in
+  // some motions and push, and the linear neighbourhood of a fit does not hold that far. The air brakes objects of one
   // shape more alike than magnets or bearings brake a glider.
   constexpr double kMostForce = 1.0, kMostDrag = 0.7, kMostDragOfAir = 0.2, kDecades = 6.0;
   const double most_drag = only_falls_ ? kMostDragOfAir : kMostDrag;

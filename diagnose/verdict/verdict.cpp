@@ -243,11 +243,11 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
   }
   const MotionFit* fit = &nominal;
   if (diagnosis.verdict == Verdict::effect && best != nullptr) {
-    const MotionFit* stated = noise_alone != nullptr ? &noise_alone->stated
-                              : best->fit >= 0       ? &comparison.fits[static_cast<std::size_t>(best->fit)]
-                                                     : nullptr;
-    if (stated != nullptr) fit = stated;
-    const TrackSet& stated_set = noise_alone != nullptr ? noise_alone->stated_set : set;
+    const MotionFit* sized = noise_alone != nullptr ? &noise_alone->sized
+                             : best->fit >= 0       ? &comparison.fits[static_cast<std::size_t>(best->fit)]
+                                                    : nullptr;
+    if (sized != nullptr) fit = sized;
+    const TrackSet& sized_set = noise_alone != nullptr ? noise_alone->sized_set : set;
     for (const std::size_t e : named_effects(*best, noise_alone)) {
       const EffectInfo& info = effect_list()[e];
       std::vector<std::string> alike;
@@ -255,7 +255,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
         alike.emplace_back(effect_list()[other].id);
       diagnosis.effects.push_back({std::string(info.id), info.stage, std::string(info.words),
                                    comparison.effect_probability[e], std::move(alike),
-                                   parameters_of(stated_set, comparison, images, stated, e)});
+                                   parameters_of(sized_set, comparison, images, sized, e)});
     }
     if (noise_alone == nullptr) {  // otherwise they are in order of their shares
       std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
@@ -300,7 +300,7 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
   const MotionFit& gap_nominal = noise_alone != nullptr ? noise_alone->nominal : nominal;
   if (noise_alone != nullptr) gap_fit = diagnosis.verdict == Verdict::effect ? &noise_alone->best : &gap_nominal;
   diagnosis.gap = gap_of(gap_set, gap_nominal, *gap_fit, diagnosis.verdict == Verdict::unknown, diagnosis.notes);
-  if (fit != &nominal) diagnosis.limits = limits_of(noise_alone != nullptr ? noise_alone->stated_set : set, *fit);
+  if (fit != &nominal) diagnosis.limits = limits_of(noise_alone != nullptr ? noise_alone->sized_set : set, *fit);
   for (const NegativeLoss& one : diagnosis.limits.driving) diagnosis.notes.emplace_back(one);
   for (const ContradictedIncline& one : diagnosis.limits.contradicted) diagnosis.notes.emplace_back(one);
   if (diagnosis.limits.set_aside) diagnosis.notes.emplace_back(*diagnosis.limits.set_aside);

@@ -14,9 +14,9 @@ namespace glidelab::diagnose {
 struct NoiseAlone {
   const TrackSet& set;
   const MotionFit& nominal;
-  const MotionFit& best;       ///< with the causes that the verdict names
-  const TrackSet& stated_set;  ///< with the remainder beside these causes as noise,
-  const MotionFit& stated;     ///< and the fit to it, for the sizes that are stated
+  const MotionFit& best;      ///< with the causes that the verdict names
+  const TrackSet& sized_set;  ///< with the remainder beside these causes as noise,
+  const MotionFit& sized;     ///< and the fit to it: the sizes that the verdict gives
 };
 
 /// Effects that could replace one effect of an explanation: with as much evidence, and with as little left of the gap.

@@ -110,20 +110,20 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
 }
 
 /// A fit that counts its own remainder as noise, and the motions with that noise.
-struct Stated {
+struct Sized {
   TrackSet set;
   MotionFit fit;
 };
 
-/// The causes that keep their name, beside their own remainder, for the sizes that are stated. The fit of the whole
-/// explanation has other sizes: part of one cause may have gone into another that takes no part of the gap.
-Stated stated_of(const TrackSet& set, const MotionFit& named) {
+/// The causes that keep their name, beside their own remainder, for the sizes that the verdict gives. The fit of the
+/// whole explanation has other sizes: part of one cause may have gone into another that takes no part of the gap.
+Sized sized_of(const TrackSet& set, const MotionFit& named) {
   const RemainderSizes sizes = RemainderSpace(set, named).likeliest().sizes;
-  Stated stated{set, {}};
-  add_remainder(named, sizes, stated.set);
-  stated.fit = fit_motions(stated.set, named.effects, named.at, named.late);
-  if (!std::isfinite(stated.fit.cost)) stated.fit = linearise_again(stated.set, named);
-  return stated;
+  Sized sized{set, {}};
+  add_remainder(named, sizes, sized.set);
+  sized.fit = fit_motions(sized.set, named.effects, named.at, named.late);
+  if (!std::isfinite(sized.fit.cost)) sized.fit = linearise_again(sized.set, named);
+  return sized;
 }
 
 /// Whether the size of one of these effects of a fit is larger than its standard deviation. Only sizes that all clips
@@ -333,13 +333,13 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
     set_unknown(std::max(by.unknown, kUnknownIfLess), weighed->comparison);
   }
   const MotionFit& of_gap = sequence.named.effects.empty() ? fit : sequence.named;
-  const Stated stated = settled ? stated_of(set, of_gap) : Stated{with, fit};
+  const Sized sized = settled ? sized_of(set, of_gap) : Sized{with, fit};
   // A name is not confident if its effect may as well have no size at all.
   const bool open_size =
-      names && sequence.is_gap && shows_in_gap(best) && !has_certain_size(stated.set, stated.fit, of_gap.effects);
+      names && sequence.is_gap && shows_in_gap(best) && !has_certain_size(sized.set, sized.fit, of_gap.effects);
   if (settled && open_size) set_unknown(std::max(by.unknown, kOpenSize), weighed->comparison);
   if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
-    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, stated.set, stated.fit};
+    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, sized.set, sized.fit};
     diagnosis = verdict_of(with, by, std::move(images), &noise_alone);
   } else {
     // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
@@ -372,7 +372,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
         for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
       }
     }
-    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, stated.set, stated.fit};
+    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, sized.set, sized.fit};
     diagnosis = verdict_of(set, first, std::move(images), by_air && sequence.is_gap ? &noise_alone : nullptr);
     if (weighed && sequence.is_gap && !in_images) {
       const NoiseAlone noise{set, nominal, nominal, set, nominal};

@@ -57,7 +57,7 @@ struct AnalysisSentence {
   }
 
   std::string operator()(const core::SheetTaken& of) const {
-    return fmt::format("the table is that of sheet \"{}\", the first of the workbook that has one", of.sheet);
+    return fmt::format("the table is that of sheet \"{}\"", of.sheet);
   }
   std::string operator()(const core::ColumnsTaken& of) const {
     return fmt::format("x is \"{}\", its time \"{}\"{}{}", of.x, of.t, of.run.empty() ? "" : ", ", of.run);

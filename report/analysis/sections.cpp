@@ -127,12 +127,12 @@ Html clip_html(const core::ClipResult& clip, std::size_t index, const std::strin
   }
   text += fmt::format(
       "<p>{} at {} Hz, {} points used. {} noise {} mm{}. {}. "
-      "Numbers: <code>{}</code>; every frame, with residuals: <code>{}</code>.</p>\n",
+      "Numbers: <code>{}</code>; every frame{}: <code>{}</code>.</p>\n",
       clip.sightings.empty() ? fmt::format("{} {}", clip.frames, clip.speed_noise_m_s ? "speeds" : "positions")
                              : fmt::format("{} frames, the marker found in {},", clip.frames, clip.detected),
       base::number_text(clip.frame_rate_hz, 5), used, clip.speed_noise_m_s ? "Speed" : "Position",
       noise_text(clip.speed_noise_m_s.value_or(clip.position_noise_m) * 1e3, used), clip.speed_noise_m_s ? "/s" : "",
-      smoothing_text(clip), escape(phase_file), escape(motion_file));
+      smoothing_text(clip), escape(phase_file), clip.speed_noise_m_s ? "" : ", with residuals", escape(motion_file));
   text += notes_html(notes_words(clip.notes));
   if (preview != nullptr) text += images(clip, *preview);
   text += figures(motion_plots(clip));

@@ -89,7 +89,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "memory that ends where no exception may pass is reported and leaves nothing, and other exceptions end as ever") {
+    "out of memory where no exception may pass is reported and leaves nothing, and other exceptions end as ever") {
   // Not a TempDir: a child that is ended removes the temporary folders that it knows, its parent's too.
   std::string made = (std::filesystem::temp_directory_path() / "glidelab-lost-XXXXXX").string();
   REQUIRE(::mkdtemp(made.data()) != nullptr);

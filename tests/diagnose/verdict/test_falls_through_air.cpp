@@ -301,16 +301,21 @@ TEST_CASE("no fall begins far faster than it was ever seen, however soon it woul
   for (const double uneven : {0.05, 0.1}) {
     const tests::MadeExperiment made = fallen(cups(10.0, uneven, 0.0), 1);
     const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-    const diagnose::MotionFit fit = diagnose::fit_nominal(set);
-    REQUIRE(fit.at.own.size() == 4);
-    for (std::size_t i = 0; i < fit.at.own.size(); ++i) {
+    const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+    const std::size_t drag = diagnose::effect_index("quadratic_drag");
+    const diagnose::MotionFit with_drag =
+        diagnose::fit_with_effect(set, nominal, drag, diagnose::with_effect(set, nominal, drag, {0.005}, {}));
+    REQUIRE(nominal.at.own.size() == 4);
+    REQUIRE(with_drag.at.own.size() == 4);
+    for (std::size_t i = 0; i < 4; ++i) {
       double fastest = 0.0;  // the mean speed between two positions
       const diagnose::TrackedMotion& motion = set.motions[i];
       for (std::size_t p = 1; p < motion.x_m.size(); ++p) {
         fastest = std::max(fastest, (motion.x_m[p] - motion.x_m[p - 1]) / (motion.t_s[p] - motion.t_s[p - 1]));
       }
       // The noise of two positions 0.1 s apart adds a tenth or so to the fastest.
-      CHECK(std::abs(fit.at.own[i][1]) < 4.0 * fastest);
+      CHECK(std::abs(nominal.at.own[i][1]) < 4.0 * fastest);
+      CHECK(std::abs(with_drag.at.own[i][1]) < 4.0 * fastest);
     }
   }
 }
