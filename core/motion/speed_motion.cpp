@@ -19,20 +19,25 @@
 #include "core/motion/free/motion_events.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/motion/smooth_clip.h"
+#include "core/motion/smoothing/local_polynomial.h"
 #include "core/motion/smoothing/smoother_list.h"
 
 namespace glidelab::core {
 namespace {
 
-constexpr double kSpeedVariance = 0.4760, kSlopeVariance = 0.4849;  // of v and a, see the header
-constexpr double kPilotNoise = 0.1;                                 // of a, over the median |a| of the moving body
-constexpr double kMovingShare = 0.1;                                // of the highest speed: slower is not "moving"
-constexpr double kWidestPilot = 0.05;                               // of the clip
-constexpr double kSurelyMoves = 3.0;                                // standard deviations of one speed
-constexpr double kBesideTurn = 1.0, kBesideOthers = 2.0;            // pilot bandwidths
-constexpr double kOffLine = 0.25;                                   // of the line's size
-constexpr double kShortStretch = 0.57;                              // of the longest: see free_motion.h
-constexpr double kWidestKernel = 0.2;                               // of the longest stretch
+constexpr double kSlopeVariance = 0.4849;                 // of a, see the header
+constexpr double kPilotNoise = 0.1;                       // of a, over the median |a| of the moving body
+constexpr double kMovingShare = 0.1;                      // of the highest speed: slower is not "moving"
+constexpr double kWidestPilot = 0.05;                     // of the clip
+constexpr double kSurelyMoves = 3.0;                      // standard deviations of one speed
+constexpr double kBesideTurn = 1.0, kBesideOthers = 2.0;  // pilot bandwidths
+constexpr double kOffLine = 0.25;                         // of the line's size
+// Of the longest stretch. From measured speeds the standard deviation of a goes with T^-3/2, not with T^-5/2 as from
+// positions (free_motion.h); it is four times that of the longest where T is 4^(-2/3) of it.
+constexpr double kShortStretch = 0.40;
+constexpr double kWidestKernel = 0.2;        // of the longest stretch
+constexpr double kPointsPerBandwidth = 3.0;  // closer points add no information
+constexpr double kMostWeights = 2e7;         // of all rows together: half a gigabyte
 
 [[noreturn]] void refuse(const std::string& clip, const char* what, const std::string& found,
                          const std::string& expected) {
@@ -89,17 +94,26 @@ States smooth(const Motion& series, const PointRange& range, double bandwidth_s)
   return states;
 }
 
+std::size_t stride_of(const Motion& series, double bandwidth_s) {
+  return static_cast<std::size_t>(std::max(1.0, std::floor(bandwidth_s / (kPointsPerBandwidth * series.step_s))));
+}
+
 double pilot_bandwidth(const Motion& series) {
-  const PointRange all{0, series.t_s.size()};
   const double widest = kWidestPilot * (series.t_s.back() - series.t_s.front());
   double h = kLeastBandwidthSteps * series.step_s;
   for (; h * kBandwidthRatio < widest; h *= kBandwidthRatio) {
-    const States states = smooth(series, all, h);
+    const LocalCubic cubic(series.t_s, h);
+    std::vector<SmoothedPoint> states;  // x_m is v, v_m_s is a
     double top = 0.0;
-    for (const double v : states.v_m_s) top = std::max(top, std::abs(v));  // NaN does not count
+    for (std::size_t i = 0; i < series.t_s.size(); i += stride_of(series, h)) {
+      const auto row = cubic.row_of_point(i);
+      if (!row) continue;
+      states.push_back(weighted_sums(*row, series.x_m));
+      top = std::max(top, std::abs(states.back().x_m));
+    }
     std::vector<double> moving;
-    for (std::size_t i = 0; i < states.v_m_s.size(); ++i) {
-      if (std::abs(states.v_m_s[i]) > kMovingShare * top) moving.push_back(std::abs(states.a_m_s2[i]));
+    for (const SmoothedPoint& of : states) {
+      if (std::abs(of.x_m) > kMovingShare * top) moving.push_back(std::abs(of.v_m_s));
     }
     if (!moving.empty() && sd_of_slope(series, h) <= kPilotNoise * median_of(std::move(moving))) break;
   }
@@ -112,12 +126,16 @@ class FreeSpeeds {
     free_.pilot_bandwidth_s = pilot_bandwidth(series);
     free_.reason.assign(series.t_s.size(), LeftOut::rest);
     law_m_s2.assign(series.t_s.size(), 0.0);
-    const std::vector<PointRange> runs = runs_of_one_direction();
-    for (const int direction : {-1, 1}) take(runs, direction);
-    std::ranges::sort(free_.stretches, {}, &FreeStretch::first);
-    const std::size_t first = free_.stretches.empty() ? 0 : free_.stretches.front().first;
-    std::replace(free_.reason.begin(), free_.reason.begin() + static_cast<std::ptrdiff_t>(first), LeftOut::stop,
-                 LeftOut::hand);
+    agrees_.assign(series.t_s.size(), Agrees::unknown);
+    const std::vector<Run> runs = runs_of_one_direction();
+    for (const int direction : {-1, 1}) compare(runs, direction);
+    trust_statements(runs);
+    for (const Run& run : runs) add_stretches(run);
+    if (!setup_.start_s) {
+      const std::size_t first = free_.stretches.empty() ? 0 : free_.stretches.front().first;
+      std::replace(free_.reason.begin(), free_.reason.begin() + static_cast<std::ptrdiff_t>(first), LeftOut::stop,
+                   LeftOut::hand);
+    }
     leave_out_backswing();
     leave_out_short();
   }
@@ -126,13 +144,17 @@ class FreeSpeeds {
   std::vector<double> law_m_s2;  ///< a of the line of most points, at each free point
 
  private:
-  int direction_of(const PointRange& run) const { return series_.x_m[(run.from + run.to) / 2] > 0.0 ? 1 : -1; }
+  struct Run {
+    PointRange range;
+    int direction = 0;  ///< of the smoothed speeds
+  };
+  enum class Agrees : char { unknown, no, yes };  // with the line of most points of its direction
 
   /// Where the sign of v is beyond doubt, within start_s and end_s.
-  std::vector<PointRange> runs_of_one_direction() {
+  std::vector<Run> runs_of_one_direction() {
     const double h = free_.pilot_bandwidth_s;
     const States pilot = smooth(series_, {0, series_.t_s.size()}, h);
-    const double still = kSurelyMoves * series_.noise_m * std::max(1.0, std::sqrt(kSpeedVariance * series_.step_s / h));
+    const double still = kSurelyMoves * series_.noise_m;
     std::vector<int> sign(series_.t_s.size(), 0);
     for (std::size_t i = 0; i < sign.size(); ++i) {
       const double t = series_.t_s[i], v = pilot.v_m_s[i];
@@ -144,7 +166,7 @@ class FreeSpeeds {
         sign[i] = v > 0.0 ? 1 : -1;
       }
     }
-    std::vector<PointRange> runs;
+    std::vector<Run> runs;
     for (PointRange range : ranges_of(sign)) {
       const int direction = sign[range.from];
       if (direction == 0) continue;
@@ -157,19 +179,19 @@ class FreeSpeeds {
       while (!ends && range.to > range.from && series_.t_s[range.to - 1] > to - kBesideTurn * h) {
         free_.reason[--range.to] = LeftOut::kernel_reversal;
       }
-      if (range.size() >= kFewestLinePoints) runs.push_back(range);
+      if (range.size() >= kFewestLinePoints) runs.push_back({range, direction});
     }
     return runs;
   }
 
-  /// The parts of the runs of one direction that agree with one line.
-  void take(const std::vector<PointRange>& runs, int direction) {
+  /// Which points of the runs of one direction agree with one line.
+  void compare(const std::vector<Run>& runs, int direction) {
     const double h = free_.pilot_bandwidth_s;
     LawPoints points;
     std::vector<std::size_t> at;
     RowVariance variance({series_.noise_m * series_.noise_m});
-    for (const PointRange& run : runs) {
-      if (direction_of(run) != direction) continue;
+    for (const auto& [run, of_run] : runs) {
+      if (of_run != direction) continue;
       const std::span t = std::span(series_.t_s).subspan(run.from, run.size());
       const LocalCubic cubic(t, h);
       for (std::size_t j = 0; j < run.size(); ++j) {
@@ -184,25 +206,51 @@ class FreeSpeeds {
     }
     const std::optional<ConsensusLine> line = find_consensus(points);
     if (!line) return;
-    const bool trusted = setup_.start_s && setup_.end_s;
-    std::vector<char> agrees(series_.t_s.size(), 0);
     for (std::size_t j = 0; j < at.size(); ++j) {
       const double off = std::abs(points.a_m_s2[j] - line->at(points.v_m_s[j]));
-      agrees[at[j]] = trusted || off <= kOffLine * line->size_m_s2 || off <= line->tolerance(points.sd_m_s2[j]);
+      const bool agrees = off <= kOffLine * line->size_m_s2 || off <= line->tolerance(points.sd_m_s2[j]);
+      agrees_[at[j]] = agrees ? Agrees::yes : Agrees::no;
       law_m_s2[at[j]] = line->at(points.v_m_s[j]);
-    }
-    for (const PointRange& run : runs) {
-      if (direction_of(run) == direction) add_stretches(run, direction, agrees);
     }
   }
 
-  void add_stretches(const PointRange& run, int direction, const std::vector<char>& agrees) {
+  /// After a stated start nothing is a hand, and before a stated end nothing is a stop: what comes before the first
+  /// part that agrees is free, and so is what follows the last.
+  void trust_statements(const std::vector<Run>& runs) {
+    if (!setup_.start_s && !setup_.end_s) return;
+    std::size_t first = agrees_.size(), last = 0;
+    for (const Run& run : runs) {
+      for (const PointRange& part : parts_of_run(run)) {
+        if (agrees_[part.from] != Agrees::yes || !is_long(part)) continue;
+        first = std::min(first, part.from);
+        last = std::max(last, part.to);
+      }
+    }
+    for (std::size_t i = 0; i < agrees_.size(); ++i) {
+      const bool stated =
+          (setup_.start_s && i < first) || (setup_.end_s && i >= last) || (setup_.start_s && setup_.end_s);
+      if (agrees_[i] == Agrees::no && stated) agrees_[i] = Agrees::yes;
+    }
+  }
+
+  /// Whether something is left of a part after its borders to others are taken away: noise alone agrees for a moment.
+  bool is_long(const PointRange& part) const {
+    const double lasts_s = series_.t_s[part.to - 1] - series_.t_s[part.from];
+    return part.size() >= kFewestLinePoints && lasts_s > 2.0 * kBesideOthers * free_.pilot_bandwidth_s;
+  }
+
+  std::vector<PointRange> parts_of_run(const Run& run) const {
+    const auto at = [&](std::size_t i) { return agrees_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::vector<PointRange> parts = ranges_of(std::vector<Agrees>(at(run.range.from), at(run.range.to)));
+    for (PointRange& part : parts) part = {part.from + run.range.from, part.to + run.range.from};
+    return parts;
+  }
+
+  void add_stretches(const Run& of) {
+    const auto& [run, direction] = of;
     const double h = free_.pilot_bandwidth_s;
-    for (PointRange range : ranges_of(std::vector<char>(agrees.begin() + static_cast<std::ptrdiff_t>(run.from),
-                                                        agrees.begin() + static_cast<std::ptrdiff_t>(run.to)))) {
-      range.from += run.from;
-      range.to += run.from;
-      if (!agrees[range.from]) {
+    for (PointRange range : parts_of_run(of)) {
+      if (agrees_[range.from] != Agrees::yes) {
         fill_range(free_.reason, range, LeftOut::stop);
         continue;
       }
@@ -229,6 +277,7 @@ class FreeSpeeds {
 
   /// The motion before the first one in the direction of the launch, if there is one and that direction is stated.
   void leave_out_backswing() {
+    if (setup_.start_s) return;
     if (setup_.launched != Launched::up && setup_.launched != Launched::down) return;
     const int launch = setup_.launched == Launched::down ? 1 : -1;
     const auto first = std::ranges::find(free_.stretches, launch, &FreeStretch::direction);
@@ -255,12 +304,13 @@ class FreeSpeeds {
   const Motion& series_;
   const ClipSetup& setup_;
   FreeMotion free_;
+  std::vector<Agrees> agrees_;  // of every point
 };
 
 /// The stretches' points with rows over the speeds: their v and a, in place of x and v of a series.
 std::vector<StretchPoint> speed_points(const Motion& series, const std::vector<FreeStretch>& stretches,
-                                       double bandwidth_s) {
-  std::vector<StretchPoint> points = smooth_stretches(series, stretches, bandwidth_s);
+                                       double bandwidth_s, std::size_t stride, WantedPoints wanted) {
+  std::vector<StretchPoint> points = smooth_stretches(series, stretches, bandwidth_s, stride, wanted);
   std::shared_ptr<const KernelWeights> known, as_speeds;  // points that share a filter share it afterwards
   for (StretchPoint& point : points) {
     if (!point.row) continue;
@@ -275,6 +325,30 @@ std::vector<StretchPoint> speed_points(const Motion& series, const std::vector<F
     if (point.left_out == LeftOut::used && point.x.v_m_s * point.direction <= 0.0) {
       point.left_out = LeftOut::kernel_reversal;
     }
+  }
+  return points;
+}
+
+/// All points of the stretches. Each point of irregular times has weights of its own; where these would be too many,
+/// only some points have them, and the others are in no line.
+std::vector<StretchPoint> all_speed_points(const Motion& series, const std::vector<FreeStretch>& stretches,
+                                           double bandwidth_s) {
+  double weights = 0.0;
+  for (const FreeStretch& of : stretches) {
+    const auto count = static_cast<double>(of.count);
+    weights += count * std::min(count, 2.0 * kKernelReach * bandwidth_s / series.step_s);
+  }
+  const std::size_t stride = weights > kMostWeights ? stride_of(series, bandwidth_s) : 1;
+  std::vector<StretchPoint> some = speed_points(series, stretches, bandwidth_s, stride, WantedPoints::all);
+  if (stride == 1) return some;
+  std::vector<StretchPoint> points;
+  for (StretchPoint& point : some) {
+    const FreeStretch& of = stretches[point.stretch];
+    StretchPoint like = point;
+    like.row.reset();
+    const std::size_t until = std::min(point.point + stride, of.first + of.count);
+    points.push_back(std::move(point));
+    while (++like.point < until) points.push_back(like);
   }
   return points;
 }
@@ -317,7 +391,8 @@ std::vector<LineFit> lines_of(const Motion& series, const FreeMotion& free, cons
   return lines;
 }
 
-/// The bandwidth of the least mean square error of the lines over their range of v, noise and bias together.
+/// The bandwidth of the least mean square error of the lines, noise and bias together, averaged from v = 0 to the
+/// highest speed of the line.
 BandwidthChoice choose(const Motion& series, const FreeMotion& free, const std::vector<double>& law_m_s2) {
   BandwidthChoice choice{free.pilot_bandwidth_s, chosen_by::FirstSmoothing{}};
   const PositionNoise noise = noise_of(series, free.stretches, free.pilot_bandwidth_s);
@@ -327,8 +402,8 @@ BandwidthChoice choose(const Motion& series, const FreeMotion& free, const std::
   }
   std::size_t directions = 0;
   for (double h = kLeastBandwidthSteps * series.step_s; h < kWidestKernel * longest_s; h *= kBandwidthRatio) {
-    const auto lines =
-        lines_of(series, free, law_m_s2, speed_points(series, free.stretches, h), noise, Misfit::ignored);
+    const auto points = speed_points(series, free.stretches, h, stride_of(series, h), WantedPoints::inner);
+    const auto lines = lines_of(series, free, law_m_s2, points, noise, Misfit::ignored);
     double square = 0.0;
     for (const LineFit& line : lines) {
       const double v = std::max(std::abs(line.from_v_m_s), std::abs(line.to_v_m_s)) * line.direction;
@@ -395,7 +470,7 @@ ClipResult analyze_speeds(const ClipSetup& setup, const TrackData& track, const 
   clip.bandwidth_method = choice.method;
   const PositionNoise noise = noise_of(series, free.stretches, choice.bandwidth_s);
   clip.speed_noise_m_s = noise.sd_m;
-  const std::vector<StretchPoint> points = speed_points(series, free.stretches, choice.bandwidth_s);
+  const std::vector<StretchPoint> points = all_speed_points(series, free.stretches, choice.bandwidth_s);
   clip.segments = lines_of(series, free, law_m_s2, points, noise, Misfit::widens);
   clip.v_lim_m_s = limit_velocity(clip.segments);
 

@@ -12,11 +12,16 @@
 ///
 ///     var v = 0.4760 s² dt / h      var a = 0.4849 s² dt / h³      bias a = -h⁴ v'''''/8
 ///
+/// The bandwidth, where none is stated, is that of the least mean square error of the lines, noise and bias together,
+/// summed over the directions; for each, the error of a0 - (K/m) v is averaged from v = 0 to the line's highest speed.
+/// Bandwidths are tried in ratios of 1.1, from 1.2 steps to a fifth of the longest stretch.
+///
 /// Free motion. The pilot has the smallest bandwidth at which the noise of a is a tenth of the median |a| of the moving
-/// body. Directions are the signs of v; within three standard deviations of one speed about 0, and a pilot bandwidth
-/// beside, nothing counts. Of each direction the points count that agree with the line of most points (free_motion.h);
-/// next to others two pilot bandwidths are left out. The noise is taken to be the same at all speeds. A scale error of
-/// the sensor is not known, and K/m does not depend on it.
+/// body, or 5 % of the clip if there is none below. Directions are the signs of v; within three standard deviations of
+/// one speed about 0, and a pilot bandwidth beside, nothing counts. Of each direction the points count that agree with
+/// the line of most points (free_motion.h); next to others two pilot bandwidths are left out. Stated start_s and end_s
+/// are trusted: nothing after start_s is a hand, nothing before end_s a stop. The noise is taken to be the same at all
+/// speeds. A scale error of the sensor is not known, and K/m does not depend on it.
 #pragma once
 
 #include "core/experiment/clip_setup.h"

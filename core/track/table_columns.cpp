@@ -35,14 +35,25 @@ bool is_acceleration(const TableColumn& column) {
          name.find("aceler") != std::string::npos || name.find("acc\xC3\xA9l") != std::string::npos;
 }
 
+std::optional<double> metres_per_second(std::string_view unit) {
+  static constexpr std::array<std::pair<std::string_view, double>, 5> kSpeeds{
+      {{"m/s", 1.0}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"km/h", 1.0 / 3.6}, {"m s-1", 1.0}}};
+  const auto at = std::ranges::find(kSpeeds, unit, &std::pair<std::string_view, double>::first);
+  return at == kSpeeds.end() ? std::nullopt : std::optional(at->second);
+}
+
+/// The header of a table of one's own, which reads as seconds to others: a "v_m" in "s".
+bool is_own_speed(const TableColumn& column) {
+  return column.text == "v_m_s";
+}
+
 bool is_speed(const TableColumn& column) {
   const std::string name = lower(column.name);
   // English, German, French, Spanish, Portuguese.
   for (const char* word : {"velocity", "speed", "geschwindigkeit", "vitesse", "velocidad", "velocidade"}) {
     if (name.find(word) != std::string::npos) return true;
   }
-  return name == "v" || name == "vx" || name == "v_x" || column.unit == "m/s" || column.unit == "cm/s" ||
-         column.unit == "mm/s" || column.unit == "km/h";
+  return name == "v" || name == "vx" || name == "v_x" || is_own_speed(column) || metres_per_second(column.unit);
 }
 
 constexpr std::size_t kMostNamedColumns = 20;
@@ -91,9 +102,9 @@ void refuse_without_positions(const ColumnTable& table) {
   if (speeds) {
     throw wrong_column(
         table, "speeds without positions, " + columns_text(table),
-        "positions over time, or glidelab analyze, which takes speeds as such. Where speeds are integrated, errors "
-        "grow and the stated intervals would be too narrow. Export the distance as well: an encoder counts "
-        "it, a motion sensor measures it");
+        "positions over time; `glidelab analyze` without --with also takes speeds. Integrated speeds would give "
+        "intervals that are too narrow. Export the distance as well: an encoder counts it, a motion sensor "
+        "measures it");
   }
   if (accelerations) {
     throw wrong_column(table, "accelerations without positions, " + columns_text(table),
@@ -333,11 +344,9 @@ std::size_t time_column(const ColumnTable& table, std::size_t place) {
                      "one, called t or time or with a unit of time; divide frame numbers by the frame rate");
 }
 
-std::optional<double> metres_per_second(std::string_view unit) {
-  static constexpr std::array<std::pair<std::string_view, double>, 5> kSpeeds{
-      {{"m/s", 1.0}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"km/h", 1.0 / 3.6}, {"m s-1", 1.0}}};
-  const auto at = std::ranges::find(kSpeeds, unit, &std::pair<std::string_view, double>::first);
-  return at == kSpeeds.end() ? std::nullopt : std::optional(at->second);
+void note_force(const ColumnTable& table, std::vector<Note>& notes) {
+  const auto force = std::ranges::find_if(table.columns, is_force);
+  if (force != table.columns.end()) notes.emplace_back(ForceUnused{force->text});
 }
 
 double factor_of(const ColumnTable& table, const TableColumn& column, std::optional<double> (*factor)(std::string_view),
@@ -360,11 +369,7 @@ ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked,
   if (chosen.is_height) {
     notes.emplace_back(HeightTaken{table.columns[chosen.place].text});
   }
-  for (const TableColumn& column : table.columns) {
-    if (!is_force(column)) continue;
-    notes.emplace_back(ForceUnused{column.text});
-    break;
-  }
+  note_force(table, notes);
   return chosen;
 }
 
@@ -373,8 +378,9 @@ std::optional<ChosenColumns> choose_speeds(const ColumnTable& table, const std::
     return !is_time_column(column) && !is_speed(column) && !is_acceleration(column) && !is_force(column);
   };
   if (std::ranges::any_of(table.columns, is_other)) return {};
-  const std::vector<std::size_t> found =
-      columns_that(table, [](const TableColumn& column) { return is_speed(column) && !is_time_column(column); });
+  const std::vector<std::size_t> found = columns_that(table, [](const TableColumn& column) {
+    return is_speed(column) && (!is_time_column(column) || is_own_speed(column));
+  });
   if (found.empty()) return {};
   if (asked.empty() && found.size() > 1) {
     throw wrong_column(table, fmt::format("{} columns of speeds among {}", found.size(), columns_text(table)),
@@ -391,6 +397,8 @@ double metres_of(const ColumnTable& table, const TableColumn& column, std::vecto
 }
 
 double metres_per_second_of(const ColumnTable& table, const TableColumn& column, std::vector<Note>& notes) {
+  note_force(table, notes);
+  if (is_own_speed(column)) return 1.0;
   return factor_of(table, column, metres_per_second, "m/s, cm/s, mm/s or km/h", "metres per second", notes);
 }
 

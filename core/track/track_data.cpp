@@ -302,7 +302,8 @@ TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> d
   assert(!downhill || *downhill == 1 || *downhill == -1);
   const std::optional<std::string> header = column.empty() ? own_header(file) : std::nullopt;
   if (!header) return import_track(file, column, downhill, speeds);
-  const bool of_speeds = speeds == SpeedsAlone::taken && has_field(*header, "v_m_s") && !has_field(*header, "x_m");
+  const bool of_speeds = has_field(*header, "v_m_s") && !has_field(*header, "x_m");
+  if (of_speeds && speeds == SpeedsAlone::refused) return import_track(file, column, downhill, speeds);  // says why
   const base::CsvTable table =
       of_speeds ? base::read_csv(file, {"t_s", "v_m_s"}, {}) : base::read_csv(file, {"t_s", "x_m"}, {"force_n"});
   TrackData track;

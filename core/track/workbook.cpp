@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <pugixml.hpp>
 #include <set>
@@ -80,6 +81,10 @@ std::string as_field(std::string text) {
   return text;
 }
 
+bool is_blank(std::string_view text) {
+  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
+}
+
 /// Whether a number format shows a date or a time: a letter of these outside quotes, brackets and escapes.
 bool shows_date(std::string_view code) {
   for (std::size_t i = 0; i < code.size(); ++i) {
@@ -136,27 +141,27 @@ struct Sheet {
 class Workbook {
  public:
   explicit Workbook(const fs::path& file) : file_(file), archive_(file) {
-    const pugi::xml_document book = part(kWorkbookPart);
-    const pugi::xml_document links = part("xl/_rels/workbook.xml.rels");
+    list_sheets();
     read_strings();
     read_styles();
-    for (const pugi::xml_node sheet : children_of(child_of(book.document_element(), "sheets"), "sheet")) {
-      const std::string name = as_field(sheet.attribute("name").value());
-      if (const auto target = worksheet_of(links, id_of(sheet))) sheets_.emplace_back(name, *target);
-    }
-    if (sheets_.empty()) refuse("", "a workbook without a worksheet");
   }
 
   std::size_t sheets() const { return sheets_.size(); }
 
-  Sheet sheet(std::size_t index) const {
+  Sheet sheet(std::size_t index) {
     const auto& [name, part_name] = sheets_[index];
-    const pugi::xml_document document = part(part_name);
+    const std::string xml = bytes_of(part_name);
+    sheet_bytes_ += xml.size();
+    if (sheet_bytes_ > kMostBytesOfSheets) {
+      refuse("", fmt::format("sheets of more than {} bytes before one with a table", kMostBytesOfSheets),
+             "no more than that: save the table alone as CSV");
+    }
+    const pugi::xml_document document = parsed(xml, part_name);
     Sheet read{name, {}};
     std::size_t last_row = 0;
     for (const pugi::xml_node row : children_of(child_of(document.document_element(), "sheetData"), "row")) {
       const std::string_view stated = row.attribute("r").value();
-      const std::size_t number = stated.empty() ? last_row + 1 : whole(stated, part_name).value_or(0);
+      const std::size_t number = stated.empty() ? last_row + 1 : whole(stated, part_name);
       if (number <= last_row || number > kMostRows) {
         refuse(part_name, fmt::format("row \"{}\" after row {}", as_field(std::string(stated)), last_row));
       }
@@ -171,29 +176,52 @@ class Workbook {
   }
 
  private:
-  pugi::xml_document part(const std::string& name) const {
+  std::string bytes_of(const std::string& name) const {
     const ZipArchive::Entry* const entry = entry_of(archive_, name);
     if (entry == nullptr) refuse(name, "no such part in the workbook");
-    return parse_xml(archive_.read(*entry, kMostPartBytes), fmt::format("{}: {}", file_.string(), name),
-                     kWholeWorkbook);
+    return archive_.read(*entry, kMostPartBytes);
   }
 
-  static std::string_view id_of(pugi::xml_node sheet) {
+  pugi::xml_document parsed(const std::string& xml, const std::string& name) const {
+    return parse_xml(xml, fmt::format("{}: {}", file_.string(), name), kWholeWorkbook, BlankText::kept);
+  }
+
+  pugi::xml_document part(const std::string& name) const { return parsed(bytes_of(name), name); }
+
+  static std::string id_of(pugi::xml_node sheet) {
     for (const pugi::xml_attribute attribute : sheet.attributes()) {
       if (std::string_view(attribute.name()).ends_with(":id")) return attribute.value();
     }
     return {};
   }
 
-  /// The part that holds a sheet; empty for a chart or a macro.
-  static std::optional<std::string> worksheet_of(const pugi::xml_document& links, std::string_view id) {
+  /// The parts that hold worksheets, no charts or macros. Their names go into messages, so they are cleaned and short.
+  std::map<std::string, std::string> worksheets_by_id() const {
+    std::map<std::string, std::string> parts;
+    const pugi::xml_document links = part("xl/_rels/workbook.xml.rels");
     for (const pugi::xml_node link : children_of(links.document_element(), "Relationship")) {
-      if (id != link.attribute("Id").value()) continue;
-      if (!std::string_view(link.attribute("Type").value()).ends_with("/worksheet")) return {};
+      if (!std::string_view(link.attribute("Type").value()).ends_with("/worksheet")) continue;
       const std::string target = link.attribute("Target").value();
-      return target.starts_with('/') ? target.substr(1) : "xl/" + target;
+      parts.emplace(link.attribute("Id").value(),
+                    as_field(target.starts_with('/') ? target.substr(1) : "xl/" + target));
     }
-    return {};
+    return parts;
+  }
+
+  void list_sheets() {
+    const std::map<std::string, std::string> worksheets = worksheets_by_id();
+    const pugi::xml_document book = part(kWorkbookPart);
+    const std::vector<pugi::xml_node> listed = children_of(child_of(book.document_element(), "sheets"), "sheet");
+    if (listed.size() > kMostSheets) {
+      refuse("", fmt::format("a workbook of {} sheets", listed.size()), fmt::format("at most {}", kMostSheets));
+    }
+    std::set<std::string> seen;  // a damaged workbook may name one part several times
+    for (const pugi::xml_node sheet : listed) {
+      const auto at = worksheets.find(id_of(sheet));
+      if (at == worksheets.end() || !seen.insert(at->second).second) continue;  // a chart, a macro, or seen already
+      sheets_.emplace_back(as_field(sheet.attribute("name").value()), at->second);
+    }
+    if (sheets_.empty()) refuse("", "a workbook without a worksheet");
   }
 
   void read_strings() {
@@ -219,11 +247,11 @@ class Workbook {
     }
   }
 
-  std::optional<std::size_t> whole(std::string_view text, const std::string& part_name) const {
+  std::size_t whole(std::string_view text, const std::string& part_name) const {
     std::size_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size()) {
-      refuse(part_name, fmt::format("\"{}\" in place of a number", as_field(std::string(text))));
+      refuse(part_name, fmt::format("\"{}\" where a number should be", as_field(std::string(text))));
     }
     return value;
   }
@@ -245,12 +273,12 @@ class Workbook {
       const std::string_view place = node.attribute("r").value();
       const std::size_t column = place.empty() ? next : column_of_name(place);
       if (column < next || column >= kMostColumns) {
-        refuse(part_name, fmt::format("a cell \"{}\" out of its place", as_field(std::string(place))));
+        refuse(part_name, fmt::format("a cell \"{}\" out of order", as_field(std::string(place))));
       }
       next = column + 1;
       Cell cell = cell_of(node, part_name, dates);
       cell.column = column;
-      if (!cell.text.empty() || cell.is_date) cells.push_back(std::move(cell));
+      if (!is_blank(cell.text) || cell.is_date) cells.push_back(std::move(cell));
     }
     return cells;
   }
@@ -259,9 +287,9 @@ class Workbook {
     const std::string_view kind = node.attribute("t").value();
     if (kind == "inlineStr") return {0, as_field(text_of_item(child_of(node, "is")))};
     const char* const value = child_of(node, "v").text().get();
-    if (kind == "e" || *value == '\0') return {};
+    if (kind == "e" || is_blank(value)) return {};
     if (kind == "s") {
-      const std::size_t index = *whole(value, part_name);
+      const std::size_t index = whole(value, part_name);
       if (index >= strings_.size()) refuse(part_name, fmt::format("text {} of {}", index, strings_.size()));
       return {0, strings_[index]};
     }
@@ -273,7 +301,7 @@ class Workbook {
     }
     std::string text = as_field(value);
     const bool is_number = number_in(text, '.').has_value();
-    if (!is_text && !is_number) refuse(part_name, fmt::format("\"{}\" in place of a number", text));
+    if (!is_text && !is_number) refuse(part_name, fmt::format("\"{}\" where a number should be", text));
     return {0, std::move(text), is_number};
   }
 
@@ -282,6 +310,7 @@ class Workbook {
   std::vector<std::string> strings_;
   std::vector<bool> is_date_;                                ///< of a cell's style
   std::vector<std::pair<std::string, std::string>> sheets_;  ///< name and part
+  std::size_t sheet_bytes_ = 0;                              ///< unpacked so far
 };
 
 /// One line a row, at the row's number; columns before those of the numbers hold titles and are left out.
@@ -330,7 +359,7 @@ SheetText read_sheet(const fs::path& file) {
                                          "a spreadsheet that is saved as CSV or .xlsx"});
     }
   }
-  const Workbook book(file);
+  Workbook book(file);
   std::optional<Sheet> taken;
   for (std::size_t i = 0; i < book.sheets(); ++i) {
     Sheet sheet = book.sheet(i);

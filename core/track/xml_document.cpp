@@ -9,10 +9,12 @@
 
 namespace glidelab::core {
 
-pugi::xml_document parse_xml(std::string_view xml, const std::string& shown_as, const std::string& wanted) {
+pugi::xml_document parse_xml(std::string_view xml, const std::string& shown_as, const std::string& wanted,
+                             BlankText blank_text) {
+  const unsigned int blanks = blank_text == BlankText::kept ? pugi::parse_ws_pcdata_single : 0U;
   pugi::xml_document document;
   const pugi::xml_parse_result result =
-      document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_doctype);
+      document.load_buffer(xml.data(), xml.size(), pugi::parse_default | pugi::parse_doctype | blanks);
   if (!result) {
     const auto until = xml.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)));
     const auto line = static_cast<int>(1 + std::count(until.begin(), until.end(), '\n'));

@@ -14,6 +14,7 @@
 #include "core/track/bare_track.h"
 #include "core/track/track_data.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -56,8 +57,9 @@ core::ClipSetup setup() {
   return clip;
 }
 
-core::AnalysisResults analyzed(const core::TrackData& track, const core::MotionOptions& options = {}) {
-  return core::analyze_tracks({setup()}, {track}, kGravity, options, 1, base::no_progress);
+core::AnalysisResults analyzed(const core::TrackData& track, const core::MotionOptions& options = {},
+                               const core::ClipSetup& clip = setup()) {
+  return core::analyze_tracks({clip}, {track}, kGravity, options, 1, base::no_progress);
 }
 
 struct Truth {
@@ -83,6 +85,17 @@ std::vector<int> covered(int runs, const std::function<core::TrackData(unsigned)
     }
   }
   return held;
+}
+
+constexpr std::size_t kPushed = 25, kHit = 470;
+
+core::TrackData pushed_and_stopped() {
+  core::TrackData track = made_speeds(3, 0.002);
+  for (std::size_t i = 0; i < kPushed; ++i) {
+    track.v_m_s[i] -= 0.8 * static_cast<double>(i) / kPushed - 0.8;  // from rest to the launch in half a second
+  }
+  for (std::size_t i = kHit; i < kPoints; ++i) track.v_m_s[i] *= 1.0 - static_cast<double>(i - kHit) / (kPoints - kHit);
+  return track;
 }
 
 }  // namespace
@@ -138,17 +151,61 @@ TEST_CASE("the standard deviations stated for speeds are those of the estimates 
 }
 
 TEST_CASE("a push at the start and a bumper at the end do not count as free motion of speeds") {
-  core::TrackData track = made_speeds(3, 0.002);
-  const std::size_t pushed = 25, hit = 470;
-  for (std::size_t i = 0; i < pushed; ++i) {
-    track.v_m_s[i] -= 0.8 * static_cast<double>(i) / pushed - 0.8;  // from rest to the launch in half a second
-  }
-  for (std::size_t i = hit; i < kPoints; ++i) track.v_m_s[i] *= 1.0 - static_cast<double>(i - hit) / (kPoints - hit);
-  const core::AnalysisResults results = analyzed(track);
+  const core::AnalysisResults results = analyzed(pushed_and_stopped());
   for (const core::Stretch& stretch : results.clips[0].stretches) {
-    CHECK(stretch.from_s >= kStep_s * pushed);
-    CHECK(stretch.to_s <= kStep_s * hit);
+    CHECK(stretch.from_s >= kStep_s * kPushed);
+    CHECK(stretch.to_s <= kStep_s * kHit);
   }
+  for (const Truth& truth : kTruths) {
+    INFO(truth.name);
+    const auto& estimate = (results.configurations.at(0).*truth.quantity).estimate;
+    REQUIRE(estimate);
+    CHECK(std::abs(estimate->value - truth.value) < 4.0 * estimate->sd);
+  }
+}
+
+TEST_CASE("a stated start or end of speeds is used as it stands, each without the other") {
+  const core::TrackData track = pushed_and_stopped();
+  core::ClipSetup starts = setup(), ends = setup();
+  starts.start_s = 0.2;  // in the middle of the push
+  ends.end_s = 9.8;      // in the middle of the bumper
+  const auto from_start = analyzed(track, {}, starts).clips[0].stretches,
+             to_end = analyzed(track, {}, ends).clips[0].stretches;
+  REQUIRE_FALSE(from_start.empty());
+  CHECK(from_start.front().from_s == Approx(0.2));
+  CHECK(from_start.back().to_s <= kStep_s * kHit);
+  REQUIRE_FALSE(to_end.empty());
+  CHECK(to_end.front().from_s >= kStep_s * kPushed);
+  CHECK(to_end.back().to_s == Approx(9.8));
+
+  // Upward motion before the launch down is a backswing, unless the start is stated.
+  core::ClipSetup launched = setup();
+  launched.launched = core::Launched::down;
+  CHECK(analyzed(made_speeds(3, 0.002), {}, launched).clips[0].segments.size() == 1);
+  launched.start_s = 0.0;
+  CHECK(analyzed(made_speeds(3, 0.002), {}, launched).clips[0].segments.size() == 2);
+}
+
+TEST_CASE("many speeds at irregular times with a wide kernel give the law, with few rows of weights") {
+  constexpr std::size_t kMany = 10000;
+  constexpr double kEvery_s = 0.001;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.005);
+  std::uniform_real_distribution<double> jitter(-0.3 * kEvery_s, 0.3 * kEvery_s);
+  core::TrackData track;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    track.t_s.push_back(kEvery_s * static_cast<double>(i) + jitter(random));
+    track.v_m_s.push_back(true_speed(track.t_s.back()) + noise(random));
+  }
+  core::take_rows_as_frames(track);
+  core::MotionOptions wide;
+  wide.bandwidth_s = 0.4;  // 400 steps: 4800 weights in a row
+  const core::AnalysisResults results = analyzed(track, wide);
+  std::size_t of_lines = 0, used = 0;
+  for (const core::LineFit& line : results.clips[0].segments) of_lines += line.points;
+  for (const core::Stretch& stretch : results.clips[0].stretches) used += stretch.points;
+  CHECK(of_lines < kMany / 100);  // every 133rd
+  CHECK(used > kMany / 3);        // without turn and margins of 2.5 bandwidths at four ends: about half
   for (const Truth& truth : kTruths) {
     INFO(truth.name);
     const auto& estimate = (results.configurations.at(0).*truth.quantity).estimate;
@@ -193,8 +250,22 @@ TEST_CASE("tables of speeds are read in their unit, where they are taken") {
     CHECK(track.x_m.empty());
     CHECK(track.v_m_s[3] == Approx(0.53));
     CHECK_THROWS_WITH(read(header, scale, "", core::SpeedsAlone::refused),
-                      Contains("v_m_s") || Contains("speeds without positions"));
+                      Contains("speeds without positions") && Contains("`glidelab analyze` without --with"));
   }
+  CHECK(read("t_s,v_m_s", 1.0, "v_m_s").v_m_s.at(3) == Approx(0.53));
   CHECK_THROWS_WITH(read("t (s),speed (mph)", 1.0), Contains("\"mph\"") && Contains("km/h"));
   CHECK(read("t (s),x (m)", 1.0).v_m_s.empty());
+}
+
+TEST_CASE("a force beside speeds is told as unused") {
+  const tests::TempDir folder;
+  const auto file = folder / "encoder.csv";
+  std::ofstream out(file);
+  out << "t (s),v (m/s),F (N)\n";
+  for (int i = 0; i < 12; ++i) out << fmt::format("{},{},0.1\n", 0.1 * i, 0.5 + 0.01 * i);
+  out.close();
+  const core::TrackData track = core::read_track(file, {}, "", core::SpeedsAlone::taken);
+  const auto* const unused = tests::note_of<core::ForceUnused>(track.notes);
+  REQUIRE(unused != nullptr);
+  CHECK(unused->column == "F (N)");
 }

@@ -140,8 +140,10 @@ TEST_CASE("speeds alone are refused with the reason, and beside positions they a
   for (const char* name : {"Velocity (m/s)", "Geschwindigkeit (m/s)", "v (cm/s)", "v", "Speed"}) {
     INFO(name);
     const Made radar(fmt::format("\"Time (s)\",\"{}\"\n", name) + rows("0.{0},0.{0}\n"));
-    CHECK_THROWS_WITH(radar.read(), Contains("speeds without positions") && Contains("too narrow"));
+    CHECK_THROWS_WITH(radar.read(), Contains("speeds without positions") && Contains("too narrow") &&
+                                        Contains("`glidelab analyze` without --with also takes speeds"));
   }
+  CHECK_THROWS_WITH(Made("t_s,v_m_s\n" + rows("0.{0},0.{0}\n")).read(), Contains("speeds without positions"));
   check_motion(Made("\"Time (s)\",\"Position (cm)\",\"Velocity (m/s)\"\n" + rows("0.{0},{1},0.1\n")).read());
 }
 

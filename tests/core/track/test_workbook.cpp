@@ -31,6 +31,7 @@ struct MadeWorkbook {
   std::string own_format = "0.000";
   std::string kind = "worksheet";  ///< of the first sheet
   std::string document_type = {};
+  std::string target = {};  ///< of every sheet's link, in place of a part of its own
 
   std::vector<std::pair<std::string, std::string>> parts() const {
     std::string list, links, shared;
@@ -40,8 +41,8 @@ struct MadeWorkbook {
       links += fmt::format(
           "<Relationship Id=\"rId{0}\" "
           "Type=\"http://schemas.openxmlformats.org/officeDocument/2006/relationships/{1}\" "
-          "Target=\"worksheets/sheet{0}.xml\"/>",
-          i + 1, i == 0 ? kind : "worksheet");
+          "Target=\"{2}\"/>",
+          i + 1, i == 0 ? kind : "worksheet", target.empty() ? fmt::format("worksheets/sheet{}.xml", i + 1) : target);
       all.emplace_back(fmt::format("xl/worksheets/sheet{}.xml", i + 1),
                        kXml + document_type + "<worksheet><sheetData>" + sheets[i].second + "</sheetData></worksheet>");
     }
@@ -176,12 +177,13 @@ TEST_CASE("bad workbooks give one clear error each") {
     return std::string();
   };
   CHECK_THAT(message("<row r=\"1\"><c r=\"A1\" t=\"s\"><v>7</v></c></row>"), Contains("text 7 of 2"));
-  CHECK_THAT(message("<row r=\"1\"><c r=\"A1\" t=\"s\"><v>-1</v></c></row>"), Contains("\"-1\" in place of a number"));
-  CHECK_THAT(message("<row r=\"1\"><c r=\"A1\"><v>soon</v></c></row>"), Contains("\"soon\" in place of a number"));
+  CHECK_THAT(message("<row r=\"1\"><c r=\"A1\" t=\"s\"><v>-1</v></c></row>"),
+             Contains("\"-1\" where a number should be"));
+  CHECK_THAT(message("<row r=\"1\"><c r=\"A1\"><v>soon</v></c></row>"), Contains("\"soon\" where a number should be"));
   CHECK_THAT(message("<row r=\"2\"/><row r=\"1\"/>"), Contains("row \"1\" after row 2"));
   CHECK_THAT(message("<row r=\"99999999\"/>"), Contains("row \"99999999\""));
-  CHECK_THAT(message("<row r=\"1\"><c r=\"ZZZZ1\"/></row>"), Contains("out of its place"));
-  CHECK_THAT(message("<row r=\"1\"><c r=\"B1\"/><c r=\"A1\"/></row>"), Contains("\"A1\" out of its place"));
+  CHECK_THAT(message("<row r=\"1\"><c r=\"ZZZZ1\"/></row>"), Contains("out of order"));
+  CHECK_THAT(message("<row r=\"1\"><c r=\"B1\"/><c r=\"A1\"/></row>"), Contains("\"A1\" out of order"));
   CHECK_THAT(message("<row r=\"1\"><c"), Contains("sheet1.xml:2: found XML that breaks off"));
   CHECK_THAT(message(""), Contains("sheet \"Data\"") && Contains("no line with two numbers"));
   CHECK_THAT(message(kHeader + rows("<row r=\"{0}\"><c r=\"A{0}\"><v>0.{1}</v></c><c r=\"B{0}\"><v>{2}</v></c></row>") +
@@ -205,6 +207,71 @@ TEST_CASE("a workbook that unpacks to more than a table is refused before it fil
     far += fmt::format("<row r=\"{0}\"><c r=\"A{0}\"><v>1</v></c><c r=\"WQK{0}\"><v>1</v></c></row>", row);
   }
   CHECK_THROWS_WITH(folder.read({{{"Data", far}}}), Contains("more than 67108864 bytes as text"));
+}
+
+TEST_CASE("a workbook of a thousand sheets is read, one of more is refused") {
+  const Folder folder;
+  MadeWorkbook book;
+  for (std::size_t i = 1; i < core::kMostSheets; ++i) book.sheets.emplace_back(fmt::format("Empty {}", i), "");
+  book.sheets.emplace_back("Last", kHeader + kRows);
+  book.texts = kTexts;
+  const core::TrackData track = folder.read(book);
+  check_motion(track);
+  CHECK(tests::note_of<core::SheetTaken>(track.notes)->sheet == "Last");
+  book.sheets.emplace_back("One more", "");
+  CHECK_THROWS_WITH(folder.read(book), Contains("found a workbook of 1001 sheets, expected at most 1000"));
+}
+
+TEST_CASE("the sheets of a workbook are unpacked up to a sum, and a part that several name only once") {
+  const Folder folder;
+  const std::string large = kXml + ("<worksheet><sheetData/>" + std::string(std::size_t{30} << 20, ' ') +
+                                    "</worksheet>");  // nine are more than 256 MiB
+  MadeWorkbook book;
+  for (int i = 1; i <= 9; ++i) book.sheets.emplace_back(fmt::format("Sheet {}", i), "");
+  const auto read_with_large = [&](int count) {
+    const auto file = folder.write(book);
+    zip_t* const zip = zip_open(file.c_str(), 0, nullptr);
+    REQUIRE(zip != nullptr);
+    for (int i = 1; i <= count; ++i) {
+      const auto index = zip_file_add(zip, fmt::format("xl/worksheets/sheet{}.xml", i).c_str(),
+                                      zip_source_buffer(zip, large.data(), large.size(), 0), ZIP_FL_OVERWRITE);
+      REQUIRE(index >= 0);
+      REQUIRE(zip_set_file_compression(zip, static_cast<zip_uint64_t>(index), ZIP_CM_DEFLATE, 1) == 0);
+    }
+    REQUIRE(zip_close(zip) == 0);
+    core::read_track(file, {}, "");
+  };
+  CHECK_THROWS_WITH(read_with_large(9), Contains("found sheets of more than 268435456 bytes") && Contains("as CSV"));
+  book.target = "worksheets/sheet1.xml";
+  CHECK_THROWS_WITH(read_with_large(1), Contains("no line with two numbers"));
+}
+
+TEST_CASE("the name of a part is cleaned and cut before a message shows it") {
+  const Folder folder;
+  MadeWorkbook book{{{"Data", kHeader + kRows}}, kTexts};
+  book.target = "a&#27;[31m&#10;b&quot;" + std::string(10'000, 'c');
+  try {
+    folder.read(book);
+    FAIL("no such part");
+  } catch (const base::InputError& error) {
+    const std::string message = error.what();
+    CHECK_THAT(message, Contains("xl/a [31m b ccc") && Contains("no such part"));
+    CHECK(message.find_first_of("\x1b\n\"") == std::string::npos);
+    CHECK(message.size() < 1000);
+  }
+}
+
+TEST_CASE("a blank between the runs of a text belongs to it, a cell of blanks alone is empty") {
+  const Folder folder;
+  const std::vector<std::string> texts = {
+      "<si>\n<r><t>Time</t></r><r><t xml:space=\"preserve\"> </t></r><r><t>(s)</t></r>\n</si>", kTexts[1],
+      "<si><t xml:space=\"preserve\"> </t></si>"};
+  check_motion(folder.read({{{"Data", kHeader + kRows}}, texts}));
+  CHECK_THROWS_WITH(folder.read({{{"Data", kHeader + kRows}}, texts}, "none"), Contains("\"Time (s)\""));
+  const std::string blank = rows(
+      "<row r=\"{0}\"><c r=\"A{0}\"><v>0.{1}</v></c><c r=\"B{0}\"><v>{2}</v></c><c r=\"C{0}\"><v>\n</v></c>"
+      "<c r=\"D{0}\" t=\"s\"><v>2</v></c></row>");
+  check_motion(folder.read({{{"Data", kHeader + blank}}, texts}));
 }
 
 TEST_CASE("spreadsheets of other kinds are refused with what to save instead") {
