@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 
 #include "base/files/file_io.h"
@@ -336,4 +337,55 @@ TEST_CASE("clip names of any text neither break the page nor leave the folder") 
   CHECK(result.status == 0);
   CHECK(base::read_file(temp / "out/report.html").find("<script") == std::string::npos);
   CHECK(entries(temp / "out") == 3);
+}
+
+namespace {
+
+constexpr double kDragRate_1_s = 0.8, kMu = 0.005, kIncline_deg = 3.0, kSpeedNoise_m_s = 3e-3;
+
+/// An encoder's table of a glider that is launched uphill and comes back: v' = g (sin alpha -+ mu cos alpha) - k v in
+/// closed form on both sides of the turn, x downhill.
+std::string table_of_speeds(unsigned seed) {
+  const double alpha = kIncline_deg * std::acos(-1.0) / 180.0, g = 9.80665, v0 = -0.9;
+  const double up = g * (std::sin(alpha) + kMu * std::cos(alpha)) / kDragRate_1_s;
+  const double down = g * (std::sin(alpha) - kMu * std::cos(alpha)) / kDragRate_1_s;
+  const double turn = std::log((up - v0) / up) / kDragRate_1_s;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, kSpeedNoise_m_s);
+  std::string text = "t (s),v (m/s)\n";
+  for (int i = 0; i < 500; ++i) {
+    const double t = 0.005 * i;
+    const double v =
+        t < turn ? up + (v0 - up) * std::exp(-kDragRate_1_s * t) : -down * std::expm1(-kDragRate_1_s * (t - turn));
+    text += fmt::format("{:.4f},{:.6f}\n", t, v + noise(random));
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("analyze takes speeds without positions, states none, and other estimators refuse them") {
+  const tests::TempDir temp;
+  const fs::path file = temp / "encoder.csv";
+  base::write_file(file, table_of_speeds(7));
+  const std::vector<std::string> words{"analyze", file.string(), "--mass", "0.4", "--incline", "3", "--json", "--out"};
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return tests::glidelab(more);
+  };
+  const tests::ProcessResult result = run({(temp / "out").string()});
+  INFO(result.err);
+  REQUIRE(result.status == 0);
+  const json document = json::parse(result.out), clip = document.at("clips").at(0);
+  CHECK(clip.at("position_noise_m").is_null());
+  // The standard deviation of 500 values is known to 3 %.
+  CHECK(std::abs(clip.at("speed_noise_m_s").get<double>() - kSpeedNoise_m_s) < 0.15 * kSpeedNoise_m_s);
+  const json k = document.at("configurations").at(0).at("k_over_m_1_s");
+  CHECK(std::abs(k.at("value").get<double>() - kDragRate_1_s) < 4.0 * k.at("sd").get<double>());
+  CHECK(k.at("sd").get<double>() < 0.1);
+  CHECK(base::read_file(temp / "out/report.html").find("v(t)") != std::string::npos);
+  const tests::ProcessResult refused = run({(temp / "fit").string(), "--estimator", "trajectory"});
+  CHECK(refused.status == 1);
+  CHECK(refused.err.find("speeds") != std::string::npos);
+  CHECK_FALSE(fs::exists(temp / "fit"));
 }
