@@ -258,10 +258,6 @@ FitPoint step_from(const MotionFit& fit, double damping) {
   return next;
 }
 
-}  // namespace
-
-namespace {
-
 /// Holds a parameter of an effect where it starts: by a ten-millionth of its range.
 FitStatement held_at(std::size_t global, double value, const ParameterRange& range) {
   return {global, value, 1e-7 * (range.high - range.low), {}, false};
@@ -351,10 +347,6 @@ FitPoint with_absent(const TrackSet& set, const MotionFit& base, std::size_t eff
   }
   return point;
 }
-
-}  // namespace
-
-namespace {
 
 /// The coefficient c of a quadratic drag that takes as much energy from the motions as K does in a fit; `least` if K is
 /// not positive.
