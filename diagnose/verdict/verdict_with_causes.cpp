@@ -109,18 +109,18 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
   });
 }
 
-/// A fit that counts its own remainder as noise, and the motions with that noise.
+/// A fit that counts its own remainder as noise, the motions with that noise, and the remainder.
 struct Sized {
   TrackSet set;
   MotionFit fit;
+  RemainderSizes remainder = {};
 };
 
 /// The causes that keep their name, beside their own remainder, for the sizes that the verdict gives. The fit of the
 /// whole explanation has other sizes: part of one cause may have gone into another that takes no part of the gap.
 Sized sized_of(const TrackSet& set, const MotionFit& named) {
-  const RemainderSizes sizes = RemainderSpace(set, named).likeliest().sizes;
-  Sized sized{set, {}};
-  add_remainder(named, sizes, sized.set);
+  Sized sized{set, {}, RemainderSpace(set, named).likeliest().sizes};
+  add_remainder(named, sized.remainder, sized.set);
   sized.fit = fit_motions(sized.set, named.effects, named.at, named.late);
   if (!std::isfinite(sized.fit.cost)) sized.fit = linearise_again(sized.set, named);
   return sized;
@@ -387,7 +387,8 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   const MotionFit& with_effect = sequence.is_gap ? sequence.named : fit;
   const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;
   const RemainderSpace space(set, reported);
-  const RemainderSizes sizes = space.likeliest().sizes;
+  const bool is_sized = settled && &reported == &of_gap;
+  const RemainderSizes sizes = is_sized ? sized.remainder : space.likeliest().sizes;
   if (sequence.is_gap) {
     diagnosis.remainder = remainder_of(sequence.gap_before, diagnosis.explained, sizes, space.part_s());
     diagnosis.remainder->regions =

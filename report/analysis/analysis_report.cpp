@@ -234,15 +234,16 @@ std::string value_tiles(const core::AnalysisResults& results) {
 /// "12 clips, 2400 frames, the marker found in 2388".
 std::string size_words(const core::AnalysisResults& results) {
   std::size_t frames = 0, detected = 0;
-  bool images = false;
+  bool images = false, speeds = false;
   for (const core::ClipResult& clip : results.clips) {
     images = images || !clip.sightings.empty();
+    speeds = speeds || clip.speed_noise_m_s.has_value();
     frames += clip.frames;
     detected += clip.detected;
   }
   const std::size_t clips = results.clips.size();
   const std::string seen = images ? fmt::format("{} frames, the marker found in {}", frames, detected)
-                                  : fmt::format("{} positions", detected);
+                                  : fmt::format("{} {}", detected, speeds ? "speeds" : "positions");
   return fmt::format("{} {}, {}", clips, clips == 1 ? "clip" : "clips", seen);
 }
 

@@ -122,7 +122,8 @@ std::string configuration_label(const diagnose::RecoveredConfiguration& of,
 }  // namespace
 
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval) {
-  if (interval && std::max({std::abs(share), std::abs(interval->low), std::abs(interval->high)}) < kNothing) {
+  const bool is_trifle = interval && std::abs(share) < kNothing;
+  if (is_trifle && std::max(std::abs(interval->low), std::abs(interval->high)) < kNearEnd) {
     return "less than 0.1 %";
   }
   const bool near_end = share < kNearEnd || share > 1.0 - kNearEnd;
