@@ -35,7 +35,6 @@ constexpr double kMostOfOneClip = 0.999;  // the highest probability that one cl
 constexpr double kLeastNamed = 0.1;       // of the excess: a smaller share counts as part of the remainder
 constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
 constexpr double kLeastMeasuredGap = 0.5;  // a gap below which the assumed noise is not that of the positions
-constexpr double kLikelierThanNot = 0.5;
 constexpr double kOpenSize = 0.25;    // the least probability of an unknown cause beside a name without a certain size
 constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
 
@@ -311,9 +310,19 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   const std::optional<double> over_viscous = by_air ? evidence_over_viscous(by, best) : std::nullopt;
   const TrackSet gap_set = by_air ? without_drag(set) : set, gap_with = by_air ? without_drag(with) : with;
   const MotionFit gap_nominal = by_air ? fit_nominal(gap_set) : nominal;
-  CauseSequence sequence = sequence_of(gap_set, gap_nominal, gap_with, fit_of(best), without, least_named);
+  const auto sequence_with = [&](const Hypothesis& one) {
+    return sequence_of(gap_set, gap_nominal, gap_with, fit_of(one), without, least_named);
+  };
+  CauseSequence sequence;
+  const Hypothesis* likely = names && weighed && claims ? likely_part(set, by, best) : nullptr;
+  if (likely != nullptr) sequence = sequence_with(*likely);
+  if (likely != nullptr && sequence.named_share >= kHalfOfGap && is_likelier_than_not(with, by, *likely)) {
+    best = *likely;
+  } else {
+    sequence = sequence_with(best);
+  }
   if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.images, best, sequence) : nullptr) {
-    CauseSequence likelier = sequence_of(gap_set, gap_nominal, gap_with, fit_of(*alone), without, least_named);
+    CauseSequence likelier = sequence_with(*alone);
     if (may_displace(likelier, sequence)) {
       best = *alone;
       sequence = std::move(likelier);

@@ -22,6 +22,31 @@ std::size_t alike_of(const Comparison& comparison, std::size_t effect, bool film
   return comparison.alike.empty() ? first_alike(effect, filmed) : comparison.alike[effect];
 }
 
+bool is_named(const Hypothesis& hypothesis) {
+  return !hypothesis.unnamed && !hypothesis.effects.empty();
+}
+
+using Causes = std::multiset<std::size_t>;  // each effect by the first one that is like it
+
+Causes causes_of(const Comparison& comparison, const Hypothesis& hypothesis, bool filmed) {
+  Causes causes;
+  for (const std::size_t e : hypothesis.effects) causes.insert(alike_of(comparison, e, filmed));
+  return causes;
+}
+
+/// The probability of each cause: the sum over the explanations that contain it. Scatter counts only by itself.
+std::map<std::size_t, double> probabilities_of_causes(const Comparison& comparison, bool filmed) {
+  std::map<std::size_t, double> sums;
+  for (const Hypothesis& one : comparison.all) {
+    if (!is_named(one)) continue;
+    const Causes of = causes_of(comparison, one, filmed);
+    for (const std::size_t cause : std::set<std::size_t>(of.begin(), of.end())) {
+      if (!is_scatter(cause) || is_scatter_alone(one)) sums[cause] += one.probability;
+    }
+  }
+  return sums;
+}
+
 }  // namespace
 
 double log_evidence_beyond(const TrackSet& set, const MotionFit& base, const EffectScan& scan, double gain) {
@@ -173,38 +198,44 @@ bool is_scatter_alone(const Hypothesis& hypothesis) {
 }
 
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
-  using Causes = std::multiset<std::size_t>;
-  std::map<Causes, double> sums;
-  std::map<std::size_t, double> of_cause;
-  const auto causes = [&](const Hypothesis& hypothesis) {
-    Causes same;
-    for (const std::size_t e : hypothesis.effects) same.insert(alike_of(comparison, e, set.images));
-    return same;
-  };
-  const auto names = [](const Hypothesis& hypothesis) { return !hypothesis.unnamed && !hypothesis.effects.empty(); };
-  for (const Hypothesis& hypothesis : comparison.all) {
-    if (!names(hypothesis)) continue;
-    const Causes of = causes(hypothesis);
-    sums[of] += hypothesis.probability;
-    for (const std::size_t cause : std::set<std::size_t>(of.begin(), of.end())) {
-      if (!is_scatter(cause) || is_scatter_alone(hypothesis)) of_cause[cause] += hypothesis.probability;
-    }
-  }
+  const std::map<std::size_t, double> of_cause = probabilities_of_causes(comparison, set.images);
   if (of_cause.empty()) return nullptr;
   const std::size_t leading = std::max_element(of_cause.begin(), of_cause.end(), [](const auto& a, const auto& b) {
                                 return a.second < b.second;
                               })->first;
+  std::map<Causes, double> sums;
+  for (const Hypothesis& hypothesis : comparison.all) {
+    if (is_named(hypothesis)) sums[causes_of(comparison, hypothesis, set.images)] += hypothesis.probability;
+  }
   const Hypothesis* best = nullptr;  // the likeliest name of the likeliest causes: they are sorted by decreasing
                                      // probability
   double most = -1.0;
   for (const Hypothesis& hypothesis : comparison.all) {
-    if (!names(hypothesis)) continue;
-    const Causes of = causes(hypothesis);
+    if (!is_named(hypothesis)) continue;
+    const Causes of = causes_of(comparison, hypothesis, set.images);
     if (!of.contains(leading) || sums[of] <= most) continue;
     most = sums[of];
     best = &hypothesis;
   }
   return best;
+}
+
+const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+  const std::map<std::size_t, double> of_cause = probabilities_of_causes(comparison, set.images);
+  const auto probability = [&](std::size_t effect) {
+    const auto of = of_cause.find(alike_of(comparison, effect, set.images));
+    return of != of_cause.end() ? of->second : 0.0;
+  };
+  std::set<std::size_t> likely;
+  std::size_t likeliest = best.effects.front();
+  for (const std::size_t e : best.effects) {
+    if (probability(e) >= kLikelierThanNot) likely.insert(e);
+    if (probability(e) > probability(likeliest)) likeliest = e;
+  }
+  likely.insert(likeliest);
+  if (likely.size() == best.effects.size()) return nullptr;
+  const Hypothesis* part = find(comparison, likely);
+  return part != nullptr && part->fit > 0 ? part : nullptr;
 }
 
 }  // namespace glidelab::diagnose

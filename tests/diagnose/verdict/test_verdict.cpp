@@ -56,6 +56,36 @@ TEST_CASE("the likeliest cause leads, even if its probability is shared out amon
         "heavy_tailed_noise");
 }
 
+TEST_CASE("of an explanation the causes that are likelier than not keep their name, or the likeliest") {
+  diagnose::Comparison comparison;
+  const auto part = [&](const diagnose::TrackSet& set, const std::vector<diagnose::Hypothesis>& all) {
+    comparison.all = all;
+    for (diagnose::Hypothesis& one : comparison.all) one.fit = 1;
+    const diagnose::Hypothesis* likely = diagnose::likely_part(set, comparison, comparison.all.front());
+    return likely != nullptr ? likely->effects : std::vector<std::size_t>();
+  };
+  const auto only = [](const std::string& id) { return of({id}, 0.0).effects; };
+  const diagnose::TrackSet tracks;
+  diagnose::TrackSet films;
+  films.images = true;
+  // The drag is in 0.9 of all, the bow in 0.45 and in 0.5.
+  CHECK(part(tracks, {of({"quadratic_drag", "track_bow"}, 0.45), of({"quadratic_drag"}, 0.45)}) ==
+        only("quadratic_drag"));
+  CHECK(part(tracks, {of({"quadratic_drag", "track_bow"}, 0.5), of({"quadratic_drag"}, 0.4)}).empty());
+  // Neither in half of all: the likeliest, whatever their order.
+  CHECK(part(tracks, {of({"quadratic_drag", "track_bow"}, 0.3), of({"track_bow"}, 0.15),
+                      of({"quadratic_drag"}, 0.1)}) == only("track_bow"));
+  // A shaking camera and a shaking table are one cause of tracks, in 0.6 of all. Images tell them apart.
+  const std::vector<diagnose::Hypothesis> shaken = {of({"quadratic_drag", "camera_motion"}, 0.35),
+                                                    of({"quadratic_drag", "base_vibration"}, 0.25),
+                                                    of({"quadratic_drag"}, 0.3)};
+  CHECK(part(tracks, shaken).empty());
+  CHECK(part(films, shaken) == only("quadratic_drag"));
+  // A single cause has no part, and a part without a fit cannot be reported.
+  CHECK(part(tracks, {of({"quadratic_drag"}, 0.4)}).empty());
+  CHECK(part(tracks, {of({"quadratic_drag", "track_bow"}, 0.45), of({"stribeck"}, 0.45)}).empty());
+}
+
 TEST_CASE("several names that these data cannot tell apart count together against one name for another cause") {
   const diagnose::TrackSet tracks;
   diagnose::Comparison comparison;
