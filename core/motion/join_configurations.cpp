@@ -268,6 +268,7 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
   ConfigurationResult result;
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
+  result.incline_assumed = members.front().setup->incline_assumed;
   result.group = members.front().setup->group;
   bool biased = false;
   for (const MemberClip& member : members) {
@@ -315,11 +316,7 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   for (const std::vector<MemberClip>& members : configurations) {
     results.push_back(join_members(members, gravity_m_s2, lines));
   }
-  note_statements(results, gravity_m_s2, [&](const ConfigurationResult& result) {
-    return std::none_of(setups.begin(), setups.end(), [&](const ClipSetup& setup) {
-      return setup.incline_assumed && setup.name == result.clips.front();
-    });
-  });
+  note_statements(results, gravity_m_s2);
   return results;
 }
 

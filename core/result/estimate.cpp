@@ -103,11 +103,13 @@ StatedIncline stated_incline(const ConfigurationResult& configuration) {
   return {configuration.incline_deg, configuration.incline_sd_deg, "incline_deg"};
 }
 
-void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2,
-                     const std::function<bool(const ConfigurationResult&)>& states_incline) {
+void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2) {
   double least_kg = std::numeric_limits<double>::infinity();
   for (const ConfigurationResult& result : results) least_kg = std::min(least_kg, result.mass_kg);
   for (ConfigurationResult& result : results) {
+    std::erase_if(result.notes, [](const Note& note) {
+      return std::holds_alternative<MassInGrams>(note) || std::holds_alternative<InclineContradiction>(note);
+    });
     if (result.mass_kg >= kMassRatio * least_kg) {
       result.notes.emplace_back(MassInGrams{result.mass_kg, least_kg});
     }
@@ -115,7 +117,7 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
     if (result.mass_kg >= kLargestMass_kg && result.mass_kg < kMassRatio * least_kg) {
       result.notes.emplace_back(MassInGrams{result.mass_kg, {}});
     }
-    if (!states_incline(result)) continue;
+    if (result.incline_assumed) continue;
     const auto contradiction = incline_contradiction(result, gravity_m_s2, stated_incline(result));
     if (contradiction && contradiction->gross) result.notes.emplace_back(*contradiction);
   }

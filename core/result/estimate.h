@@ -1,7 +1,6 @@
 /// Numbers with their uncertainty, and what experiment.toml states about a configuration compared with its motion.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -53,12 +52,8 @@ std::optional<InclineContradiction> incline_contradiction(const ConfigurationRes
 /// As stated by incline_deg and incline_sd_deg of its clips.
 StatedIncline stated_incline(const ConfigurationResult& configuration);
 
-/// Adds notes about masses that look like grams, and about stated inclinations that the motion contradicts grossly. A
-/// configuration whose inclination is not stated cannot be contradicted.
-void note_statements(
-    std::vector<ConfigurationResult>& results, double gravity_m_s2,
-    const std::function<bool(const ConfigurationResult&)>& states_incline = [](const ConfigurationResult&) {
-      return true;
-    });
+/// Adds notes about masses that look like grams, and about stated inclinations that the motion contradicts grossly, in
+/// place of those that it added before. A configuration whose inclination is not stated cannot be contradicted.
+void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2);
 
 }  // namespace glidelab::core

@@ -214,6 +214,7 @@ struct ConfigurationResult {
   double mass_kg = 0.0;
   double incline_deg = 0.0;
   std::optional<double> incline_sd_deg;  ///< the smallest that its clips state, if any
+  bool incline_assumed = false;          ///< nobody states it
   std::string group;
   std::vector<std::string> clips;
   std::vector<LineFit> lines;  ///< at most one for each direction, through the points of all its clips

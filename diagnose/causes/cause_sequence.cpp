@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMostCauses = 4;
 constexpr std::size_t kTried = 3;     // further effects fitted in full at each step
+constexpr double kMostOfRest = 0.5;   // of what the causes before leave: a further cause that takes it has a name
 constexpr double kWorthTrying = 5.0;  // log evidence beside the remainder, above which an effect is fitted
 
 struct Step {
@@ -51,6 +52,12 @@ ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& befor
   cause.share = (before.gap * before.gap - after.gap * after.gap) / (first.gap * first.gap - floor * floor);
   if (!one_clip) cause.share_interval95 = share_interval(first.clips, before.clips, after.clips, floor);
   return cause;
+}
+
+/// The part that a step takes of what the one before it leaves above the noise.
+double share_of_rest(const Step& before, const Step& after) {
+  if (!is_above_floor(before)) return 0.0;
+  return (before.gap * before.gap - after.gap * after.gap) / (before.gap * before.gap - 1.0);
 }
 
 /// Whether a cause beyond those of the verdict takes more than its uncertainty.
@@ -199,6 +206,8 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       if (!best) continue;
       const double share = cause_of(left[best->first], whole(), here, best->second, is_one_clip(set)).share;
       if (share > (steps.empty() ? kLeastShare : least_named)) break;
+      // A large cause must not hide a second one that explains most of what it leaves.
+      if (!steps.empty() && share_of_rest(here, best->second) >= kMostOfRest) break;
       best.reset();
       if (std::none_of(left.begin(), left.end(), differs_between_clips)) break;
     }

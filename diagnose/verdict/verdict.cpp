@@ -178,6 +178,10 @@ std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypo
   std::vector<std::size_t> others;
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
     if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
+    if (!comparison.alike.empty() && are_alike(comparison, e, effect, filmed)) {
+      others.push_back(e);  // whatever has become of its fit beside the other effects
+      continue;
+    }
     for (const Hypothesis& other : comparison.all) {
       if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
       // The scatter of single positions is no other name for an effect that shifts them all.

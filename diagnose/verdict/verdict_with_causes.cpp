@@ -304,7 +304,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   const auto fit_of = [&](const Hypothesis& one) -> const MotionFit& {
     return names ? by.fits[static_cast<std::size_t>(one.fit)] : nominal;
   };
-  const double least_named = weighed ? kLeastNamed : kLeastShare;
+  const double least_named = weighed ? kLeastNamed : 0.0;
   // K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
   const bool by_air = set.through_air && claims && names && has(best, effect_index(ids::quadratic_drag));
   const std::optional<double> over_viscous = by_air ? evidence_over_viscous(by, best) : std::nullopt;
@@ -392,8 +392,8 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   diagnosis.traces = std::move(traces);
   diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence.causes) : sequence.causes;
   order_by_share(by_air, diagnosis);
-  // Without a gap there is no sequence, and the fit of the explanation itself contains the effect.
-  const MotionFit& with_effect = sequence.is_gap ? sequence.named : fit;
+  // Where causes are named whatever part of the gap they take, all of them are in the fit of the explanation itself.
+  const MotionFit& with_effect = sequence.is_gap && (settled || by_air) ? sequence.named : fit;
   const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;
   const RemainderSpace space(set, reported);
   const bool is_sized = settled && &reported == &of_gap;
@@ -417,9 +417,9 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
     add_others(*weighed, all_before, unknown, with_names ? best.effects : std::vector<std::size_t>(), explanations);
     explanations.front().probability = std::max(explanations.front().probability, kLikely);
   }
-  diagnosis.recovered = recovered_of(set, explanations);
   if (diagnosis.verdict == Verdict::effect) explanations.front().effects = best.effects;
   if (!weighed) add_others(first, all_before, explanations);
+  diagnosis.recovered = recovered_of(set, explanations);
   diagnosis.likely_twins = likely_twins(set, explanations, diagnosis.effects);
   if (set.clips.size() < 2) {
     for (DiagnosedEffect& effect : diagnosis.effects) {

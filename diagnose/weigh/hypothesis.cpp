@@ -188,6 +188,10 @@ double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis
   return log;
 }
 
+bool are_alike(const Comparison& comparison, std::size_t one, std::size_t other, bool filmed) {
+  return alike_of(comparison, one, filmed) == alike_of(comparison, other, filmed);
+}
+
 bool is_scatter(std::size_t effect) {
   return effect_list()[effect].search == Search::noise;
 }

@@ -113,6 +113,9 @@ const Hypothesis* find(const Comparison& comparison, const std::set<std::size_t>
 /// the same again. `space` is the neighbourhood of the nominal fit.
 std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<EffectScan>& scans);
 
+/// Whether the data cannot tell two effects apart, by `alike` or first_alike().
+bool are_alike(const Comparison& comparison, std::size_t one, std::size_t other, bool filmed);
+
 /// Whether an effect is scatter of single positions or times (Search::noise), which causes no gap.
 bool is_scatter(std::size_t effect);
 

@@ -99,7 +99,6 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
   }
   results.estimator = kTrajectory;
   for (core::ConfigurationResult& configuration : results.configurations) {
-    configuration.notes.clear();  // of the lines
     std::vector<FitBlock> blocks;
     for (const core::ClipResult& clip : results.clips) {
       if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {

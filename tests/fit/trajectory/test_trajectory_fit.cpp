@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "fit/trajectory/trajectory_results.h"
 #include "sim/oracle/closed_forms.h"
@@ -126,6 +127,40 @@ TEST_CASE("motion in one direction determines K/m and the intercept, and says th
   CHECK(one_way->direction == 1);
   CHECK(std::abs(one_way->a0_m_s2 - (kLaw[1] - kLaw[2])) < 5.0 * one_way->sd_m_s2);
   CHECK(one_way->sd_m_s2 < 1e-3);
+}
+
+TEST_CASE("the fit of the whole motion keeps what was said of the recording, and doubts stated inclinations only") {
+  std::mt19937 random(4);
+  core::AnalysisResults results;
+  results.gravity_m_s2 = kGravity;
+  core::ClipResult clip;
+  clip.name = "down";
+  clip.noise_autocovariance_m2 = {1e-10};
+  clip.blocks = {block_of(kLaw, -0.5, 1.2, 1.7, 1e-5, random)};
+  results.clips = {clip};
+  core::ConfigurationResult configuration;
+  configuration.clips = {"down"};
+  configuration.mass_kg = 0.2;
+  configuration.notes = {core::AssumedStatements{{}, true}};
+  core::LineFit line;
+  line.direction = 1;
+  line.k_over_m_1_s.value = kLaw[0];
+  line.a0_m_s2 = {kLaw[1] - kLaw[2], 1e-4};
+  configuration.lines = {line};
+  // The motion itself needs an inclination of at least asin((g sin(alpha) - mu g cos(alpha)) / g).
+  REQUIRE((kLaw[1] - kLaw[2]) / kGravity > std::sin(0.05));
+  const auto notes = [&](bool assumed) {
+    configuration.incline_assumed = assumed;
+    results.configurations = {configuration};
+    return fit::with_trajectory_fits(results).configurations[0].notes;
+  };
+  const std::vector<core::Note> of_assumed = notes(true), of_stated = notes(false);
+  CHECK(tests::note_of<core::AssumedStatements>(of_assumed) != nullptr);
+  CHECK(tests::note_of<core::InclineContradiction>(of_assumed) == nullptr);
+  CHECK(tests::note_of<core::InclineContradiction>(of_stated) != nullptr);
+  // What the lines had already contradicted is said once.
+  configuration.notes = of_stated;
+  CHECK(notes(false).size() == of_stated.size());
 }
 
 namespace {
