@@ -85,7 +85,7 @@ void add_certify(CLI::App& app, Command& chosen) {
                    "track, as analyze takes them")
       ->type_name("DIR|FILE")
       ->required();
-  command->add_option("--twins", options->twins, "How many twins are recorded")
+  command->add_option("--twins", options->twins, "Number of twins to record")
       ->type_name("N")
       ->check(CLI::Range(validate::kFewestTwins, validate::kMostTwins))
       ->capture_default_str();

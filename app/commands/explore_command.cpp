@@ -39,7 +39,8 @@ void explore(const ExploreOptions& all) {
 void add_explore(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<ExploreOptions>();
   CLI::App* command = app.add_subcommand(
-      "explore", "Make a page for class: sliders for the law, K/m, mu, alpha and v0; x(t), v(t) and a(v) together");
+      "explore",
+      "Make a page for the classroom: sliders for the law, K/m, mu, alpha and v0; x(t), v(t) and a(v) together");
   command->add_option("--language", options->language, "Language in which the page opens; its menu offers all")
       ->check(CLI::IsMember(teach::language_codes()))
       ->capture_default_str();

@@ -106,12 +106,12 @@ void require_visible(const ClipSetup& clip, const Restitution& restitution, cv::
   constexpr double kLeastRadiusPx = 0.25;
   const auto radius_px = restitution.marker_radius_px({0.5 * size.width, 0.5 * size.height});
   if (!radius_px || (*radius_px >= kLeastRadiusPx && 2.0 * *radius_px <= std::min(size.width, size.height))) return;
-  throw base::InputError(
-      base::Issue{clip.file.string(), 0, "marker",
-                  fmt::format("a marker of {} px across, by its stated size, in images of {} x {} px",
-                              base::number_text(2.0 * *radius_px, 2), size.width, size.height),
-                  "a marker of some pixels that fits into the image; diameter_m, height_m and square_m are in metres, "
-                  "px_per_m counts the pixels of a metre"});
+  throw base::InputError(base::Issue{
+      clip.file.string(), 0, "marker",
+      fmt::format("a marker of {} px across, by its stated size, in images of {} x {} px",
+                  base::number_text(2.0 * *radius_px, 2), size.width, size.height),
+      "a marker several pixels wide that fits into the image; diameter_m, height_m and square_m are in metres, "
+      "px_per_m counts the pixels of a metre"});
 }
 
 SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,

@@ -59,7 +59,7 @@ downhill = "+X"                    # which direction of the pattern's long row i
 #length_m = 2.0
 
 # ---- The clips, one [[clip]] for each motion. mu and the inclination need both directions: launch it both ways, or up a
-#      slope that it comes back down. More masses carry more information.
+#      slope that it comes back down. Several masses give more information than one.
 [[clip]]
 name = "m1-up"
 file = "clips/m1-up.mp4"           # a video, or a folder of frames

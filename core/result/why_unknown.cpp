@@ -11,9 +11,7 @@ namespace {
 struct ReasonWords {
   std::string operator()(const unknown::Told& of) const { return of.text; }
 
-  std::string operator()(const unknown::NoLine&) const {
-    return "no line: neither direction has enough points that count";
-  }
+  std::string operator()(const unknown::NoLine&) const { return "no line: neither direction has enough usable points"; }
   std::string operator()(const unknown::NoDownhillLine&) const { return "no line for v > 0"; }
   std::string operator()(const unknown::NotBothLines& of) const {
     return fmt::format("no line for {}: friction and slope can be told apart only with both directions",
@@ -39,8 +37,9 @@ struct ReasonWords {
   std::string operator()(const unknown::OneDirection& of) const {
     const bool plus = of.direction > 0;
     return fmt::format(
-        "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not the two "
-        "apart",
+        "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not alpha and "
+        "mu "
+        "separately",
         plus ? ">" : "<", plus ? "-" : "+", of.a0_m_s2, of.sd_m_s2);
   }
   std::string operator()(const unknown::NoDownhillMotion&) const { return "no motion with v > 0"; }
@@ -48,7 +47,7 @@ struct ReasonWords {
     return "the acceleration without friction exceeds gravity: no inclination gives that";
   }
 
-  std::string operator()(const unknown::NotTold&) const { return "the estimator gave none and did not say why"; }
+  std::string operator()(const unknown::NotTold&) const { return "the estimator gave no value and did not say why"; }
   std::string operator()(const unknown::NotAnswered&) const {
     return "the estimator's results.json has no such configuration";
   }

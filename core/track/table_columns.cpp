@@ -191,8 +191,8 @@ void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const 
   const std::string &of_x = table.columns[x].name, &of_y = table.columns[y].name;
   throw wrong_column(
       table, fmt::format("a curved path: the sagitta of ({}, {}) is {:.2g} % of its length", of_x, of_y, 100.0 * bend),
-      fmt::format("the motion of a body along a straight line, not a free flight, a swing or a turn; if {} is no "
-                  "place, say which column is x (--column)",
+      fmt::format("the motion of a body along a straight line, not a free flight, a swing or a turn; if {} is not a "
+                  "position, say which column is x (--column)",
                   of_y));
 }
 

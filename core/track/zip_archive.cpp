@@ -45,7 +45,7 @@ ZipArchive::ZipArchive(const std::filesystem::path& file) : file_(file) {
   zip_t* const opened = zip_open(file.c_str(), ZIP_RDONLY, &code);
   if (opened == nullptr) {
     throw base::InputError(base::Issue{
-        file.string(), 0, "", "a zip archive that cannot be read: " + text_of_open_error(code), "a whole archive"});
+        file.string(), 0, "", "a zip archive that cannot be read: " + text_of_open_error(code), "a complete archive"});
   }
   handle_ = std::make_unique<Handle>(opened);
   const auto count = static_cast<std::uint64_t>(zip_get_num_entries(opened, 0));

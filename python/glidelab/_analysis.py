@@ -30,7 +30,7 @@ class Line:
     direction : int
         Sign of v.
     points : int
-        On how many it rests.
+        Number of points that the line is fitted to.
     k_over_m_1_s, a0_m_s2 : Quantity
         Slope (with the other sign) and intercept.
     covariance_k_over_m_a0 : float or None
@@ -38,7 +38,7 @@ class Line:
     r2 : float or None
         Coefficient of determination.
     v_range_m_s : (float, float)
-        The speeds on which it rests.
+        Range of their speeds.
     """
 
     direction: int
@@ -80,12 +80,12 @@ class Motion:
 
     @property
     def used(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Which frames a line rests on."""
+        """Which frames a line is fitted to."""
         used: np.ndarray[Any, np.dtype[np.bool_]] = self.reason == "used"
         return used
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a frame, with units in ``attrs["units"]``."""
+        """A pandas.DataFrame, one row per frame, with units in ``attrs["units"]``."""
         return frame_of({name: getattr(self, name) for name in (
             "t_s", "measured_x_m", "x_m", "sd_x_m", "v_m_s", "sd_v_m_s", "a_m_s2", "sd_a_m_s2", "reason")})
 
@@ -187,16 +187,16 @@ class Analysis(Result):
     Attributes
     ----------
     estimator : str
-        By which the quantities were found.
+        The one that found the quantities.
     clips : tuple of Clip
         In the order in which they were given.
     configurations : tuple of Configuration
         K/m, mu, alpha and the terminal velocity of each.
     doubts : tuple of str
-        What the law (drag in proportion to the speed, dry friction, gravity) cannot explain, a sentence each; empty
+        What the law (drag proportional to the speed, dry friction, gravity) cannot explain, one sentence each; empty
         where it fits. Where it does not, the standard deviations would hold only if it did.
     with_effects : WithEffects or None
-        The quantities with effects in the model that `analyze` was told of.
+        The quantities with the effects that were given to `analyze` in the model.
     """
 
     estimator: str
@@ -219,7 +219,7 @@ class Analysis(Result):
         return self.configurations[0]
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a configuration: each quantity and its standard deviation (``mu``, ``mu_sd``),
+        """A pandas.DataFrame, one row per configuration: each quantity and its standard deviation (``mu``, ``mu_sd``),
         NaN where it is not determined, with units in ``attrs["units"]``."""
         columns: dict[str, list[Any]] = {
             "mass_kg": [one.mass_kg for one in self.configurations],

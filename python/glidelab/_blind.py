@@ -49,7 +49,7 @@ class BlindCase:
     Attributes
     ----------
     case : int
-        Its number, from 0 on.
+        Its number, counted from 0.
     kind : str
         ``"none"``, ``"single"``, ``"pair"`` or ``"outside"``: how many causes, or one that is not on the list.
     causes : tuple of str
@@ -95,7 +95,7 @@ class Blind(Result):
     folder: str
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a case."""
+        """A pandas.DataFrame, one row per case."""
         return frame_of({name: [getattr(one, name) for one in self.cases]
                          for name in ("case", "kind", "causes", "verdict", "named")})
 
@@ -129,7 +129,7 @@ def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = Fals
     Parameters
     ----------
     cases : int
-        How many, 1 to 100000. Called again with the same folder and more cases, it goes on where it stopped.
+        How many, 1 to 100000. Called again with the same folder and more cases, it resumes where it stopped.
     folder : str or path
         Where experiments, diagnoses and truths lie or are made.
     only : str
@@ -149,7 +149,7 @@ def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = Fals
     Returns
     -------
     Blind
-        As ``glidelab blind`` writes it. Missed targets are no exception.
+        As ``glidelab blind`` writes it. Missed targets raise no exception.
 
     Raises
     ------

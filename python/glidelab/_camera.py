@@ -130,7 +130,7 @@ class Marker:
     elongation : float
         Long over short axis.
     amplitude, background : float
-        Brightness above what is around, and of that, in codes.
+        Brightness above its surroundings, and of the surroundings, in codes.
     blur_px : float
         Standard deviation of its edge.
     rms : float
@@ -173,11 +173,11 @@ def fit_marker(image: Any, centre_px: tuple[float, float], radius_px: float, *, 
     Raises
     ------
     InputError
-        The image is none.
+        It is not an image.
 
     Notes
     -----
-    An opaque ellipse with a blurred edge before a sloping background, fitted to the pixels; a centroid above a
+    An opaque ellipse with a blurred edge in front of a sloping background, fitted to the pixels; a centroid above a
     threshold follows the background's slope, this does not.
     """
     found = _glidelab.fit_marker(_grey(image, "image"), float(centre_px[0]), float(centre_px[1]), float(radius_px),

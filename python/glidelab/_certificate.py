@@ -49,7 +49,7 @@ class CertifiedQuantity:
 
 @dataclass(frozen=True)
 class ChangedTwin:
-    """What one thing better would bring.
+    """How much one improvement would reduce the errors.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class ChangedTwin:
     fall : float or None
         How much smaller the root mean square error becomes, 1 - after/before.
     fall_interval95 : (float, float) or None
-        Of it.
+        Its 95 % interval.
     stands_out : bool
         Whether that is more than chance over all changes.
     """
@@ -133,7 +133,7 @@ class Certificate(Result):
     explanations: tuple[CertifiedExplanation, ...]
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a quantity."""
+        """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(one, name) for one in self.quantities] for name in (
             "quantity", "asked", "failed", "coverage", "bias_sds", "rms", "stated_sd", "too_narrow")},
                         ("rms", "stated_sd"))
@@ -193,7 +193,7 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
     Returns
     -------
     Certificate
-        As ``glidelab certify`` writes it (docs/guide/trust.md). Intervals that do not hold are no exception.
+        As ``glidelab certify`` writes it (docs/guide/trust.md). Intervals that do not hold raise no exception.
 
     Raises
     ------

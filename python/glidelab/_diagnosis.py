@@ -247,9 +247,9 @@ class PlannedEffect:
     seen : bool
         Whether the largest size that is considered would show.
     seen_from : float or None
-        The size that makes four standard deviations.
+        The size that amounts to four standard deviations.
     alike : tuple of str
-        Effects that the motions would not tell from it.
+        Effects that the motions could not distinguish from it.
     """
 
     id: str
@@ -282,7 +282,7 @@ class Plan(Result):
     notes: tuple[str, ...]
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row an effect."""
+        """A pandas.DataFrame, one row per effect."""
         return frame_of({name: [getattr(one, name) for one in self.effects]
                          for name in ("id", "parameter", "seen", "seen_from", "alike")})
 

@@ -15,7 +15,7 @@ class Issue:
     file : str
         The file as it was named, or the track of arrays (``track "up"``); empty where it is neither.
     line : int
-        From 1 on; 0 where there is none.
+        Counted from 1; 0 where there is none.
     key : str
         ``"camera.frame_rate_hz"``, ``"x_m[3]"``; empty where there is none.
     found : str
@@ -36,7 +36,7 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """The input is wrong. All that is wrong with it is told at once.
+    """The input is wrong. Everything that is wrong with it is reported at once.
 
     Attributes
     ----------

@@ -114,11 +114,11 @@ class Judgement:
     failures: Mapping[str, str]
 
     def of(self, estimator_name: str, quantity: str) -> tuple[Judged, ...]:
-        """The rows of one estimator and one quantity, a row a configuration."""
+        """The rows of one estimator and one quantity, one per configuration."""
         return tuple(row for row in self.rows if row.estimator == estimator_name and row.quantity == quantity)
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a quantity."""
+        """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
             "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered")},
                         ("truth", "bias", "sd", "rms"))
@@ -340,9 +340,9 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
     Returns
     -------
     Judgement
-        Errors, coverage of the intervals, time. An estimator that fails ends nothing: what it raises (KeyboardInterrupt
-        and SystemExit excepted), an answer that is none, and a call that takes too long are counted as failures of
-        that experiment, and the first is told.
+        Errors, coverage of the intervals, time. A failing estimator does not stop the run: what it raises (KeyboardInterrupt
+        and SystemExit excepted), an invalid answer, and a call that takes too long are counted as failures of
+        that experiment, and the first is reported.
 
     Raises
     ------

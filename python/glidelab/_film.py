@@ -1,4 +1,4 @@
-"""render(): a scenario before the camera, frame by frame in memory, or as an experiment folder."""
+"""render(): a scenario as the camera sees it, frame by frame in memory, or as an experiment folder."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class FilmedClip:
 
 def render(scenario: Scenario, *, seed: Optional[int] = None, jobs: Optional[int] = None,
            progress: Progress = None) -> dict[str, FilmedClip]:
-    """A scenario's clips before the camera, to be iterated over frame by frame.
+    """A scenario's clips as the camera sees them, to be iterated over frame by frame.
 
     Parameters
     ----------

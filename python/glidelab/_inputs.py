@@ -46,7 +46,7 @@ class Track:
     mass_sd_kg, incline_sd_deg : float, optional
         Standard deviations of what is stated.
     launched : {"unknown", "up", "down", "released"}
-        How the motion began. Motion against a stated launch is taken for the hand's.
+        How the motion began. Motion against the stated launch is attributed to the hand.
     group : str
         Tracks of one group share one set-up of the track. Without it, those of one stated inclination do.
     """
@@ -198,7 +198,7 @@ def load_scenario(file: PathLike) -> dict[str, Any]:
     Returns
     -------
     dict
-        Tables are dicts, arrays of tables are lists of dicts. Nothing is checked but that the file is TOML.
+        Tables are dicts, arrays of tables are lists of dicts. Only that the file is TOML is checked.
 
     Raises
     ------

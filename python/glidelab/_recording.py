@@ -43,7 +43,7 @@ class RecordingCheck(Result):
     usable : bool
         Whether it can be analysed as it is.
     findings : tuple of Finding
-        The gravest first.
+        The most serious first.
     """
 
     name: str
@@ -51,7 +51,7 @@ class RecordingCheck(Result):
     findings: tuple[Finding, ...]
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a finding."""
+        """A pandas.DataFrame, one row per finding."""
         return frame_of({name: [getattr(one, name) for one in self.findings]
                          for name in ("severity", "about", "found", "advice")})
 
@@ -75,7 +75,7 @@ def check(source: PathLike, *, allow_outside: bool = False, most_megapixels: Opt
     Returns
     -------
     RecordingCheck
-        As ``glidelab check`` says it (docs/reference/check.md). A recording that cannot be used is no exception.
+        As ``glidelab check`` reports it (docs/reference/check.md). A recording that cannot be used raises no exception.
 
     Raises
     ------

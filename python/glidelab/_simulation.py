@@ -68,7 +68,7 @@ class SimulatedClip:
         return Track(self.t_s, self.x_m + noise, **fields)
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a frame, with units in ``attrs["units"]``."""
+        """A pandas.DataFrame, one row per frame, with units in ``attrs["units"]``."""
         return frame_of({name: getattr(self, name) for name in ("t_s", "x_m", "v_m_s", "a_m_s2", "mode")})
 
 

@@ -23,7 +23,7 @@ class Strength:
     method : str
         One line on how it was chosen.
     time_s : float
-        The smoothing time; faster oscillations than 1/time_s in angular frequency are taken for noise.
+        The smoothing time; oscillations with an angular frequency above 1/time_s are treated as noise.
     noise_m : float
         Standard deviation of one position, as estimated or as stated.
     breaks_s : ndarray
@@ -106,7 +106,7 @@ class Smoothed:
         return html_table(["", ""], rows) + html_plot(self.plot)
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a time, with units in ``attrs["units"]``."""
+        """A pandas.DataFrame, one row per time, with units in ``attrs["units"]``."""
         names = ("t_s", "x_m", "sd_x_m", "v_m_s", "sd_v_m_s", "a_m_s2", "sd_a_m_s2")
         columns = {name: getattr(self, name) for name in names}
         return frame_of({name: values for name, values in columns.items() if values is not None})
@@ -134,7 +134,7 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
     order : int
         1 to 5; 3 is the paper's local cubic.
     kernel : {"gaussian", "epanechnikov", "tricube", "uniform", "bimodal"}
-        The weights of the points around.
+        The weights of the neighbouring points.
     noise_m : float, optional
         Standard deviation of one position (`position_noise`): with it, the results' standard deviations are given.
     at_s : array_like, shape (m,), optional

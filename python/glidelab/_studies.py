@@ -65,7 +65,7 @@ class Validation(Result):
         return document
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a value."""
+        """A pandas.DataFrame, one row per value."""
         return frame_of({name: [getattr(one, name) for one in self.quantities] for name in (
             "configuration", "estimator", "quantity", "truth", "value", "sd", "error", "cramer_rao_sd")},
                         ("truth", "value", "sd", "error", "cramer_rao_sd"))
@@ -134,7 +134,7 @@ def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, est
     Raises
     ------
     InputError, NumericalError, SystemFailure
-        What rendering and analysis raise. An estimator_command that fails raises nothing: `Validation.outside` tells.
+        What rendering and analysis raise. An estimator_command that fails raises nothing: see `Validation.outside`.
 
     Notes
     -----
@@ -204,7 +204,7 @@ class Coverage(Result):
     outside: Optional[OutsideRuns] = None
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a quantity."""
+        """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(one, name) for one in self.rows] for name in (
             "configuration", "estimator", "quantity", "truth", "determined", "covered", "bias", "sd", "stated_sd",
             "coverage", "p_value")}, ("truth", "bias", "sd", "stated_sd"))
@@ -271,7 +271,7 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
     Returns
     -------
     Coverage
-        As ``glidelab coverage`` writes it. Intervals that are too narrow are no exception.
+        As ``glidelab coverage`` writes it. Intervals that are too narrow raise no exception.
 
     Raises
     ------

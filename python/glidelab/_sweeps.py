@@ -66,7 +66,7 @@ class Requirement(Result):
         return next((one for one in self.candidates if one.reached), None)
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a candidate, with units in ``attrs["units"]``; of several targets the first target's
+        """A pandas.DataFrame, one row per candidate, with units in ``attrs["units"]``; of several targets the first target's
         error and bound."""
         columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in (
             "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")}
@@ -130,7 +130,7 @@ def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks",
     targets : sequence of str
         ``"mu=0.0005"``, ``"k_over_m_1_s:error95=0.01"``, ``"mu:bias=0.0001"``.
     confirm : {"tracks", "clips", "none"}
-        How what the Cramer-Rao bound allows is confirmed.
+        How candidates that the Cramér-Rao bound allows are confirmed.
     runs, track_runs : int
         Rendered runs, with ``confirm="clips"``, and runs as tracks of each candidate.
     seed, jobs, progress
@@ -139,7 +139,7 @@ def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks",
     Returns
     -------
     Requirement
-        As ``glidelab require`` writes it. A target that nothing reaches is no exception.
+        As ``glidelab require`` writes it. A target that nothing reaches raises no exception.
 
     Raises
     ------
@@ -189,7 +189,7 @@ class Sweep(Result):
     outside: Optional[OutsideRuns] = None
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, a row a quantity and an estimator, over all runs."""
+        """A pandas.DataFrame, one row per quantity and estimator, over all runs."""
         rows = self.to_dict()["overall"]
         columns = {name: [row.get(name) for row in rows] for name in (rows[0] if rows else ())}
         return frame_of(columns, [name for name in _IN_ITS_UNIT if name in columns])
@@ -262,7 +262,7 @@ def _by_quantity(rows: Sequence[Mapping[str, Any]]) -> dict[str, list[Mapping[st
 def sweep(file: PathLike, folder: PathLike, *, estimator_command: Optional[str] = None, estimator_name: str = "",
           estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
           seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Sweep:
-    """Runs a scenario many times with varied values. Called again with the same folder, it goes on where it stopped.
+    """Runs a scenario many times with varied values. Called again with the same folder, it resumes where it stopped.
 
     Parameters
     ----------

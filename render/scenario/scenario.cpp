@@ -170,7 +170,8 @@ void check_images(const TomlTable& root, const Scenario& scenario) {
       }
       const std::string clip = fmt::format("clip \"{}\"", motion.name);
       if (behind) {
-        root.reject("configuration", clip + " with a marker that gets behind the camera", "a motion before the camera");
+        root.reject("configuration", clip + " with a marker that gets behind the camera",
+                    "a motion in front of the camera");
       } else if (!seen) {
         root.reject("configuration", clip + " with a marker that is never in the image",
                     "a motion that the camera sees at least in part");

@@ -106,7 +106,7 @@ const char* format_name(Container container) {
     case Container::folder:
       break;
   }
-  throw std::logic_error("a folder is no file");
+  throw std::logic_error("a folder, not a file");
 }
 
 AVCodecID codec_id(Codec codec) {

@@ -101,7 +101,7 @@ std::string bent_lines_note(const core::AnalysisResults& results) {
   }
   if (!(worst < kStraight)) return {};
   return fmt::format(
-      "<p>Not every a(v) is a straight line well above its noise: the lowest R² is {}. Where the residuals "
+      "<p>Not every a(v) is a clear straight line: the lowest R² is {}. Where the residuals "
       "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
       base::r2_text(worst));
 }
@@ -162,7 +162,7 @@ std::string analysis_answer(const core::AnalysisResults& results, std::string_vi
     if (!words.empty()) values += (values.empty() ? "" : ", ") + words;
   }
   if (values.empty())
-    return "The data determine none of K/m, µ, α and the terminal velocity; the reasons are below the table.";
+    return "The data determine none of K/m, µ, α or the terminal velocity; the reasons are below the table.";
   const std::string_view doubted = doubts_about(results).empty() ? "" : doubt;
   const std::size_t many = results.configurations.size();
   return fmt::format("{}{}{}.", values, many == 1 ? "" : fmt::format(" over {} configurations", many), doubted);
@@ -303,7 +303,7 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
   body += answer_html(results) + answer_plot(results) + recovered_section(results) + with_causes;
   if (!in_doubt) body += bent_lines_note(results) + folded("In words", meaning_of(results));
   body += folded("Does the law fit the positions?", fitted_section(results));
-  body += folded("Phase diagrams: near v = 0, and what the lines leave over", phase_section(results));
+  body += folded("Phase diagrams: near v = 0, and what the lines leave unexplained", phase_section(results));
   body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));
   return page(title, body);
 }

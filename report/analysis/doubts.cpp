@@ -42,7 +42,7 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
       if (!begins_above_gravity(line, results.gravity_m_s2)) continue;
       doubts.push_back(
           fmt::format("{}: the line's intercept at v = 0 is {} m/s², more than gravity: K/m is too large. Either the "
-                      "drag grows faster than in proportion to the speed, or the motion is not free at its start.",
+                      "drag grows faster than proportionally to the speed, or the motion is not free at its start.",
                       configuration_name(results, c), base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd)));
     }
   }
@@ -68,7 +68,7 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
   }
   if (!doubts.empty()) {
     doubts.push_back(
-        "The law (drag in proportion to the speed, dry friction, gravity) does not fit these clips as they "
+        "The law (drag proportional to the speed, dry friction, gravity) does not fit these clips as they "
         "are. Next: glidelab check (is the recording good enough?), then glidelab diagnose (what is missing "
         "from the law?).");
   }

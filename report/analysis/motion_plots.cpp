@@ -455,7 +455,7 @@ std::optional<Plot> phase_overview(const core::AnalysisResults& results) {
   plot.caption = fmt::format(
       "Acceleration over velocity. The slope of the lines is −K/m{}. Bands: 95 % of each line; bars: 95 % intervals of "
       "some points",
-      both ? "; half of the gap between the two lines of a glider at v = 0 is µ g cos α" : "");
+      both ? "; half of the step between the two lines of a glider at v = 0 is µ g cos α" : "");
   plot.description = "Acceleration over velocity of all configurations";
   if (all.size() > kColors.size()) plot.drawing.script.insert(plot.drawing.script.find("plot "), "unset key\n");
   return plot;

@@ -143,7 +143,7 @@ struct AnalysisSentence {
                        of.left_out ? "left out" : "kept all the same: fewer than three views would be left");
   }
   std::string operator()(const core::NoPatternInSight& of) const {
-    return fmt::format("no pattern in sight in {}", fmt::join(of.files, ", "));
+    return fmt::format("no pattern is visible in {}", fmt::join(of.files, ", "));
   }
   std::string operator()(const core::UnrefinedCorners& of) const {
     if (of.corners == 1) return "one corner could not be refined and keeps the detector's position";
@@ -194,7 +194,7 @@ struct AnalysisSentence {
         break;
     }
     return "the marker is neither a disc nor a sphere; it is followed by what it looks like in the other frames, and "
-           "the origin of x may be off by a part of its diameter";
+           "the origin of x may be off by a fraction of its diameter";
   }
   std::string operator()(const core::MarkerOfOtherSize& of) const {
     return fmt::format("the marker looks {:.0f} % {} than its diameter predicts", 100.0 * std::abs(of.ratio - 1.0),
@@ -252,7 +252,7 @@ struct AnalysisSentence {
         of.put_right ? "the later times are corrected" : "the times are left as they are");
   }
   std::string operator()(const core::OutliersLeftOut& of) const {
-    return fmt::format("{} of {} positions lie off the motion and are left out", of.outliers, of.positions);
+    return fmt::format("{} of {} positions are outliers and are left out", of.outliers, of.positions);
   }
   std::string operator()(const core::CorrelatedNoise& of) const {
     return fmt::format("the noise of neighbouring positions is correlated ({:.2f}); the intervals allow for it",
@@ -260,7 +260,7 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::LineScatters& of) const {
     return fmt::format(
-        "v {} 0: the points scatter {:.1f} times as far about the line as the noise explains; the intervals are "
+        "v {} 0: the points scatter {:.1f} times as much about the line as the noise explains; the intervals are "
         "widened",
         sign_of(of.direction), of.ratio);
   }
@@ -302,11 +302,11 @@ struct AnalysisSentence {
            ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)";
   }
   std::string operator()(const core::RobustFit& of) const {
-    return fmt::format("robust: {} of {} positions are off the motion and left out", of.left_out, of.positions);
+    return fmt::format("robust: {} of {} positions are outliers and are left out", of.left_out, of.positions);
   }
   std::string operator()(const core::FitScatters& of) const {
     return fmt::format(
-        "the positions scatter {} times as far about the fitted motion as their noise, or one part of the motion "
+        "the positions scatter {} times as much about the fitted motion as their noise, or one part of the motion "
         "disagrees with others by more than it explains: the intervals are widened ({:.0f} degrees of freedom)",
         base::number_text(of.ratio, 3), of.degrees);
   }

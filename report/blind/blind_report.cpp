@@ -69,10 +69,10 @@ std::vector<BlindTarget> blind_targets(const validate::BlindScore& score) {
        0.97,
        false},
       {"nothing wrong: a verdict other than none", score.false_alarm, 0.05, true},
-      {"not in the list, strong: unknown, or its nearest equivalent on the list", share_of(score.recognised, "strong"),
+      {"not on the list, strong: unknown, or its nearest equivalent on the list", share_of(score.recognised, "strong"),
        0.85, false},
-      {"not in the list, all: unknown, or its nearest equivalent on the list", all_of(score.recognised), 0.85, false},
-      {"not in the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
+      {"not on the list, all: unknown, or its nearest equivalent on the list", all_of(score.recognised), 0.85, false},
+      {"not on the list: a name with probability over 0.8", score.wrong_name, 0.03, true},
       {"two effects: both named", score.methods.front().pair, 0.75, false},
       {"gap shrinks by 0.95 or more of what a fit of the true effect reaches", score.shrunk, 0.95, false}};
 }
@@ -96,9 +96,9 @@ std::string blind_meaning(const validate::BlindScore& score) {
   add(share_of(single, "moderate"), "One moderate effect", "its name comes first");
   add(score.methods.front().pair, "Two effects at once", "both are named");
   add(score.false_alarm, "Nothing wrong", "the verdict is other than none");
-  add(all_of(score.recognised), "A cause that is not in the list",
+  add(all_of(score.recognised), "A cause that is not on the list",
       "it is called unknown, or by its nearest equivalent on the list");
-  add(score.wrong_name, "A cause that is not in the list", "some name gets a probability over 0.8");
+  add(score.wrong_name, "A cause that is not on the list", "some name gets a probability over 0.8");
   text = meaning_section("<p>How far a verdict on an experiment like these can be trusted:</p>\n<ul>\n" + text +
                          "</ul>\n");
   const bool calibrated = score.calibration_error < kWantedCalibration;
@@ -332,7 +332,7 @@ std::string blind_text(const BlindRun& run) {
   rows.push_back(
       {"expected calibration error", base::number_text(score.calibration_error, 2), wanted_calibration_text()});
   for (const auto& [verdict, share] : score.left_out)
-    rows.push_back({"without the true effect in the list: " + without_words(verdict), blind_percent(share), ""});
+    rows.push_back({"without the true effect on the list: " + without_words(verdict), blind_percent(share), ""});
   std::string text = text_table(rows, 1) + "\n";
   rows = {{"right", "none", "weak", "moderate", "strong", "two", "outside"}};
   for (const auto& method : score.methods) {
@@ -372,7 +372,7 @@ Page blind_page(const BlindRun& run) {
   body += figures({methods_plot(score), reliability_plot(score)});
   body += "<h2>Compared with simpler methods</h2>\n" + methods_table(score);
   if (!score.left_out.empty()) {
-    HtmlTable left({"verdict without the true effect in the list", "cases"});
+    HtmlTable left({"verdict without the true effect on the list", "cases"});
     for (const auto& [verdict, share] : score.left_out)
       left.row({escape(without_words(verdict)), blind_percent(share)});
     left.row({"of those called unknown: the first region lies over a variable of the effect",

@@ -122,7 +122,7 @@ std::string change_name(const ChangedTwin& change) {
 }
 
 constexpr const char* kNothingStandsOut =
-    "Nothing stands out: no change that was tried makes the errors smaller by more than chance.";
+    "Nothing stands out: no change that was tried reduces the errors by more than chance would.";
 
 std::string limits_words(const Certificate& certificate) {
   std::string names;
@@ -138,19 +138,19 @@ std::string micrometres(double length_m) {
 
 /// How the twins were made.
 std::string twin_words(const Certificate& certificate) {
-  std::string text = fmt::format(
-      "{} twins of this recording ({} clip{}), {}, were analysed by the {}. Their motions are those that were fitted",
-      certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
-      certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
-                         : "simulated at its frame times with its noise and rounding",
-      estimator_name(certificate.estimator));
+  std::string text =
+      fmt::format("{} twins of this recording ({} clip{}), {}, were analysed by the {}. They repeat the fitted motions",
+                  certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
+                  certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
+                                     : "simulated at its frame times with its noise and rounding",
+                  estimator_name(certificate.estimator));
   std::string causes;
   for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
   text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
   if (certificate.explanations.size() > 1)
     text += " Each likely explanation is used for a share of the twins equal to its probability.";
   if (!certificate.filmed)
-    text += " What an explanation leaves of each clip is in the twins as well, drawn anew for each.";
+    text += " What an explanation leaves unexplained in each clip is in the twins as well, drawn afresh for each.";
   text += fmt::format(" Positions scatter by {} in the recording, by {} in its twins.",
                       micrometres(certificate.recorded_noise_m), micrometres(certificate.twin_noise_m));
   return text;
@@ -208,8 +208,8 @@ std::vector<std::string> best_changes(const Certificate& certificate) {
   for (const ChangedTwin& change : certificate.changes) {
     if (!change.stands_out || words.size() == kMostChanges) continue;
     const LimitWords limit = limit_words(change);
-    words.push_back(fmt::format("{}. With {}, {} err {} less.", limit.advice, limit.change, headline_names(certificate),
-                                fall_text(*change.together)));
+    words.push_back(fmt::format("{}. With {}, the errors of {} are {} smaller.", limit.advice, limit.change,
+                                headline_names(certificate), fall_text(*change.together)));
   }
   return words;
 }

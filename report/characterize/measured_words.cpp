@@ -16,7 +16,7 @@ struct Reason {
   std::string operator()(const unmeasured::NoGain&) const { return "it requires the gain, which is not known"; }
   std::string operator()(const unmeasured::DarkLevelCut& of) const {
     return fmt::format(
-        "{:.3g} % of the dark samples are at code 0: the dark level is cut; raise the camera's black "
+        "{:.3g} % of the dark samples are at code 0: the dark level is clipped; raise the camera's black "
         "level",
         100.0 * of.at_zero);
   }

@@ -139,10 +139,10 @@ std::string verdict_of(const core::RecordingCheck& check) {
   };
   const auto worst = count(core::Severity::unusable), changes = count(core::Severity::change);
   if (worst > 0) {
-    return fmt::format("Not usable as it is: {} thing{} to fix first", worst, worst == 1 ? "" : "s");
+    return fmt::format("Not usable as it is: {} problem{} to fix first", worst, worst == 1 ? "" : "s");
   }
   return changes == 0 ? "Usable as it is"
-                      : fmt::format("Usable; {} thing{} would make it better", changes, changes == 1 ? "" : "s");
+                      : fmt::format("Usable; {} change{} would make it better", changes, changes == 1 ? "" : "s");
 }
 
 bool wants_change(const core::RecordingCheck& check) {
@@ -155,7 +155,7 @@ std::string word_of(core::Severity severity) {
     case core::Severity::note:
       return "note";
     case core::Severity::change:
-      return "better";
+      return "improve";
     case core::Severity::unusable:
       return "must change";
   }
@@ -206,7 +206,7 @@ std::string check_meaning(const core::RecordingCheck& check) {
         "An analysis of this recording would fail, or give misleading numbers: fix what “must change” below "
         "first.";
   } else if (wants_change(check)) {
-    text = "The changes marked “better” below would make its numbers more precise if you record again.";
+    text = "The changes marked “improve” below would make its numbers more precise if you record again.";
   } else {
     text = "Nothing needs to be recorded again.";
   }
@@ -261,7 +261,7 @@ Html pattern_section(const core::RecordingCheck& check) {
       fmt::format("<p>Found in {} of {} images. ", pattern.views.size(), pattern.views.size() + pattern.without.size());
   if (pattern.calibration) {
     text += fmt::format(
-        "The camera's model fits the corners to {} px (rms), those of the plane view to {} px. The views cover {} of "
+        "The camera model fits the corners to {} px (rms), and those of the plane view to {} px. The views cover {} of "
         "the image.",
         base::number_text(pattern.calibration->rms_px, 2), base::number_text(pattern.calibration->plane_rms_px, 2),
         share_cell(pattern.covered));

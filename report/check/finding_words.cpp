@@ -56,11 +56,11 @@ struct FindingSentence {
   }
   FindingWords operator()(const found::NoPatternIn& of) const {
     return {"no pattern is found in " + first_names(of.files),
-            "retake these with all inner corners in view and the board evenly lit, or remove them"};
+            "retake these images with all inner corners in view and the board evenly lit, or remove them"};
   }
   FindingWords operator()(const found::FewViews& of) const {
     return {fmt::format("the calibration uses {} views", of.views),
-            "take a dozen, tilted in all directions, near and far"};
+            "take about a dozen, tilted in all directions, near and far"};
   }
   FindingWords operator()(const found::CornersOff& of) const {
     return {fmt::format("corners lie {:.2g} px (rms) from where the camera model places them", of.rms_px),
@@ -160,7 +160,7 @@ struct FindingSentence {
     if (!of.changes) return {off + fmt::format("the same along the path to within ±{}", length(of.change_px)), ""};
     return {off + fmt::format("and that changes by ±{} along the path", length(of.change_px)),
             "light the track evenly, with a second lamp from the other side or through a diffuser: the analysis fits "
-            "the outline, but where the lit part alone stands out, that is less certain"};
+            "the outline, which is less certain where only the lit part stands out"};
   }
   FindingWords operator()(const found::ContrastFalls& of) const {
     return {fmt::format("the marker's contrast falls to {} of its largest along the path", percent_text(of.least)),
@@ -300,11 +300,11 @@ struct FindingSentence {
             "check the unit of the times: they may be milliseconds, or frame numbers"};
   }
   FindingWords operator()(const core::LostPositions& of) const {
-    return {
-        fmt::format("from {:.6g} s on {} positions are all {:.6g} m, {:.3g} m from the one before: the object was lost "
-                    "there",
-                    of.from_s, of.count, of.x_m + 0.0, of.off_m),  // no "-0"
-        "delete these rows from the file, or state end_s"};
+    return {fmt::format(
+                "from {:.6g} s on, {} positions are all {:.6g} m, {:.3g} m from the one before: the object was lost "
+                "there",
+                of.from_s, of.count, of.x_m + 0.0, of.off_m),  // no "-0"
+            "delete these rows from the file, or state end_s"};
   }
   FindingWords operator()(const found::Gaps& of) const {
     return {fmt::format("{} of its time lies in gaps of up to {:.3g} s between positions", percent_text(of.share),

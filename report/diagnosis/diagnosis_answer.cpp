@@ -41,7 +41,7 @@ std::string recovered_section(const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.recovered.empty()) return {};
   std::string text = "<h2>K/m, µ, α and terminal velocity</h2>\n";
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
-    text += paragraph(fmt::format("Of each configuration, {}.{}", with_words(table.with),
+    text += paragraph(fmt::format("For each configuration, {}.{}", with_words(table.with),
                                   diagnosis.remainder ? " The standard deviations include the remainder and the spread "
                                                         "among the other likely explanations."
                                                       : ""));

@@ -86,7 +86,7 @@ Plot clip_gaps(const diagnose::GapSizes& gap, bool of_lines, bool one) {
   if (!one) script += fmt::format(", $gaps using 3:1 with points pt 7 ps 0.9 lc rgb '{}' title 'after'", kColors[0]);
   script += "\n";
   return {Drawing{script, std::vector{data}, {620, std::max(260, static_cast<int>(90 + 24 * gap.held_out.size()))}},
-          of_lines ? "How far each line lies from the prediction of the others: 1 (grey line) is the lines' own scatter"
+          of_lines ? "How far each line lies from its prediction by the others: 1 (grey line) is the lines' own scatter"
                    : "The gap of each clip when it is left out of the fit: 1 (grey line) is the noise alone",
           one ? "Dots for each clip's gap" : "Dots for each clip's gap before and after"};
 }
@@ -111,7 +111,7 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
       kColors[0], kColors[0], kGrey);
   return {
       Drawing{script, std::vector{data}},
-      fmt::format("{} {} over {} that would fill the gap, with two standard deviations{}",
+      fmt::format("{} {} over {} that would explain the gap, with two standard deviations{}",
                   alternatives > 1 ? "One smooth" : "The smooth", to_text(curve.what), axis_of(curve.variable),
                   alternatives > 1 ? fmt::format(": any one of these {} curves alone, not all of them", alternatives)
                                    : std::string()),

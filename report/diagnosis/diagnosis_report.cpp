@@ -155,7 +155,7 @@ std::string gap_tables(const diagnose::Diagnosis& diagnosis) {
       gap.floor < 1.0
           ? " (below 1, because what the causes remove had raised the noise estimated from neighbouring positions)"
           : "",
-      gap.shrink ? "The gap " + shrink_text(gap) + " of the excess over the floor."
+      gap.shrink ? "The gap " + shrink_text(gap) + " of its distance from the floor."
                  : std::string("It is at the floor."),
       !over_clips.too_few
           ? "The intervals show how much these numbers would differ with other clips of the same kind (jackknife: each "
@@ -202,7 +202,7 @@ constexpr const char* kMethod =
     "once: one K and one µ, one inclination for each set-up, a start for each clip. The noise is estimated from "
     "neighbouring positions alone. Every effect on the list is added to the model, alone and in pairs. The evidence "
     "for each is its likelihood averaged over the sizes that it may have (equal odds for each factor of ten above "
-    "what can be seen). Smooth forces and displacements without a name (over position, speed and time) and "
+    "what can be detected). Smooth forces and displacements without a name (over position, speed and time) and "
     "differences between clips, masses and set-ups compete with the effects, and act alongside them: where one of "
     "those explains more, the verdict is “unknown”. For the gap, each clip in turn is taken out of the fit to all "
     "clips, to first order: sizes are learnt from the other clips. What was found by searching (which of several "
@@ -278,7 +278,7 @@ std::string wrapped(const std::string& text) {
 std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
   std::string text;
-  if (gap.shrink) text += "  it " + shrink_text(gap) + " of the excess over the floor\n";
+  if (gap.shrink) text += "  it " + shrink_text(gap) + " of its distance from the floor\n";
   if (!over_clips.too_few) {
     text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
                         interval_text(over_clips.after));

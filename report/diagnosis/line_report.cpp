@@ -142,7 +142,7 @@ std::string gap_table(const diagnose::GapSizes& gap) {
       "own scatter. At the floor it is 1 ± {}. 95 % over lines: {} before, {} after.{}</p>\n",
       base::number_text(gap.standard_error, 2), interval_text(gap.interval95.before),
       interval_text(gap.interval95.after),
-      gap.shrink ? fmt::format(" It {} of the excess over the floor.", shrink_text(gap)) : std::string());
+      gap.shrink ? fmt::format(" It {} of its distance from the floor.", shrink_text(gap)) : std::string());
   return text;
 }
 

@@ -35,7 +35,7 @@ std::string lead(const diagnose::Plan& plan) {
   }
   return fmt::format(
       "These motions can show {} of the {} effects in the table, and distinguish {} of those from every other: "
-      "{} clips, {} positions, with {} µm of noise found in them.",
+      "{} clips, {} positions, with a position noise of {} µm.",
       seen, plan.effects.size(), alone, plan.clips, plan.points, base::number_text(1e6 * plan.noise_m, 2));
 }
 
@@ -63,7 +63,7 @@ constexpr const char* kPlanMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
     "adjust (K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes "
     "that remain is below 18 degrees (cosine 0.95). The table has the effects that change the positions in one way, "
-    "more or less strongly; waves, late releases, missing frames, uneven frame times and outliers have no one such "
+    "more or less strongly; waves, late releases, missing frames, uneven frame times and outliers have no single such "
     "change and are not in it.";
 
 }  // namespace

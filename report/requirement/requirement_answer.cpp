@@ -63,7 +63,7 @@ std::string asked_words(const Requirement& requirement) {
 
 std::string judged_words(const Requirement& requirement, const Candidate& candidate) {
   const validate::TargetResult& first = candidate.results.front();
-  if (candidate.judged_by == validate::Confirm::none) return "by the bound alone, nothing was run";
+  if (candidate.judged_by == validate::Confirm::none) return "judged by the bound alone; nothing was run";
   const std::string part = requirement.targets.front().measure == Target::Measure::error95 ? "95 % of " : "";
   const std::string by =
       first.estimator.empty() ? "" : fmt::format(", analysed by the {}", estimator_name(first.estimator));
@@ -123,7 +123,7 @@ std::string requirement_answer(const Requirement& requirement) {
     return text;
   }
   const Candidate* const near = nearest(requirement);
-  if (near == nullptr) return fmt::format("Nothing here can be judged for {}.", asked_words(requirement));
+  if (near == nullptr) return fmt::format("None of these can be judged for {}.", asked_words(requirement));
   if (near->verdict == Verdict::unconfirmed) {
     return fmt::format("By its bound, {} can reach {} ({}), but nothing was run.", near->name, asked_words(requirement),
                        expected_words(requirement, *near));

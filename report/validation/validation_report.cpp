@@ -250,7 +250,8 @@ std::string headline(const validate::Comparison& comparison) {
     for (std::size_t i = 0; i < column.size(); ++i) rows[i + 1].push_back(column[i]);
   }
   return fmt::format(
-      "{}\n\nRecovered from the images alone by the {}, ± one standard deviation, and in brackets the truth:\n\n{}\n{}",
+      "{}\n\nRecovered from the images alone by the {}, ± one standard deviation, with the truth in "
+      "brackets:\n\n{}\n{}",
       printable(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
       no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
 }

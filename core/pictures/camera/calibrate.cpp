@@ -75,7 +75,7 @@ OpenCvCalibration run_opencv(const std::vector<const BoardView*>& views, cv::Siz
                                        found.sd, cv::noArray(), found.view_error, flags, thorough);
   } catch (const cv::Exception& exception) {
     throw base::InputError(base::Issue{views.front()->file.parent_path().string(), 0, "",
-                                       fmt::format("views that give no camera ({})", exception.err),
+                                       fmt::format("views that do not determine a camera ({})", exception.err),
                                        "views of the pattern from different sides"});
   }
   return found;

@@ -204,8 +204,9 @@ class VideoDecoder::Libav {
   void open_decoder() {
     const AVCodec* decoder = avcodec_find_decoder(stream_->codecpar->codec_id);
     if (decoder == nullptr || av_match_list(decoder->name, kCodecs, ',') == 0) {
-      fail(fmt::format("a video in the codec {}, which is not read", avcodec_get_name(stream_->codecpar->codec_id)),
-           "a video as cameras write it (H.264, MJPEG, FFV1, …)");
+      fail(
+          fmt::format("a video in the codec {}, which is not supported", avcodec_get_name(stream_->codecpar->codec_id)),
+          "a video as cameras write it (H.264, MJPEG, FFV1, …)");
     }
     codec_ = avcodec_alloc_context3(decoder);
     frame_ = av_frame_alloc();
@@ -271,7 +272,7 @@ class VideoDecoder::Libav {
     scaler_ = sws_getCachedContext(scaler_, frame_->width, frame_->height, format, frame_->width, frame_->height,
                                    AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr);
     if (scaler_ == nullptr) {
-      fail(fmt::format("frame {}", count_), "pixels of a form that cannot be converted", "a video");
+      fail(fmt::format("frame {}", count_), "pixels in a format that cannot be converted", "a video");
     }
     if (bgr_->width != frame_->width || bgr_->height != frame_->height) {  // in libav's own memory: aligned rows
       av_frame_unref(bgr_);

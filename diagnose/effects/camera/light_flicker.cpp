@@ -34,7 +34,7 @@ EffectInfo light_flicker() {
       .in_images = InImages{.over = GapVariable::time, .what = GapKind::brightness},
       .next =
           "Record the same launch again with an exposure of one whole period of the flicker (lamps flicker at twice "
-          "the mains' frequency: 10 ms at 50 Hz, 8.3 ms at 60 Hz), or under lamps on direct current: then every frame "
+          "the mains frequency: 10 ms at 50 Hz, 8.3 ms at 60 Hz), or under lamps on direct current: then every frame "
           "collects the same light.",
       .alike = {},
   };

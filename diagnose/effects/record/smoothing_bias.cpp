@@ -29,7 +29,7 @@ EffectInfo smoothing_bias() {
       .twin = EffectTwin::none("a table of lines has no motion to simulate"),
       .in_images = std::nullopt,
       .next =
-          "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its "
+          "Analyse the same clips with half and with twice the bandwidth: a smoothing bias changes with its "
           "square.",
       .alike = {},
   };

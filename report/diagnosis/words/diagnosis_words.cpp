@@ -147,20 +147,21 @@ struct Sentence {
   std::string operator()(const diagnose::FallsThroughAir& of) const {
     constexpr double kClearly = 2.3;  // log evidence: ten to one
     std::string words =
-        "In air, what falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
-        "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, leave this "
-        "out (--without quadratic_drag).";
+        "In air, a body that falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
+        "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, exclude this "
+        "drag "
+        "(--without quadratic_drag).";
     if (!of.over_viscous) return words;
     if (*of.over_viscous > kClearly) return words + " The positions alone also prefer it to a viscous drag.";
     return words + (*of.over_viscous < -kClearly
-                        ? " The positions alone prefer a viscous drag: the name rests on what air does."
-                        : " The positions alone do not tell it from a viscous drag: the name rests on what air "
-                          "does.");
+                        ? " The positions alone prefer a viscous drag: the name rests on how air brakes."
+                        : " The positions alone do not tell it from a viscous drag: the name rests on how air "
+                          "brakes.");
   }
   std::string operator()(const diagnose::BuoyancyLooksAlike& of) const {
     return fmt::format(
         "In a fall, buoyancy looks the same as such a scale or frame rate: it lowers the driving acceleration, here as "
-        "in a fluid with {:.2g} of the density of the body. Both densities decide whether that is it; a ruler in the "
+        "in a fluid with {:.2g} of the density of the body. The two densities show whether this is so; a ruler in the "
         "image shows whether the scale is wrong, a stopwatch whether the frame rate is.",
         of.density_ratio);
   }
@@ -365,7 +366,7 @@ std::string routine_words(diagnose::Routine routine) {
       return "Repeat one of the launches three times without changing anything: what differs between the repetitions "
              "is not due to the law of motion.";
     case Routine::start_later:
-      return "Repeat one of the launches three times, each time one second later after the start of the camera: what "
+      return "Repeat one of the launches three times, each time one second later in the clip: what "
              "depends on the time in the clip (a clock, something that warms up or settles) stays at that time; what "
              "acts on the glider shifts with it.";
     case Routine::turn_glider:
@@ -412,11 +413,12 @@ struct Words {
   std::string operator()(const diagnose::CoverRegion& of) const {
     const bool places = of.over == diagnose::CoverRegion::Over::places;
     const std::string launch = fmt::format(
-        "{}: of {} launches considered, it has the most positions ({} of {}) at {} from {} to {} {}, where the excess "
-        "lies",
+        "{}: of {} launches considered, it has the most positions ({} of {}) at {} from {} to {} {}, where the "
+        "remainder "
+        "is clearest",
         change_words(of.launch), of.launches, of.inside, of.positions, places ? "positions" : "speeds",
         base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
-    if (!places) return launch + ", and its dependence on the speed shows what it is.";
+    if (!places) return launch + ", and the dependence on the speed shows what is missing.";
     return fmt::format("Move the camera along the track by a third of the view. {}; {}", launch, kMoveCamera);
   }
 
@@ -471,7 +473,7 @@ struct Words {
 
   std::string operator()(const diagnose::TellLinesApart& of) const {
     return fmt::format(
-        "Analyse the same clips with half and with twice the kernel's width: a smoothing bias changes with its square; "
+        "Analyse the same clips with half and with twice the bandwidth: a smoothing bias changes with its square; "
         "a friction force does not change. Or record a glider of {:.0f} g both ways: a friction force of {} shifts "
         "each of its intercepts by {}, the smoothing bias by {}.",
         1000.0 * of.mass_kg, base::size_text(of.force_n, 2, "N"), base::size_text(of.by_force_m_s2, 2, "m/s²"),

@@ -20,7 +20,7 @@ struct ImageSentence {
                        of.stated_s ? fmt::format("{:.3g} ms is stated", 1e3 * *of.stated_s) : "none is stated");
   }
   std::string operator()(const image::Shear& of) const {
-    return fmt::format("The marker is sheared as by {} µs from row to row; {:.3g} µs {}.",
+    return fmt::format("The marker is sheared as if by {} µs from row to row; {:.3g} µs {}.",
                        base::value_and_sd_text(1e6 * of.line_s, 1e6 * of.sd_s), 1e6 * of.stated_s,
                        of.stated_s == 0.0 ? "(a global shutter) is stated" : "is stated");
   }

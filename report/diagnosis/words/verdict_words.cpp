@@ -127,7 +127,7 @@ std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
   if (!diagnosis.gap) return " No set-up is repeated, so the scatter of a single line is unknown.";
   const diagnose::GapSizes& gap = *diagnosis.gap;
   std::string text = fmt::format(
-      " Predicted from the others with the nominal model, each line is {} times as far off as that scatter explains",
+      " Predicted from the others with the nominal model, each line is off by {} times what that scatter explains",
       line_times(gap.before));
   if (diagnosis.verdict == diagnose::Verdict::none) return text + " (1 is the floor).";
   text += fmt::format(", and {} times with {} (1 is the floor).", line_times(gap.after),
