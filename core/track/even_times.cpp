@@ -27,8 +27,8 @@ double common_step(double a, double b, double resolution) {
   return a;
 }
 
-/// The unit of the last digit of the largest time, if all times have the same number of significant digits; otherwise
-/// 0.
+/// The unit of the last digit of the time farthest from 0, if all times have the same number of significant digits;
+/// otherwise 0.
 double last_significant_digit(std::span<const double> stamps_s) {
   const auto digit_of = [](double t, int digits) {
     return std::pow(10.0, std::floor(std::log10(std::abs(t)) + 1e-12) - digits + 1);
@@ -38,7 +38,7 @@ double last_significant_digit(std::span<const double> stamps_s) {
       const double in_digits = t == 0.0 ? 0.0 : t / digit_of(t, digits);
       return std::abs(in_digits - std::round(in_digits)) < 1e-6;
     });
-    if (all) return digit_of(stamps_s.back(), digits);
+    if (all) return digit_of(std::max(std::abs(stamps_s.front()), std::abs(stamps_s.back())), digits);
   }
   return 0.0;
 }

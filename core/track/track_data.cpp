@@ -91,6 +91,11 @@ std::vector<base::Issue> issues_of_numbers(const std::vector<GivenSeries>& serie
   return issues;
 }
 
+std::string gap_expectation(const TimeGap& gap) {
+  return fmt::format("a gap of at most {:.6g} s, {:.0f} times the median step; two recordings are two clips",
+                     gap.longest_s, kLongestGapSteps);
+}
+
 /// InputError, with the line of the file, if the times have a gap that no motion bridges.
 void check_gaps(const TrackData& track, const std::string& file, const std::string& column,
                 const std::vector<int>& lines) {
@@ -99,8 +104,7 @@ void check_gaps(const TrackData& track, const std::string& file, const std::stri
   throw base::InputError(base::Issue{
       file, lines[gap->after], column,
       fmt::format("{} s, a gap of {:.6g} s after line {}", track.t_s[gap->after], gap->gap_s, lines[gap->after - 1]),
-      fmt::format("a gap of at most {:.6g} s, {:.0f} times the median step; two recordings are two clips",
-                  gap->longest_s, kLongestGapSteps)});
+      gap_expectation(*gap)});
 }
 
 }  // namespace
@@ -110,6 +114,12 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
   std::vector<GivenSeries> series = {{"t_s", t_s}, {"x_m", x_m}};
   if (!force_n.empty()) series.push_back({"force_n", force_n});
   std::vector<base::Issue> issues = issues_of_numbers(series, what);
+  if (issues.empty()) {
+    if (const std::optional<TimeGap> gap = too_long_gap(t_s)) {
+      issues.push_back({what, 0, fmt::format("t_s[{}]", gap->after),
+                        fmt::format("{} s, a gap of {:.6g} s", t_s[gap->after], gap->gap_s), gap_expectation(*gap)});
+    }
+  }
   if (!issues.empty()) throw base::InputError(std::move(issues));
   TrackData track;
   track.t_s = std::move(t_s);

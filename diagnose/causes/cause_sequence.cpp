@@ -220,9 +220,14 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(which));
   }
   if (!steps.empty() && here.fit.effects.size() < named.effects.size()) {
-    // These are all that is named, so their shapes are free again.
-    here = step_of(set, fit_motions(set, here.fit.effects, here.fit.at, here.fit.late));
-    steps.back().second = here;
+    // These are all that is named, so their shapes are free again, unless the fit then loses held-out positions that
+    // the cause before explains.
+    Step free = step_of(set, fit_motions(set, here.fit.effects, here.fit.at, here.fit.late));
+    const double before = steps.size() > 1 ? steps[steps.size() - 2].second.gap : first.gap;
+    if (free.gap < std::max(before, here.gap)) {
+      here = std::move(free);
+      steps.back().second = here;
+    }
   }
   sequence.named = here.fit;
   const std::size_t named_steps = steps.size();

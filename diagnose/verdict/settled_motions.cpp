@@ -62,7 +62,7 @@ void add_once(const std::string& name, std::vector<std::string>& names) {
 /// told all the same.
 void note_readings(const core::AnalysisResults& results, TrackSet& set) {
   for (const core::ConfigurationResult& found : results.configurations) {
-    if (found.incline_sd_deg) continue;
+    if (found.incline_sd_deg || found.incline_assumed) continue;
     auto contradiction = core::incline_contradiction(found, results.gravity_m_s2, core::stated_incline(found));
     if (!contradiction || !contradiction->gross) continue;
     set.notes.emplace_back(ContradictedReading{found.mass_kg, *contradiction});

@@ -50,11 +50,13 @@ bool shows_in_images(const Hypothesis& best) {
 }
 
 /// With an unknown cause, the causes that help and together take less than half of the excess. A cause that would take
-/// more is not likely enough to be named, so it is not said to explain anything.
+/// more is not likely enough to be named, so it is not said to explain anything. Neither is one beside which held-out
+/// positions lie farther off than without it.
 std::vector<ExplainedCause> helpful(std::vector<ExplainedCause> causes) {
   double sum = 0.0;
-  const auto first_too_many = std::find_if(
-      causes.begin(), causes.end(), [&](const ExplainedCause& cause) { return (sum += cause.share) >= kHalfOfGap; });
+  const auto first_too_many = std::find_if(causes.begin(), causes.end(), [&](const ExplainedCause& cause) {
+    return !(cause.share > 0.0) || (sum += cause.share) >= kHalfOfGap;
+  });
   causes.erase(first_too_many, causes.end());
   return causes;
 }

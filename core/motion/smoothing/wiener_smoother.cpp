@@ -261,7 +261,7 @@ class WienerSmoother final : public Smoother {
       made.along_at.resize(input.at_s.size());
     }
     MotionParts parts(input);
-    if (parts.parts.empty()) {
+    if (parts.parts.empty() || !(parts.range_m > 0.0)) {  // what never moves has no rate, no jump and no noise
       made.strength.method = chosen_by::Nothing{};
       return made;
     }

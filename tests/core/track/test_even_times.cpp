@@ -130,6 +130,19 @@ TEST_CASE("significant digits are understood, which are coarser from one second 
   CHECK(largest_error(even->t_s, exact) < 1.5e-4);
 }
 
+TEST_CASE("significant digits of times below 0 are those of the same times above") {
+  std::vector<double> t, exact;
+  for (int i = 0; i < 75; ++i) {
+    exact.push_back(-12.0 + i / 30.0);  // two digits before the point, then one
+    t.push_back(significant(exact.back(), 4));
+  }
+  CHECK(largest_error(t, exact) > 2.5e-3);
+  const std::optional<EvenTimes> even = even_times(t, StampSource::table);
+  REQUIRE(even);
+  CHECK(even->tick_s == Approx(1e-2));
+  CHECK(largest_error(even->t_s, exact) < 1.5e-3);
+}
+
 TEST_CASE("uneven times, exact ones and whole frame numbers of a table stay as they are") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0.0, 1.0);

@@ -74,3 +74,13 @@ TEST_CASE("numbers that make no track are named by their place") {
 
   CHECK(issues_of(std::vector<double>(100, 0.0), std::vector<double>(100, 0.0)).size() == 10);
 }
+
+TEST_CASE("a time far away from all others is no track of numbers either") {
+  std::vector<double> t = kTimes;
+  t.back() = 1e6;
+  const std::vector<base::Issue> issues = issues_of(t, kPlaces);
+  REQUIRE(issues.size() == 1);
+  CHECK(issues[0].key == "t_s[7]");
+  CHECK_THAT(issues[0].found, Catch::Matchers::Contains("a gap of 999999 s"));
+  CHECK_THAT(issues[0].expected, Catch::Matchers::Contains("two recordings are two clips"));
+}

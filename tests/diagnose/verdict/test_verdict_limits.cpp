@@ -126,6 +126,8 @@ TEST_CASE(
   made.results.configurations[0].incline_deg = 1.0;
   const diagnose::Diagnosis diagnosis = diagnosed(made);
   CHECK(readings(diagnosis) == 1);
+  made.results.configurations[0].incline_assumed = true;  // nobody has read it
+  CHECK(readings(diagnosed(made)) == 0);
   CHECK(diagnosis.verdict == diagnose::Verdict::none);
 }
 

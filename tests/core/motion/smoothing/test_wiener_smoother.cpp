@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <variant>
 #include <vector>
 
 #include "base/errors.h"
@@ -146,6 +147,20 @@ TEST_CASE(
   CHECK(series.along_at[0]->a_m_s2 == Approx(-2.0 * series.at[0]->a_m_s2).margin(1e-5));
   CHECK(rows >= 300);
   CHECK(rows <= 600);
+}
+
+TEST_CASE("what never moves is left as it is by every smoother that chooses its strength") {
+  SmoothingInput input;
+  for (int i = 0; i < 400; ++i) {
+    input.t_s.push_back(0.005 * i);
+    input.x_m.push_back(0.3);
+  }
+  for (const Smoother* smoother : {&kalman_smoother(), &spline_smoother()}) {
+    CAPTURE(smoother->name());
+    const SmoothedSeries series = smoother->smooth(input);
+    CHECK(series.points.size() == input.t_s.size());
+    CHECK(std::holds_alternative<chosen_by::Nothing>(series.strength.method));
+  }
 }
 
 TEST_CASE("a part with fewer points than a smoother needs is left as it is") {
