@@ -27,13 +27,11 @@ struct Squares {
 /// motions.
 Squares left_by(const TrackSet& set, const MotionFit& fit) {
   Squares left;
-  CommonNormal normal = statements_normal(fit);
   std::map<std::size_t, bool> groups;
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     const ProjectedMotion motion = project(fit.motions[i]);
     left.sum += motion.residual.squaredNorm();
     left.freedom += motion.freedom;
-    normal.add(motion);
     groups[set.motions[i].group] = true;
   }
   left.freedom -= 2.0 + static_cast<double>(groups.size());

@@ -34,7 +34,9 @@ FrameEffect scan_jitter(const TrackSet& set, const MotionFit& fit) {
     }
   }
   const SpeedNoise noise = find_speed_noise(set, scatter, 1.0);
-  return {effect_index(ids::timestamp_jitter), noise.gain, noise.log_evidence, noise.jitter_s, noise.sd_s};
+  FrameEffect found{effect_index(ids::timestamp_jitter), noise.gain, noise.log_evidence, noise.jitter_s, noise.sd_s};
+  found.visible = scatter.squares.size() >= kFewestScatter;
+  return found;
 }
 
 namespace {
@@ -242,7 +244,8 @@ FrameEffect scan_tails(const TrackSet& set, const MotionFit& fit) {
   found.effect = effect_index(ids::heavy_tailed_noise);
   TailResiduals residuals = tail_residuals(set, fit);
   std::vector<double>& e = residuals.over_scatter;
-  if (e.size() < kFewestScatter) return found;
+  found.visible = e.size() >= kFewestScatter;
+  if (!found.visible) return found;
   spare_small(set, e);
   const Tails tails = find_tails(e, set.images);
   found.gain = tails.gain;

@@ -24,6 +24,7 @@ struct FrameEffect {
   double log_evidence = 0.0;
   double value = 0.0;  ///< fraction of frames, or seconds
   double sd = 0.0;
+  bool visible = true;               ///< false: too few positions to show it at any size
   double in_runs = 0.0;              ///< log evidence that such frames come together, against chance
   std::optional<ErrorRun> run = {};  ///< the largest, if in_runs is above 0
 };

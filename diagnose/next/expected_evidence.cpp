@@ -21,6 +21,55 @@ struct Rows {
   Eigen::VectorXd residual;
 };
 
+/// The derivatives with respect to what the clip would have of its own (Each::clip), times the spread of the clips so
+/// far; no columns if there is nothing of the kind.
+Eigen::MatrixXd own_deviations(const TrackSet& one, const MotionFit& b, const ParameterLayout& layout, FitPoint at) {
+  const auto& globals = layout.globals();
+  std::vector<Eigen::Index> of_clip;  // the parameters of one clip so far, and their spread over all
+  std::vector<double> spread;
+  std::size_t clip = 0;
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter == nullptr || globals[g].parameter->each != Each::clip) continue;
+    if (of_clip.empty()) clip = globals[g].index;
+    if (globals[g].index != clip) continue;
+    double squares = 0.0, clips = 0.0;
+    for (std::size_t other = 0; other < b.layout->globals().size(); ++other) {
+      if (b.layout->globals()[other].parameter != globals[g].parameter) continue;
+      squares += std::pow(b.at.global[static_cast<Eigen::Index>(other)], 2);
+      clips += 1.0;
+    }
+    of_clip.push_back(static_cast<Eigen::Index>(g));
+    spread.push_back(std::sqrt(squares / clips));
+    at.global[of_clip.back()] = 0.0;
+  }
+  if (of_clip.empty()) return {};
+  TrackSet as_known = one;  // in place of that clip, so that its parameters act on this motion
+  as_known.clips[clip] = one.clips.back();
+  as_known.motions.front().clip = clip;
+  const FitMotion moved = linearise(as_known, layout, at, 0, {}, Derivatives::central);
+  Eigen::MatrixXd columns(moved.global.rows(), std::ssize(of_clip));
+  for (std::size_t k = 0; k < of_clip.size(); ++k) {
+    columns.col(static_cast<Eigen::Index>(k)) = spread[k] * moved.global.col(of_clip[k]);
+  }
+  return columns.allFinite() ? columns : Eigen::MatrixXd();
+}
+
+/// Rows with noise of covariance 1 + Z Z' as rows with white noise: with Z = U S V', times 1 - U (1 - 1/sqrt(1 + S²))
+/// U'.
+void whiten(const Eigen::MatrixXd& z, Rows& rows) {
+  if (z.cols() == 0) return;
+  const base::SymmetricEigen eigen = base::symmetric_eigen(Eigen::MatrixXd(base::transposed_product(z, z)));
+  for (Eigen::Index k = 0; k < z.cols(); ++k) {
+    const double square = eigen.values[k];
+    if (!(square > 1e-12)) continue;
+    const Eigen::VectorXd u = z * eigen.vectors.col(k) / std::sqrt(square);
+    const double less = 1.0 - 1.0 / std::sqrt(1.0 + square);
+    const Eigen::RowVectorXd seen = u.transpose() * rows.global;
+    rows.residual -= less * u.dot(rows.residual) * u;
+    rows.global -= less * u * seen;
+  }
+}
+
 Rows clip_rows(const TrackSet& set, const MotionFit& a, const MotionFit& b, const Change& change) {
   const auto [one, moved] = next_motion(set, a, change);
   if (moved.x_m.empty()) return {};
@@ -32,8 +81,13 @@ Rows clip_rows(const TrackSet& set, const MotionFit& a, const MotionFit& b, cons
   Eigen::MatrixXd normal = base::transposed_product(own, own);
   normal.diagonal().array() += 1e-12;
   const Eigen::MatrixXd gain = base::solve_positive(normal, own.transpose());
-  return {by.global - base::product(own, base::product(gain, by.global)),
-          by.residual - base::product(own, base::product(gain, by.residual))};
+  const auto without_own = [&](const Eigen::MatrixXd& of) {
+    return Eigen::MatrixXd(of - base::product(own, base::product(gain, of)));
+  };
+  Rows rows{without_own(by.global), by.residual - base::product(own, base::product(gain, by.residual))};
+  const Eigen::MatrixXd deviations = own_deviations(one, b, layout, next_point(set, b, change));
+  if (deviations.cols() > 0) whiten(without_own(deviations), rows);
+  return rows;
 }
 
 /// The value of a stated quantity, from a fit's parameters.

@@ -61,13 +61,21 @@ std::vector<double> distinct(std::vector<double> values) {
   return values;
 }
 
+/// The sign of x downhill; 0 for a track that counts as level.
+int downhill_at(double alpha_rad) {
+  return std::abs(alpha_rad) <= kLevel_rad ? 0 : alpha_rad > 0.0 ? 1 : -1;
+}
+
 /// For a new set-up if the clip's group is beyond the existing ones.
 Change clip_of(ChangeKind kind, const TrackSet& set, const SoFar& so, const NextClip& clip) {
   Change change;
   change.kind = kind;
   change.clip = clip;
   change.falls = only_falls(set);
-  if (clip.group < set.groups.size()) change.on = name_among(set, clip.group);
+  if (clip.group < set.groups.size()) {
+    change.on = name_among(set, clip.group);
+    change.downhill = downhill_at(set.groups[clip.group].stated_rad);
+  }
   change.rate_so_far_hz = so.rate_hz;
   return change;
 }
@@ -118,6 +126,7 @@ void add_inclinations(const TrackSet& set, const SoFar& so, std::vector<Change>&
       for (const double mass : distinct({so.light_kg, so.heavy_kg})) {
         Change change = clip_of(ChangeKind::inclination, set, so, {set.groups.size(), mass, v, so.rate_hz});
         change.set_up = NextSetUp{alpha, sd};
+        change.downhill = downhill_at(alpha);
         changes.push_back(std::move(change));
       }
     }
@@ -258,7 +267,8 @@ std::vector<double> at_places(const TrackedMotion& motion, const std::vector<dou
   return result;
 }
 
-/// The set-ups and masses so far and the change's, with its clip as the only one.
+/// The set-ups, masses and clips so far and the change's, whose motion is the only one. It is the last clip: what
+/// changes from clip to clip goes on.
 TrackSet with_clip(const TrackSet& set, const Change& change) {
   const NextClip& clip = *change.clip;
   TrackSet one;
@@ -271,10 +281,12 @@ TrackSet with_clip(const TrackSet& set, const Change& change) {
   one.images = set.images;
   one.through_air = set.through_air;
   one.no_drag = set.no_drag;
-  one.clips = {{"next", clip.rate_hz, 0.0, 0, 0.0}};
+  one.clips = set.clips;
+  one.clips.push_back({"next", clip.rate_hz, 0.0, 0, 0.0});
   if (change.set_up) one.groups.push_back({"next", change.set_up->alpha_rad, {}, set.x_mid_m});
   one.masses.push_back({clip.mass_kg, 0.0});
   TrackedMotion motion;
+  motion.clip = set.clips.size();
   motion.group = clip.group;
   motion.mass = one.masses.size() - 1;
   motion.m_per_px = like(set, change).m_per_px;

@@ -37,11 +37,12 @@ FitPoint next_point(const TrackSet& set, const MotionFit& fit, const Change& cha
 
 /// A further clip as a fit expects it.
 struct NextMotion {
-  TrackSet set;  ///< the set-ups and masses so far and the change's, with its clip as the only one
+  TrackSet set;  ///< the set-ups, masses and clips so far and the change's, whose motion is the only one
   Moved moved;   ///< empty if the clip is not feasible: fewer than 12 positions within the range so far
 };
 
-/// The change's clip as the fit predicts it, without noise, cut where it leaves the range of positions so far.
+/// The change's clip as the fit predicts it, recorded after all others and without a deviation of its own
+/// (clip_scatter), without noise, cut where it leaves the range of positions so far.
 NextMotion next_motion(const TrackSet& set, const MotionFit& fit, const Change& change);
 
 }  // namespace glidelab::diagnose

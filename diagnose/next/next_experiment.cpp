@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/expected_evidence.h"
 #include "diagnose/next/next_changes.h"
@@ -105,35 +110,80 @@ std::vector<std::string> only_in(const Hypothesis& a, const Hypothesis& b) {
   return ids;
 }
 
-/// Whether the diagnosis says that these data cannot tell `other` from the leading explanation.
-bool equivalent(const Diagnosis& diagnosis, const Hypothesis& first, const Hypothesis& other) {
-  const std::vector<std::string> of_first = only_in(first, other), of_other = only_in(other, first);
-  if (of_first.size() != 1 || of_other.size() != 1) return false;
+/// Whether the diagnosis says that these data cannot tell an effect of the leading explanation from another.
+bool equivalent(const Diagnosis& diagnosis, const std::vector<std::string>& lacks,
+                const std::vector<std::string>& adds) {
+  if (lacks.size() != 1 || adds.size() != 1) return false;
   return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const DiagnosedEffect& effect) {
-    return effect.id == of_first.front() && holds(effect.equivalent_to, of_other.front());
+    return effect.id == lacks.front() && holds(effect.equivalent_to, adds.front());
   });
 }
 
+/// The explanation by the effects that the verdict names, or by those of them that a motion shows; the comparison's
+/// best if no fit has exactly these.
+const Hypothesis* with_the_named(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis) {
+  std::set<std::size_t> named, moving;
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    const std::size_t e = effect_index(effect.id);
+    named.insert(e);
+    if (shows_in_motion(effect_list()[e].search)) moving.insert(e);
+  }
+  for (const std::set<std::size_t>& effects : {named, moving}) {
+    const Hypothesis* found = effects.empty() ? nullptr : find(comparison, effects);
+    if (found != nullptr) return found;
+  }
+  return best_named(set, comparison);
+}
+
 const Hypothesis* leading(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis) {
-  if (diagnosis.verdict == Verdict::effect) return best_named(set, comparison);
+  if (diagnosis.verdict == Verdict::effect) return with_the_named(set, comparison, diagnosis);
   for (const Hypothesis& hypothesis : comparison.all) {
     if (!hypothesis.unnamed && hypothesis.effects.empty()) return &hypothesis;
   }
   return nullptr;
 }
 
-/// Most likely first: those with at least a twentieth of the probability, and those that these data cannot tell from
-/// the first.
-std::vector<const Hypothesis*> rivals_of(const Comparison& comparison, const Diagnosis& diagnosis,
-                                         const Hypothesis& first) {
-  std::vector<const Hypothesis*> rivals;
+/// What may be in place of the leading explanation: without `lacks`, with `adds`; the likeliest explanation of the
+/// kind.
+struct Rival {
+  const Hypothesis* by = nullptr;
+  std::vector<std::string> lacks, adds;
+  double probability = 0.0;  ///< of all explanations of the kind
+  bool equivalent = false;
+
+  bool counts() const { return probability >= kStillLikely || equivalent; }
+};
+
+/// Likeliest first. What an effect may replace or join is counted over all explanations with that effect, because the
+/// probability of one cause may be shared among many second ones.
+std::vector<Rival> rivals_of(const Comparison& comparison, const Diagnosis& diagnosis, const Hypothesis& first) {
+  std::map<std::pair<std::vector<std::string>, std::string>, Rival> kinds;
   for (const Hypothesis& hypothesis : comparison.all) {
-    if (hypothesis.unnamed || rivals.size() == kMostRivals) continue;
-    if (only_in(first, hypothesis).empty() && only_in(hypothesis, first).empty()) continue;
-    const bool likely = hypothesis.probability >= kStillLikely || equivalent(diagnosis, first, hypothesis);
-    if (likely) rivals.push_back(&hypothesis);
+    if (hypothesis.unnamed) continue;
+    const std::vector<std::string> lacks = only_in(first, hypothesis), adds = only_in(hypothesis, first);
+    if (lacks.empty() && adds.empty()) continue;
+    for (const std::string& id : adds.empty() ? std::vector<std::string>{""} : adds) {
+      Rival& kind = kinds.try_emplace({lacks, id}, Rival{&hypothesis, lacks, adds, 0.0, false}).first->second;
+      kind.probability += hypothesis.probability;
+      kind.equivalent |= equivalent(diagnosis, lacks, adds);
+    }
   }
-  return rivals;
+  std::vector<Rival> rivals;
+  for (const auto& [key, kind] : kinds) {
+    if (kind.counts()) rivals.push_back(kind);
+  }
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const Rival& a, const Rival& b) { return a.probability > b.probability; });
+  std::vector<Rival> distinct;
+  for (Rival& rival : rivals) {
+    const bool known =
+        std::any_of(distinct.begin(), distinct.end(), [&](const Rival& of) { return of.by == rival.by; });
+    if (known || distinct.size() == kMostRivals) continue;
+    // An effect that is itself unlikely is no part of what is in doubt.
+    std::erase_if(rival.adds, [&](const std::string& id) { return !kinds.at({rival.lacks, id}).counts(); });
+    distinct.push_back(std::move(rival));
+  }
+  return distinct;
 }
 
 const MotionFit* fit_of(const Comparison& comparison, const Hypothesis& of) {
@@ -144,11 +194,14 @@ const MotionFit* fit_of(const Comparison& comparison, const Hypothesis& of) {
 /// absent effect shows nothing.
 struct Contest {
   const Hypothesis *right, *other;
+  Alternative doubt;
   double probability = 0.0;  // of the rival
 
-  Contest(const Hypothesis& first, const Hypothesis& rival)
-      : right(&first), other(&rival), probability(rival.probability) {
-    if (only_in(first, rival).empty()) std::swap(right, other);
+  Contest(const Hypothesis& first, const Rival& rival)
+      : right(&first), other(rival.by), doubt{{rival.lacks}, {rival.adds}}, probability(rival.probability) {
+    if (!rival.lacks.empty()) return;
+    std::swap(right, other);
+    std::swap(doubt.one, doubt.other);
   }
 };
 
@@ -159,9 +212,7 @@ bool only_add(const Hypothesis& first, const std::vector<Contest>& contests) {
 
 std::vector<Alternative> alternatives(const std::vector<Contest>& contests) {
   std::vector<Alternative> doubt;
-  for (const Contest& contest : contests) {
-    doubt.push_back({{only_in(*contest.right, *contest.other)}, {only_in(*contest.other, *contest.right)}});
-  }
+  for (const Contest& contest : contests) doubt.push_back(contest.doubt);
   return doubt;
 }
 
@@ -216,8 +267,8 @@ struct Weak {
   double value = 0.0, by_member = 1.0;
 };
 
-/// The parameters that the explanation names; for the nominal model, K and mu.
-std::vector<Weak> named_parameters(const MotionFit& fit) {
+/// The parameters that the explanation names; for the nominal model, K and mu, unless they are held at 0.
+std::vector<Weak> named_parameters(const TrackSet& set, const MotionFit& fit) {
   std::vector<Weak> named;
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
@@ -229,17 +280,20 @@ std::vector<Weak> named_parameters(const MotionFit& fit) {
     named.push_back({std::string(globals[g].parameter->key), std::string(effect_list()[globals[g].effect].id), at,
                      value.value, value.by_fitted});
   }
-  if (named.empty()) named = {{"K", "", 0, fit.at.global[0], 1.0}, {"mu", "", 1, fit.at.global[1], 1.0}};
+  if (!named.empty()) return named;
+  if (!holds_drag(set, fit.effects)) named.push_back({"K", "", 0, fit.at.global[0], 1.0});
+  if (!only_falls(set)) named.push_back({"mu", "", 1, fit.at.global[1], 1.0});
   return named;
 }
 
-/// The parameter of an explanation without a rival that could be known better.
-SharpenParameter sharpen(const TrackSet& set, const Comparison& comparison, const MotionFit& fit) {
+/// The parameter of an explanation without a rival that could be known better; none if all are held.
+std::optional<SharpenParameter> sharpen(const TrackSet& set, const Comparison& comparison, const MotionFit& fit) {
   const Eigen::MatrixXd before = common_covariance(fit);
   const auto sd_of = [](const Weak& weak, const Eigen::MatrixXd& covariance) {
     return std::sqrt(std::max(0.0, covariance(weak.at, weak.at))) * std::abs(weak.by_member);
   };
-  const std::vector<Weak> named = named_parameters(fit);
+  const std::vector<Weak> named = named_parameters(set, fit);
+  if (named.empty()) return {};
   const Weak& weak = *std::max_element(named.begin(), named.end(), [&](const Weak& a, const Weak& b) {
     return sd_of(a, before) * std::abs(b.value) < sd_of(b, before) * std::abs(a.value);
   });
@@ -277,12 +331,12 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
   const Hypothesis* first = leading(set, comparison, diagnosis);
   if (first == nullptr) return Routine::repeat_each_kind;
   std::vector<Contest> contests;
-  for (const Hypothesis* rival : rivals_of(comparison, diagnosis, *first)) {
-    const Contest contest(*first, *rival);
-    std::string images = for_images(only_in(*contest.right, *contest.other));
-    if (images.empty()) images = for_images(only_in(*contest.other, *contest.right));
+  for (const Rival& rival : rivals_of(comparison, diagnosis, *first)) {
+    const Contest contest(*first, rival);
+    std::string images = for_images(contest.doubt.one.effects);
+    if (images.empty()) images = for_images(contest.doubt.other.effects);
     if (!images.empty() && contests.empty()) {
-      return RecordForEffect{std::move(images), alternatives({contest}).front()};
+      return RecordForEffect{std::move(images), contest.doubt};
     }
     const bool fitted = fit_of(comparison, *contest.right) != nullptr && fit_of(comparison, *contest.other) != nullptr;
     if (images.empty() && fitted) contests.push_back(contest);
@@ -300,10 +354,49 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
     return next_for_unnamed(set, comparison.fits.front(), diagnosis);
   }
   const MotionFit* fit = fit_of(comparison, *first);
-  SharpenParameter step = sharpen(set, comparison, fit != nullptr ? *fit : comparison.fits.front());
-  step.one_mass = diagnosis.verdict == Verdict::none && set.masses.size() == 1;
-  step.undecided = std::move(undecided);
-  return step;
+  std::optional<SharpenParameter> step = sharpen(set, comparison, fit != nullptr ? *fit : comparison.fits.front());
+  if (!step) return Routine::repeat_each_kind;
+  // What falls presses on no track, so its friction is no question.
+  step->one_mass = diagnosis.verdict == Verdict::none && set.masses.size() == 1 && !only_falls(set);
+  step->undecided = std::move(undecided);
+  return *std::move(step);
+}
+
+namespace {
+
+constexpr double kSameValue_sd = 0.5;  // masses, and so K/m times m, are themselves fitted
+
+/// The size of a named effect as the verdict gives it, or K or mu as recovered; none if neither table has it.
+std::optional<GapValue> in_tables(const SharpenParameter& step, const Diagnosis& diagnosis) {
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    for (const DiagnosedParameter& parameter : effect.parameters) {
+      if (effect.id == step.effect && parameter.key == step.key) return GapValue{parameter.value, parameter.sd};
+    }
+  }
+  if (!step.effect.empty()) return {};
+  std::optional<GapValue> common;
+  for (const RecoveredConfiguration& of : diagnosis.recovered) {
+    const bool is_k = step.key == "K";
+    const core::Quantity& quantity = is_k ? of.k_over_m_1_s : of.mu;
+    if (!quantity.estimate) continue;
+    const double unit = is_k ? of.mass_kg : 1.0;
+    const GapValue one{unit * quantity.estimate->value, unit * quantity.estimate->sd};
+    if (!common) common = one;
+    if (!(std::abs(one.value - common->value) < kSameValue_sd * one.sd)) return {};  // each has its own
+  }
+  return common;
+}
+
+}  // namespace
+
+void quote_tables(Diagnosis& diagnosis) {
+  auto* const step = std::get_if<SharpenParameter>(&diagnosis.next);
+  if (step == nullptr || !(step->sd > 0.0)) return;
+  const std::optional<GapValue> told = in_tables(*step, diagnosis);
+  if (!told || !std::isfinite(told->value) || !(told->sd > 0.0)) return;
+  step->sd_after *= told->sd / step->sd;
+  step->value = told->value;
+  step->sd = told->sd;
 }
 
 }  // namespace glidelab::diagnose

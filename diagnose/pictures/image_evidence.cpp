@@ -77,8 +77,7 @@ void add_shape(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   const double sd = std::hypot(fit.line_sd_s, least_line_s, 0.05 * stated);
   const double rows = clips.front().record->height_px;
   shutter.parameters = {{"line_s", fit.line_s, sd}};
-  shutter.log_evidence =
-      log_deviation_evidence(std::abs(fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
+  shutter.log_evidence = log_either_sign_evidence((fit.line_s - stated) / sd, 1.0 / (camera.frame_rate_hz * rows) / sd);
   shutter.fact = image::Shear{fit.line_s, sd, stated};
   if (add_clearest(std::move(shutter), evidence)) evidence.stated_line_s = stated;
 }

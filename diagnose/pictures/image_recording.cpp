@@ -68,7 +68,8 @@ void add_missing(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) 
     frames += looks.size();
     for (std::size_t i = 2; i < looks.size(); ++i) {
       const bool same = looks[i].u_px == looks[i - 1].u_px && looks[i].v_px == looks[i - 1].v_px;
-      if (same && std::abs(looks[i - 1].u_px - looks[i - 2].u_px) > 0.05) ++repeated;
+      if (same && std::hypot(looks[i - 1].u_px - looks[i - 2].u_px, looks[i - 1].v_px - looks[i - 2].v_px) > 0.05)
+        ++repeated;
     }
   }
   if (missing + repeated == 0) return;

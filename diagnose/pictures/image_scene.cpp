@@ -155,7 +155,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence)
   const double sd = std::sqrt(10.0 * variance * inverse(columns - 2, columns - 2));
   ImageFinding finding = finding_of(ids::light_gradient);
   const double usual = std::hypot(sd, kUsualGradient_1_m);
-  finding.log_evidence = log_deviation_evidence(std::abs(gradient) / usual, 10.0 / usual);
+  finding.log_evidence = log_either_sign_evidence(gradient / usual, 10.0 / usual);
   finding.parameters = {{"gradient", gradient, sd}};
   finding.fact = image::LightAlong{gradient, sd, kUsualGradient_1_m, clips.front().down, pull_of_light(clips)};
   evidence.findings.push_back(std::move(finding));
@@ -261,8 +261,8 @@ double camera_sway_support(const std::vector<FilmedClip>& clips, double amplitud
   for (double ratio = 0.5; ratio < 2.1; ratio *= 1.26) {
     double sum = 0.0;
     for (const FilmedClip& clip : clips) {
-      const Series u = drift_of(clip).front();
-      const Amplitude seen = amplitude_at(u, f_hz);
+      const Series along = drift_of(clip)[clip.down ? 1 : 0];
+      const Amplitude seen = amplitude_at(along, f_hz);
       if (!(seen.sd > 0.0)) continue;
       const double sd = std::hypot(seen.sd, 0.3 * least_px), expected = ratio * amplitude_m * clip.px_per_m;
       sum += 0.5 * (seen.size * seen.size - std::pow(seen.size - expected, 2)) / (sd * sd);

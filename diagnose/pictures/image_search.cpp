@@ -31,6 +31,10 @@ double log_deviation_evidence(double z, double largest) {
   return base::log_mean(logs);
 }
 
+double log_either_sign_evidence(double z, double largest) {
+  return base::log_mean({log_deviation_evidence(z, largest), log_deviation_evidence(-z, largest)});
+}
+
 namespace {
 
 constexpr std::size_t kFewestSamples = 24;      // points of a series

@@ -44,6 +44,9 @@ double stated_line_s(const core::CameraSettings& camera);
 /// Log evidence of a deviation of z standard deviations, equal odds for each factor of ten from 1 to `largest`.
 double log_deviation_evidence(double z, double largest);
 
+/// The same of a deviation that may have either sign, each with a probability of a half.
+double log_either_sign_evidence(double z, double largest);
+
 struct Series {
   std::vector<double> t_s, value;
 };

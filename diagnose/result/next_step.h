@@ -44,6 +44,7 @@ struct Change {
   std::vector<NextStatement> statements = {};
   bool falls = false;           ///< its clip is one more fall: nothing is launched
   std::string on = {};          ///< the set-up's name, if there are several
+  int downhill = 0;             ///< sign of x downhill where its clip is recorded; 0: the track is level there
   double rate_so_far_hz = 0.0;  ///< highest frame rate of the clips so far
 };
 

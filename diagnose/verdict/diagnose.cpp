@@ -9,6 +9,7 @@
 #include "core/analysis/analyze.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_diagnosis.h"
+#include "diagnose/next/next_experiment.h"
 #include "diagnose/pictures/image_evidence.h"
 #include "diagnose/pictures/twin_camera.h"
 #include "diagnose/twin/twin.h"
@@ -91,6 +92,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     }
   }
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
+  quote_tables(diagnosis);
   if (std::optional<FitsCutOff> cut_off = fits_cut_off(diagnosis.ranking)) {
     diagnosis.notes.emplace_back(std::move(*cut_off));
   }

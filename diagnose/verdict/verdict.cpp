@@ -230,6 +230,32 @@ std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison&
   return ranking;
 }
 
+void cap_probabilities(double most, Diagnosis& diagnosis) {
+  double highest = diagnosis.none;
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    highest = std::max({highest, effect.probability, effect.joint_probability});
+  }
+  for (const RankedExplanation& ranked : diagnosis.ranking) highest = std::max(highest, ranked.probability);
+  const double known = 1.0 - diagnosis.unknown;
+  if (diagnosis.unknown > most && !(known > 0.0)) {
+    diagnosis.unknown = most;
+    diagnosis.none = 1.0 - most;
+    return;
+  }
+  const double factor = diagnosis.unknown > most ? (1.0 - most) / known : highest > most ? most / highest : 1.0;
+  if (factor == 1.0) return;
+  diagnosis.unknown = 1.0 - factor * known;
+  diagnosis.none *= factor;
+  for (DiagnosedEffect& effect : diagnosis.effects) {
+    effect.probability *= factor;
+    effect.joint_probability *= factor;
+    for (AlikeEffect& alike : effect.alike) {
+      if (alike.probability) *alike.probability *= factor;
+    }
+  }
+  for (RankedExplanation& ranked : diagnosis.ranking) ranked.probability *= factor;
+}
+
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvidence images,
                      const NoiseAlone* noise_alone) {
   Diagnosis diagnosis;

@@ -26,6 +26,10 @@ std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypo
 Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvidence images = {},
                      const NoiseAlone* noise_alone = nullptr);
 
+/// Lowers every probability to `most` at most, where one is higher. The rest goes to the unknown, and of an unknown
+/// that is too likely itself to all else; so the sum stays 1.
+void cap_probabilities(double most, Diagnosis& diagnosis);
+
 /// Explanations that name something, by falling probability; those with next to none by falling evidence.
 std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison& comparison,
                                           const NoiseAlone* noise_alone);

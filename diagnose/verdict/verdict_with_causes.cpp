@@ -423,12 +423,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
   if (!weighed) add_others(first, all_before, explanations);
   diagnosis.recovered = recovered_of(set, explanations);
   diagnosis.likely_twins = likely_twins(set, explanations, diagnosis.effects);
-  if (set.clips.size() < 2) {
-    for (DiagnosedEffect& effect : diagnosis.effects) {
-      effect.probability = std::min(effect.probability, kMostOfOneClip);
-      effect.joint_probability = std::min(effect.joint_probability, kMostOfOneClip);
-    }
-  }
+  if (set.clips.size() < 2) cap_probabilities(kMostOfOneClip, diagnosis);
   return diagnosis;
 }
 

@@ -101,6 +101,12 @@ void allow_for_unknown_noise(const TrackSet& set, Comparison& comparison) {
   for (Hypothesis& one : comparison.all) one.log_evidence -= lost_to_unknown_noise(few, chi2, one.gain);
 }
 
+/// Whether the scatter of single positions could show this effect; true for any other effect.
+bool scatter_shows(const Comparison& comparison, std::size_t effect) {
+  return !is_scatter(effect) || std::any_of(comparison.frames.begin(), comparison.frames.end(),
+                                            [&](const FrameEffect& frame) { return frame.effect == effect; });
+}
+
 }  // namespace
 
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
@@ -108,8 +114,8 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   set_air_odds(set, comparison);
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    const bool tracked =
-        list[e].search != Search::images && (!shows_in_motion(list[e].search) || comparison.scans[e].visible);
+    const bool tracked = list[e].search != Search::images && scatter_shows(comparison, e) &&
+                         (!shows_in_motion(list[e].search) || comparison.scans[e].visible);
     const bool shown = tracked || comparison.in_images.contains(e);
     const bool candidate = !without.contains(e) && shown;
     seen += candidate ? 1.0 : 0.0;
@@ -191,7 +197,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   add_unnamed(set, work.at(0.8), comparison);
   const MotionFit& best = comparison.fits[static_cast<std::size_t>(comparison.left_fit)];
   for (const FrameEffect& frame : {scan_jitter(set, best), scan_tails(set, best)}) {
-    if (!left_out.contains(frame.effect)) comparison.frames.push_back(frame);
+    if (!left_out.contains(frame.effect) && frame.visible) comparison.frames.push_back(frame);
   }
   add_frame_effects(comparison);
   if (images != nullptr) join_images(set, *images, left_out, comparison);

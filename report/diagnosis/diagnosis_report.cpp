@@ -14,6 +14,7 @@
 #include "report/diagnosis/words/cause_words.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/diagnosis/words/image_words.h"
+#include "report/diagnosis/words/next_step_words.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"

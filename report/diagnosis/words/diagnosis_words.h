@@ -1,13 +1,11 @@
 /// Words of a diagnosis: its explanations and verdicts as ids (for files and terminals) and as names (for readers), its
-/// notes (diagnose/result/note.h) as sentences, and what to record next (diagnose/result/next_step.h) as a sentence or
-/// two.
+/// notes (diagnose/result/note.h) as sentences.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "diagnose/result/diagnosis.h"
-#include "diagnose/result/next_step.h"
 #include "diagnose/result/note.h"
 
 namespace glidelab::report {
@@ -37,8 +35,5 @@ diagnose::ContradictedIncline as_told(diagnose::ContradictedIncline of, const di
 
 /// The diagnosis' notes, with angles as_told().
 std::vector<std::string> notes_words(const diagnose::Diagnosis& diagnosis);
-
-/// Empty if no step was searched for.
-std::string next_step_words(const diagnose::NextStep& step);
 
 }  // namespace glidelab::report

@@ -10,6 +10,7 @@
 #include "diagnose/effects/effect_list.h"
 #include "report/diagnosis/words/cause_words.h"
 #include "report/diagnosis/words/diagnosis_words.h"
+#include "report/diagnosis/words/next_step_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 

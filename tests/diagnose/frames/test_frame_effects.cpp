@@ -63,6 +63,20 @@ diagnose::FrameEffect tails_of(const std::vector<SpoiltFrames>& spoilt_frames, u
 
 }  // namespace
 
+TEST_CASE("a dozen positions show no scatter of single ones at any size, so none is weighed") {
+  const auto made = tests::made_experiment({{0.3, 90.0, 0.0, 0.2}}, {}, 5, 1e-4, 12, 60.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  CHECK_FALSE(diagnose::scan_tails(set, diagnose::fit_nominal(set)).visible);
+  const auto diagnosis = diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  for (const auto& ranked : diagnosis.ranking) {
+    CHECK_FALSE(ranked.explanation.holds("heavy_tailed_noise"));
+    CHECK_FALSE(ranked.explanation.holds("timestamp_jitter"));
+  }
+  const auto many = tests::made_experiment({{0.3, 4.0, 0.3, -1.1}}, {}, 5, 1e-4, 120, 60.0);
+  const diagnose::TrackSet shows = diagnose::track_set(many.results, many.setups, true);
+  CHECK(diagnose::scan_tails(shows, diagnose::fit_nominal(shows)).visible);
+}
+
 TEST_CASE("errors of single frames are heavy tails, errors that last are none and have no name") {
   for (const unsigned seed : {1u, 2u}) {
     const auto single = spoilt(1, seed), lasting = spoilt(3, seed);

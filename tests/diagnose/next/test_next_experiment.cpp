@@ -4,7 +4,9 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/expected_evidence.h"
@@ -319,6 +321,136 @@ TEST_CASE("what may act besides, and no change would show, does not stand before
   comparison.all[1].effects = {bumper};
   const auto settle = std::get<diagnose::SettleDoubt>(diagnose::next_experiment(set, comparison, diagnosis));
   CHECK_FALSE(settle.by);
+}
+
+TEST_CASE(
+    "the doubt is about the effects that the verdict names and about what may act besides, in however many pairs") {
+  const diagnose::TrackSet set = inclined();
+  diagnose::Comparison comparison;
+  comparison.fits = {diagnose::fit_nominal(set)};
+  const diagnose::MotionFit& nominal = comparison.fits.front();
+  const auto drag = with(set, nominal, "quadratic_drag", 0.1, nominal.at.global[0], nominal.at.global[2]);
+  comparison.fits.push_back(drag);  // all move the glider alike: no change tells them apart
+  const std::size_t named = diagnose::effect_index("quadratic_drag"), bow = diagnose::effect_index("track_bow"),
+                    lens = diagnose::effect_index("lens_distortion"), stop = diagnose::effect_index("end_stop"),
+                    plane = diagnose::effect_index("perspective_error");
+  const auto one = [](std::vector<std::size_t> effects, double probability) {
+    diagnose::Hypothesis hypothesis;
+    hypothesis.effects = std::move(effects);
+    hypothesis.probability = probability;
+    hypothesis.fit = 1;
+    return hypothesis;
+  };
+  // The likeliest single explanation is a pair, the verdict names the drag alone. The end stop comes to 0.06 in two.
+  comparison.all = {one({named, plane}, 0.30), one({named, lens}, 0.25), one({named}, 0.20),
+                    one({named, bow}, 0.04),   one({named, stop}, 0.03), one({named, plane, stop}, 0.03),
+                    one({bow}, 0.03)};
+  diagnose::Diagnosis diagnosis;
+  diagnosis.verdict = diagnose::Verdict::effect;
+  diagnosis.effects.resize(1);
+  diagnosis.effects.front().id = "quadratic_drag";
+  const auto step = std::get<diagnose::SharpenParameter>(diagnose::next_experiment(set, comparison, diagnosis));
+  CHECK(step.effect == "quadratic_drag");
+  for (const diagnose::Alternative& of : step.undecided) CHECK(of.other.is_nothing());
+  // What each could add, by its sum: 0.33, 0.25, 0.06. Only the likeliest is told if no change decides all.
+  REQUIRE(step.undecided.size() == 1);
+  CHECK(step.undecided.front().one.effects == std::vector<std::string>{"perspective_error"});
+  // A replacement counts by the sum over its explanations too.
+  comparison.all = {one({named}, 0.60), one({lens, plane}, 0.04), one({lens}, 0.04), one({lens, bow}, 0.04)};
+  const auto settle = std::get<diagnose::SettleDoubt>(diagnose::next_experiment(set, comparison, diagnosis));
+  REQUIRE(settle.doubt.size() == 1);
+  CHECK(settle.doubt.front().one.effects == std::vector<std::string>{"quadratic_drag"});
+  CHECK(settle.doubt.front().other.effects == std::vector<std::string>{"lens_distortion"});
+}
+
+TEST_CASE("a fall's friction on a track that it does not touch is never the parameter to sharpen") {
+  const auto made = tests::made_experiment({{0.3, 90.0, 0.0, 0.2}, {0.3, 90.0, 0.0, 0.3}}, {}, 5, 1e-4, 40, 60.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(diagnose::only_falls(set));
+  diagnose::Comparison comparison;
+  comparison.fits = {diagnose::fit_nominal(set)};
+  comparison.all.emplace_back();
+  comparison.all.front().fit = 0;
+  comparison.all.front().probability = 0.97;
+  const auto step = std::get<diagnose::SharpenParameter>(diagnose::next_experiment(set, comparison, {}));
+  CHECK(step.key == "K");
+  CHECK_FALSE(step.one_mass);
+}
+
+TEST_CASE("the weakest parameter is quoted as the tables give it, and what is expected of it alike") {
+  diagnose::Diagnosis diagnosis;
+  const diagnose::SharpenParameter mu{"mu", "", 0.009931, 0.000034, {}, {}, 0.000017};
+  diagnosis.next = mu;
+  diagnosis.recovered.resize(2);
+  for (auto& of : diagnosis.recovered) of.mu.estimate = core::Estimate{0.009942, 0.000096, 0.0, 0.0};
+  diagnose::quote_tables(diagnosis);
+  const auto& told = std::get<diagnose::SharpenParameter>(diagnosis.next);
+  CHECK(told.value == 0.009942);
+  CHECK(told.sd == 0.000096);
+  CHECK(told.sd_after == Approx(0.000048).epsilon(1e-12));
+  // K is the same for all masses: K/m times m.
+  diagnosis.next = diagnose::SharpenParameter{"K", "", 0.9, 0.01, {}, {}, 0.005};
+  for (std::size_t c = 0; c < 2; ++c) {
+    diagnosis.recovered[c].mass_kg = c == 0 ? 0.3 : 0.6;
+    diagnosis.recovered[c].k_over_m_1_s.estimate = core::Estimate{0.96 / diagnosis.recovered[c].mass_kg, 0.1, 0.0, 0.0};
+  }
+  diagnose::quote_tables(diagnosis);
+  CHECK(std::get<diagnose::SharpenParameter>(diagnosis.next).value == Approx(0.96).epsilon(1e-12));
+  CHECK(std::get<diagnose::SharpenParameter>(diagnosis.next).sd == Approx(0.03).epsilon(1e-12));
+  // Frictions that differ between configurations are not one parameter.
+  diagnosis.next = mu;
+  diagnosis.recovered[1].mu.estimate->value = 0.011;
+  diagnose::quote_tables(diagnosis);
+  CHECK(std::get<diagnose::SharpenParameter>(diagnosis.next).value == mu.value);
+  // The size of a named effect is that of the verdict.
+  diagnosis.next = diagnose::SharpenParameter{"c_kg_m", "quadratic_drag", 0.1, 0.01, {}, {}, 0.008};
+  diagnosis.effects.resize(1);
+  diagnosis.effects.front().id = "quadratic_drag";
+  diagnosis.effects.front().parameters = {{"c_kg_m", 0.11, 0.02}};
+  diagnose::quote_tables(diagnosis);
+  CHECK(std::get<diagnose::SharpenParameter>(diagnosis.next).value == 0.11);
+  CHECK(std::get<diagnose::SharpenParameter>(diagnosis.next).sd_after == Approx(0.016).epsilon(1e-12));
+}
+
+TEST_CASE("the next clip comes after the last one: a friction that drifts has gone on drifting") {
+  const diagnose::TrackSet set = inclined();
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const double k = 0.93, mu = nominal.at.global[1], alpha = nominal.at.global[2], r = 0.3, m = 0.335;
+  const auto drift = with(set, nominal, "friction_drift", r, k, alpha);
+  const auto next = diagnose::next_motion(set, drift, clip_of({0, m, 1.2, 100.0}));
+  REQUIRE(set.clips.size() == 4);
+  // Downhill, with v' = A - (K/m) v: v = v_lim + (v0 - v_lim) exp(-(K/m) t).
+  const double rate = k / m, a = 9.80665 * (std::sin(alpha) - mu * (1.0 + 4.0 * r) * std::cos(alpha));
+  REQUIRE(next.moved.v_m_s.size() > 20);
+  for (std::size_t p = 0; p < next.moved.v_m_s.size(); ++p) {
+    const double t = static_cast<double>(p) / 100.0;
+    // The integrator is good to 1e-6 m/s here; clip number 0 would be 1.2 mu g t = 0.07 t m/s off.
+    CHECK(std::abs(next.moved.v_m_s[p] - (a / rate + (1.2 - a / rate) * std::exp(-rate * t))) < 1e-5);
+  }
+}
+
+TEST_CASE("one more clip knows a friction that scatters from clip to clip no better than it scatters") {
+  const diagnose::TrackSet set = inclined();
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const std::size_t scatter = diagnose::effect_index("clip_scatter");
+  const diagnose::MotionFit start = diagnose::linearise_at(
+      set, {scatter}, diagnose::with_effect(set, nominal, scatter, std::vector<double>(8, 0.0), {}));
+  diagnose::FitPoint at = start.at;
+  const auto& globals = start.layout->globals();
+  const double spread = 2e-3;
+  std::size_t deviations = 0;
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    const bool of_mu = globals[g].parameter != nullptr && globals[g].parameter->shown_as == diagnose::ShownAs::of_mu;
+    if (of_mu) at.global[static_cast<Eigen::Index>(g)] = deviations++ % 2 == 0 ? spread : -spread;
+  }
+  REQUIRE(deviations == set.clips.size());
+  const diagnose::MotionFit fit = diagnose::linearise_at(set, {scatter}, at);
+  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(at.global.size(), at.global.size());
+  before(1, 1) = 1e-4;  // of mu alone, (0.01)²
+  const Eigen::MatrixXd after = diagnose::expected_covariance(set, fit, before, clip_of({0, 0.335, -1.1, 100.0}));
+  // mu + d is then known to some 1e-5, which does not count, and d has the spread so far.
+  const double expected = 1.0 / (1.0 / before(1, 1) + 1.0 / (spread * spread));
+  CHECK(after(1, 1) == Approx(expected).epsilon(0.01));
 }
 
 TEST_CASE("after a motion under a recorded force no launch is suggested, but the same places with other forces") {

@@ -183,6 +183,70 @@ TEST_CASE("Evidence of a deviation falls below nothing at none and grows with it
   CHECK(diagnose::log_deviation_evidence(-10.0, 100.0) < diagnose::log_deviation_evidence(0.0, 100.0));
 }
 
+TEST_CASE("pure noise gives a deviation of either sign a mean Bayes factor of one", "[pictures]") {
+  // Midpoint rule; the integrand is a sum of normal densities about 1 to 10 on either side, so that 25 and steps of
+  // 0.01 hold it to 1e-10.
+  double mean = 0.0;
+  for (double z = -24.995; z < 25.0; z += 0.01) {
+    const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+    mean += 0.01 * density * std::exp(diagnose::log_either_sign_evidence(z, 10.0));
+  }
+  CHECK(std::abs(mean - 1.0) < 1e-8);
+  CHECK(diagnose::log_either_sign_evidence(-4.0, 10.0) == Approx(diagnose::log_either_sign_evidence(4.0, 10.0)));
+  const double one_side = diagnose::log_deviation_evidence(8.0, 10.0);
+  CHECK(diagnose::log_either_sign_evidence(8.0, 10.0) == Approx(one_side - std::log(2.0)).epsilon(1e-6));
+}
+
+namespace {
+
+/// The same clip with the camera turned by 90 degrees: columns become rows.
+diagnose::FilmedClip turned(const diagnose::FilmedClip& clip) {
+  diagnose::FilmedClip down = clip;
+  auto record = std::make_shared<core::ImageRecord>(*clip.record);
+  std::swap(record->width_px, record->height_px);
+  for (core::MarkerLook& look : record->marker) std::swap(look.u_px, look.v_px);
+  for (core::SceneLook& look : record->scene) {
+    std::swap(look.u_px, look.v_px);
+    std::swap(look.sd_u_px, look.sd_v_px);
+  }
+  down.record = std::move(record);
+  down.down = !clip.down;
+  return down;
+}
+
+}  // namespace
+
+TEST_CASE("a sway along a motion down the image is borne out by the scene as the same sway across it", "[pictures]") {
+  const auto across = filmed({.sway_px = 0.6}, 0.001, 3);
+  std::vector<diagnose::FilmedClip> down;
+  for (const diagnose::FilmedClip& clip : across) down.push_back(turned(clip));
+  const double amplitude_m = 0.6 / across.front().px_per_m;
+  const double support = diagnose::camera_sway_support(across, amplitude_m, 7.0);
+  CHECK(support > 0.0);
+  CHECK(diagnose::camera_sway_support(down, amplitude_m, 7.0) == Approx(support).epsilon(1e-9));
+}
+
+TEST_CASE("an image that is repeated is found in a motion down the image as in one across it", "[pictures]") {
+  std::vector<diagnose::FilmedClip> across = filmed({}, 0.001, 3), down;
+  auto record = std::make_shared<core::ImageRecord>(*across.front().record);
+  record->marker[60].u_px = record->marker[59].u_px;
+  record->marker[60].v_px = record->marker[59].v_px;
+  across.front().record = record;
+  for (const diagnose::FilmedClip& clip : across) {
+    down.push_back(turned(clip));
+    // Nothing moves across.
+    auto still = std::make_shared<core::ImageRecord>(*down.back().record);
+    for (core::MarkerLook& look : still->marker) look.u_px = 90.0;
+    down.back().record = std::move(still);
+  }
+  for (const auto* clips : {&across, &down}) {
+    diagnose::ImageEvidence evidence;
+    diagnose::add_missing(*clips, evidence);
+    REQUIRE(evidence.findings.size() == 1);
+    CHECK(std::get<diagnose::image::FrameTimes>(evidence.findings.front().fact).repeated == 1);
+  }
+}
+
 TEST_CASE("clips of several cameras are each held to what is stated of their own") {
   const auto blur_of = [](double first_s, double second_s, double second_stated_s) {
     std::vector<diagnose::FilmedClip> clips = filmed({.exposure_s = first_s}, first_s, 61);

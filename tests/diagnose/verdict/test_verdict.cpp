@@ -98,3 +98,39 @@ TEST_CASE("several names that these data cannot tell apart count together agains
   comparison.alike.clear();
   CHECK(diagnose::best_named(tracks, comparison)->effects == of({"quadratic_drag", "stribeck"}, 0.0).effects);
 }
+
+TEST_CASE("what one clip cannot support goes to the unknown, or from it, and the sum stays one") {
+  diagnose::Diagnosis sure;
+  sure.none = 1.0;
+  diagnose::cap_probabilities(0.999, sure);
+  CHECK(sure.none == Approx(0.999).epsilon(1e-12));
+  CHECK(sure.unknown == Approx(0.001).epsilon(1e-9));
+  diagnose::Diagnosis unknown;
+  unknown.unknown = 1.0;
+  diagnose::cap_probabilities(0.999, unknown);
+  CHECK(unknown.unknown == Approx(0.999).epsilon(1e-12));
+  CHECK(unknown.none == Approx(0.001).epsilon(1e-9));
+  // Two names of one cause that is certain; each explanation and the set of both keep their ratios.
+  diagnose::Diagnosis named;
+  named.unknown = 2e-4;
+  named.effects.resize(1);
+  named.effects.front().probability = 0.6;
+  named.effects.front().joint_probability = 0.9998;
+  named.effects.front().alike = {{"scale_error", "", 0.6}, {"frame_rate_error", "", 0.3998}};
+  named.ranking.resize(2);
+  named.ranking[0].probability = 0.6;
+  named.ranking[1].probability = 0.3998;
+  diagnose::cap_probabilities(0.999, named);
+  CHECK(named.effects.front().joint_probability == Approx(0.999).epsilon(1e-12));
+  CHECK(named.ranking[0].probability + named.ranking[1].probability + named.unknown + named.none ==
+        Approx(1.0).epsilon(1e-12));
+  CHECK(*named.effects.front().alike[0].probability + *named.effects.front().alike[1].probability ==
+        Approx(0.999).epsilon(1e-12));
+  // Nothing is too likely: nothing changes.
+  diagnose::Diagnosis open;
+  open.none = 0.7;
+  open.unknown = 0.3;
+  diagnose::cap_probabilities(0.999, open);
+  CHECK(open.none == 0.7);
+  CHECK(open.unknown == 0.3);
+}
