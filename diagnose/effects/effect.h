@@ -78,12 +78,16 @@ struct EffectLaw {
   SeenBy seen_by = SeenBy::lens;
   double (*stretch)(const double* p) = nullptr;  ///< true time over stated time
   double (*row_s)(const double* p) =
-      nullptr;           ///< delay of a row's exposure after the row above, in excess of the stated one
+      nullptr;  ///< delay of a row's exposure after the row above, in excess of the stated one
+  /// Its resistance, force and friction depend on nothing but the direction of motion and whether the hand pushes, and
+  /// a drag keeps its proportion to the speed.
+  bool steady = false;
   bool passing = false;  ///< acts only at some positions, times or clips: left out of the terminal velocity
 
   bool acts(const double* p) const {
     return std::any_of(p + size, p + size + sizes, [](double value) { return value != 0.0; });
   }
+  bool changes_forces() const { return resistance != nullptr || force_n != nullptr || friction != nullptr; }
   bool moves() const {
     return resistance != nullptr || force_n != nullptr || friction != nullptr || inertia_kg != nullptr ||
            known_factor != nullptr || known_late_s != nullptr;

@@ -287,11 +287,17 @@ Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& 
   return move(model, set.motions[i].t_s, late.empty() ? std::span<const double>() : std::span(late[i]));
 }
 
-bool is_followed(const Moved& motion) {
-  return std::all_of(motion.x_m.begin(), motion.x_m.end(), [](double x) { return std::isfinite(x); });
+bool is_followed(const std::vector<double>& x_m) {
+  return std::all_of(x_m.begin(), x_m.end(), [](double x) { return std::isfinite(x); });
 }
 
 }  // namespace
+
+std::vector<double> weights_of(const TrackedMotion& motion) {
+  std::vector<double> weights(motion.t_s.size());
+  for (std::size_t p = 0; p < weights.size(); ++p) weights[p] = motion.outlier[p] ? 0.0 : 1.0 / motion.sd_of(p);
+  return weights;
+}
 
 FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
                     const Lateness& late, Derivatives derivatives) {
@@ -299,18 +305,26 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
   const auto n = static_cast<Eigen::Index>(data.t_s.size());
   FitMotion of;
   Moved base = moved(set, layout, at, i, late);
-  of.v_m_s = base.v_m_s;
-  const auto& globals = layout.globals();
-  const std::vector<double> shared = shared_errors(set, layout, at, i, base.x_m);
-  std::vector<double> weight(data.t_s.size());
-  for (std::size_t p = 0; p < weight.size(); ++p) weight[p] = data.outlier[p] ? 0.0 : 1.0 / data.sd_of(p);
+  of.x_m = std::move(base.x_m);
+  of.v_m_s = std::move(base.v_m_s);
+  const std::vector<double> shared = shared_errors(set, layout, at, i, of.x_m), weight = weights_of(data);
   of.plain.resize(n);
   for (Eigen::Index p = 0; p < n; ++p) {
     const auto q = static_cast<std::size_t>(p);
-    of.plain[p] = weight[q] * (data.x_m[q] - base.x_m[q] - shared[q]);
+    of.plain[p] = weight[q] * (data.x_m[q] - of.x_m[q] - shared[q]);
   }
   of.residual = whitened(data, of.plain);
-  if (derivatives == Derivatives::none) return of;
+  if (derivatives != Derivatives::none) add_derivatives(set, layout, at, i, late, derivatives, of);
+  return of;
+}
+
+void add_derivatives(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t i,
+                     const Lateness& late, Derivatives derivatives, FitMotion& of) {
+  const TrackedMotion& data = set.motions[i];
+  const auto n = static_cast<Eigen::Index>(data.t_s.size());
+  const auto& globals = layout.globals();
+  const std::vector<double>& base_m = of.x_m;
+  const std::vector<double> weight = weights_of(data);
   of.global = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(globals.size()));
   of.own = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(2 + layout.own().size()));
   FitPoint near = at;
@@ -321,17 +335,17 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
     const double kept = parameter;
     parameter = kept + step;
     const Moved above = moved(set, layout, near, i, late);
-    const bool has_above = is_followed(above);
+    const bool has_above = is_followed(above.x_m);
     Moved below;
     if (central || !has_above) {
       parameter = kept - step;
       below = moved(set, layout, near, i, late);
     }
     parameter = kept;
-    const bool has_below = (central || !has_above) && is_followed(below);
+    const bool has_below = (central || !has_above) && is_followed(below.x_m);
     const double apart = (has_above ? step : 0.0) + (has_below ? step : 0.0);
     if (apart == 0.0) return;
-    const std::vector<double>&high = has_above ? above.x_m : base.x_m, &low = has_below ? below.x_m : base.x_m;
+    const std::vector<double>&high = has_above ? above.x_m : base_m, &low = has_below ? below.x_m : base_m;
     for (Eigen::Index p = 0; p < n; ++p) {
       const auto q = static_cast<std::size_t>(p);
       column[p] = weight[q] * (high[q] - low[q]) / apart;
@@ -344,18 +358,19 @@ FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const Fi
       for (Eigen::Index p = 0; p < n; ++p) {
         const auto q = static_cast<std::size_t>(p);
         of.global(p, column) = weight[q] * (globals[g].kind == Global::Kind::mode ? data.shared_m[globals[g].index][q]
-                                                                                  : data.scale_sd * base.x_m[q]);
+                                                                                  : data.scale_sd * base_m[q]);
       }
       continue;
     }
     fill(near.global[column], step_of(globals[g], near.global[column]), of.global.col(column));
   }
-  for (Eigen::Index o = 0; o < of.own.cols(); ++o) {
+  const bool shifts = is_followed(base_m) && shifts_as_a_whole(model_of(set, layout, at, i));
+  if (shifts) of.own.col(0) = Eigen::Map<const Eigen::VectorXd>(weight.data(), n);
+  for (Eigen::Index o = shifts ? 1 : 0; o < of.own.cols(); ++o) {
     fill(near.own[i][o], o < 2 ? 1e-6 : layout.own()[static_cast<std::size_t>(o - 2)]->step, of.own.col(o));
   }
   of.global = whitened(data, std::move(of.global));
   of.own = whitened(data, std::move(of.own));
-  return of;
 }
 
 }  // namespace glidelab::diagnose

@@ -144,6 +144,9 @@ std::vector<double> shared_errors(const TrackSet& set, const ParameterLayout& la
 /// The delay of each point of each motion relative to its stated time (dropped frames); empty: none.
 using Lateness = std::vector<std::vector<double>>;
 
+/// One over the noise of each position of a motion; 0 at outliers.
+std::vector<double> weights_of(const TrackedMotion& motion);
+
 /// One motion at one point in parameter space: its residuals, and the model's derivatives with respect to the
 /// parameters, both divided by the noise.
 struct FitMotion {
@@ -151,7 +154,7 @@ struct FitMotion {
   Eigen::VectorXd plain;     ///< divided by each position's own noise, still correlated between neighbours
   Eigen::MatrixXd global;
   Eigen::MatrixXd own;
-  std::vector<double> v_m_s;
+  std::vector<double> x_m, v_m_s;  ///< of the model, without the shared errors
 };
 
 /// `forward` differences take half the time and serve for the steps of a fit. `central` differences, whose error is of
@@ -159,7 +162,11 @@ struct FitMotion {
 /// effect, what is left must not be the error of the derivatives.
 enum class Derivatives { none, forward, central };
 
-/// The linearised motion with this index, by finite differences.
+/// The same motion at the same point, with its derivatives by finite differences.
+void add_derivatives(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
+                     const Lateness& late, Derivatives derivatives, FitMotion& of);
+
+/// The linearised motion with this index.
 FitMotion linearise(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at, std::size_t motion,
                     const Lateness& late, Derivatives derivatives);
 

@@ -92,12 +92,6 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& a) {
   return q.leftCols(kept);
 }
 
-std::vector<double> weights_of(const TrackedMotion& motion) {
-  std::vector<double> weights(motion.t_s.size());
-  for (std::size_t p = 0; p < weights.size(); ++p) weights[p] = motion.outlier[p] ? 0.0 : 1.0 / motion.sd_of(p);
-  return weights;
-}
-
 }  // namespace
 
 ScoreSpace::ScoreSpace(const TrackSet& set, const MotionFit& fit) : set_(set), fit_(fit) {

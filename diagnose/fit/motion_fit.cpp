@@ -3,22 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
-#include "base/errors.h"
 #include "base/math/dense.h"
 #include "base/math/levenberg_marquardt.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_model.h"
-#include "diagnose/fit/integrated_start.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr int kMostIterations = 40;
-constexpr int kMoreRounds = 2;             // further rounds of that many iterations, for a nominal fit that has not
-                                           // converged
 constexpr double kConvergedChange = 1e-3;  // change of chi², small compared with the changes that evidence rests on
 // A combination of parameters that the data hardly determine (a frame rate beside K, mu and the inclination) lies along
 // a curved valley with steep walls. A step along it ends far up a wall, from where undamped steps lead back down. The
@@ -121,10 +116,23 @@ void linearise_all(const TrackSet& set, MotionFit& fit, Derivatives derivatives)
   }
 }
 
+/// Adds the derivatives at the point where the residuals are.
+void derive_all(const TrackSet& set, MotionFit& fit, Derivatives derivatives) {
+  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
+    add_derivatives(set, *fit.layout, fit.at, i, fit.late, derivatives, fit.motions[i]);
+  }
+}
+
 /// The fit at another point in parameter space: residuals and cost, no derivatives; the cost is infinite if a parameter
 /// is not allowed there.
 MotionFit moved_to(const TrackSet& set, const MotionFit& fit, FitPoint at) {
-  MotionFit next = fit;
+  MotionFit next;
+  next.effects = fit.effects;
+  next.layout = fit.layout;
+  next.statements = fit.statements;
+  next.late = fit.late;
+  next.converged = fit.converged;
+  next.iterations = fit.iterations;
   next.at = std::move(at);
   next.cost = std::numeric_limits<double>::infinity();
   if (!inside(set, *fit.layout, next.at)) return next;
@@ -146,29 +154,6 @@ base::FitOptions descent_options() {
                                                     // of points
   options.damping_settled = 1e-2;
   return options;
-}
-
-/// x0 and v0 by a parabola through the first points; points that were set aside are left out if enough others remain.
-Eigen::VectorXd start_of(const TrackedMotion& motion) {
-  constexpr std::size_t kStartPoints = 25, kFewestStartPoints = 6;
-  std::vector<std::size_t> points;
-  for (std::size_t p = 0; p < motion.t_s.size() && points.size() < kStartPoints; ++p) {
-    if (!motion.outlier[p]) points.push_back(p);
-  }
-  if (points.size() < kFewestStartPoints) {
-    points.resize(std::min(motion.t_s.size(), kStartPoints));
-    std::iota(points.begin(), points.end(), std::size_t{0});
-  }
-  Eigen::MatrixXd design(static_cast<Eigen::Index>(points.size()), 3);
-  Eigen::VectorXd x(design.rows());
-  for (Eigen::Index i = 0; i < design.rows(); ++i) {
-    const std::size_t p = points[static_cast<std::size_t>(i)];
-    const double t = motion.t_s[p] - motion.t_s.front();
-    design.row(i) << 1.0, t, t * t;
-    x[i] = motion.x_m[p];
-  }
-  const Eigen::VectorXd fit = base::least_squares(design, x);
-  return fit.head(2);
 }
 
 /// The minimum of y'Ay/2 - b'y with the effects' parameters within their ranges: a parameter that would leave its range
@@ -277,8 +262,9 @@ void hold_at_edges(MotionFit& fit) {
   }
 }
 
-MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
-                   const Lateness& late, const base::FitOptions& options, const std::vector<std::size_t>& held = {}) {
+/// A fit at its minimum, not yet finished.
+MotionFit descended(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
+                    const Lateness& late, const base::FitOptions& options, const std::vector<std::size_t>& held = {}) {
   MotionFit fit;
   fit.effects = effects;
   ParameterLayout layout(set, effects);
@@ -299,13 +285,13 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   };
   int vain_returns = 0;
   const auto try_step = [&](Point& here, double damping) {
-    if (!here.has_derivatives) linearise_all(set, here.fit, Derivatives::forward);
+    if (!here.has_derivatives) derive_all(set, here.fit, Derivatives::forward);
     here.has_derivatives = true;
     const double cost = here.fit.cost;
     MotionFit next = moved_to(set, here.fit, step_from(here.fit, damping));
     if (!(next.cost <= cost) && vain_returns < kMostVainReturns) {
       for (int back = 0; back < kMostStepsBack && std::isfinite(next.cost) && !(next.cost <= cost); ++back) {
-        linearise_all(set, next, Derivatives::forward);
+        derive_all(set, next, Derivatives::forward);
         next = moved_to(set, next, step_from(next, 0.0));
       }
       vain_returns += next.cost <= cost ? -1 : 1;
@@ -321,9 +307,14 @@ MotionFit fit_from(const TrackSet& set, const std::vector<std::size_t>& effects,
   here.fit.iterations = summary.iterations;
   // If no step descends, only rounding is left, or the fit is at the edge of what is allowed.
   here.fit.converged = base::is_settled(summary.stop) || summary.stop == base::FitStop::no_descent;
-  hold_at_edges(here.fit);
-  linearise_all(set, here.fit, Derivatives::central);
   return std::move(here.fit);
+}
+
+/// The fit at its minimum with all that rests on it.
+MotionFit finished(const TrackSet& set, MotionFit fit) {
+  hold_at_edges(fit);
+  derive_all(set, fit, Derivatives::central);
+  return fit;
 }
 
 /// The parameters of a fit, with one more effect that is absent; its other parameters are taken from `like`, which has
@@ -366,30 +357,39 @@ double drag_of_air_like(const MotionFit& fit, double least) {
 
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late) {
-  return fit_from(set, effects, start, late, descent_options());
+  return finished(set, descended(set, effects, start, late, descent_options()));
 }
 
 MotionFit fit_held(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                    const Lateness& late, const std::vector<std::size_t>& held) {
-  return fit_from(set, effects, start, late, descent_options(), held);
+  return finished(set, descended(set, effects, start, late, descent_options(), held));
 }
 
-MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit) {
-  if (fit.cost <= base.cost) return fit;
+namespace {
+
+/// A descent by small steps from the fit without the effect.
+MotionFit by_small_steps(const TrackSet& set, const MotionFit& base, std::size_t effect, const MotionFit& fit) {
   std::vector<std::size_t> effects = base.effects;
   effects.push_back(effect);
   base::FitOptions small_steps = descent_options();
   small_steps.damping_start = kSmallSteps;
-  MotionFit again = fit_from(set, effects, with_absent(set, base, effect, fit), base.late, small_steps);
-  return again.cost <= fit.cost ? again : fit;
+  return descended(set, effects, with_absent(set, base, effect, fit), base.late, small_steps);
+}
+
+}  // namespace
+
+MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit) {
+  if (fit.cost <= base.cost) return fit;
+  MotionFit again = by_small_steps(set, base, effect, fit);
+  return again.cost <= fit.cost ? finished(set, std::move(again)) : fit;
 }
 
 MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_t effect, const FitPoint& start) {
   std::vector<std::size_t> effects = base.effects;
   effects.push_back(effect);
-  MotionFit best = fit_motions(set, effects, start, base.late);
+  MotionFit best = descended(set, effects, start, base.late, descent_options());
   // A quadratic drag in place of K is another model than `base`, and need not fit better.
-  if (takes_place_of_drag(set, base.effects, effect)) return best;
+  if (takes_place_of_drag(set, base.effects, effect)) return finished(set, std::move(best));
   // A size from a linear estimate far from the minimum may be wrong by decades.
   const auto size = base.at.global.size();
   const bool has_size = effect_list()[effect].law.size == 0 &&
@@ -400,10 +400,14 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
     FitPoint other = start;
     other.global[size] *= part;
     if (!inside(set, ParameterLayout(set, effects), other)) continue;
-    MotionFit fit = fit_motions(set, effects, other, base.late);
+    MotionFit fit = descended(set, effects, other, base.late, descent_options());
     if (fit.cost < best.cost || !std::isfinite(best.cost)) best = std::move(fit);
   }
-  return no_worse_than(set, base, effect, std::move(best));
+  if (!(best.cost <= base.cost)) {
+    MotionFit again = by_small_steps(set, base, effect, best);
+    if (again.cost <= best.cost) best = std::move(again);
+  }
+  return finished(set, std::move(best));
 }
 
 MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& at) {
@@ -422,49 +426,6 @@ MotionFit linearise_again(const TrackSet& set, const MotionFit& fit) {
   linearise_all(set, again, Derivatives::central);
   again.cost = cost_of(again);
   return again;
-}
-
-MotionFit fit_nominal(const TrackSet& set, const Lateness& late) {
-  const ParameterLayout layout(set, {});
-  MotionFit best;
-  best.cost = std::numeric_limits<double>::infinity();
-  double mass = 0.0;
-  std::size_t points = 0;
-  for (const TrackedMotion& motion : set.motions) {
-    mass += set.masses[motion.mass].mass_kg;
-    points += motion.t_s.size();
-  }
-  mass /= static_cast<double>(set.motions.size());
-  const auto fit_if_better = [&](const FitPoint& start) {
-    MotionFit fit = fit_motions(set, {}, start, late);
-    if (fit.cost < 0.999 * best.cost) best = std::move(fit);
-    return best.converged && best.cost < 4.0 * static_cast<double>(points);  // other starts find nothing better
-  };
-  const auto from_statements = [&](double k_over_m) {
-    FitPoint start;
-    start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
-    start.global[0] = k_over_m * mass;
-    start.global[1] = only_falls(set) ? 0.0 : 0.005;
-    for (std::size_t g = 0; g < set.groups.size(); ++g) {
-      start.global[static_cast<Eigen::Index>(2 + g)] = set.groups[g].stated_rad;
-    }
-    for (const TrackedMotion& motion : set.motions) start.own.push_back(start_of(motion));
-    return start;
-  };
-  if (!fit_if_better(integrated_start(set))) {
-    for (const double k_over_m : {1.0, 3.0, 0.1}) {
-      if (fit_if_better(from_statements(k_over_m))) break;
-    }
-  }
-  for (int more = 0; more < kMoreRounds && std::isfinite(best.cost) && !best.converged; ++more) {
-    best = fit_motions(set, {}, best.at, late);
-  }
-  if (!std::isfinite(best.cost)) {
-    throw base::NumericalError(
-        "the nominal model cannot be fitted to these positions: the fit makes no progress from any of four starting "
-        "points");
-  }
-  return best;
 }
 
 FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effect, const std::vector<double>& values,

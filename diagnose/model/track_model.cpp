@@ -58,6 +58,8 @@ struct ActingLaws {
       const EffectLaw& law = list[e].law;
       const double* p = values.of(e);
       if (!law.acts(p)) continue;
+      steady = steady && (law.steady || !law.changes_forces());
+      steady_driving = steady_driving && (law.steady || (law.resistance == nullptr && law.force_n == nullptr));
       if (law.resistance != nullptr) resistance.add(law, p);
       if (law.force_n != nullptr) force.add(law, p);
       if (law.friction != nullptr) friction.add(law, p);
@@ -80,6 +82,8 @@ struct ActingLaws {
   double known_factor = 1.0, known_late_s = 0.0;
   double stretch = 1.0;  // ratio of true to stated time
   double row_s = 0.0;
+  bool steady = true;          // all forces are (EffectLaw::steady),
+  bool steady_driving = true;  // or all but the friction
 };
 
 GliderConstants constants_of(const TrackModel& model) {
@@ -111,6 +115,7 @@ class Mover {
     }
     step_ = std::max(kLongestStep, frame_s / kStepsOfFrame);
     if (rate > 0.0) step_ = std::min(step_, kLongestTurn / rate);
+    hold();
   }
 
   /// The forces that do not depend on the direction of motion.
@@ -149,6 +154,13 @@ class Mover {
   }
 
   double slide(double x, double v, double t, double wave) const {
+    if (laws_.steady_driving) {
+      const Held& held = held_[pushed_][direction_ > 0];
+      double force = held.driving_n - held.drag_n_s_m * v;
+      if (m_.known != nullptr) force += known_n_ + known_n_s_ * (t - known_t_);
+      if (m_.unnamed != nullptr) force += (*m_.unnamed)(x, v, t);
+      return (force - direction_ * (laws_.steady ? held.friction_n : friction(x, v, t))) * by_inertia_;
+    }
     return (driving(x, v, t, wave) - direction_ * friction(x, v, t)) * by_inertia_;
   }
 
@@ -157,11 +169,32 @@ class Mover {
   std::optional<Stride> stride(const PlaceAndSpeed& s, double t, double t_end) {
     const double release_s = m_.effects[kRelease];
     const bool pushed = m_.effects[kPush] != 0.0 && t < release_s;
-    if (m_.known != nullptr || direction_ == 0 || (pushed && release_s < t_end)) return {};
+    if (flows_ || m_.known != nullptr || direction_ == 0 || (pushed && release_s < t_end)) return {};
     pushed_ = pushed;
-    const Step step = rk4(s, t, t_end - t);
+    const Step step = step_from(s, t, t_end - t);
     if (!(step.end.v * direction_ > 0.0)) return {};
-    return Stride(s, step.a_start, step.end, slide(step.end.x, step.end.v, t_end, step.wave_end), t_end - t);
+    const double a_end = slide(step.end.x, step.end.v, t_end, step.wave_end);
+    last_ = {step.end, t_end, a_end, direction_, pushed_};
+    return Stride(s, step.a_start, step.end, a_end, t_end - t);
+  }
+
+  /// Of a motion in closed form: its positions and speeds at all of these times that one step reaches before a turn or
+  /// a release. Returns how many these are, and advances to the last of them.
+  std::size_t flow(PlaceAndSpeed& s, double& t, std::span<const double> at, double* x_m, double* v_m_s) {
+    if (!flows_ || m_.known != nullptr || direction_ == 0 || !std::isfinite(s.v)) return 0;
+    const double release_s = m_.effects[kRelease];
+    pushed_ = m_.effects[kPush] != 0.0 && t < release_s;
+    const double until = pushed_ ? std::min(t + reach_, release_s) : t + reach_;
+    auto count = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), until) - at.begin());
+    if (count == 0) return 0;
+    ++work_;
+    flow_from(s, t).fill(t, at.first(count), x_m, v_m_s);
+    // The speed changes monotonically, so only the last of these can lie beyond a turn.
+    while (count > 0 && !(v_m_s[count - 1] * direction_ > 0.0)) --count;
+    if (count == 0) return 0;
+    s = {x_m[count - 1], v_m_s[count - 1]};
+    t = at[count - 1];
+    return count;
   }
 
   double longest_step() const { return step_; }
@@ -182,6 +215,39 @@ class Mover {
   void start(double v) { direction_ = v > 0.0 ? 1 : v < 0.0 ? -1 : 0; }
 
  private:
+  /// What acts as long as the direction and the hand stay as they are.
+  struct Held {
+    double driving_n = 0.0, drag_n_s_m = 0.0, friction_n = 0.0;
+  };
+
+  void hold() {
+    flows_ = laws_.steady && m_.unnamed == nullptr;
+    if (!laws_.steady_driving) return;
+    double most = 0.0;
+    for (const bool pushed : {false, true}) {
+      if (pushed && m_.effects[kPush] == 0.0) continue;
+      for (const bool forward : {false, true}) {
+        const GliderState at{0.0, forward ? kNoSpeed_m_s : -kNoSpeed_m_s, 0.0, 0.0, pushed};
+        Resistance of{.slope = sin_};
+        for (const Acting& effect : laws_.resistance.all()) effect.law->resistance(effect.p, glider_, at, of);
+        Held& held = held_[pushed][forward];
+        held.driving_n = glider_.weight_n * of.slope - of.against_n;
+        for (const Acting& effect : laws_.force.all()) held.driving_n += effect.law->force_n(effect.p, glider_, at);
+        held.drag_n_s_m = m_.k_n_s_m * of.drag_factor / of.drag_divisor * of.drag_along;
+        if (laws_.steady) held.friction_n = friction(at.x, at.v, at.t);
+        most = std::max(most, std::abs(held.drag_n_s_m * by_inertia_));
+      }
+    }
+    reach_ = most > 0.0 ? SteadyFlow::kReach / most : std::numeric_limits<double>::infinity();
+  }
+
+  /// The motion from here on until the direction, the hand or the piece of the known force changes.
+  SteadyFlow flow_from(const PlaceAndSpeed& s, double t) const {
+    const Held& held = held_[pushed_][direction_ > 0];
+    const double change = m_.known != nullptr ? known_n_s_ * by_inertia_ : 0.0;
+    return {s, slide(s.x, s.v, t, 0.0), change, held.drag_n_s_m * by_inertia_};
+  }
+
   /// Sets the linear piece of the known force that holds from t on, and returns when that piece ends. Beyond its
   /// samples the force keeps its last value.
   double hold_force_at(double t, double stretch) {
@@ -207,7 +273,8 @@ class Mover {
 
   PlaceAndSpeed advance_smooth(PlaceAndSpeed s, double t, double t_end, bool pushed) {
     pushed_ = pushed && m_.effects[kPush] != 0.0;
-    const int parts = std::max(1, static_cast<int>(std::ceil((t_end - t) / step_ - 1e-9)));
+    const double longest = flows_ ? reach_ : step_;
+    const int parts = std::max(1, static_cast<int>(std::ceil((t_end - t) / longest - 1e-9)));
     const double h = (t_end - t) / parts;
     for (int i = 0; i < parts; ++i) s = advance_part(s, t + i * h, h);
     return s;
@@ -218,10 +285,28 @@ class Mover {
     double a_start = 0.0, wave_end = 0.0;
   };
 
-  Step rk4(const PlaceAndSpeed& s, double t, double h) {
+  /// An acceleration that was computed: the end of one step is the start of the next.
+  struct Known {
+    PlaceAndSpeed at;
+    double t = std::numeric_limits<double>::quiet_NaN(), a = 0.0;
+    int direction = 0;
+    bool pushed = false;
+  };
+
+  bool knows(const PlaceAndSpeed& s, double t) const {
+    return last_.t == t && last_.at.x == s.x && last_.at.v == s.v && last_.direction == direction_ &&
+           last_.pushed == pushed_ && m_.known == nullptr;
+  }
+
+  Step step_from(const PlaceAndSpeed& s, double t, double h) {
     ++work_;
+    return flows_ ? Step{flow_from(s, t).at(h)} : rk4(s, t, h);
+  }
+
+  Step rk4(const PlaceAndSpeed& s, double t, double h) {
     const std::array<double, 3> wave = shaken_ ? wave_.over(t, h) : std::array<double, 3>{};
-    const double a1 = slide(s.x, s.v, t, wave[0]);
+    const double a1 = knows(s, t) ? last_.a : slide(s.x, s.v, t, wave[0]);
+    last_ = {s, t, a1, direction_, pushed_};
     const double v2 = s.v + 0.5 * h * a1;
     const double a2 = slide(s.x + 0.5 * h * s.v, v2, t + 0.5 * h, wave[1]);
     const double v3 = s.v + 0.5 * h * a2;
@@ -236,13 +321,13 @@ class Mover {
   PlaceAndSpeed advance_part(PlaceAndSpeed s, double t, double h) {
     for (int turn = 0; turn < kMostTurns && h > 0.0; ++turn) {
       if (direction_ == 0 && !leave(s, t, h)) return s;
-      const PlaceAndSpeed next = rk4(s, t, h).end;
+      const PlaceAndSpeed next = step_from(s, t, h).end;
       if (next.v * direction_ >= 0.0 || !std::isfinite(next.v)) return next;
       // v = 0 on the way: first estimate of its time by regula falsi, then Newton steps.
       double at = h * std::abs(s.v) / (std::abs(s.v) + std::abs(next.v));
       PlaceAndSpeed stop = s;
       for (int i = 0; i < 6; ++i) {
-        const Step step = rk4(s, t, at);
+        const Step step = step_from(s, t, at);
         stop = step.end;
         const double a = slide(stop.x, stop.v, t + at, step.wave_end);
         const double change = a != 0.0 ? -stop.v / a : 0.0;
@@ -297,7 +382,10 @@ class Mover {
   double sin_, by_inertia_;
   bool shaken_;
   SineSteps wave_;
-  double step_ = kLongestStep;
+  std::array<std::array<Held, 2>, 2> held_;  // by whether the hand pushes, and by direction
+  Known last_;
+  bool flows_ = false;  // in closed form
+  double step_ = kLongestStep, reach_ = 0.0;
   std::size_t work_ = 0;
   int direction_ = 0;
   bool pushed_ = false;
@@ -325,8 +413,8 @@ Moved not_followed(std::size_t count) {
 
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s) {
   Moved moved;
-  moved.x_m.reserve(times_s.size());
-  moved.v_m_s.reserve(times_s.size());
+  moved.x_m.resize(times_s.size());
+  moved.v_m_s.resize(times_s.size());
   if (times_s.empty()) return moved;
   const GliderConstants glider = constants_of(model);
   const ActingLaws laws(model.effects, glider);
@@ -343,9 +431,9 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
     at[i] = stretch * times_s[i] + (late_s.empty() ? 0.0 : late_s[i]) + laws.row_s * rows;
     at[i] = std::max(at[i], i > 0 ? at[i - 1] : t);
   }
-  const auto add = [&](const PlaceAndSpeed& state) {
-    moved.x_m.push_back(seen(laws, glider, state.x, times_s[moved.x_m.size()]));
-    moved.v_m_s.push_back(state.v);
+  const auto put = [&](std::size_t i, const PlaceAndSpeed& state) {
+    moved.x_m[i] = state.x;
+    moved.v_m_s[i] = state.v;
   };
   const double most_steps = kMostSteps + kMostOfFrame * static_cast<double>(at.size());
   // A diverging fit asks for millions of steps; nothing that can be filmed is so stiff.
@@ -353,25 +441,35 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   const std::size_t positions = std::max(at.size(), kFewTimes);
   for (std::size_t i = 0; i < at.size();) {
     if (mover.work() > kMostWork * positions) return not_followed(at.size());
+    if (const std::size_t reached = mover.flow(s, t, std::span(at).subspan(i), &moved.x_m[i], &moved.v_m_s[i])) {
+      i += reached;
+      continue;
+    }
     // One step over several frames, if it reaches that far.
     std::size_t last = i;
     while (last + 1 < at.size() && at[last + 1] - t <= mover.longest_step()) ++last;
     if (last > i && at[last] > t) {
       if (const std::optional<Stride> stride = mover.stride(s, t, at[last])) {
-        for (; i < last; ++i) add(stride->at(at[i] - t));
+        for (; i < last; ++i) put(i, stride->at(at[i] - t));
         s = stride->to();
         t = at[last];
-        add(s);
-        ++i;
+        put(i++, s);
         continue;
       }
     }
     if (at[i] > t) s = mover.advance(s, t, at[i], stretch);
     t = at[i];
-    add(s);
-    ++i;
+    put(i++, s);
+  }
+  if (laws.seen.any()) {
+    for (std::size_t i = 0; i < at.size(); ++i) moved.x_m[i] = seen(laws, glider, moved.x_m[i], times_s[i]);
   }
   return moved;
+}
+
+bool shifts_as_a_whole(const TrackModel& model) {
+  const ActingLaws laws(model.effects, constants_of(model));
+  return laws.steady && model.unnamed == nullptr && !laws.seen.any();
 }
 
 OwnLaw own_law(const TrackModel& model) {

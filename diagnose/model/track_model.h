@@ -5,10 +5,13 @@
 /// sliding, changed by the laws of the effects that act (diagnose/effects/effect.h). At v = 0 the glider stays at rest
 /// as long as static friction, up to its limit in either direction, can hold it.
 ///
-/// The integrator is fourth-order Runge-Kutta, with equal steps within each frame interval or one step over several
-/// frames, and a quintic polynomial between (steps of at most 12.6 ms or an eighth of the frame interval; k h at most
-/// 0.3, omega h of a vibration at most 0.9). It stops exactly at v = 0 and at t_r, so that the motion is a smooth
-/// function of all parameters and its derivatives follow by finite differences. SI units.
+/// Where nothing acts that depends on place, time or the size of the speed other than the drag K v and the known force,
+/// the motion from turn to turn is a closed form (steady_flow.h).
+///
+/// Otherwise the integrator is fourth-order Runge-Kutta, with equal steps within each frame interval or one step over
+/// several frames, and a quintic polynomial between (steps of at most 12.6 ms or an eighth of the frame interval; k h
+/// at most 0.3, omega h of a vibration at most 0.9). It stops exactly at v = 0 and at t_r, so that the motion is a
+/// smooth function of all parameters and its derivatives follow by finite differences. SI units.
 #pragma once
 
 #include <array>
@@ -19,7 +22,9 @@
 #include <numbers>
 #include <span>
 #include <vector>
+
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/model/steady_flow.h"
 
 namespace glidelab::diagnose {
 
@@ -62,6 +67,9 @@ struct Moved {
 /// frames count as 100.
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
+/// Whether a shift of the start shifts all measured positions by as much: nothing that acts depends on place.
+bool shifts_as_a_whole(const TrackModel& model);
+
 /// K (N s/m) and mu of the configuration that the model belongs to: with the effects that give each configuration a
 /// drag or a friction of its own, and evaluated at the middle of the set-up's positions if the drag changes along the
 /// track.
@@ -73,11 +81,6 @@ OwnLaw own_law(const TrackModel& model);
 /// Building blocks of the track model's integrator: one step that spans several frames, and a sine wave at equally
 /// spaced instants without a call of sin for each. They are in a header because they are the innermost loop of all
 /// fits. SI units.
-///
-/// Position in m and speed in m/s.
-struct PlaceAndSpeed {
-  double x = 0.0, v = 0.0;
-};
 
 /// The quintic polynomial over one step, through position, speed and acceleration at both ends.
 class Stride {

@@ -35,7 +35,7 @@ EffectInfo configuration_drag() {
                       .each = Each::configuration,
                       .each_key = "k_n_s_m",
                       .held_sd = 0.5}},
-      .law = {.resistance = own_drag},
+      .law = {.resistance = own_drag, .steady = true},
       .shapes = nullptr,
       .lines = {.own = OwnOfLines::drag},
       .twin = EffectTwin::as_force(own_drag_twin),

@@ -35,7 +35,7 @@ EffectInfo configuration_friction() {
                       .each = Each::configuration,
                       .each_key = "mu",
                       .held_sd = 0.02}},
-      .law = {.friction = own_friction},
+      .law = {.friction = own_friction, .steady = true},
       .shapes = nullptr,
       .lines = {.own = OwnOfLines::mu},
       .twin = EffectTwin::as_force(own_friction_twin),

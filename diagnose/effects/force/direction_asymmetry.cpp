@@ -26,7 +26,7 @@ EffectInfo direction_asymmetry() {
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "d", .absent = 0.0, .low = -1.0, .high = 1.0, .step = 1e-5}},
-      .law = {.resistance = asymmetry_resistance},
+      .law = {.resistance = asymmetry_resistance, .steady = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::as_force(asymmetry_twin),

@@ -32,7 +32,7 @@ EffectInfo direction_dependent_drag() {
                       .high = 0.99,
                       .step = 1e-5,
                       .shown_as = ShownAs::itself_and_directions}},
-      .law = {.resistance = directed_resistance},
+      .law = {.resistance = directed_resistance, .steady = true},
       .shapes = nullptr,
       .lines = {.change = directed_lines, .key = "d", .largest = 0.5},
       .twin = EffectTwin::none("no drag in a scenario depends on the direction"),

@@ -28,7 +28,7 @@ EffectInfo friction_drift() {
       .odds = drifts,
       .log_odds_beside_remainder = 0.0,
       .parameters = {{.key = "r_1_clip", .absent = 0.0, .low = -1.0, .high = 1.0, .step = 1e-6}},
-      .law = {.friction = drifting_friction, .passing = true},
+      .law = {.friction = drifting_friction, .steady = true, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("in a scenario all clips of a configuration have the same forces"),

@@ -24,7 +24,7 @@ EffectInfo late_release() {
       .log_odds_beside_remainder = -3.2,
       .parameters = {{.key = "t_r_s", .absent = 0.0, .low = 1e-3, .high = 0.5, .step = 1e-4, .reach = Reach::release},
                      {.key = "push", .absent = 0.0, .low = -50.0, .high = 50.0, .step = 1e-5, .each = Each::motion}},
-      .law = {.size = 1, .force_n = release_force, .passing = true},
+      .law = {.size = 1, .force_n = release_force, .steady = true, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("no force in a scenario depends on time"),

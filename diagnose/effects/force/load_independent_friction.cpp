@@ -42,7 +42,7 @@ EffectInfo load_independent_friction() {
       .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "force_n", .absent = 0.0, .low = 0.0, .high = 1.0, .step = 1e-7, .reach = Reach::with_mass}},
-      .law = {.friction = fixed_friction},
+      .law = {.friction = fixed_friction, .steady = true},
       .shapes = nullptr,
       .lines = {.change = fixed_friction_lines, .key = "force_n", .largest = 1.0},
       .twin = EffectTwin::as_force(fixed_friction_twin),
