@@ -251,7 +251,7 @@ void check_folder(const fs::path& path) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (status.type() == fs::file_type::none) refuse(failure.message(), wanted);
-  if (!fs::exists(status)) refuse("nothing", wanted);
+  if (!fs::exists(status)) refuse("no file or folder of this name", wanted);
   if (path.filename() == "experiment.toml") {
     refuse("a file",
            fmt::format("the folder that it is in, {}", path.has_parent_path() ? path.parent_path().string() : "."));

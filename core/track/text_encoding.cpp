@@ -1,5 +1,6 @@
 #include "core/track/text_encoding.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace glidelab::core {
@@ -69,6 +70,13 @@ NoTable no_table_in(std::string_view bytes) {
   if (bytes.starts_with("\x93NUMPY")) return {"an array of numpy (.npy)", "text: numpy.savetxt writes it"};
   if (bytes.starts_with("MATLAB ") && bytes.substr(0, 40).find("MAT-file") != std::string_view::npos)
     return {"a file of MATLAB (.mat)", "text: writematrix writes it"};
+  // MP4 and QuickTime, AVI, Matroska and WebM.
+  const bool is_video = bytes.substr(0, 12).substr(std::min<std::size_t>(4, bytes.size())).starts_with("ftyp") ||
+                        (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("AVI ")) ||
+                        bytes.starts_with("\x1A\x45\xDF\xA3");
+  if (is_video) {
+    return {"a video", "a table of times and positions; a video goes into a folder, which glidelab new FOLDER makes"};
+  }
   constexpr std::string_view kBlank = " \t\r\n";
   const auto first = bytes.find_first_not_of(kBlank);
   if (first == std::string_view::npos || (bytes[first] != '{' && bytes[first] != '[')) return {};

@@ -220,6 +220,12 @@ std::string claim(const diagnose::DiagnosedEffect& effect) {
   if (effect.alike.empty()) {
     return fmt::format("{} ({}, {})", effect.words, effect.id, percent(effect.probability));
   }
+  // A member that has nearly all of it is the answer.
+  constexpr double kNearlyAll = 0.9;
+  if (effect.probability >= kNearlyAll * effect.joint_probability) {
+    return fmt::format("{} ({}, {}; {} together with what these data cannot distinguish from it)", effect.words,
+                       effect.id, percent(effect.probability), percent(effect.joint_probability));
+  }
   std::vector<std::string> members;
   for (const diagnose::AlikeEffect& one : effect.alike) {
     members.push_back(one.probability ? fmt::format("{} ({}, {})", one.words, one.id, percent(*one.probability))
@@ -357,6 +363,15 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
                "missing\" ({}) cannot be excluded at odds of 3 to 1, so no effect is claimed.",
                explanation_id(diagnosis.ranking.front().explanation), percent(diagnosis.ranking.front().probability),
                percent(diagnosis.none)) +
+           clip_gap_words(diagnosis);
+  }
+  constexpr double kRather = 0.5;  // the probability from which nothing is rather missing than something
+  if (diagnosis.verdict == diagnose::Verdict::none && diagnosis.none < kRather && !diagnosis.ranking.empty()) {
+    return fmt::format(
+               "The nominal model explains these data to within their noise. They cannot exclude other causes, each "
+               "less likely than that nothing is missing ({}); the likeliest is {} ({}).",
+               percent(diagnosis.none), explanation_id(diagnosis.ranking.front().explanation),
+               percent(diagnosis.ranking.front().probability)) +
            clip_gap_words(diagnosis);
   }
   if (diagnosis.verdict == diagnose::Verdict::none) {

@@ -312,7 +312,7 @@ TEST_CASE("no folder, another folder, a file in place of it: each is told with w
     return std::string();
   };
   const std::string wanted = "expected a folder with an experiment.toml (glidelab new";
-  CHECK(contains(message(folder.dir / "nowhere"), "nowhere: found nothing, " + wanted));
+  CHECK(contains(message(folder.dir / "nowhere"), "nowhere: found no file or folder of this name, " + wanted));
   CHECK(contains(message(folder.dir / "clips"), "clips: found a folder without experiment.toml, " + wanted));
   CHECK(contains(message(folder.dir / "clips/a.mkv"), "a.mkv: found a file, " + wanted));
   base::write_file(folder.dir / "experiment.toml", "");

@@ -173,6 +173,12 @@ TEST_CASE("bad tables give one clear error each") {
       {"frame,x (m)\n" + rows("{0},{1}\n"), "only frame numbers (\"frame\")"},
       {"t (s),x (m)\n0,0\n1,1\n2,2\n", "3 points"},
       {std::string("t\0 \0x\0", 6), "zero bytes"},
+      {std::string("\0\0\0\x20"
+                   "ftypisom\0\0\2\0",
+                   16),
+       "found a video"},
+      {std::string("RIFF\x10\0\0\0AVI LIST", 16), "found a video"},
+      {"\x1A\x45\xDF\xA3\x01", "found a video"},
   };
   for (const Row& row : bad) {
     INFO(row.message);

@@ -39,6 +39,11 @@ TEST_CASE("what is not ruled out is neither claimed nor called explained") {
   CHECK(contains(words, "\"nothing missing\" (30 %) cannot be excluded"));
   CHECK(contains(words, "late_release (46 %)"));
   CHECK_FALSE(contains(words, "nothing is missing"));
+  open.none = 0.35;
+  open.ranking.front().probability = 0.26;
+  const std::string rather = report::verdict_words(open);
+  CHECK(contains(rather, "cannot exclude other causes, each less likely than that nothing is missing (35 %)"));
+  CHECK(contains(rather, "the likeliest is late_release (26 %)"));
   open.none = 0.9;
   open.ranking.front().probability = 0.05;
   CHECK(contains(report::verdict_words(open), "nothing is missing"));
@@ -57,6 +62,12 @@ TEST_CASE("effects that look the same are named as one set, an effect that stand
       "The data show one of these three, 98 % together, and cannot tell which: an uneven friction "
       "(direction_asymmetry, 49 %), a wrong length scale (scale_error, 30 %), or a wrong frame rate "
       "(frame_rate_error)."));
+  // Of 83 %, 82 % leave no doubt which.
+  of.effects.front().probability = 0.82;
+  of.effects.front().joint_probability = 0.83;
+  CHECK(report::verdict_words(of).starts_with(
+      "The data show a wrong length scale (scale_error, 82 %; 83 % together with what these data cannot distinguish "
+      "from it)."));
 }
 
 TEST_CASE("a stated inclination that the motion contradicts is said first, with both angles") {
