@@ -211,7 +211,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   }
   if (!rises_mostly(t)) {
     throw base::InputError(
-        base::Issue{table.file, 0, fmt::format("column \"{}\"", t.text), "values that do not rise",
+        base::Issue{table.file, 0, fmt::format("column \"{}\"", t.text), "values that do not increase",
                     "times; a table without them, such as x and y alone, says nothing about a motion"});
   }
   std::vector<base::Issue> issues;

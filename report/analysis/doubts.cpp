@@ -57,14 +57,15 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
     }
   }
   if (line != nullptr) {
-    doubts.push_back(fmt::format("{}, v {} 0: the points lie {} times as far off their line as the noise explains.",
+    doubts.push_back(fmt::format("{}, v {} 0: the points lie {} times as far from their line as the noise explains.",
                                  farthest->name, line->direction > 0 ? ">" : "<",
                                  base::number_text(line->parts.scatter, 2)));
   }
   for (const core::ConfigurationResult& c : results.configurations) {
     if (!c.scatter || *c.scatter < kOffLine) continue;
-    doubts.push_back(fmt::format("{}: the positions lie {} times as far off the fitted motion as their noise explains.",
-                                 configuration_name(results, c), base::number_text(*c.scatter, 2)));
+    doubts.push_back(
+        fmt::format("{}: the positions lie {} times as far from the fitted motion as their noise explains.",
+                    configuration_name(results, c), base::number_text(*c.scatter, 2)));
   }
   if (!doubts.empty()) {
     doubts.push_back(

@@ -471,8 +471,8 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
   const std::string script =
       std::string(kFrame) + axes(acceleration_axis(all)) + "unset offsets\n" + window.script + detail.plot;
   plots.push_back({Drawing{script, detail.data},
-                   std::string("Near v = 0: the gap between the lines is twice the Coulomb friction") +
-                       (window.has_limit ? ", their crossing of a = 0 the terminal velocity" : ""),
+                   std::string("Near v = 0: the step between the lines is twice the Coulomb friction per unit mass") +
+                       (window.has_limit ? ", and the line for v > 0 crosses a = 0 at the terminal velocity" : ""),
                    "Detail of the phase diagram near v = 0"});
   plots.push_back(residual_plot(results, group, all));
   return plots;

@@ -51,13 +51,13 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::EvenStamps& of) const {
     return fmt::format(
-        "the container's time stamps are whole multiples of {:.4g} ms, and frames at an even distance of {:.6g} ms (to "
+        "the container's time stamps are whole multiples of {:.4g} ms, and frames evenly spaced by {:.6g} ms (to "
         "{:.0f} ppm) explain them all: those times are used",
         of.tick_s * 1e3, of.step_s * 1e3, std::ceil(of.half_width_s / of.step_s * 1e6));
   }
 
   std::string operator()(const core::SheetTaken& of) const {
-    return fmt::format("the table is that of sheet \"{}\"", of.sheet);
+    return fmt::format("the table is taken from sheet \"{}\"", of.sheet);
   }
   std::string operator()(const core::ColumnsTaken& of) const {
     return fmt::format("x is \"{}\", its time \"{}\"{}{}", of.x, of.t, of.run.empty() ? "" : ", ", of.run);
@@ -89,8 +89,8 @@ struct AnalysisSentence {
     return "x is counted along the motion, so its sign is reversed";
   }
   std::string operator()(const core::RowsIncomplete& of) const {
-    if (of.rows == 1) return "one row between others lacks a time or x and is left out";
-    return fmt::format("{} rows between others lack a time or x and are left out", of.rows);
+    if (of.rows == 1) return "one row within the table lacks a time or x and is left out";
+    return fmt::format("{} rows within the table lack a time or x and are left out", of.rows);
   }
   std::string operator()(const core::RoundedTimes& of) const {
     return fmt::format("the times are whole multiples of {:.2g} s and taken as even, {:.6g} s apart", of.tick_s,
@@ -140,7 +140,7 @@ struct AnalysisSentence {
 
   std::string operator()(const core::OutlyingView& of) const {
     return fmt::format("{} departs from the fitted camera by {:.3g} px and is {}", of.file, of.error_px,
-                       of.left_out ? "left out" : "kept all the same: fewer than three views would be left");
+                       of.left_out ? "left out" : "kept, because fewer than three views would be left");
   }
   std::string operator()(const core::NoPatternInSight& of) const {
     return fmt::format("no pattern is visible in {}", fmt::join(of.files, ", "));
@@ -193,7 +193,7 @@ struct AnalysisSentence {
       case What::own_look:
         break;
     }
-    return "the marker is neither a disc nor a sphere; it is followed by what it looks like in the other frames, and "
+    return "the marker is neither a disc nor a sphere; it is tracked by its appearance in the other frames, and "
            "the origin of x may be off by a fraction of its diameter";
   }
   std::string operator()(const core::MarkerOfOtherSize& of) const {
@@ -208,7 +208,7 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::PixelsAnswerLeft& of) const {
     return fmt::format(
-        "in {} of {} frames the marker's place is not corrected for the response of the camera's pixels to an edge: "
+        "in {} of {} frames the marker's position is not corrected for the response of the camera's pixels to an edge: "
         "the "
         "clip is too long for so large a marker, or the fit with that response fails",
         of.kept, of.sightings);

@@ -74,8 +74,8 @@ std::string bias_words(const Certificate& certificate) {
     if (worst == nullptr || std::abs(quantity.bias_sds.value) > std::abs(worst->bias_sds.value)) worst = &quantity;
   }
   if (!any) return {};
-  if (worst == nullptr) return "none of them is off on average by more than chance";
-  return fmt::format("{} is off by {:.1f} of its standard deviation on average", symbol_of(worst->quantity),
+  if (worst == nullptr) return "none of them is biased by more than chance";
+  return fmt::format("{} is off by {:.1f} standard deviations on average", symbol_of(worst->quantity),
                      std::abs(worst->bias_sds.value));
 }
 
@@ -129,7 +129,7 @@ std::string limits_words(const Certificate& certificate) {
   for (const ChangedTwin& change : certificate.changes) {
     if (change.stands_out) names += (names.empty() ? "" : ", ") + limit_words(change).limit;
   }
-  return names.empty() ? kNothingStandsOut : fmt::format("What limits it, most first: {}.", names);
+  return names.empty() ? kNothingStandsOut : fmt::format("What limits it, the largest first: {}.", names);
 }
 
 std::string micrometres(double length_m) {

@@ -61,13 +61,13 @@ LimitWords limit_words(const validate::ChangedTwin& changed) {
       return {"calibration", "the camera known without error",
               "Take more calibration images, tilted more and filling the image"};
     case TwinLimit::codec:
-      return {"codec", "no loss by compression", "Compress less: a higher bit rate or quality, or a lossless codec"};
+      return {"codec", "no compression loss", "Compress less: a higher bit rate or quality, or a lossless codec"};
     case TwinLimit::rounding:
       return {"rounding", "positions with all their digits", "Export more digits"};
     case TwinLimit::cause:
       return {"a cause beside the law", "the viscous and the Coulomb friction alone", cause_advice(changed.causes)};
     case TwinLimit::clip_scatter:
-      return {"what differs from clip to clip", "every clip by one law",
+      return {"what differs from clip to clip", "one law for every clip",
               "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"};
     case TwinLimit::few_clips:
       return {"few clips", "every clip recorded twice", "Record a second clip of each kind"};

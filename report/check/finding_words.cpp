@@ -198,15 +198,15 @@ struct FindingSentence {
     const std::string mass = of.mass_kg ? fmt::format("mass is taken as {:.6g} kg", *of.mass_kg) : "";
     if (!of.incline_deg) {
       return {"a single file: its " + mass,
-              "--mass states another; where no force is recorded, K/m, µ and α do not depend on it"};
+              "use --mass to state another; where no force is recorded, K/m, µ and α do not depend on it"};
     }
     const std::string angle = fmt::format("{:.4g}°", *of.incline_deg);
     if (!of.mass_kg) {
       return {"a single file: its inclination is taken as " + angle,
-              "--incline states another; where no force is recorded, K/m, µ and α do not depend on it"};
+              "use --incline to state another; where no force is recorded, K/m, µ and α do not depend on it"};
     }
     return {fmt::format("a single file: its {} and its inclination as {}", mass, angle),
-            "--mass and --incline state others; where no force is recorded, K/m, µ and α do not depend on them"};
+            "use --mass and --incline to state others; where no force is recorded, K/m, µ and α do not depend on them"};
   }
   FindingWords operator()(const found::NoPlumbAngle& of) const { return {of.failure, ""}; }
 

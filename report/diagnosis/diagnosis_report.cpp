@@ -68,7 +68,7 @@ std::string effect_table(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string ranking_table(const diagnose::Diagnosis& diagnosis) {
-  HtmlTable table({"explanation", "probability", "ln evidence over the nominal model", "over the likeliest here"});
+  HtmlTable table({"explanation", "probability", "log evidence over the nominal model", "over the likeliest here"});
   double likeliest = 0.0;  // huge gains that print alike are distinguished by their distance below the largest
   for (const auto& ranked : diagnosis.ranking) {
     if (!ranked.left_out) likeliest = std::max(likeliest, ranked.log_evidence_gain);

@@ -93,7 +93,7 @@ void read_camera(const std::optional<TomlTable>& found, Scenario& scenario) {
     read_lens(table, camera.lens);
     if (!(pose.position.z() > 0.05)) {
       table.reject("position_m", fmt::format("z = {}", pose.position.z()),
-                   "a camera before the plane of motion, z above 0.05");
+                   "a camera in front of the plane of motion, z above 0.05");
     } else if (!(pose.target.z() < pose.position.z() - 0.05)) {
       table.reject("target_m", fmt::format("z = {}", pose.target.z()),
                    "a point that is farther from the camera's side");

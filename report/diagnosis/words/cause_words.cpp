@@ -102,7 +102,7 @@ std::string causes_words(const diagnose::Diagnosis& diagnosis, bool gap_named = 
 std::string traces_words(const diagnose::Diagnosis& diagnosis) {
   const std::vector<std::string> names = effect_names(diagnosis.traces);
   if (names.empty()) return {};
-  return fmt::format("Also detected, with no effect on K/m, µ and α: {}.", list_of(names));
+  return fmt::format("Also detected, with no effect on K/m, µ or α: {}.", list_of(names));
 }
 
 std::string unknown_sequence_words(const diagnose::Diagnosis& diagnosis) {

@@ -15,7 +15,7 @@ namespace image = diagnose::image;
 /// A sentence for every kind; a kind without one does not compile.
 struct ImageSentence {
   std::string operator()(const image::Smear& of) const {
-    return fmt::format("The marker is smeared as by an exposure of {} ms; {}.",
+    return fmt::format("The marker is smeared as if by an exposure of {} ms; {}.",
                        base::value_and_sd_text(1e3 * of.exposure_s, 1e3 * of.sd_s),
                        of.stated_s ? fmt::format("{:.3g} ms is stated", 1e3 * *of.stated_s) : "none is stated");
   }
@@ -69,7 +69,7 @@ struct ImageSentence {
             : fmt::format("{:.1f} % {}", 100.0 * std::abs(of.block_steps), of.block_steps < 0.0 ? "smaller" : "larger"),
         times ? "as" : "than");
     if (of.noise_memory) {
-      text += fmt::format(" Noise lasts over frames (changes over two frames are {:.2f} times those over one).",
+      text += fmt::format(" Noise persists over frames (changes over two frames are {:.2f} times those over one).",
                           *of.noise_memory);
     }
     return text;

@@ -88,7 +88,7 @@ std::string change_words(const Change& change) {
     case ChangeKind::exposure:
       return fmt::format("{}{} with {} with half the exposure (it halves the blur)", launch, on, mass);
     case ChangeKind::plumb:
-      return fmt::format("Film a plumb line{} (it states the inclination to {:.2g}°)", on,
+      return fmt::format("Film a plumb line{} (it gives the inclination to {:.2g}°)", on,
                          change.statements.front().sd / base::kRadPerDegree);
     case ChangeKind::pattern:
       return fmt::format(

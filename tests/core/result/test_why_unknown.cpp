@@ -35,7 +35,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::NotToldApart{}, "do not separate it"},
       {unknown::ExplanationsDiffer{}, "differ too much"},
       {unknown::FreeFall{}, "no normal force"},
-      {unknown::NoBalance{}, "no speed downhill"},
+      {unknown::NoBalance{}, "not balance at any downhill speed"},
       {unknown::DragNotViscous{}, "square of the speed"},
       {unknown::KernelNotStated{}, "neither how wide the kernel was"}};
   std::vector<bool> seen(std::variant_size_v<AnyReason>, false);

@@ -366,7 +366,7 @@ TEST_CASE("a table without times says so once") {
     FAIL("read");
   } catch (const base::InputError& error) {
     CHECK(error.issues().size() == 1);
-    CHECK_THAT(error.what(), Contains("values that do not rise"));
+    CHECK_THAT(error.what(), Contains("values that do not increase"));
   }
 }
 

@@ -132,7 +132,7 @@ TEST_CASE("What makes no sense is refused by its key, with the line") {
       {"[camera]\nfocal_px = [-1200.0, 1200.0]\n", "camera.focal_px", "from 1"},
       {"[camera]\nwidth_px = 10\n", "camera.width_px", "whole number"},
       {"[camera]\nwidth_px = 8192\nheight_px = 8192\n", "camera.height_px", "8192 with width_px = 8192, 67.1 million"},
-      {"[camera]\nposition_m = [0.0, 0.0, -2.0]\n", "camera.position_m", "before the plane"},
+      {"[camera]\nposition_m = [0.0, 0.0, -2.0]\n", "camera.position_m", "in front of the plane"},
       {"[camera]\nposition_m = [0.0, 0.0, 2.0]\ntarget_m = [0.0, 1.0, 2.0]\n", "camera.target_m", "farther"},
       {"[camera]\ndistortion = { k1 = -3.0 }\n", "camera", "folds"},
       {"[camera]\ndistortion = { k4 = 0.1 }\n", "camera.distortion.k4", "unknown key"},

@@ -84,7 +84,7 @@ TEST_CASE("points far off their line are told with the clip and the next step, o
   core::AnalysisResults results = one_clip();
   results.clips[0].segments[1].parts.degrees = 7.0;
   results.clips[0].segments[1].parts.scatter = 38.4;
-  CHECK(any_has(report::doubts_about(results), "up, v > 0: the points lie 38 times as far off their line"));
+  CHECK(any_has(report::doubts_about(results), "up, v > 0: the points lie 38 times as far from their line"));
   CHECK(any_has(report::doubts_about(results), "Next: glidelab check"));
   CHECK(report::analysis_text(results).find("38 times") != std::string::npos);
   CHECK(report::meaning_of(results).find("v &gt; 0: the points lie 38 times") != std::string::npos);
@@ -119,7 +119,7 @@ TEST_CASE("where the law does not fit, ± are marked as holding only if it did, 
   results.configurations[0].scatter = 1.4;  // of the fit of the whole motion; a wrong idea of the noise makes as much
   CHECK(report::doubts_about(results).empty());
   results.configurations[0].scatter = 6.2;
-  CHECK(any_has(report::doubts_about(results), "the positions lie 6.2 times as far off the fitted motion"));
+  CHECK(any_has(report::doubts_about(results), "the positions lie 6.2 times as far from the fitted motion"));
   CHECK(report::analysis_text(results).find("K/m (1/s) *") != std::string::npos);
   CHECK(report::analysis_text(results).find(held) != std::string::npos);
   const std::string page = report::analysis_report("fails", results, {}).html;

@@ -51,10 +51,10 @@ TEST_CASE(
         "deviation on average.");
   CHECK(report::certificate_text(made).starts_with(report::certificate_answer(made) + "\n"));
   made.quantities[0].bias_sds = {1.2, 0.4};  // larger, and as sure
-  CHECK(report::certificate_answer(made).ends_with("; K/m is off by 1.2 of its standard deviation on average."));
+  CHECK(report::certificate_answer(made).ends_with("; K/m is off by 1.2 standard deviations on average."));
   made.quantities[0].bias_sds = {0.1, 0.1};
   made.quantities[1].bias_sds.value = 0.1;
-  CHECK(report::certificate_answer(made).ends_with("none of them is off on average by more than chance."));
+  CHECK(report::certificate_answer(made).ends_with("none of them is biased by more than chance."));
 }
 
 TEST_CASE("a certificate of intervals that do not hold begins with do not trust and names them") {
@@ -88,7 +88,7 @@ TEST_CASE("only changes that stand out are given as advice, three at most, and n
   CHECK(report::best_changes(made).front() ==
         "Use more light, or a wider aperture: four times the light halves the noise. With half the noise of each "
         "pixel, K/m, µ err 42 % (30 to 50 %) less.");
-  CHECK(report::certificate_text(made).find("What limits it, most first: noise.") != std::string::npos);
+  CHECK(report::certificate_text(made).find("What limits it, the largest first: noise.") != std::string::npos);
   made.changes.front().limit = TwinLimit::cause;
   made.changes.front().causes = {"quadratic_drag"};
   made.changes.back().together = validate::RunFall{-0.002, -0.1, 0.1};
@@ -148,12 +148,12 @@ TEST_CASE("every limitation of a recording has a name, what its twins have inste
        "Measure the scale better (a longer ruler, in the plane of motion), or use a pattern"},
       {TwinLimit::calibration, "calibration", "the camera known without error",
        "Take more calibration images, tilted more and filling the image"},
-      {TwinLimit::codec, "codec", "no loss by compression",
+      {TwinLimit::codec, "codec", "no compression loss",
        "Compress less: a higher bit rate or quality, or a lossless codec"},
       {TwinLimit::rounding, "rounding", "positions with all their digits", "Export more digits"},
       {TwinLimit::cause, "a cause beside the law", "the viscous and the Coulomb friction alone",
        "Remove the cause from the experiment"},
-      {TwinLimit::clip_scatter, "what differs from clip to clip", "every clip by one law",
+      {TwinLimit::clip_scatter, "what differs from clip to clip", "one law for every clip",
        "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"},
       {TwinLimit::few_clips, "few clips", "every clip recorded twice", "Record a second clip of each kind"}};
   CHECK(rows.size() == static_cast<std::size_t>(TwinLimit::few_clips) + 1);

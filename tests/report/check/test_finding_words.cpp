@@ -88,9 +88,9 @@ TEST_CASE("every kind of finding of a check has words, with its data in the unit
       {found::FramesRepeated{20, 264, 1}, "stands still for a frame once in mid-motion, and 20 of 264",
        "adds no frames"},
       {found::AssumedForFile{1.0, 0.0}, "its mass is taken as 1 kg and its inclination as 0°",
-       "--mass and --incline state others"},
-      {found::AssumedForFile{1.0, {}}, "its mass is taken as 1 kg", "--mass states another"},
-      {found::AssumedForFile{{}, 0.0}, "its inclination is taken as 0°", "--incline states another"},
+       "use --mass and --incline to state others"},
+      {found::AssumedForFile{1.0, {}}, "its mass is taken as 1 kg", "use --mass to state another"},
+      {found::AssumedForFile{{}, 0.0}, "its inclination is taken as 0°", "use --incline to state another"},
       {found::NoPlumbAngle{"no line"}, "no line", ""},
       {found::MassesApart{{{"b", 221.0}}, {"a", 0.318}, 100.0},
        "mass_kg of b (221) is 100 or more times that of a "

@@ -45,7 +45,7 @@ TEST_CASE("the screen has both columns, the size of the effect, and what it does
   CHECK(has(text, "2.7463 ± 0.0060"));  // 0.92/0.335, with the effect
   CHECK(has(text, "2.7345 to 2.7580"));
   CHECK(has(text,
-            "0.335 kg, 4°: no terminal velocity with the effect: the forces balance at no speed downhill below "
+            "0.335 kg, 4°: no terminal velocity with the effect: the forces do not balance at any downhill speed below "
             "100 m/s"));
   CHECK(has(text, "0.435 kg, 4°: no K/m with the effect: its clips hold too little free motion"));
   CHECK_FALSE(has(text, "the law alone *"));

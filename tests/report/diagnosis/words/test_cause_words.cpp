@@ -106,12 +106,12 @@ TEST_CASE("causes that look alike, and effects that have no share, are told behi
 TEST_CASE("traces are no part of the verdict: nothing that matters is missing, whatever is likeliest") {
   const diagnose::Diagnosis of = tests::traces_alone();
   CHECK(report::sequence_words(of) ==
-        "Nothing that matters is missing. Also detected, with no effect on K/m, µ and α: uneven frame times.");
+        "Nothing that matters is missing. Also detected, with no effect on K/m, µ or α: uneven frame times.");
   CHECK(report::verdict_words(of).starts_with("Nothing that matters is missing."));
   CHECK_FALSE(says(report::verdict_words(of), "It is uncertain"));
   diagnose::Diagnosis one = of;
   one.traces = {"rolling_shutter"};
-  CHECK(says(report::sequence_words(one), "with no effect on K/m, µ and α: rolling shutter."));
+  CHECK(says(report::sequence_words(one), "with no effect on K/m, µ or α: rolling shutter."));
   one.traces.clear();
   CHECK(report::sequence_words(one).empty());
 }
@@ -227,7 +227,7 @@ TEST_CASE("a terminal has the answer, the causes, what is left, the quantities a
   std::size_t at = 0;
   for (const char* part : {"\nverdict: effect\n", "\nquadratic_drag      91 % (86 to 95 %)       1.85\n", "\nleft ",
                            "random acceleration", "It is clearest at times", "in the model:\n", "\n0.335 kg, 4°",
-                           "\nnext: Repeat", "ln evidence", "\ngap of held-out clips: 5.300 before"}) {
+                           "\nnext: Repeat", "log evidence", "\ngap of held-out clips: 5.300 before"}) {
     INFO(part << "\n" << text);
     const std::size_t found = text.find(part, at);
     REQUIRE(found != std::string::npos);

@@ -15,7 +15,7 @@ namespace image = diagnose::image;
 TEST_CASE("whatever images show of an effect has words, with its data in the units that people read") {
   using How = image::Sway::How;
   const std::vector<std::pair<diagnose::ImageFact, std::string>> rows = {
-      {image::Smear{0.0041, 0.0002, 0.001}, "smeared as by an exposure of 4.10 ± 0.20 ms; 1 ms is stated."},
+      {image::Smear{0.0041, 0.0002, 0.001}, "smeared as if by an exposure of 4.10 ± 0.20 ms; 1 ms is stated."},
       {image::Smear{0.0041, 0.0002, {}}, "4.10 ± 0.20 ms; none is stated."},
       {image::Shear{30e-6, 2e-6, 0.0}, "30.0 ± 2.0 µs from row to row; 0 µs (a global shutter) is stated."},
       {image::Shear{30e-6, 2e-6, 12e-6}, "from row to row; 12 µs is stated."},
@@ -36,7 +36,7 @@ TEST_CASE("whatever images show of an effect has words, with its data in the uni
       {image::Compression{false, "FFV1", -0.01, {}}, "without loss (FFV1); steps between pixels are 1.0 % smaller"},
       {image::Compression{{}, "", 3.0, 1.5},
        "The file's compression is not known; steps between pixels are 4 times as large at the edges of 8 × 8 blocks as "
-       "elsewhere. Noise lasts over frames (changes over two frames are 1.50 times those over one)."},
+       "elsewhere. Noise persists over frames (changes over two frames are 1.50 times those over one)."},
       {image::FrameTimes{3, 2}, "3 frames repeat the image before, and the time stamps leave a gap for 2."},
   };
   std::set<std::size_t> kinds;

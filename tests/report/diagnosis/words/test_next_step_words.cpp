@@ -56,7 +56,7 @@ TEST_CASE("a change is an order with its numbers in units that people use") {
   statement.rate_so_far_hz = 100.0;
   statement.kind = ChangeKind::plumb;
   statement.statements = {{diagnose::NextStatement::Of::inclination, 0, 0.0, 0.0, 0.05 * 0.017453292519943295}};
-  CHECK(contains(words_for(statement), "Film a plumb line (it states the inclination to 0.05°)"));
+  CHECK(contains(words_for(statement), "Film a plumb line (it gives the inclination to 0.05°)"));
   statement.kind = ChangeKind::pattern;
   statement.statements = {{diagnose::NextStatement::Of::length, 0, -0.6, 0.0, 5e-4}};
   CHECK(contains(words_for(statement), "(0.5 mm in 0.6 m)"));
