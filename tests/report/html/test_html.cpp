@@ -153,7 +153,7 @@ TEST_CASE("the detail near v = 0 promises the terminal velocity only where it sh
       down.a0_m_s2.value = down.k_over_m_1_s.value * v_lim_m_s;
     }
     const std::string page = report::analysis_report("detail", results, {}).html;
-    REQUIRE(page.find("Near v = 0: the gap between the lines") != std::string::npos);
+    REQUIRE(page.find("Near v = 0: the step between the lines") != std::string::npos);
     CHECK((page.find("and the line for v > 0 crosses a = 0 at the terminal velocity") != std::string::npos) ==
           (v_lim_m_s < 0.18));
   }
