@@ -7,7 +7,7 @@
 ///     sum_l S_(k+l) c_l = M_k,   S_k = sum_d w_d s_d^k (k = 0 … 6),   M_k = sum_d w_d s_d^k y_(i+d) (k = 0 … 3),
 ///
 /// with d = -before … after. All S_k come from one table of sums over d = 1 … m, so that a point costs its four M_k and
-/// a symmetric system of four. The condition of the S_(k+l), scaled to a diagonal of 1, is below 1100 for a Gaussian of
+/// a symmetric system of four. The condition of the S_(k+l), scaled to a diagonal of 1, is below 1200 for a Gaussian of
 /// one step or more that is cut off on one side at its middle; the sums lose three digits there.
 #pragma once
 

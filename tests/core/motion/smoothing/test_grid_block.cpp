@@ -55,7 +55,7 @@ double sum_of_magnitudes(const std::vector<double>& weights) {
   return sum;
 }
 
-/// The sums lose three digits of 16 (condition below 1100) and add up a hundred terms that are rounded at random
+/// The sums lose three digits of 16 (condition below 1200) and add up a hundred terms that are rounded at random
 /// (another digit); x reaches 1.5 from the origin. 1e-11 of the weights' magnitudes leaves less than a digit.
 void check_all_points(const std::vector<double>& t, const PolynomialOptions& how) {
   const std::vector<double> x = positions(t.size());
