@@ -33,6 +33,7 @@ inline double median_of(std::vector<double> values) {
 /// The median step between rising times; 0 for fewer than two.
 inline double median_step(std::span<const double> t_s) {
   std::vector<double> steps;
+  steps.reserve(t_s.size());
   for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);
   return quantile(std::move(steps), 0.5);
 }

@@ -8,12 +8,14 @@
 
 #include "core/math/least_squares.h"
 #include "core/math/quantile.h"
+#include "core/motion/smoothing/grid_block.h"
 
 namespace glidelab::core {
 namespace {
 
 constexpr double kUniform = 1e-9;  // steps that differ by less than this fraction count as equal
 constexpr std::size_t kMostPolynomials = 6;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool has_tails(Kernel kernel) {
   return kernel == Kernel::gaussian || kernel == Kernel::bimodal;
@@ -101,6 +103,12 @@ LocalPolynomial::LocalPolynomial(std::span<const double> t_s, PolynomialOptions 
   for (std::size_t i = 0; i < kernel_.size(); ++i) {
     kernel_[i] = kernel_value(options_.kernel, static_cast<double>(i) * step / bandwidth);
   }
+  // All weights are above 0 but those in the middle and at the edge, where a kernel may vanish.
+  const auto some = std::span(kernel_).subspan(1, std::max<std::size_t>(kernel_.size(), 2) - 2);
+  if (options_.order == 3 && half >= 6 && std::ranges::all_of(some, [](double k) { return k > 0.0; })) {
+    steps_within_ = half;
+    step_s_ = step;
+  }
   if (half < 2 || longest < 2 * half) return;
   std::vector<double> u(2 * half + 1), kernel(2 * half + 1);
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -151,51 +159,83 @@ std::optional<KernelRow> LocalPolynomial::row_of_point(std::size_t j) const {
   return general_row(t_s_[j], j);
 }
 
+/// Whether the window has even steps wherever the series goes on, so that the table of the kernel holds all its
+/// weights; and enough points with a weight, for of eight at most three have none: the middle one and the outermost.
+bool LocalPolynomial::cut_off(std::size_t j) const {
+  if (steps_within_ == 0 || interior(j)) return false;
+  const std::size_t first = j - std::min(j, steps_within_), last = std::min(j + steps_within_, t_s_.size() - 1);
+  return last - first >= 7 && run_[last] >= last - first;
+}
+
 void LocalPolynomial::filter(std::span<const double> values, std::size_t from, std::size_t to,
                              std::vector<std::optional<SmoothedPoint>>& out) const {
-  constexpr std::size_t kBlock = 512;  // outputs at a time: the three sums stay in the cache while the taps are applied
-  std::array<double, kBlock> x{}, v{}, a{};
   const bool has_a = !filter_->a.empty();
-  const double* const wx = filter_->x.data() + half_;
-  const double* const wv = filter_->v.data() + half_;
-  const double* const wa = has_a ? filter_->a.data() + half_ : wx;
-  for (std::size_t start = from; start < to; start += kBlock) {
-    const std::size_t count = std::min(kBlock, to - start);
-    const double* const centre = values.data() + start;
+  const auto from_middle = [&](const std::vector<double>& of) { return std::span(of).subspan(half_); };
+  const GridFilter weights{from_middle(filter_->x), from_middle(filter_->v),
+                           from_middle(has_a ? filter_->a : filter_->x)};
+  const auto put = [&](std::size_t start, std::size_t count, const double* middle) {
+    const GridBlock block = filter_block(weights, middle);
     for (std::size_t i = 0; i < count; ++i) {
-      x[i] = wx[0] * centre[i];
-      v[i] = 0.0;
-      a[i] = wa[0] * centre[i];
+      out[start + i] = SmoothedPoint{block.x[i], block.v[i], has_a ? block.a[i] : kNone};
     }
-    for (std::size_t k = 1; k <= half_; ++k) {  // x and a are even in the lag, v is odd
-      const double* const right = centre + k;
-      const double* const left = centre - k;
-      const double cx = wx[k], cv = wv[k], ca = wa[k];
-      for (std::size_t i = 0; i < count; ++i) {
-        const double sum = right[i] + left[i];
-        x[i] += cx * sum;
-        v[i] += cv * (right[i] - left[i]);
-        a[i] += ca * sum;
+  };
+  std::size_t start = from;
+  for (; start + kGridLanes <= to; start += kGridLanes) put(start, kGridLanes, values.data() + start);
+  if (start == to) return;
+  std::vector<double> last(2 * half_ + kGridLanes, 0.0);  // fewer than eight: no value after them is read
+  std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(start - half_), to - start + 2 * half_, last.begin());
+  put(start, to - start, last.data() + half_);
+}
+
+void LocalPolynomial::fit_end(const GridEnds& ends, std::span<const double> values, std::size_t from, std::size_t to,
+                              std::vector<std::optional<SmoothedPoint>>& out) const {
+  const std::size_t lags = ends.lags(), n = t_s_.size();
+  const double origin = values[from];  // relative to it, so that a distant origin costs no digits
+  // From `lags` before the first point to `lags` after the last of eight; 0 where the series does not go.
+  const std::size_t blocks = (to - from + kGridLanes - 1) / kGridLanes;
+  std::vector<double> padded(2 * lags + blocks * kGridLanes, 0.0);
+  for (std::size_t i = from - std::min(from, lags); i < std::min(to + lags, n); ++i) {
+    padded[i + lags - from] = values[i] - origin;
+  }
+  for (std::size_t start = from; start < to; start += kGridLanes) {
+    std::array<std::size_t, kGridLanes> before{}, after{};
+    const std::size_t count = std::min(kGridLanes, to - start);
+    for (std::size_t i = 0; i < kGridLanes; ++i) {
+      const std::size_t j = start + std::min(i, count - 1);
+      before[i] = std::min(j, lags);
+      after[i] = std::min(n - 1 - j, lags);
+    }
+    const GridBlock block = ends.solve(padded.data() + (start - from) + lags, before, after);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (block.determined[i]) {
+        out[start + i] = SmoothedPoint{block.x[i] + origin, block.v[i], block.a[i]};
+      } else if (const auto row = general_row(t_s_[start + i], start + i)) {
+        out[start + i] = weighted_sums(*row, values);
       }
     }
-    if (!has_a) a.fill(std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < count; ++i) out[start + i] = SmoothedPoint{x[i], v[i], a[i]};
   }
 }
 
 std::vector<std::optional<SmoothedPoint>> LocalPolynomial::smooth(std::span<const double> values) const {
   assert(values.size() == t_s_.size());
   std::vector<std::optional<SmoothedPoint>> out(t_s_.size());
+  const auto end_of = [&](std::size_t j, bool (LocalPolynomial::*alike)(std::size_t) const) {
+    while (j < t_s_.size() && (this->*alike)(j)) ++j;
+    return j;
+  };
+  std::optional<GridEnds> ends;
   for (std::size_t j = 0; j < t_s_.size();) {
-    if (interior(j)) {
-      std::size_t to = j + 1;
-      while (to < t_s_.size() && interior(to)) ++to;
+    if (const std::size_t to = end_of(j, &LocalPolynomial::interior); to > j) {
       filter(values, j, to, out);
       j = to;
-      continue;
+    } else if (const std::size_t end = end_of(j, &LocalPolynomial::cut_off); end > j) {
+      if (!ends) ends.emplace(kernel_, step_s_ / options_.bandwidth_s, options_.bandwidth_s);
+      fit_end(*ends, values, j, end, out);
+      j = end;
+    } else {
+      if (const auto row = general_row(t_s_[j], j)) out[j] = weighted_sums(*row, values);
+      ++j;
     }
-    if (const auto row = general_row(t_s_[j], j)) out[j] = weighted_sums(*row, values);
-    ++j;
   }
   return out;
 }

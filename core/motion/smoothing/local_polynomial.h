@@ -16,7 +16,8 @@
 ///     b_d = sum_k p_k^(d)(0) sum_i K_i p_k(u_i) x_i / sum_i K_i p_k(u_i)^2,
 ///
 /// which needs no matrix and loses no digits at an end, where powers of u are nearly equal. If many points of uniform
-/// step and weight are smoothed, the weights are one filter, applied as such.
+/// step and weight are smoothed, the weights are one filter, applied as such, and a cubic at an end comes from moments
+/// of its window (grid_block.h), the same to rounding.
 ///
 /// Covariances are exact for noise of a given autocovariance, white or not, times a factor for each point. Asymptotic
 /// variance and bias: docs/guide/bandwidth.md; Fan and Gijbels 1996, section 3.2.
@@ -34,6 +35,8 @@
 #include <vector>
 
 namespace glidelab::core {
+
+class GridEnds;
 
 /// Bandwidths at which the Gaussian kernel is cut off.
 inline constexpr double kKernelReach = 6.0;
@@ -89,8 +92,11 @@ class LocalPolynomial {
  private:
   std::optional<KernelRow> general_row(double at_s, std::optional<std::size_t> point = {}) const;
   bool interior(std::size_t j) const;
+  bool cut_off(std::size_t j) const;
   void filter(std::span<const double> values, std::size_t from, std::size_t to,
               std::vector<std::optional<SmoothedPoint>>& out) const;
+  void fit_end(const GridEnds& ends, std::span<const double> values, std::size_t from, std::size_t to,
+               std::vector<std::optional<SmoothedPoint>>& out) const;
 
   std::vector<double> t_s_;
   PolynomialOptions options_;
@@ -99,6 +105,8 @@ class LocalPolynomial {
   std::vector<std::size_t> run_;                 // run_[j]: number of consecutive points before j at the uniform step
   std::vector<double> kernel_;                   // at whole uniform steps, if there are any
   std::shared_ptr<const KernelWeights> filter_;  // weights of 2 half_ + 1 points
+  double step_s_ = 0.0;                          // the uniform step, where a cubic comes from moments
+  std::size_t steps_within_ = 0;                 // steps within reach; 0 where it does not
 };
 
 /// The sums of a row over `values`, given at all points.
