@@ -14,6 +14,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr int kMostIterations = 40;
+constexpr double kRounding = 1e-10;        // of chi²: a sum of thousands of squares of differences of positions
 constexpr double kConvergedChange = 1e-3;  // change of chi², small compared with the changes that evidence rests on
 // A combination of parameters that the data hardly determine (a frame rate beside K, mu and the inclination) lies along
 // a curved valley with steep walls. A step along it ends far up a wall, from where undamped steps lead back down. The
@@ -289,6 +290,8 @@ MotionFit descended(const TrackSet& set, const std::vector<std::size_t>& effects
     here.has_derivatives = true;
     const double cost = here.fit.cost;
     MotionFit next = moved_to(set, here.fit, step_from(here.fit, damping));
+    // At the minimum a step changes the cost by rounding alone, of either sign: that is no refusal.
+    if (next.cost > cost && next.cost - cost <= kRounding * cost) next.cost = cost;
     if (!(next.cost <= cost) && vain_returns < kMostVainReturns) {
       for (int back = 0; back < kMostStepsBack && std::isfinite(next.cost) && !(next.cost <= cost); ++back) {
         derive_all(set, next, Derivatives::forward);
