@@ -38,8 +38,7 @@ struct ReasonWords {
     const bool plus = of.direction > 0;
     return fmt::format(
         "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not alpha and "
-        "mu "
-        "separately",
+        "mu separately",
         plus ? ">" : "<", plus ? "-" : "+", of.a0_m_s2, of.sd_m_s2);
   }
   std::string operator()(const unknown::NoDownhillMotion&) const { return "no motion with v > 0"; }

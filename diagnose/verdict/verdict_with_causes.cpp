@@ -331,7 +331,7 @@ Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence image
     }
   }
   const MotionFit& fit = fit_of(best);
-  const bool in_images = found != nullptr && shows_in_images(*found);
+  const bool in_images = names ? shows_in_images(best) : found != nullptr && shows_in_images(*found);
   // Scatter has no fit of its own: the verdict on it is by the noise alone.
   const bool scatter = found != nullptr && is_scatter_alone(*found) && claims;
   const std::vector<std::size_t> named = names || scatter ? found->effects : std::vector<std::size_t>();

@@ -38,7 +38,7 @@ class Line:
     r2 : float or None
         Coefficient of determination.
     v_range_m_s : (float, float)
-        Range of their speeds.
+        Range of the speeds of these points.
     """
 
     direction: int

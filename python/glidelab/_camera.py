@@ -173,7 +173,7 @@ def fit_marker(image: Any, centre_px: tuple[float, float], radius_px: float, *, 
     Raises
     ------
     InputError
-        It is not an image.
+        `image` is not an image.
 
     Notes
     -----

@@ -11,7 +11,7 @@
 namespace glidelab::report {
 
 /// Results that the assumed law cannot explain (drag or friction below zero, a line that begins above gravity, points
-/// far off their line, positions far off the fitted motion), and what to do next. One sentence each, plain text; none
+/// far from their line, positions far from the fitted motion), and what to do next. One sentence each, plain text; none
 /// if the law fits.
 std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 

@@ -63,7 +63,7 @@ double sureness(const CertifiedQuantity& quantity) {
   return std::abs(quantity.bias_sds.value) / quantity.bias_sds.sd;
 }
 
-/// The largest bias that exceeds chance: "µ is off by 0.3 of its standard deviation on average".
+/// The largest bias that exceeds chance: "µ is off by 0.3 standard deviations on average".
 std::string bias_words(const Certificate& certificate) {
   const CertifiedQuantity* worst = nullptr;
   bool any = false;

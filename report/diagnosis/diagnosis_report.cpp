@@ -336,7 +336,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   std::string text = fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), verdict_id(diagnosis.verdict));
   const std::string sequence = diagnosis.lines ? std::string() : sequence_lines(diagnosis);
   if (!sequence.empty()) text += sequence + "next: " + wrapped(next_step_words(diagnosis.next)) + "\n";
-  std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "ln evidence"}};
+  std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "log evidence"}};
   rows.push_back({"none", fmt::format("{:.3f}", diagnosis.none), "0"});
   rows.push_back({"unknown", fmt::format("{:.3f}", diagnosis.unknown), ""});
   for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {

@@ -191,7 +191,7 @@ constexpr const char* kLineMethod =
 
 std::vector<std::vector<std::string>> line_rows(const diagnose::LineComparison& lines) {
   std::vector<std::vector<std::string>> rows = {
-      {"explanation", "size", "probability", "chi²", "gap", "ln likelihood", "ln evidence"}};
+      {"explanation", "size", "probability", "chi²", "gap", "ln likelihood", "log evidence"}};
   for (const diagnose::LineCandidate* one : shown_candidates(lines)) {
     const diagnose::LineCandidate& candidate = *one;
     rows.push_back({name_of(candidate), sizes_text(candidate), probability_text(candidate.probability),

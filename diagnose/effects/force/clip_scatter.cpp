@@ -42,7 +42,8 @@ EffectInfo clip_scatter() {
                       .shown_as = ShownAs::of_drag,
                       .each = Each::clip,
                       .held_sd = 0.5}},
-      .law = {.sizes = 2, .resistance = scattered_drag, .friction = scattered_friction, .steady = true, .passing = true},
+      .law =
+          {.sizes = 2, .resistance = scattered_drag, .friction = scattered_friction, .steady = true, .passing = true},
       .shapes = nullptr,
       .lines = {},
       .twin = EffectTwin::none("in a scenario all clips of a configuration have the same forces"),

@@ -300,7 +300,8 @@ std::vector<std::vector<std::string>> explained_rows(const diagnose::Diagnosis& 
                     base::digits_text(cause.gap_after, 3)});
   }
   if (diagnosis.remainder) {
-    rows.push_back({"left", share_text(diagnosis.remainder->share), base::digits_text(diagnosis.remainder->gap, 3)});
+    rows.push_back(
+        {"remainder", share_text(diagnosis.remainder->share), base::digits_text(diagnosis.remainder->gap, 3)});
   }
   return rows;
 }

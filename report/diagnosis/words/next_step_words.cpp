@@ -199,8 +199,7 @@ struct Words {
     const bool places = of.over == diagnose::CoverRegion::Over::places;
     const std::string launch = fmt::format(
         "{}: of {} launches considered, it has the most positions ({} of {}) at {} from {} to {} {}, where the "
-        "remainder "
-        "is clearest",
+        "remainder is clearest",
         change_words(of.launch), of.launches, of.inside, of.positions, places ? "positions" : "speeds",
         base::number_text(of.from, 2), base::number_text(of.to, 2), places ? "m" : "m/s");
     if (!places) return launch + ", and the dependence on the speed shows what is missing.";
@@ -221,8 +220,9 @@ struct Words {
   std::string operator()(const diagnose::SettleDoubt& of) const {
     if (!of.by && of.log_likelihood < kNoHelp) {
       return fmt::format(
-          "None of {} would decide {}, however many clips: the motion is the same either way. Look for each of them on "
-          "the set-up, remove or correct what you find, and record the same launch again.",
+          "None of {} would decide {}, however many clips: the motion is the same either way. Check directly for what "
+          "is in doubt (on the set-up, the scale, the clock), remove or correct what you find, and record the same "
+          "launch again.",
           weighed_words(of.weighed), doubt_words(of.doubt));
     }
     if (!of.by) {

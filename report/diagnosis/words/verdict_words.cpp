@@ -368,8 +368,8 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   constexpr double kRather = 0.5;  // the probability from which nothing is rather missing than something
   if (diagnosis.verdict == diagnose::Verdict::none && diagnosis.none < kRather && !diagnosis.ranking.empty()) {
     return fmt::format(
-               "The nominal model explains these data to within their noise. They cannot exclude other causes, each "
-               "less likely than that nothing is missing ({}); the likeliest is {} ({}).",
+               "The nominal model explains these data to within their noise. They cannot exclude other causes, but "
+               "none is as likely as nothing being missing ({}); the likeliest is {} ({}).",
                percent(diagnosis.none), explanation_id(diagnosis.ranking.front().explanation),
                percent(diagnosis.ranking.front().probability)) +
            clip_gap_words(diagnosis);

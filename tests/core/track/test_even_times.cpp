@@ -134,7 +134,7 @@ TEST_CASE("significant digits of times below 0 are those of the same times above
   std::vector<double> t, exact;
   for (int i = 0; i < 75; ++i) {
     exact.push_back(-12.0 + i / 30.0);  // two digits before the point, then one
-    t.push_back(significant(exact.back(), 4));
+    t.push_back(-significant(-exact.back(), 4));
   }
   CHECK(largest_error(t, exact) > 2.5e-3);
   const std::optional<EvenTimes> even = even_times(t, StampSource::table);

@@ -80,6 +80,8 @@ TEST_CASE("every effect that counts as steady moves the glider as the integrator
     const diagnose::Moved beside = diagnose::move(shifted, t);
     model.unnamed = &nothing;
     CHECK_FALSE(diagnose::shifts_as_a_whole(model));
+    // Acts, but moves nothing: the forces are then evaluated at each step and not held.
+    model.effects[diagnose::slot_of(diagnose::ids::quadratic_drag)] = 1e-300;
     const diagnose::Moved in_steps = diagnose::move(model, t);
     double off_m = 0.0, off_m_s = 0.0, off_shift_m = 0.0;
     for (std::size_t i = 0; i < t.size(); ++i) {
