@@ -15,6 +15,7 @@
 #include "diagnose/causes/spread_prior.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/air_odds.h"

@@ -68,10 +68,6 @@ MotionFit linearise_at(const TrackSet& set, const std::vector<std::size_t>& effe
 /// An unchanged fit, with residuals and derivatives under the noise of another set of the same motions.
 MotionFit linearise_again(const TrackSet& set, const MotionFit& fit);
 
-/// The nominal model, from the start given by the integrated positions (integrated_start.h); if that fits badly, also
-/// from the stated inclinations with three rates of drag. Returns the best of these fits.
-MotionFit fit_nominal(const TrackSet& set, const Lateness& late = {});
-
 /// Fits one more effect than `base` has, from the start that a search found. If the result is worse than `base`, which
 /// is the same model with the effect absent, the fit starts again from `base`, by small steps, and the better of the
 /// two is returned. So its cost is never above that of `base`.

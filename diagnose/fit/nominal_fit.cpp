@@ -1,4 +1,5 @@
-/// fit_nominal() of motion_fit.h: the starts that it tries.
+#include "diagnose/fit/nominal_fit.h"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -8,7 +9,6 @@
 #include "base/errors.h"
 #include "base/math/dense.h"
 #include "diagnose/fit/integrated_start.h"
-#include "diagnose/fit/motion_fit.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result/estimate.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/domain_gaps.h"
 #include "diagnose/gap/held_out.h"
 

@@ -5,6 +5,7 @@
 
 #include "base/errors.h"
 #include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/scan/effect_scan.h"
 #include "diagnose/tracks/track_set.h"
 

@@ -13,6 +13,7 @@
 #include "diagnose/causes/recovered.h"
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/frames/missing_frames.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/pictures/image_evidence.h"

@@ -10,6 +10,7 @@
 #include "base/errors.h"
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/frames/missing_frames.h"
 #include "diagnose/frames/plain_losses.h"
 #include "diagnose/frames/point_scatter.h"

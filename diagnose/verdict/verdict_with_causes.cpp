@@ -16,6 +16,7 @@
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/size_uncertainty.h"
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/twin/twin.h"

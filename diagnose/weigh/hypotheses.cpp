@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/air_odds.h"
 #include "diagnose/weigh/hypothesis_pairs.h"

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/scan/effect_scan.h"

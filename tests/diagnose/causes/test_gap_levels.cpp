@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

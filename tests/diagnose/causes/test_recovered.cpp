@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/scan/effect_scan.h"
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"

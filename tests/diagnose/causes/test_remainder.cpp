@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/fit/drag_of_air.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/whitening.h"
 #include "tests/catch.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

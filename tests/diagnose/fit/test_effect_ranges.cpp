@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/scan/effect_scan.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

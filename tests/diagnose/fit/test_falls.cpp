@@ -4,6 +4,7 @@
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

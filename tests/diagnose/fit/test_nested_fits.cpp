@@ -6,6 +6,7 @@
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

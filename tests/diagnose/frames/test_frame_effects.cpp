@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

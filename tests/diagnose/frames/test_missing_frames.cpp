@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

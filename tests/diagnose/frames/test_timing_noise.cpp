@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

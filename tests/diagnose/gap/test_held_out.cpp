@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"

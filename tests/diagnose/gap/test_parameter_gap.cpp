@@ -5,6 +5,7 @@
 #include <random>
 #include <string>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/frames/missing_frames.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

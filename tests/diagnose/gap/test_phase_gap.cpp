@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/whitening.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

@@ -2,6 +2,7 @@
 #include <string_view>
 #include <vector>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/model/track_model.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/tracked_motions.h"

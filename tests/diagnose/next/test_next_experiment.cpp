@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/next/expected_evidence.h"
 #include "diagnose/next/next_changes.h"

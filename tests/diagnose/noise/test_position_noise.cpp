@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/math/dense.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"

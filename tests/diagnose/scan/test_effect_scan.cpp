@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 

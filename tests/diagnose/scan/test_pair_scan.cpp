@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 

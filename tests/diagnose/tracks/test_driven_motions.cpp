@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/model/track_model.h"
 #include "diagnose/verdict/diagnose.h"
 #include "diagnose/verdict/verdict_details.h"

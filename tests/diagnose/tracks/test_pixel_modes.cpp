@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/frames/frame_effects.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/verdict/diagnose.h"

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/unnamed/unnamed_family.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"

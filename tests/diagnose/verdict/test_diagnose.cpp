@@ -6,6 +6,7 @@
 
 #include "base/errors.h"
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/weigh/hypotheses.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

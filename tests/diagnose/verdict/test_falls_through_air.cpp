@@ -8,6 +8,7 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/verdict/diagnose.h"
 #include "diagnose/verdict/fit_given_causes.h"

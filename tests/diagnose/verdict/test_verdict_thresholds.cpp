@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/verdict/verdict.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/files/file_io.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/model/track_model.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/diagnose.h"

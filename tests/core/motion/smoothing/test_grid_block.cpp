@@ -112,8 +112,7 @@ TEST_CASE("a window that hardly determines its cubic is left to orthogonal polyn
   const auto smoothed = smoother.smooth(x);
   const auto row = smoother.row_of_point(0);
   REQUIRE(smoothed[0].has_value() == row.has_value());
-  REQUIRE(row);
-  CHECK(smoothed[0]->a_m_s2 == weighted_sums(*row, x).a_m_s2);
+  CHECK_FALSE(row);
 
   std::vector<double> kernel;
   for (int d = 0; d < 11; ++d) kernel.push_back(kernel_value(Kernel::gaussian, d / 0.35));

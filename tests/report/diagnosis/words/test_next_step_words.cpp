@@ -113,7 +113,7 @@ TEST_CASE("no less noise and no more clips are asked for where the motion is the
   const std::string same = report::next_step_words(step);
   CHECK_FALSE(contains(same, "less noise"));
   CHECK_FALSE(contains(same, "many more clips"));
-  CHECK(contains(same, "the motion is the same either way. Check for each of them"));
+  CHECK(contains(same, "the motion is the same either way. Check directly for what is in doubt"));
   step.log_likelihood = 0.5;  // ten such clips would do
   CHECK(
       contains(report::next_step_words(step), "less noise (a longer lens, a larger marker) or many more clips would."));

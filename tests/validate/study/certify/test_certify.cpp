@@ -13,6 +13,7 @@
 #include "core/motion/lines/line_fit.h"
 #include "core/result/quantity.h"
 #include "core/result/why_unknown.h"
+#include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/verdict/diagnose.h"
