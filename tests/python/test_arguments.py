@@ -78,7 +78,7 @@ class WrongInput(InFolder):
 
     def test_files(self):
         self.refused(lambda: glidelab.analyze(self.folder / "missing"), file=str(self.folder / "missing"),
-                     found="nothing")
+                     found="no file or folder of this name")
         (self.folder / "experiment.toml").write_text("format = 1\nmisspelt = 3\n")
         error = self.refused(lambda: glidelab.analyze(self.folder))
         self.assertTrue(any(one.key == "misspelt" and one.line == 2 for one in error.issues))

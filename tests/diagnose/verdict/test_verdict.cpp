@@ -81,6 +81,15 @@ TEST_CASE("of an explanation the causes that are likelier than not keep their na
                                                     of({"quadratic_drag"}, 0.3)};
   CHECK(part(tracks, shaken).empty());
   CHECK(part(films, shaken) == only("quadratic_drag"));
+  // Two waves are not each as likely as one of them.
+  const std::size_t camera = diagnose::effect_index("camera_motion"), table = diagnose::effect_index("base_vibration");
+  comparison.effect_probability.assign(diagnose::effect_list().size(), 0.0);
+  comparison.effect_probability[camera] = 0.9;
+  comparison.effect_probability[table] = 0.4;
+  CHECK(part(tracks, {of({"camera_motion", "base_vibration"}, 0.4), of({"camera_motion"}, 0.5)}) ==
+        only("camera_motion"));
+  comparison.effect_probability[table] = 0.6;
+  CHECK(part(tracks, {of({"camera_motion", "base_vibration"}, 0.6), of({"camera_motion"}, 0.3)}).empty());
   // A single cause has no part, and a part without a fit cannot be reported.
   CHECK(part(tracks, {of({"quadratic_drag"}, 0.4)}).empty());
   CHECK(part(tracks, {of({"quadratic_drag", "track_bow"}, 0.45), of({"stribeck"}, 0.45)}).empty());
