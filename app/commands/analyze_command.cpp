@@ -173,8 +173,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
           "EXPERIMENT", options->experiments,
           "Folders that hold an experiment.toml; several must share the glider and the track. Or track files: a table "
           "t_s,x_m or t_s,v_m_s (speeds; without --with), an export from Tracker, Logger Pro, Capstone or phyphox, a "
-          "workbook "
-          "(.xlsx), or a Tracker project (.trk, .trz)")
+          "workbook (.xlsx), or a Tracker project (.trk, .trz)")
       ->type_name("DIR|FILE")
       ->required();
   command->add_option("--smoother", options->smoother, smoother_help())

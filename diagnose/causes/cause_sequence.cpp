@@ -56,8 +56,9 @@ ExplainedCause cause_of(std::size_t effect, const Step& first, const Step& befor
 
 /// The part that a step takes of what the one before it leaves above the noise; 0 if that is less than the noise.
 double share_of_rest(const Step& before, const Step& after) {
-  if (!is_above_floor(before) || before.gap * before.gap - 1.0 < 1.0) return 0.0;
-  return (before.gap * before.gap - after.gap * after.gap) / (before.gap * before.gap - 1.0);
+  const double excess = before.gap * before.gap - 1.0;
+  if (!is_above_floor(before) || excess < 1.0) return 0.0;
+  return (before.gap * before.gap - after.gap * after.gap) / excess;
 }
 
 /// Whether a cause beyond those of the verdict takes more than its uncertainty.

@@ -33,7 +33,8 @@ struct CauseSequence {
 
 /// `set` has the position noise alone, and `nominal` is the nominal fit to it. `with` counts a remainder as noise (or
 /// is the same set), and `named` is a fit to `with` with the causes that a verdict would name, or the nominal fit. A
-/// cause that takes less than `least_named` of the excess beside those before it is not among the named ones.
+/// cause that takes less than `least_named` of the excess beside those before it is not among the named ones, unless it
+/// takes half of what they leave and that is more than the noise.
 CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const TrackSet& with, const MotionFit& named,
                           const std::set<std::size_t>& without, double least_named);
 

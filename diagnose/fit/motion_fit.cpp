@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/math/dense.h"
@@ -370,21 +371,25 @@ MotionFit fit_held(const TrackSet& set, const std::vector<std::size_t>& effects,
 
 namespace {
 
-/// A descent by small steps from the fit without the effect.
-MotionFit by_small_steps(const TrackSet& set, const MotionFit& base, std::size_t effect, const MotionFit& fit) {
+/// If a fit with one more effect is worse than the fit without: what a descent by small steps from there finds, unless
+/// that is worse still. Not yet finished.
+std::optional<MotionFit> by_small_steps(const TrackSet& set, const MotionFit& base, std::size_t effect,
+                                        const MotionFit& fit) {
+  if (fit.cost <= base.cost) return {};
   std::vector<std::size_t> effects = base.effects;
   effects.push_back(effect);
   base::FitOptions small_steps = descent_options();
   small_steps.damping_start = kSmallSteps;
-  return descended(set, effects, with_absent(set, base, effect, fit), base.late, small_steps);
+  MotionFit again = descended(set, effects, with_absent(set, base, effect, fit), base.late, small_steps);
+  if (!(again.cost <= fit.cost)) return {};
+  return again;
 }
 
 }  // namespace
 
 MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t effect, MotionFit fit) {
-  if (fit.cost <= base.cost) return fit;
-  MotionFit again = by_small_steps(set, base, effect, fit);
-  return again.cost <= fit.cost ? finished(set, std::move(again)) : fit;
+  std::optional<MotionFit> again = by_small_steps(set, base, effect, fit);
+  return again ? finished(set, std::move(*again)) : fit;
 }
 
 MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_t effect, const FitPoint& start) {
@@ -406,10 +411,7 @@ MotionFit fit_with_effect(const TrackSet& set, const MotionFit& base, std::size_
     MotionFit fit = descended(set, effects, other, base.late, descent_options());
     if (fit.cost < best.cost || !std::isfinite(best.cost)) best = std::move(fit);
   }
-  if (!(best.cost <= base.cost)) {
-    MotionFit again = by_small_steps(set, base, effect, best);
-    if (again.cost <= best.cost) best = std::move(again);
-  }
+  if (std::optional<MotionFit> again = by_small_steps(set, base, effect, best)) best = std::move(*again);
   return finished(set, std::move(best));
 }
 

@@ -226,6 +226,7 @@ class Mover {
     double most = 0.0;
     for (const bool pushed : {false, true}) {
       if (pushed && m_.effects[kPush] == 0.0) continue;
+      pushed_ = pushed;  // friction() asks for it
       for (const bool forward : {false, true}) {
         const GliderState at{0.0, forward ? kNoSpeed_m_s : -kNoSpeed_m_s, 0.0, 0.0, pushed};
         Resistance of{.slope = sin_};
@@ -238,6 +239,7 @@ class Mover {
         most = std::max(most, std::abs(held.drag_n_s_m * by_inertia_));
       }
     }
+    pushed_ = false;
     reach_ = most > 0.0 ? SteadyFlow::kReach / most : std::numeric_limits<double>::infinity();
   }
 

@@ -209,8 +209,7 @@ struct AnalysisSentence {
   std::string operator()(const core::PixelsAnswerLeft& of) const {
     return fmt::format(
         "in {} of {} frames the marker's position is not corrected for the response of the camera's pixels to an edge: "
-        "the "
-        "clip is too long for so large a marker, or the fit with that response fails",
+        "the clip is too long for so large a marker, or the fit with that response fails",
         of.kept, of.sightings);
   }
   std::string operator()(const core::DarkMarker&) const {

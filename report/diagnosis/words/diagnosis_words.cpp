@@ -149,8 +149,7 @@ struct Sentence {
     std::string words =
         "In air, a body that falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
         "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, exclude this "
-        "drag "
-        "(--without quadratic_drag).";
+        "drag (--without quadratic_drag).";
     if (!of.over_viscous) return words;
     if (*of.over_viscous > kClearly) return words + " The positions alone also prefer it to a viscous drag.";
     return words + (*of.over_viscous < -kClearly

@@ -101,7 +101,10 @@ TEST_CASE("an error of the camera moves the fit as the stated shift says") {
   CHECK((moved - before->shared[0]).norm() < 0.02 * moved.norm());
 }
 
-TEST_CASE("motion in one direction determines K/m and the intercept, and says that the two parts are not apart") {
+namespace {
+
+/// One clip, downhill.
+core::AnalysisResults downhill_only() {
   std::mt19937 random(4);
   core::AnalysisResults results;
   results.gravity_m_s2 = kGravity;
@@ -113,7 +116,13 @@ TEST_CASE("motion in one direction determines K/m and the intercept, and says th
   core::ConfigurationResult configuration;
   configuration.clips = {"down"};
   results.configurations = {configuration};
-  const core::AnalysisResults fitted = fit::with_trajectory_fits(results);
+  return results;
+}
+
+}  // namespace
+
+TEST_CASE("motion in one direction determines K/m and the intercept, and says that the two parts are not apart") {
+  const core::AnalysisResults fitted = fit::with_trajectory_fits(downhill_only());
   CHECK(fitted.estimator == "trajectory");
   const core::ConfigurationResult& found = fitted.configurations[0];
   REQUIRE(found.k_over_m_1_s.estimate);
@@ -130,16 +139,8 @@ TEST_CASE("motion in one direction determines K/m and the intercept, and says th
 }
 
 TEST_CASE("the fit of the whole motion keeps what was said of the recording, and doubts stated inclinations only") {
-  std::mt19937 random(4);
-  core::AnalysisResults results;
-  results.gravity_m_s2 = kGravity;
-  core::ClipResult clip;
-  clip.name = "down";
-  clip.noise_autocovariance_m2 = {1e-10};
-  clip.blocks = {block_of(kLaw, -0.5, 1.2, 1.7, 1e-5, random)};
-  results.clips = {clip};
-  core::ConfigurationResult configuration;
-  configuration.clips = {"down"};
+  core::AnalysisResults results = downhill_only();
+  core::ConfigurationResult configuration = results.configurations[0];
   configuration.mass_kg = 0.2;
   configuration.notes = {core::AssumedStatements{{}, true}};
   core::LineFit line;
