@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "core/analysis/clip_to_track.h"
+#include "core/analysis/suspected_fall.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/join_configurations.h"
 
@@ -64,6 +65,9 @@ void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetu
         if (assumed.level && taken != nullptr) configuration.notes.emplace_back(*taken);  // it may be a fall
       }
       if (assumed.mass_kg || assumed.level) configuration.notes.emplace_back(assumed);
+      if (const std::optional<MayBeAFall> fall = suspected_fall(results.clips[i]); fall && assumed.level) {
+        configuration.notes.emplace_back(*fall);
+      }
       break;
     }
   }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "base/errors.h"
 #include "base/long_work.h"
@@ -16,6 +18,7 @@
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/marker_body.h"
 #include "core/track/bare_track.h"
+#include "core/track/fall_direction.h"
 
 namespace glidelab::core {
 
@@ -224,6 +227,26 @@ std::optional<MarkerBody> body_of(const Experiment& experiment, const CameraAndP
   return discs > spheres ? MarkerBody::disc : MarkerBody::sphere;
 }
 
+/// Makes x of falls positive downwards, one sign for each set-up. A stated direction of a launch or of the slope, a
+/// recorded force and an inclination below 0 have the sign of x already.
+void count_falls_downwards(const Experiment& experiment, std::vector<TrackData>& tracks) {
+  std::map<std::string, std::vector<TrackData*>> falls;
+  std::set<std::string> stated;
+  for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
+    const ClipSetup& clip = experiment.clips[i];
+    if (!clip.file.empty()) continue;
+    const bool has_direction = clip.launched == Launched::up || clip.launched == Launched::down;
+    if (has_direction || !tracks[i].force_n.empty() || downhill_of(experiment, clip.group) ||
+        clip.incline_rad < kSurelyAFall_rad) {
+      stated.insert(clip.group);
+    }
+    falls[clip.group].push_back(&tracks[i]);
+  }
+  for (const auto& [group, of_group] : falls) {
+    if (!stated.contains(group)) count_downwards(of_group);
+  }
+}
+
 }  // namespace
 
 ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress, const FrameOpener& open,
@@ -242,12 +265,11 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
         throw base::InputError(base::Issue{clip.track.string(), 0, "--mass", "none, beside a recorded force (force_n)",
                                            "the moving mass in kilograms: the force accelerates it by F/m"});
       }
-      // A fall is downwards, whether the distance is measured by a sensor above or below.
-      if (!downhill && std::abs(clip.incline_rad) >= kSurelyAFall_rad) count_along_motion(results.tracks[i]);
     } else {
       images.push_back(i);
     }
   }
+  count_falls_downwards(experiment, results.tracks);
   if (images.empty()) return results;
 
   progress("calibration", 0.0);

@@ -8,6 +8,7 @@
 
 #include "base/math/angles.h"
 #include "base/math/dense.h"
+#include "core/math/parabola.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 
@@ -37,25 +38,13 @@ constexpr double kLostOverStep = 10.0;  // and this many times as far as from an
 constexpr double kGapSteps = 3.0;       // median steps: a longer one is a gap
 constexpr double kMostUnseen = 0.2;     // of the time
 
-/// x = x0 + v t + a t²/2 through some points.
-Eigen::Vector3d parabola(std::span<const double> t_s, std::span<const double> x_m) {
-  Eigen::MatrixXd design(static_cast<Eigen::Index>(t_s.size()), 3);
-  const double middle = 0.5 * (t_s.front() + t_s.back());
-  for (Eigen::Index i = 0; i < design.rows(); ++i) {
-    const double t = t_s[static_cast<std::size_t>(i)] - middle;
-    design.row(i) << 1.0, t, 0.5 * t * t;
-  }
-  return base::least_squares(design, Eigen::Map<const Eigen::VectorXd>(x_m.data(), design.rows()));
-}
-
 /// The median of |a| of parabolas through `size` points each, where it is above their noise.
 void find_acceleration(std::span<const double> t_s, std::span<const double> x_m, std::size_t size, double noise_m,
                        MotionLook& look) {
   std::vector<double> sizes;
   double sd_m_s2 = 0.0;
   for (std::size_t from = 0; from + size <= x_m.size(); from += std::max<std::size_t>(1, size / 2)) {
-    const Eigen::Vector3d fit = parabola(t_s.subspan(from, size), x_m.subspan(from, size));
-    sizes.push_back(std::abs(fit[2]));
+    sizes.push_back(std::abs(parabola_through(t_s.subspan(from, size), x_m.subspan(from, size)).a));
     const double span = t_s[from + size - 1] - t_s[from];
     // Variance of a by n even points over a time T: 720 s²/(n T⁴).
     sd_m_s2 = std::max(sd_m_s2, noise_m * std::sqrt(720.0 / static_cast<double>(size)) / (span * span));
@@ -69,11 +58,9 @@ void find_acceleration(std::span<const double> t_s, std::span<const double> x_m,
 /// Whether one parabola passes through all points to within `off_m`: they then include neither a bounce nor a sensor's
 /// jump.
 bool is_parabola(std::span<const double> t_s, std::span<const double> x_m, double off_m) {
-  const Eigen::Vector3d fit = parabola(t_s, x_m);
-  const double middle = 0.5 * (t_s.front() + t_s.back());
+  const Parabola parabola = parabola_through(t_s, x_m);
   for (std::size_t i = 0; i < t_s.size(); ++i) {
-    const double t = t_s[i] - middle;
-    if (!(std::abs(x_m[i] - (fit[0] + fit[1] * t + 0.5 * fit[2] * t * t)) < off_m)) return false;
+    if (!(std::abs(x_m[i] - parabola.at(t_s[i])) < off_m)) return false;
   }
   return true;
 }
@@ -177,9 +164,9 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
     const std::size_t fine = std::max(kFewestOfParabola, x_m.size() / (8 * (look.turns + 1)));
     std::vector<double> places, accelerations;
     for (std::size_t from = 0; from + fine <= x_m.size(); from += fine) {
-      const Eigen::Vector3d fit = parabola(t_s.subspan(from, fine), x_m.subspan(from, fine));
-      places.push_back(fit[0]);
-      accelerations.push_back(fit[2]);
+      const Parabola parabola = parabola_through(t_s.subspan(from, fine), x_m.subspan(from, fine));
+      places.push_back(parabola.middle);
+      accelerations.push_back(parabola.a);
     }
     look.oscillates = harmonic_part(places, accelerations) > kHarmonic;
   }

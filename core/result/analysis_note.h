@@ -135,6 +135,12 @@ struct AssumedStatements {
   bool level = false;             ///< an inclination of 0 is assumed
 };
 
+/// No inclination is stated, and the body speeds up like one that falls.
+struct MayBeAFall {
+  std::size_t positions = 0;  ///< that are taken for those in a hand
+  double a_m_s2 = 0.0;        ///< in the first third of these, without its sign
+};
+
 /// About positions without a file: a mass of 1 kg is assumed.
 struct AssumedMass {};
 
@@ -330,7 +336,7 @@ using AnyNote =
     std::variant<FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps,
                  SheetTaken, ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath,
                  CountedAlongMotion, RowsIncomplete, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant,
-                 PositionsOutsideClip, PositionsFilledIn, AssumedStatements, AssumedMass, OutlyingView,
+                 PositionsOutsideClip, PositionsFilledIn, AssumedStatements, MayBeAFall, AssumedMass, OutlyingView,
                  NoPatternInSight, UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred,
                  PlaneViewsDisagree, MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize,
                  MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine,

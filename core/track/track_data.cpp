@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -15,10 +16,10 @@
 #include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "core/experiment/file_names.h"
-#include "core/math/quantile.h"
 #include "core/math/time_gap.h"
 #include "core/track/column_table.h"
 #include "core/track/even_times.h"
+#include "core/track/fall_direction.h"
 #include "core/track/table_columns.h"
 #include "core/track/workbook.h"
 
@@ -27,7 +28,6 @@ namespace glidelab::core {
 namespace {
 
 constexpr double kSlowestUnstated_s = 5.0;  // from one position to the next, for times without a unit
-constexpr double kHardlyTurns = 0.8;        // of the range of x: distance from the first position to the last
 constexpr double kNotableTick = 1e-3;       // of a frame: a coarser last digit gets a note
 
 /// Replaces times rounded by a table with the uniform times of the camera.
@@ -131,56 +131,31 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 
 namespace {
 
-/// The positions without jumps to wrong echoes, or to where a tracker lost the object: no step is longer than a few
-/// times the long ones. Only the direction of the motion is read from them.
-std::vector<double> without_jumps(const std::vector<double>& x_m) {
-  constexpr double kJump = 4.0, kLongStep = 0.8;  // times the quantile of the steps
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < x_m.size(); ++i) steps.push_back(std::abs(x_m[i] - x_m[i - 1]));
-  const double longest = kJump * quantile(steps, kLongStep);
-  if (!(longest > 0.0)) return x_m;
-  std::vector<double> smooth = {0.0};
-  for (std::size_t i = 1; i < x_m.size(); ++i) {
-    smooth.push_back(smooth.back() + std::clamp(x_m[i] - x_m[i - 1], -longest, longest));
-  }
-  return smooth;
+/// InputError for speeds that are all positive, fall to 0 and rise again at once: they lost their sign at a turn. At a
+/// rest between two motions in one direction, most speeds of the dip are near 0.
+void check_signs(const TrackData& track, int downhill, const std::string& file, const std::string& column) {
+  constexpr double kDip = 0.3, kNearZero = 0.05;  // of the lower of the highest speeds before and after
+  constexpr double kMostNearZero = 0.4;  // of the dip: a V has a sixth of its points below a sixth of its height
+  if (track.v_m_s.empty()) return;
+  std::vector<double> v = track.v_m_s;
+  for (double& one : v) one *= downhill;
+  const auto lowest = std::min_element(v.begin(), v.end());
+  if (*lowest < 0.0 || lowest == v.begin()) return;
+  const double height = std::min(*std::max_element(v.begin(), lowest), *std::max_element(lowest, v.end()));
+  if (*lowest > kNearZero * height) return;
+  const auto is_out = [&](double one) { return one > kDip * height; };
+  const auto from = std::find_if(std::make_reverse_iterator(lowest), v.rend(), is_out).base();
+  const auto to = std::find_if(lowest, v.end(), is_out);
+  const auto near_zero = std::count_if(from, to, [&](double one) { return one <= kNearZero * height; });
+  if (to == v.end() || static_cast<double>(near_zero) > kMostNearZero * static_cast<double>(to - from)) return;
+  throw base::InputError(
+      base::Issue{file, 0, column,
+                  fmt::format("speeds without sign (none is negative, and they touch 0 at {:.3g} s)",
+                              track.t_s[static_cast<std::size_t>(lowest - v.begin())]),
+                  "velocities, negative in one direction: without a sign, up cannot be told from down"});
 }
 
 }  // namespace
-
-namespace {
-
-void count_along_speeds(TrackData& track) {
-  double sum = 0.0, size = 0.0;
-  for (const double v : track.v_m_s) {
-    sum += v;
-    size += std::abs(v);
-  }
-  const double along = std::abs(sum) < kHardlyTurns * size ? track.v_m_s.back() - track.v_m_s.front() : sum;
-  if (!(along < 0.0)) return;
-  for (double& v : track.v_m_s) v = -v;
-  track.notes.emplace_back(CountedAlongMotion{});
-}
-
-}  // namespace
-
-void count_along_motion(TrackData& track) {
-  if (!track.v_m_s.empty()) return count_along_speeds(track);
-  const std::vector<double> x_m = without_jumps(track.x_m);
-  const auto [low, high] = std::minmax_element(x_m.begin(), x_m.end());
-  double displacement = x_m.back() - x_m.front();
-  if (std::abs(displacement) < kHardlyTurns * (*high - *low)) {
-    // From the positions at both ends and at the middle of the time: the direction of the acceleration.
-    const double middle_s = 0.5 * (track.t_s.front() + track.t_s.back());
-    const auto at =
-        static_cast<std::size_t>(std::lower_bound(track.t_s.begin(), track.t_s.end(), middle_s) - track.t_s.begin());
-    displacement = x_m.front() + x_m.back() - 2.0 * x_m[at];
-  }
-  if (!(displacement < 0.0)) return;
-  for (double& x : track.x_m) x = -x;
-  for (double& force : track.force_n) force = -force;
-  track.notes.emplace_back(CountedAlongMotion{});
-}
 
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
                        SpeedsAlone speeds) {
@@ -251,7 +226,8 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
             t.name.starts_with("column ") ? "t" : t.name)});
   }
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
-  if (chosen.is_height && !downhill) count_along_motion(track);
+  check_signs(track, downhill.value_or(1), table.file, fmt::format("column \"{}\"", x.text));
+  if (chosen.is_height && !downhill) count_downwards({&track});
   if (missing > 0) track.notes.emplace_back(RowsIncomplete{missing});
   take_rows_as_frames(track);
   return track;
@@ -323,6 +299,7 @@ TrackData read_track_csv(const std::filesystem::path& file, std::optional<int> d
   std::vector<double>& values = of_speeds ? track.v_m_s : track.x_m;
   values = table.column(of_speeds ? "v_m_s" : "x_m");
   for (double& value : values) value *= downhill.value_or(1);
+  check_signs(track, downhill.value_or(1), table.file, "column \"v_m_s\"");
   if (table.has("force_n")) {
     track.force_n = table.column("force_n");
     for (double& force : track.force_n) force *= downhill.value_or(1);

@@ -119,6 +119,9 @@ class RemainderSpace {
   std::vector<Ranged> ranged_;
   Eigen::Index common_ = 0, extra_ = 0;
   double extra_sd_ = 0.0, part_s_ = 0.0;
+  /// A motion's own columns are scaled to a norm of one. The logarithms of the norms of x0 and v0: the prior is flat in
+  /// these, not in what they are scaled to, which differs from law to law (by 1.8 in a fall at its terminal velocity).
+  double log_norms_ = 0.0;
   bool only_falls_ = false;
   Eigen::VectorXd scale_;
 };

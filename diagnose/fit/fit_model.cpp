@@ -19,6 +19,7 @@ constexpr double kMostStokes = 3.0, kMostGravity_sd = 3.0, kMostFall_sd = 3.0;
 // The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
 // m/s.
 constexpr double kMostAir = 10.0;
+constexpr double kOfOneGram = 1000.0;  // what falls may weigh a gram, where 1 kg is assumed
 // A Maxwell wheel, a ring of radius R on an axle of radius r, has (R/r)² times its mass: 65 mm and 3 mm.
 constexpr double kMostWheel = 500.0;
 constexpr double kFewestTurns = 2.0;    // periods in the longest motion: anything slower is a drift, which has other
@@ -74,6 +75,7 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter, c
   double heaviest_kg = 0.0;
   for (const TrackedMass& mass : set.masses) heaviest_kg = std::max(heaviest_kg, mass.mass_kg);
   if (parameter.reach == Reach::with_mass) range.high *= std::max(1.0, heaviest_kg);
+  if (parameter.reach == Reach::with_mass && set.mass_assumed && only_falls(set)) range.high *= kOfOneGram;
   if (parameter.slot == slot_of(ids::rotational_inertia) && only_falls(set)) {
     const bool of_air = set.through_air && holds_drag(set, beside);
     range.high = of_air ? std::min(range.high, kMostAir * lightest_kg(set)) : kMostWheel * heaviest_kg;

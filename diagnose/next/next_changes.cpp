@@ -280,6 +280,7 @@ TrackSet with_clip(const TrackSet& set, const Change& change) {
   one.modes = set.modes;
   one.images = set.images;
   one.through_air = set.through_air;
+  one.mass_assumed = set.mass_assumed;
   one.no_drag = set.no_drag;
   one.clips = set.clips;
   one.clips.push_back({"next", clip.rate_hz, 0.0, 0, 0.0});

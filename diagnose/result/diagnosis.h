@@ -23,6 +23,7 @@ struct DiagnosedParameter {
   double sd = 0.0;                           ///< 0: not fitted
   std::string text = {};                     ///< a word (a codec's name) instead of value and sd
   std::optional<core::WhyUnknown> why = {};  ///< why the data do not determine it; its value is then not a number
+  bool at_end = false;                       ///< at an end of the range that is searched
 };
 
 /// One of several effects that would look the same.

@@ -72,6 +72,12 @@ struct NoInclination {
   std::vector<std::string> groups;
 };
 
+/// Tracks of several folders: their positions count from one origin.
+struct OneOrigin {};
+
+/// Nobody states a mass: 1 kg is assumed.
+struct NoMassStated {};
+
 /// Only falls were recorded: friction on a track is not determined.
 struct OnlyFalls {};
 
@@ -126,6 +132,12 @@ struct ContradictedReading {
   core::InclineContradiction contradiction;
 };
 
+/// No inclination is stated, and the body speeds up like one that falls in positions that were taken for those in a
+/// hand.
+struct SuspectedFall {
+  core::MayBeAFall found;
+};
+
 // Tables of lines.
 
 /// Lines whose mean intercept is larger than gravity.
@@ -148,7 +160,7 @@ using AnyNote =
     std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
                  QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps, OppositeLaunch,
                  NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity, MeanIncline, TableOfLines,
-                 OnlyFalls, FallsThroughAir, BuoyancyLooksAlike, FitsCutOff>;
+                 OnlyFalls, FallsThroughAir, BuoyancyLooksAlike, FitsCutOff, NoMassStated, OneOrigin, SuspectedFall>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

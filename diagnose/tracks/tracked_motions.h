@@ -116,8 +116,9 @@ struct TrackSet {
   bool handed_on = false;  ///< and one through a codec that predicts images from earlier ones:
   double held_m_s = 0.0;   ///< below this speed such a codec may hold the marker in place (0: none does)
   std::optional<PositionNoise> position_noise;
-  bool through_air = false;  ///< falls_through_air(); K then gives way to a quadratic drag (fit/drag_of_air.h)
-  bool no_drag = false;      ///< K is held at 0 whatever acts: for what a fall without any drag would do
+  bool through_air = false;   ///< falls_through_air(); K then gives way to a quadratic drag (fit/drag_of_air.h)
+  bool mass_assumed = false;  ///< nobody states a mass: forces, c and k are those of 1 kg
+  bool no_drag = false;       ///< K is held at 0 whatever acts: for what a fall without any drag would do
   std::vector<Note> notes;
   /// Frames that the analysis took for a hand or a stop and that could belong to a motion.
   std::size_t disputed = 0;

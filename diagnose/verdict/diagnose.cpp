@@ -59,6 +59,19 @@ void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion
   }
 }
 
+/// A body whose height is recorded falls, or moves on a slope: assumed to be level, it would be in a hand all the time.
+void refuse_heights(const std::vector<std::filesystem::path>& files, const core::AnalysisResults& results) {
+  for (const core::ConfigurationResult& of : results.configurations) {
+    for (const core::Note& note : of.notes) {
+      const auto* const taken = std::get_if<core::HeightTaken>(&note);
+      if (taken == nullptr) continue;
+      throw base::InputError(base::Issue{files.front().string(), 0, "--incline",
+                                         fmt::format("none, and x is \"{}\", a height", taken->column),
+                                         "the inclination in degrees: --incline 90 for a fall"});
+    }
+  }
+}
+
 }  // namespace
 
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
@@ -77,7 +90,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   };
   const auto compare = [&](double from, double to) {
     Comparison made = compare_hypotheses(set, without, options.jobs, &images, weighed(from, to));
-    if (!set.through_air || !too_strong_for_air(made)) return made;
+    if (!set.through_air || !too_strong_for_air(set, made)) return made;
     set.through_air = false;
     return compare_hypotheses(set, without, options.jobs, &images, weighed(to, to));
   };
@@ -134,6 +147,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
   }
   indices(options.without);  // a misspelt id is refused before the clips are read
   const core::AnalysisResults results = analyze_for_diagnosis(folders, options, progress);
+  refuse_heights(folders, results);
   return diagnose_results(results, setups, options, progress, cameras, experiments);
 }
 

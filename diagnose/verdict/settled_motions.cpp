@@ -59,10 +59,17 @@ void add_once(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// A reading without its uncertainty does not constrain a fit. If the accelerations contradict it, the reader must be
-/// told all the same.
+/// What the reader must be told of the readings: one without its uncertainty does not constrain a fit, but the
+/// accelerations may contradict it; one that nobody made may hide a fall; positions of several folders have one origin.
 void note_readings(const core::AnalysisResults& results, TrackSet& set) {
+  const auto elsewhere = [&](const core::ClipResult& clip) { return clip.experiment != results.clips[0].experiment; };
+  if (!set.images && std::any_of(results.clips.begin(), results.clips.end(), elsewhere)) {
+    set.notes.emplace_back(OneOrigin{});
+  }
   for (const core::ConfigurationResult& found : results.configurations) {
+    for (const core::Note& note : found.notes) {
+      if (const auto* const fall = std::get_if<core::MayBeAFall>(&note)) set.notes.emplace_back(SuspectedFall{*fall});
+    }
     if (found.incline_sd_deg || found.incline_assumed) continue;
     auto contradiction = core::incline_contradiction(found, results.gravity_m_s2, core::stated_incline(found));
     if (!contradiction || !contradiction->gross) continue;
@@ -91,6 +98,7 @@ void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
     }
   }
   if (!free.empty()) set.notes.emplace_back(NoInclination{std::move(free)});
+  if (set.mass_assumed) set.notes.emplace_back(NoMassStated{});
   if (only_falls(set)) set.notes.emplace_back(OnlyFalls{});
   if (!mixed.empty()) set.notes.emplace_back(SplitSetUps{std::move(mixed)});
   for (const TrackedMotion& motion : set.motions) {

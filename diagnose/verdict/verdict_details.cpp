@@ -43,6 +43,14 @@ double px_per_m(const ImageEvidence& images) {
   return most > 0.0 && most < kMostScaleRatio * least ? 0.5 * (least + most) : 0.0;
 }
 
+/// Whether a size stands at an end of its range other than the one at which it has no effect.
+bool is_at_end(const ParameterRange& range, double value, double absent) {
+  const double near = 1e-6 * (range.high - range.low);
+  if (!std::isfinite(near) || !(near > 0.0)) return false;
+  const auto at = [&](double end) { return std::abs(value - end) <= near && std::abs(end - absent) > near; };
+  return at(range.high) || at(range.low);
+}
+
 }  // namespace
 
 std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
@@ -61,6 +69,7 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
       value.value += stated_line_s;
     }
     parameters.push_back({std::string(parameter->key), value.value, uncertainty.sd(at) * std::abs(value.by_fitted)});
+    parameters.back().at_end = is_at_end(globals[g].range, fit.at.global[at], parameter->absent);
   }
   return parameters;
 }

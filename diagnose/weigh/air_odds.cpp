@@ -12,18 +12,19 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kViscousOdds = 0.05, kDrivingOdds = 0.001;
-constexpr double kDecades = 9.2;    // ln 10^4
-constexpr double kLeastSeen = 2.0;  // standard deviations
-constexpr double kMostAirAlong_kg = 0.011;
+constexpr double kDecades = 9.2;                                         // ln 10^4
+constexpr double kLeastSeen = 2.0;                                       // standard deviations
+constexpr double kMostAirAlong_kg = 0.011, kMostAirAlong_masses = 10.0;  // the latter where no mass is stated
 constexpr double kDragAndWheelOdds = 0.05;  // two causes that have nothing to do with one another
 
 /// Whether the inertia of a fit is certainly larger than that of air.
-bool turns_a_wheel(const MotionFit& fit) {
+bool turns_a_wheel(const TrackSet& set, const MotionFit& fit) {
   const std::size_t g = fit.layout->first_of(effect_index(ids::rotational_inertia));
   if (g == fit.layout->globals().size()) return false;
   const auto at = static_cast<Eigen::Index>(g);
   const double sd_kg = std::sqrt(std::max(0.0, common_covariance(fit)(at, at)));
-  return fit.at.global[at] - kLeastSeen * sd_kg > kMostAirAlong_kg;
+  const double most_kg = set.mass_assumed ? kMostAirAlong_masses * lightest_kg(set) : kMostAirAlong_kg;
+  return fit.at.global[at] - kLeastSeen * sd_kg > most_kg;
 }
 
 }  // namespace
@@ -34,14 +35,14 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
   };
   if (!set.through_air) return 0.0;
   if (has_law(slot_of(ids::quadratic_drag)) || has_law(slot_of(ids::power_law_drag)))
-    return turns_a_wheel(fit) ? std::log(kDragAndWheelOdds) : 0.0;
+    return turns_a_wheel(set, fit) ? std::log(kDragAndWheelOdds) : 0.0;
   // A drag of some other kind, or the air that moves along with what it does not brake.
   for (const EffectSlot slot :
        {slot_of(ids::eddy_rolloff), slot_of(ids::damping_gradient), slot_of(ids::configuration_drag),
         slot_of(ids::direction_dependent_drag), slot_of(ids::clip_scatter)}) {
     if (has_law(slot)) return std::log(kViscousOdds);
   }
-  if (has_law(slot_of(ids::rotational_inertia)) && !turns_a_wheel(fit)) return std::log(kViscousOdds);
+  if (has_law(slot_of(ids::rotational_inertia)) && !turns_a_wheel(set, fit)) return std::log(kViscousOdds);
   const double sd = std::sqrt(std::max(0.0, common_covariance(fit)(0, 0)));
   const double z = sd > 0.0 ? fit.at.global[0] / sd : 0.0;
   const double without =
@@ -49,7 +50,8 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit) {
   return std::log((z > 0.0 ? kViscousOdds : kDrivingOdds) + without);
 }
 
-bool too_strong_for_air(const Comparison& comparison) {
+bool too_strong_for_air(const TrackSet& set, const Comparison& comparison) {
+  if (set.mass_assumed) return false;
   constexpr double kMostOfAir_kg_m = 0.6;
   const EffectSlot slot = slot_of(ids::quadratic_drag);
   for (const MotionFit& fit : comparison.fits) {

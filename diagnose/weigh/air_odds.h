@@ -15,6 +15,8 @@
 ///
 ///     8/3 rho r³ = 11 g     for r = 0.15 m and rho = 1.2 kg/m³.
 ///
+/// or, where no mass is stated, ten times the mass (fit_model.cpp).
+///
 /// Such an inertia beside a quadratic drag is a second cause (odds of 1/20), not the air of that drag.
 ///
 /// In an explanation with a quadratic drag, that drag takes the place of K (fit/drag_of_air.h). Explanations with
@@ -30,8 +32,9 @@ namespace glidelab::diagnose {
 double log_odds_without_air(const TrackSet& set, const MotionFit& fit);
 
 /// Whether the quadratic drag alone asks for more than air can do to a square metre: 0.6 kg/m, half the density of air
-/// times the area. Then a liquid or a magnet brakes.
-bool too_strong_for_air(const Comparison& comparison);
+/// times the area. Then a liquid or a magnet brakes. Without a stated mass the drag in kg/m is not known, and nothing
+/// tells.
+bool too_strong_for_air(const TrackSet& set, const Comparison& comparison);
 
 /// Sets Comparison::air_odds.
 void set_air_odds(const TrackSet& set, Comparison& comparison);

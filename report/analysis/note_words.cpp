@@ -134,6 +134,12 @@ struct AnalysisSentence {
         both ? mass + " and " + level + " are" : (of.mass_kg ? mass : level) + " is", both ? "them" : "it",
         both ? "--mass, --incline" : (of.mass_kg ? "--mass" : "--incline"), both ? "them" : "it");
   }
+  std::string operator()(const core::MayBeAFall& of) const {
+    return fmt::format(
+        "{} positions are taken for those in a hand, and it speeds up there by {:.2g} m/s², as in a fall: if it falls, "
+        "state an inclination of 90° (--incline 90)",
+        of.positions, of.a_m_s2);
+  }
   std::string operator()(const core::AssumedMass&) const {
     return "no mass is stated: 1 kg is assumed (K/m, µ and α do not depend on it)";
   }

@@ -147,7 +147,8 @@ std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
     const std::string named = parameter_text(parameter.key, parameter.value, parameter.sd);
     return named.substr(0, named.find(" = ")) + " not determined";
   }
-  return parameter_text(parameter.key, parameter.value, parameter.sd);
+  const std::string text = parameter_text(parameter.key, parameter.value, parameter.sd);
+  return parameter.at_end ? text + " (at the end of the range that is searched)" : text;
 }
 
 std::string interval_text(const std::optional<diagnose::GapInterval>& interval) {

@@ -17,6 +17,7 @@ Json parameters_json(const std::vector<diagnose::DiagnosedParameter>& parameters
     } else if (!parameter.why) {
       put(value, "value", parameter.value);
       put(value, "sd", parameter.sd);
+      if (parameter.at_end) value["at_end"] = true;
     } else {
       put(value, "value", std::optional<double>(), core::why_words(parameter.why));
       value["sd"] = nullptr;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "base/math/angles.h"
+#include "core/experiment/local_gravity.h"
 #include "core/math/quantile.h"
 #include "core/motion/free/motion_events.h"
 
@@ -115,6 +117,8 @@ constexpr std::size_t kLeastStretchPoints = 8;
 constexpr double kLeastShareAlong =
     0.05;  // of the points against the launch: below that, motion along it does not count
 constexpr double kLeastOfLongest = 0.574;  // of the longest: 4^(-2/5), see the header
+constexpr double kFall_rad = 80.0 * base::kRadPerDegree;
+constexpr double kMostGravity_m_s2 = 1.02 * kStandardGravity_m_s2;  // at any place, and a scale that is off by 1 %
 
 /// The direction of every point, 0 at rest. Motion that is stated to be free is not rest: it continues the adjacent
 /// motion.
@@ -141,6 +145,9 @@ class Finder {
         pilot_(first_smoothing(motion)),
         runs_(find_runs(motion, pilot_)),
         direction_(directions(runs_, setup)),
+        falling_(motion.forced || std::abs(setup.incline_rad) < kFall_rad ? 0
+                 : setup.incline_rad > 0.0                                ? 1
+                                                                          : -1),
         n_(motion.t_s.size()) {}
 
   FreeMotion find() {
@@ -194,6 +201,10 @@ class Finder {
       if (near_time(runs_.rest_edges_s, motion_.t_s[i])) {
         low = std::min(low, 0.0);
         high = std::max(high, 0.0);
+      }
+      if (direction == falling_) {  // gravity less any drag
+        low = std::min(low, direction > 0 ? 0.0 : -kMostGravity_m_s2);
+        high = std::max(high, direction > 0 ? kMostGravity_m_s2 : 0.0);
       }
       const double tolerance = own.tolerance(pilot_.sd_a_m_s2[i]);
       handled[i] = pilot_.a_m_s2[i] < low - tolerance || pilot_.a_m_s2[i] > high + tolerance;
@@ -304,6 +315,7 @@ class Finder {
   const Pilot pilot_;
   const MotionRuns runs_;
   const std::vector<int> direction_;  // of every point; 0 at rest
+  const int falling_;                 // the direction in which the body falls; 0 on a track
   const std::size_t n_;
   std::vector<LeftOut> reason_;
 };

@@ -8,7 +8,9 @@
 ///    taken on which most points agree (candidates: lines through parts of the motion that are contiguous in time). A
 ///    point is not free if its a is off that line by more than a quarter of the line's own size AND by more than the
 ///    noise and the common scatter of the points allow (five standard deviations). Before the first free stretch this
-///    is the hand, later a stop. Smaller deviations are left in: they are physics, not handling.
+///    is the hand, later a stop. Smaller deviations are left in: they are physics, not handling. In a fall (a stated
+///    inclination of 80 degrees or more) every acceleration between 0 and g is: it speeds up towards a terminal
+///    velocity, and where the drag grows with the square of the speed no line holds for all of it.
 ///  - A stretch of duration T determines its acceleration with a standard deviation proportional to T^(-5/2). A stretch
 ///    whose standard deviation is four times that of the longest of its direction (T below 0.57 of it) is left out:
 ///    least squares gives all points the same weight, so its points would add noise and no information.

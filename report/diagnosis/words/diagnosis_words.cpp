@@ -140,6 +140,20 @@ struct Sentence {
         "only in the inclination (frame_rate_error, scale_error, direction_asymmetry) cannot be seen there.",
         ups(of.groups), of.groups.size() > 1 ? "have" : "has");
   }
+  std::string operator()(const diagnose::SuspectedFall& of) const {
+    return fmt::format(
+        "{} positions are taken for those in a hand, and the body speeds up there by {:.2g} m/s², as in a fall. If it "
+        "falls, state an inclination of 90° (--incline 90): nothing else here holds then.",
+        of.found.positions, of.found.a_m_s2);
+  }
+  std::string operator()(const diagnose::OneOrigin&) const {
+    return "Positions of all folders are taken to count from one origin. If they do not, friction, cables and bumpers "
+           "at a place cannot be found: diagnose the folders one by one.";
+  }
+  std::string operator()(const diagnose::NoMassStated&) const {
+    return "No mass is stated, and 1 kg is assumed. K/m, µ, α and terminal velocities do not depend on it; sizes in N, "
+           "N/m, kg/m or kg are for each kilogram of the true mass.";
+  }
   std::string operator()(const diagnose::OnlyFalls&) const {
     return "The motions are falls, with an inclination of 80 degrees or more: there is almost no normal force, and µ "
            "is not determined. It is held at 0, and an inclination without incline_sd_deg counts as known to 1 degree.";

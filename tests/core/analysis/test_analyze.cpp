@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
 
 #include "base/errors.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
 #include "tests/temp_dir.h"
 
@@ -178,4 +182,51 @@ TEST_CASE("a file alone with a recorded force needs the mass that the force acce
   core::AnalysisOptions stated;
   stated.bare.mass_kg = 2.0;
   CHECK(analyze({temp / "driven.csv"}, stated).clips.at(0).forced);
+}
+
+TEST_CASE("x of a fall is counted downwards, but not against a recorded force or a stated launch") {
+  const tests::TempDir temp;
+  const auto first_step = [&](const std::string& header, const std::string& launched,
+                              const std::function<double(double)>& x) {
+    std::ofstream out(temp / "track.csv");
+    out << header << "\n";
+    for (int i = 0; i < 80; ++i) {
+      const double t = 0.01 * i;
+      out << fmt::format("{},{}{}\n", t, x(t), header == "t_s,x_m" ? "" : ",1.5");
+    }
+    out.close();
+    std::ofstream toml(temp / "experiment.toml");
+    toml << "format = 1\nname = \"fall\"\n[[clip]]\nname = \"a\"\ntrack = \"track.csv\"\nmass_kg = 0.1\n"
+         << "incline_deg = 90\nlaunched = \"" << launched << "\"\n";
+    toml.close();
+    const auto results = analyze({temp.path()}, {});
+    return *results.clips[0].motion[20].measured_m - *results.clips[0].motion[0].measured_m;
+  };
+  const auto up = [](double t) { return -0.5 * 9.81 * t * t; };
+  CHECK(first_step("t_s,x_m", "released", up) > 0.0);
+  CHECK(first_step("t_s,x_m", "released", [&](double t) { return -up(t); }) > 0.0);
+  CHECK(first_step("t_s,x_m", "up", up) < 0.0);                // thrown, and never seen to come back
+  CHECK(first_step("t_s,x_m,force_n", "released", up) < 0.0);  // lifted by a force
+}
+
+TEST_CASE("a table that speeds up like a fall is suspected to be one where nobody states an inclination") {
+  const tests::TempDir temp;
+  const auto suspected = [&](double a_m_s2, double until_s, std::optional<double> incline_deg) {
+    std::ofstream out(temp / "table.csv");
+    out << "Time (s),Position (m)\n";
+    const double v = a_m_s2 * until_s;
+    for (int i = 0; i < 150; ++i) {  // it speeds up for some time, and keeps its speed
+      const double t = 0.01 * i, s = t - until_s;
+      out << fmt::format("{},{:.6f}\n", t, s < 0.0 ? 0.5 * a_m_s2 * t * t : 0.5 * v * until_s + v * s);
+    }
+    out.close();
+    core::AnalysisOptions options;
+    options.bare.incline_deg = incline_deg;
+    const auto results = analyze({temp / "table.csv"}, options);
+    return tests::note_of<core::MayBeAFall>(results.configurations[0].notes) != nullptr;
+  };
+  CHECK(suspected(7.0, 0.3, {}));
+  CHECK_FALSE(suspected(7.0, 0.3, 0.0));   // somebody says that the track is level
+  CHECK_FALSE(suspected(1.5, 0.3, {}));    // a gentle hand
+  CHECK_FALSE(suspected(15.0, 0.15, {}));  // a push: nothing falls like this
 }

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 
 #include "base/errors.h"
 #include "tests/catch.h"
@@ -301,6 +303,24 @@ TEST_CASE("decimal commas between single blanks are not thousands") {
   CHECK(track.x_m.front() < 130.0);
   const core::TrackData mm = Made("t (s) x (mm)\n" + rows("4{0},5 12{0},5\n")).read();
   CHECK(mm.x_m[3] - mm.x_m[2] == Approx(1e-3).epsilon(1e-9));
+}
+
+TEST_CASE("speeds without their sign are refused where the motion turns, and not where it rests or only slows down") {
+  const auto read = [](const std::function<double(double)>& v) {
+    std::string text = "t (s),speed (m/s)\n";
+    for (int i = 0; i < 100; ++i) text += fmt::format("{:.2f},{:.6f}\n", 0.01 * i, v(0.01 * i));
+    const Made made(text);
+    return core::import_track(made.file, "", {}, core::SpeedsAlone::taken);
+  };
+  CHECK_THROWS_WITH(read([](double t) { return std::abs(t - 0.5); }),
+                    Contains("speeds without sign") && Contains("touch 0 at 0.5 s"));
+  CHECK_NOTHROW(read([](double t) { return t - 0.5; }));
+  CHECK_NOTHROW(read([](double t) { return t; }));
+  // Launched up fast, it comes back at a terminal velocity of a tenth of that.
+  CHECK_THROWS_WITH(read([](double t) { return std::abs(0.2 - 2.2 * std::exp(-4.0 * t)); }),
+                    Contains("speeds without sign"));
+  CHECK_NOTHROW(read([](double t) { return std::max(0.0, 0.8 - t); }));             // it comes to rest
+  CHECK_NOTHROW(read([](double t) { return std::max({0.0, 0.3 - t, t - 0.6}); }));  // and is pushed on later
 }
 
 TEST_CASE("a table with a column besides speeds is not refused as one of speeds") {

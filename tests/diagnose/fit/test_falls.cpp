@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <vector>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/motion_fit.h"
@@ -9,8 +13,10 @@
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
+#include "tests/temp_dir.h"
 
 using namespace glidelab;
+using Catch::Matchers::Contains;
 
 namespace {
 
@@ -105,4 +111,41 @@ TEST_CASE(
     };
     CHECK(std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), falls_only));
   }
+}
+
+TEST_CASE("a drag of falls whose mass nobody states is found for each kilogram, however light they are") {
+  // Three coffee filters of 1 g and 0.0031 kg/m: 3.1 kg/m for each kilogram, more than air can do to 1 kg.
+  std::vector<tests::MadeLaunch> launches(3, tests::MadeLaunch{1.0, 90.0, 0.0, 0.3});
+  tests::MadeEffect drag;
+  drag.force = [](double, double, double v, double) { return -1e3 * kC_kg_m * v * std::abs(v); };
+  tests::MadeExperiment made =
+      tests::made_experiment(launches, drag, 21, 5e-4, 36, 50.0, 0.0, 0.0, {.k_n_s_m = 0.0, .mu = 0.0});
+  for (core::ClipSetup& setup : made.setups) setup.mass_assumed = true;
+  const diagnose::Diagnosis diagnosis =
+      diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+  const auto has_note = std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const diagnose::Note& note) {
+    return std::holds_alternative<diagnose::NoMassStated>(note);
+  });
+  CHECK(has_note);
+  REQUIRE_FALSE(diagnosis.effects.empty());
+  CHECK(diagnosis.effects.front().id == "quadratic_drag");
+  const diagnose::DiagnosedParameter& c = diagnosis.effects.front().parameters.front();
+  CHECK(std::abs(c.value - 1e3 * kC_kg_m) < 3.0 * c.sd);
+  CHECK(c.sd < 0.1 * 1e3 * kC_kg_m);
+}
+
+TEST_CASE("a height of a table needs the inclination before it is diagnosed") {
+  const tests::TempDir temp;
+  std::ofstream out(temp / "cups.csv");
+  out << "t (s),y (m)\n";
+  for (int i = 0; i < 60; ++i) {
+    const double t = i / 60.0;
+    out << fmt::format("{:.4f},{:.4f}\n", t, 1.5 - 1.3 * 1.3 / 9.81 * std::log(std::cosh(9.81 * t / 1.3)));
+  }
+  out.close();
+  CHECK_THROWS_WITH(diagnose::diagnose({temp / "cups.csv"}, diagnose::DiagnoseOptions{}),
+                    Contains("--incline") && Contains("\"y (m)\", a height") && Contains("90 for a fall"));
+  diagnose::DiagnoseOptions stated;
+  stated.bare.incline_deg = 90.0;
+  CHECK_NOTHROW(diagnose::diagnose({temp / "cups.csv"}, stated));
 }

@@ -60,6 +60,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::AssumedStatements{{}, true},
        "an inclination of 0° is assumed, because neither the file nor an option states it (--incline)"},
       {core::AssumedMass{}, "1 kg is assumed"},
+      {core::MayBeAFall{26, 5.61}, "26 positions are taken for those in a hand, and it speeds up there by 5.6 m/s²"},
       {core::OutlyingView{"view-2.png", 2.0, true},
        "view-2.png departs from the fitted camera by 2 px and is left out"},
       {core::OutlyingView{"view-2.png", 2.0, false}, "kept, because fewer"},

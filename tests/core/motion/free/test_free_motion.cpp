@@ -1,6 +1,8 @@
 #include "core/motion/free/free_motion.h"
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 #include "core/motion/analyze_motion.h"
 #include "tests/catch.h"
@@ -267,4 +269,43 @@ TEST_CASE("what is stated to be free motion is neither at rest nor in a hand") {
   CHECK(of(0.0, 1.6) == 0);
   CHECK(of(0.0, {}) == 0);
   CHECK(of({}, 1.6) > 40);  // of the start nothing is stated
+}
+
+TEST_CASE("a fall from rest towards its terminal velocity is free from the start, in either direction of x") {
+  constexpr double kTerminal_m_s = 1.3;  // with a drag in proportion to the square of the speed, as of a coffee filter
+  for (const int direction : {1, -1}) {
+    core::TrackData track;
+    track.frame_rate_hz = 60.0;
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> noise(0.0, 5e-4);
+    for (std::size_t frame = 0; frame < 73; ++frame) {
+      const double t = static_cast<double>(frame) / 60.0;
+      const double x =
+          kTerminal_m_s * kTerminal_m_s / tests::kGravity * std::log(std::cosh(tests::kGravity * t / kTerminal_m_s));
+      track.t_s.push_back(t);
+      track.x_m.push_back(direction * x + noise(random));
+      track.frame.push_back(frame);
+    }
+    track.frame_t_s = track.t_s;
+    const auto clip =
+        core::analyze_motion(tests::clip_setup(core::Launched::unknown, direction * 90.0, 0.002), track, {});
+    CHECK(count(clip, LeftOut::hand) == 0);
+    CHECK(count(clip, LeftOut::stop) == 0);
+    REQUIRE(clip.stretches.size() == 1);
+    CHECK(clip.stretches[0].from_s < 0.1);
+    // The same motion on a track that nobody calls a fall: what speeds up by g there is a hand.
+    const auto on_track = core::analyze_motion(tests::clip_setup(core::Launched::unknown, 0.0, 0.002), track, {});
+    CHECK(count(on_track, LeftOut::hand) > 15);
+  }
+}
+
+TEST_CASE("a fall that ends on the floor has its impact left out") {
+  SimulatedMotion motion;
+  motion.slide({90.0, 0.0, 0.3}, 1.4, 2.0, 0.5);  // released at 0, floor at 2 m, rebounds with half the speed
+  const auto clip = analyze(tests::clip_setup(core::Launched::released, 90.0), motion, {240.0, 1.0, 1e-4});
+  const double floor_s = 0.64;  // sqrt(2 * 2 m / g) = 0.639 s, and a little more with drag
+  CHECK(at(clip, 0.3) == LeftOut::used);
+  REQUIRE_FALSE(clip.stretches.empty());
+  CHECK(clip.stretches[0].to_s < floor_s + 0.03);
+  check_lines(clip, {90.0, 0.0, 0.3});
 }

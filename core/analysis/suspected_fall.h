@@ -1,0 +1,15 @@
+/// Falls of which nobody says that they are.
+#pragma once
+
+#include <optional>
+
+#include "core/result/analysis_note.h"
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+/// The longest run of positions taken for those in a hand, if the body speeds up there as it falls: in its first third
+/// by 0.5 g to 1.05 g, from rest or nearly so.
+std::optional<MayBeAFall> suspected_fall(const ClipResult& clip);
+
+}  // namespace glidelab::core
