@@ -206,7 +206,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
       const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      rows.push_back({configuration_name(results, c), std::string(name.symbol),
+      rows.push_back({configuration_name(results, c), with_unit(name.symbol, name.unit),
                       base::value_text(quantity->estimate->value - correction, sd), base::error_text(-correction, sd)});
     }
     for (const core::Note& note : c.notes) {
