@@ -66,8 +66,9 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
     throw base::NotMet("there is nothing to count: no twin yields K/m, mu or alpha with a known true value");
   }
   if (!certificate.holds()) {
-    throw base::NotMet(fmt::format("the stated intervals hold the truth less often than they say; {} has the table",
-                                   (out / "report.html").string()));
+    throw base::NotMet(
+        fmt::format("the stated intervals contain the true value less often than stated; {} has the table",
+                    (out / "report.html").string()));
   }
 }
 

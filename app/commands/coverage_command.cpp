@@ -89,10 +89,10 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
     failing.insert(one.row.configuration + "\n" + one.row.estimator + "\n" + one.row.quantity);
   }
   if (!failing.empty()) {
-    throw base::NotMet(
-        fmt::format("{} of the stated intervals hold the truth less often than they say (exact binomial test at 1 %, "
-                    "corrected for the number of intervals and levels); the table is in {}",
-                    failing.size(), (out / "report.html").string()));
+    throw base::NotMet(fmt::format(
+        "{} of the stated intervals contain the true value less often than stated (exact binomial test at 1 %, "
+        "corrected for the number of intervals and levels); the table is in {}",
+        failing.size(), (out / "report.html").string()));
   }
 }
 
@@ -101,7 +101,8 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
 void add_coverage(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CoverageCommand>();
   CLI::App* command = app.add_subcommand(
-      "coverage", "Analyse many replicates of a scenario's motions, and count how often the intervals hold the truth");
+      "coverage",
+      "Analyse many replicates of a scenario's motions, and count how often the intervals contain the true value");
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
       ->type_name("FILE")
       ->required();

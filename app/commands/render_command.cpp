@@ -73,7 +73,7 @@ void render_command(const RenderCommandOptions& options) {
 void add_render(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<RenderCommandOptions>();
   CLI::App* command = app.add_subcommand(
-      "render", "Film a scenario: write an experiment folder as a camera would, and the truth beside it (DIR.truth)");
+      "render", "Film a scenario: write an experiment folder as a camera would, and the truth next to it (DIR.truth)");
   command->footer(
       "DIR and DIR.truth are replaced as a whole if they hold only what render wrote there. If they hold anything "
       "else, or anything was changed, nothing is touched and the exit status is 1.");
@@ -82,7 +82,7 @@ void add_render(CLI::App& app, Command& chosen) {
       ->required();
   command->add_flag("--ideal", options->ideal,
                     "Render sharp frames without noise or distortion, and write the marker's centre in each of them "
-                    "beside the truth");
+                    "next to the truth");
   add_common_options(*command, options->common, "glidelab-out/render-<name of the scenario file>",
                      "Seed of the camera's noise; default: the scenario's");
   command->callback([options, &chosen] { chosen = [options] { render_command(*options); }; });

@@ -58,7 +58,7 @@ std::filesystem::path named_folder(const CommonOptions& options, std::string_vie
 std::filesystem::path output_folder(const CommonOptions& options, std::string_view command,
                                     const std::filesystem::path& input);
 
-/// "name.truth" beside "name".
+/// "name.truth" next to "name".
 std::filesystem::path truth_beside(const std::filesystem::path& experiment);
 
 /// InputError if the experiment folder or its truth contains anything that `render` did not write or that has since
@@ -70,16 +70,16 @@ void check_replaceable(const std::filesystem::path& experiment, const std::files
 void check_own_file(const std::filesystem::path& file, const std::string& option, std::string_view head);
 
 /// EnvironmentError if the folder exists and cannot be written into, or if it is a mount point: results are written
-/// beside it and renamed, which works within one file system only.
+/// next to it and renamed, which works within one file system only.
 void check_writable(const std::filesystem::path& folder);
 
-/// The same for a file that is written beside its final name: its folder must exist and be writable.
+/// The same for a file that is written next to its final name: its folder must exist and be writable.
 void check_file_writable(const std::filesystem::path& file);
 
 /// For CLI11, which reads -1 as the largest unsigned number: why the text is not a whole number; empty if it is one.
 std::string check_whole_number(const std::string& text);
 
-/// Writes a file beside its final name and renames it: if that fails, the old file stays.
+/// Writes a file next to its final name and renames it: if that fails, the old file stays.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
 /// For CLI11, whose own checks accept "nan": why the text is not a finite number above 0; empty if it is one.

@@ -64,7 +64,7 @@ std::vector<OwnFile> own_files(const std::filesystem::path& dir);
 
 /// Outputs that appear whole or not at all.
 ///
-/// A command writes everything into a staging folder beside the final one (on the same file system, so that rename(2)
+/// A command writes everything into a staging folder next to the final one (on the same file system, so that rename(2)
 /// is atomic) and publishes it once everything has succeeded. An exception removes the staging folder, and the folders
 /// above it that it made and that are empty, and leaves the previous output as it was.
 class StagedOutput {

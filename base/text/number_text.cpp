@@ -54,7 +54,8 @@ std::string digits_text(double value, int digits) {
 
 std::string value_text(double value, double sd) {
   if (!std::isfinite(value) || !usable(sd)) return number_text(value, 6);
-  return fmt::format("{:.{}f}", value, decimals_of(sd));
+  const std::string text = fmt::format("{:.{}f}", value, decimals_of(sd));
+  return text.starts_with('-') && text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
 }
 
 std::string sd_text(double sd) {

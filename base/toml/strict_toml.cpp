@@ -122,7 +122,7 @@ std::string TomlTable::text(std::string_view key) const {
   const toml::node* found = node_->find(key);
   const auto* value = found == nullptr ? nullptr : found->as_string();
   if (value != nullptr && !value->get().empty()) return value->get();
-  node_->reject(key, found, "a text");
+  node_->reject(key, found, "a string");
   return {};
 }
 
@@ -208,7 +208,7 @@ std::vector<std::pair<std::string, TomlScalar>> TomlTable::scalars() const {
     } else if (const std::optional<double> number = as_number(*found); number && std::isfinite(*number)) {
       all.emplace_back(key, *number);
     } else {
-      node_->reject(key, found, "a finite number, a text, true or false");
+      node_->reject(key, found, "a finite number, a string, true or false");
     }
   }
   return all;

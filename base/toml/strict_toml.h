@@ -21,7 +21,7 @@
 
 namespace glidelab::base {
 
-/// A single value of a TOML file: a number, a switch or a text.
+/// A single value of a TOML file: a number, a switch or a string.
 using TomlScalar = std::variant<double, bool, std::string>;
 
 /// The allowed values, and their description for messages. Numbers that are not finite are never allowed.

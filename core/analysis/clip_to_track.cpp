@@ -262,7 +262,7 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
       results.tracks[i] =
           read_track(clip.track, downhill, clip.column, clip.speeds_alone ? SpeedsAlone::taken : SpeedsAlone::refused);
       if (clip.mass_assumed && !results.tracks[i].force_n.empty()) {
-        throw base::InputError(base::Issue{clip.track.string(), 0, "--mass", "none, beside a recorded force (force_n)",
+        throw base::InputError(base::Issue{clip.track.string(), 0, "--mass", "none, with a recorded force (force_n)",
                                            "the moving mass in kilograms: the force accelerates it by F/m"});
       }
     } else {

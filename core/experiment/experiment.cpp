@@ -219,7 +219,7 @@ void check_sections(const Experiment& experiment, const TomlTable& root) {
   }
   if (experiment.calibration && experiment.calibration->planes.empty() && !root.table("calibration").has("plane") &&
       !stated_by_all_groups(experiment, true, [](const GroupSetup& group) { return !group.planes.empty(); })) {
-    root.table("calibration").reject("plane", "nothing", "a text, the view with the pattern in the plane of motion");
+    root.table("calibration").reject("plane", "nothing", "a string, the view with the pattern in the plane of motion");
   }
 }
 

@@ -348,7 +348,7 @@ using AnyNote =
 /// wherever results are used.
 ///
 /// diagnose::Note repeats these declarations rather than share a template with this one. A template would need an
-/// `extern template` beside every variant. Where that is forgotten, the code is compiled everywhere again and nothing
+/// `extern template` next to every variant. Where that is forgotten, the code is compiled everywhere again and nothing
 /// says so; a definition that is forgotten here does not link.
 struct Note : AnyNote {
   using AnyNote::AnyNote;

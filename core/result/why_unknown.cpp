@@ -14,7 +14,7 @@ struct ReasonWords {
   std::string operator()(const unknown::NoLine&) const { return "no line: neither direction has enough usable points"; }
   std::string operator()(const unknown::NoDownhillLine&) const { return "no line for v > 0"; }
   std::string operator()(const unknown::NotBothLines& of) const {
-    return fmt::format("no line for {}: friction and slope can be told apart only with both directions",
+    return fmt::format("no line for {}, and only both directions tell friction from slope",
                        of.minus && of.plus ? "v < 0 and none for v > 0"
                        : of.minus          ? "v < 0"
                                            : "v > 0");
@@ -27,7 +27,8 @@ struct ReasonWords {
     return fmt::format("K/m{} is not above zero by more than its uncertainty", of.of_line ? " for v > 0" : "");
   }
   std::string operator()(const unknown::InterceptNotPositive&) const {
-    return "a0 for v > 0 is not above zero by more than its uncertainty: no equilibrium at v > 0";
+    return "nothing drives the glider downhill: at v = 0 the line for v > 0 is not above zero by more than its "
+           "uncertainty";
   }
 
   std::string operator()(const unknown::NoFreeMotion&) const { return "no free motion"; }
@@ -69,7 +70,7 @@ struct ReasonWords {
     return "the drag is not viscous: it grows with the square of the speed";
   }
   std::string operator()(const unknown::KernelNotStated&) const {
-    return "a table says neither how wide the kernel was nor which stretch each line was fitted to";
+    return "a table states neither the bandwidth nor the stretch to which each line was fitted";
   }
 };
 

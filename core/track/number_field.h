@@ -6,7 +6,7 @@
 
 namespace glidelab::core {
 
-/// Whether a plain blank may stand between thousands. Beside commas between fields it may not: "40,5 123,5" are two
+/// Whether a plain blank may stand between thousands. Where commas separate the fields it may not: "40,5 123,5" are two
 /// numbers with decimal commas.
 enum class Thousands { with_blanks, without_plain_blanks };
 

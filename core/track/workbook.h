@@ -33,7 +33,7 @@ SheetText read_sheet(const std::filesystem::path& file);
 /// What a message says of dates or times of day where times should be.
 std::string dates_expectation();
 
-inline constexpr std::size_t kFewestSheetRows = 5;  ///< a few numbers beside each other may be settings
+inline constexpr std::size_t kFewestSheetRows = 5;  ///< a few numbers next to each other may be settings
 inline constexpr std::size_t kMostSheets = 1000;
 /// Of an unpacked part. XML of this size that is all small elements takes several hundred MiB while it is read.
 inline constexpr std::size_t kMostPartBytes = std::size_t{32} << 20;

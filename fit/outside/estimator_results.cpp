@@ -73,13 +73,13 @@ core::AnyReason reason_in(const json& configuration, const std::string& key, con
   const auto why = configuration.find("why");
   if (why == configuration.end()) return not_told;
   if (!why->is_object()) {
-    findings.add(where + "why", shown(*why), "an object with a text for each quantity that is null");
+    findings.add(where + "why", shown(*why), "an object with a string for each quantity that is null");
     return not_told;
   }
   const auto reason = why->find(key);
   if (reason == why->end()) return not_told;
   if (reason->is_string()) return core::unknown::Told{reason->get<std::string>()};
-  findings.add(where + "why." + key, shown(*reason), "a text");
+  findings.add(where + "why." + key, shown(*reason), "a string");
   return not_told;
 }
 

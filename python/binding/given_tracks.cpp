@@ -99,7 +99,7 @@ GivenTracks read_given(std::vector<GivenTrack> given) {
       issues.insert(issues.end(), error.issues().begin(), error.issues().end());
       continue;
     }
-    require(track.mass_kg || read.tracks.back().force_n.empty(), track, "mass_kg", "none, beside a recorded force",
+    require(track.mass_kg || read.tracks.back().force_n.empty(), track, "mass_kg", "none, with a recorded force",
             "the moving mass in kilograms: the force accelerates it by F/m", issues);
     if (!track.mass_kg) read.tracks.back().notes.emplace_back(core::AssumedMass{});
   }

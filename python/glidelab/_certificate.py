@@ -25,7 +25,7 @@ class CertifiedQuantity:
     asked, failed : int
         Values whose truth is known, and how many of these got no estimate.
     coverage : float or None
-        Share of the stated 95 % intervals that hold the truth; None where none was stated.
+        Share of the stated 95 % intervals that contain the true value; None where none was stated.
     coverage_interval95 : (float, float) or None
         What as many twins leave open of it.
     bias_sds : float or None
@@ -87,7 +87,7 @@ class CertifiedExplanation:
     twins : int
         How many follow it.
     coverage : float
-        Share of the stated 95 % intervals of K/m, mu and alpha that hold the truth in them.
+        Share of the stated 95 % intervals of K/m, mu and alpha that contain the true value in them.
     coverage_interval95 : (float, float)
         What as many twins leave open of it.
     """

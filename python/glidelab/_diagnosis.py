@@ -218,7 +218,7 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
 
     Notes
     -----
-    docs/guide/diagnosis.md says how explanations are weighed, and how far to trust the verdict.
+    docs/guide/diagnosis.md says how far to trust the verdict, docs/reference/weighing.md how explanations are weighed.
     """
     stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
                               "force_n": force_n}

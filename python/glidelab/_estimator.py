@@ -1,4 +1,4 @@
-"""An estimator of your own, judged beside the built-in ones on the same motions."""
+"""An estimator of your own, judged next to the built-in ones on the same motions."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Judged:
     stated : int
         Answers with a standard deviation.
     covered : float or None
-        The part of these whose 95 % interval holds the truth.
+        The part of these whose 95 % interval contains the true value.
     """
 
     configuration: str
@@ -173,7 +173,7 @@ class _TooLong(BaseException):
 
 
 def _number(said: Any, key: str) -> float:
-    """A finite number, NaN or an infinity; _Wrong if it is not a number; a text of digits is not one."""
+    """A finite number, NaN or an infinity; _Wrong if it is not a number; a string of digits is not one."""
     if not isinstance(said, (str, bytes, bool)):
         try:
             return float(said)

@@ -122,7 +122,7 @@ class Rendered:
 
 def render_folder(scenario: Scenario, folder: PathLike, *, seed: Optional[int] = None, ideal: bool = False,
                   jobs: Optional[int] = None, progress: Progress = None) -> Rendered:
-    """Films a scenario: writes an experiment folder as a camera would, and the truth beside it.
+    """Films a scenario: writes an experiment folder as a camera would, and the truth next to it.
 
     Parameters
     ----------

@@ -156,19 +156,19 @@ def _megapixels(most: Optional[float]) -> Optional[float]:
 def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Optional[float], *, column: str = "",
                  mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
                  masses_kg: Optional[Sequence[float]] = None) -> _glidelab.FileOptions:
-    """What is stated beside files with a track; a folder's experiment.toml says the same of its clips."""
+    """What is stated along with files with a track; a folder's experiment.toml says the same of its clips."""
     steepest_deg = 90.0  # a fall
     given = {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg, "runs": runs,
              "masses_kg": masses_kg}
     for key, value in given.items():
         if value is not None and any(os.path.isdir(path) for path in paths):
-            raise input_error(key, repr(value), "nothing beside a folder: its experiment.toml states it")
+            raise input_error(key, repr(value), "none for a folder: its experiment.toml states it")
     if runs is not None and column:
-        raise input_error("column", repr(column), "nothing beside runs, each of which has a column of its own")
+        raise input_error("column", repr(column), "none with runs, each of which has a column of its own")
     if masses_kg is not None and runs is None:
-        raise input_error("masses_kg", repr(masses_kg), "runs= beside it: which of the file's runs they belong to")
+        raise input_error("masses_kg", repr(masses_kg), "runs= as well: which of the file's runs they belong to")
     if masses_kg is not None and mass_kg is not None:
-        raise input_error("mass_kg", repr(mass_kg), "nothing beside masses_kg")
+        raise input_error("mass_kg", repr(mass_kg), "none with masses_kg")
     if incline_deg is not None and not abs(incline_deg) <= steepest_deg:  # NaN is not
         raise input_error("incline_deg", f"{incline_deg:g}", "degrees, from -90 to 90")
     return _glidelab.FileOptions(column, None if mass_kg is None else _positive("mass_kg", mass_kg),

@@ -1,4 +1,4 @@
-"""An estimator that is a program of its own, judged beside the built-in ones (docs/reference/own-estimator.md)."""
+"""An estimator that is a program of its own, judged next to the built-in ones (docs/reference/own-estimator.md)."""
 
 from __future__ import annotations
 
@@ -65,9 +65,9 @@ def given_command(command: Optional[str], name: str, seconds: float,
         raise input_error("estimator_megabytes", repr(megabytes), f"at most {_MOST_MEGABYTES:g}")
     if command is None:
         if name:
-            raise input_error("estimator_name", repr(name), "estimator_command= beside it")
+            raise input_error("estimator_name", repr(name), "estimator_command= as well")
         return None
     if not isinstance(command, str):
         raise input_error("estimator_command", f"a {type(command).__name__}",
-                          "a text such as \"python3 mine.py {folder} {out}\"")
+                          "a string such as \"python3 mine.py {folder} {out}\"")
     return _glidelab.EstimatorCommand(command, name, float(seconds), float(megabytes))

@@ -120,17 +120,15 @@ class Quantity:
     def __str__(self) -> str:
         if self.value is None:
             return "not determined"
-        return rounded(self.value, self.sd) + (f" {self.unit}" if self.unit else "")
+        return rounded(self.value, self.sd) + ("°" if self.unit == "°" else f" {self.unit}" if self.unit else "")
 
 
 def rounded(value: float, sd: Optional[float]) -> str:
-    """"2.779 ± 0.006": the standard deviation with two digits if it begins with 1, else one; the value to its place."""
+    """"2.7791 ± 0.0061": the standard deviation with two digits, the value to its place, as on the program's pages."""
     if sd is None or not sd > 0.0 or not math.isfinite(sd):
         return f"{value:.6g}"
-    exponent = math.floor(math.log10(sd))
-    if sd / 10.0**exponent < 1.95:
-        exponent -= 1
-    places = max(0, -exponent)
+    half_a_unit = 1.0 + 0.5e-2  # 0.0996 becomes 0.10
+    places = max(0, 1 - math.floor(math.log10(sd * half_a_unit)))
     return f"{value:.{places}f} ± {sd:.{places}f}"
 
 

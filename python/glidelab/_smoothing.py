@@ -166,7 +166,7 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
     if smoother != "local-polynomial":
         return _smooth_by(smoother, t, x, bandwidth_s, order, kernel, noise_m, at_s, breaks_s)
     if breaks_s is not None:
-        raise input_error("breaks_s", "times", 'nothing beside "local-polynomial", which knows of no breaks')
+        raise input_error("breaks_s", "times", 'none with "local-polynomial", which knows of no breaks')
     if bandwidth_s is None:
         raise input_error("bandwidth_s", "None", "a time in seconds above 0")
     if at_s is None:
@@ -175,7 +175,7 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
             return Smoothed(t, rows[0], rows[1], rows[2], None, None, None, bandwidth_s)
         return Smoothed(t, rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], bandwidth_s)
     if noise_m is not None:
-        raise input_error("noise_m", repr(noise_m), "nothing beside at_s: standard deviations are those at t_s")
+        raise input_error("noise_m", repr(noise_m), "none with at_s: standard deviations are those at t_s")
     at = vector("at_s", at_s)
     rows = _glidelab.smooth_at(t, x, at, bandwidth_s, order, kernel)
     return Smoothed(at, rows[0], rows[1], rows[2], None, None, None, bandwidth_s)
@@ -184,10 +184,10 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
 def _smooth_by(smoother: str, t: Vector, x: Vector, bandwidth_s: Optional[float], order: int, kernel: str,
                noise_m: Optional[float], at_s: Optional[ArrayLike], breaks_s: Optional[ArrayLike]) -> Smoothed:
     if bandwidth_s is not None:
-        raise input_error("bandwidth_s", repr(bandwidth_s), f'nothing beside "{smoother}", which finds its own strength')
+        raise input_error("bandwidth_s", repr(bandwidth_s), f'none with "{smoother}", which finds its own strength')
     if (order, kernel) != (3, "gaussian"):
         raise input_error("order" if order != 3 else "kernel", repr(order if order != 3 else kernel),
-                          f'nothing beside "{smoother}": they are of the local polynomial')
+                          f'the default with "{smoother}": others are for the local polynomial')
     at = None if at_s is None else vector("at_s", at_s)
     rows, like_s, method, time_s, noise, breaks, jump, factor = _glidelab.smooth_by(
         smoother, t, x, at, vector("breaks_s", [] if breaks_s is None else breaks_s), noise_m)

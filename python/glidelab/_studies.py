@@ -1,4 +1,4 @@
-"""validate() and coverage(): estimates beside the truth of a scenario."""
+"""validate() and coverage(): estimates compared with the truth of a scenario."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, n
 
 @dataclass(frozen=True)
 class Recovery:
-    """One recovered value beside its truth; None where there is none.
+    """One recovered value and its truth; None where there is none.
 
     Attributes
     ----------
@@ -153,7 +153,7 @@ def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, est
 
 @dataclass(frozen=True)
 class CoverageRow:
-    """How often the 95 % intervals of one quantity hold the truth.
+    """How often the 95 % intervals of one quantity contain the true value.
 
     Attributes
     ----------
@@ -162,7 +162,7 @@ class CoverageRow:
     truth, bias, sd, stated_sd : float or None
         The truth; mean error and standard deviation of the values; the root mean square of what was stated.
     determined, covered : int
-        Replicates with a value, and intervals that hold the truth.
+        Replicates with a value, and intervals that contain the true value.
     coverage : float or None
         Their ratio.
     interval95 : (float, float) or None
@@ -187,7 +187,7 @@ class CoverageRow:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Coverage(Result):
-    """How often stated intervals hold the truth.
+    """How often stated intervals contain the true value.
 
     Attributes
     ----------
@@ -228,7 +228,7 @@ class Coverage(Result):
                       fontsize=7)
         ax.invert_yaxis()
         ax.set_xlim(min([70.0, *(100.0 * (one.interval95 or (1.0,))[0] for one in counted)]), 100.0)
-        ax.set_xlabel("95 % intervals that hold the truth (%)")
+        ax.set_xlabel("95 % intervals that contain the true value (%)")
         return ax
 
     def _repr_html_(self) -> str:
@@ -249,7 +249,7 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
              estimator_command: Optional[str] = None, estimator_name: str = "",
              estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
              seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Coverage:
-    """Analyses many replicates of a scenario's motions, and counts how often the intervals hold the truth.
+    """Analyses many replicates of a scenario's motions, and counts how often the intervals contain the true value.
 
     Parameters
     ----------

@@ -90,7 +90,7 @@ class Requirement(Result):
         return html_table(header, rows) + html_plot(self.plot)
 
     def plot(self) -> list[Any]:
-        """The error of each candidate, with its standard deviation, beside the least one and the target's name.
+        """The error of each candidate, with its standard deviation, next to the least one and the target's name.
 
         Returns
         -------

@@ -45,7 +45,7 @@ def _value(value: object, path: str) -> str:
         return "{" + inside + "}"
     if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray)):
         return "[" + ", ".join(_value(one, f"{path}[{i}]") for i, one in enumerate(value)) + "]"
-    raise input_error(path, f"a value of type {type(value).__name__}", "a number, a switch, a text, a list or a dict",
+    raise input_error(path, f"a value of type {type(value).__name__}", "a number, a switch, a string, a list or a dict",
                       "scenario")
 
 

@@ -1,4 +1,4 @@
-/// A scenario rendered to an experiment folder, and its truth to the folder beside it.
+/// A scenario rendered to an experiment folder, and its truth to the folder next to it.
 #pragma once
 
 #include <cstdint>

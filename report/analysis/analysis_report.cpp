@@ -30,8 +30,7 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     const double sd = c.k_over_m_1_s.estimate->sd;
     if (rate > kLeastDoubtSds * sd) {
       text += fmt::format(
-          "drag proportional to the speed decelerates it at {} 1/s times v, so that it comes 63 % closer to its final "
-          "speed in {} s",
+          "drag proportional to the speed, K/m = {} 1/s, takes it 63 % of the way to its final speed in {} s",
           base::value_and_sd_text(rate, sd), base::number_text(1.0 / rate, 3));
     } else if (rate < -kLeastDoubtSds * sd) {
       text += fmt::format("K/m comes out as {} 1/s, below zero", base::value_and_sd_text(rate, sd));
@@ -93,6 +92,19 @@ std::string damping_sentence(const core::AnalysisResults& results) {
       base::number_text(mean, 4), base::number_text(100.0 * widest, 2));
 }
 
+/// That the law fits, if it has determined something that differs from zero.
+std::string fits_sentence(const core::AnalysisResults& results) {
+  for (const core::ConfigurationResult& c : results.configurations) {
+    for (const auto& [name, quantity] : quantities_of(c)) {
+      if (quantity->estimate && std::abs(quantity->estimate->value) > kLeastDoubtSds * quantity->estimate->sd) {
+        return "<p>Nothing in these clips contradicts the law (drag proportional to the speed, dry friction, "
+               "gravity).</p>\n";
+      }
+    }
+  }
+  return {};
+}
+
 /// Says so where not every line is straight; empty otherwise.
 std::string bent_lines_note(const core::AnalysisResults& results) {
   double worst = 1.0;
@@ -112,7 +124,7 @@ std::string meaning_of(const core::AnalysisResults& results) {
   std::string text;
   const std::vector<std::string> doubts = doubts_about(results);
   if (doubts.empty()) {
-    text += "<ul>\n";
+    text += fits_sentence(results) + "<ul>\n";
     for (const core::ConfigurationResult& c : results.configurations) text += sentence_of(results, c);
     text += "</ul>\n" + damping_sentence(results);
   } else {
@@ -180,11 +192,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
     rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), c.group,
                     quantity_text(c.k_over_m_1_s), quantity_text(c.mu), quantity_text(c.alpha_deg),
                     quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
-    for (const auto& [name, quantity] : quantities_of(c)) {
-      if (!quantity->estimate) {
-        reasons += fmt::format("{}: no {}: {}\n", printable(configuration_name(results, c)), name.symbol,
-                               printable(core::why_words(quantity->why)));
-      }
+    for (const std::string& words : undetermined_words(c)) {
+      reasons += fmt::format("{}: {}\n", printable(configuration_name(results, c)), printable(words));
     }
   }
   std::string text =
@@ -197,7 +206,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
       const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      rows.push_back({configuration_name(results, c), std::string(name.symbol),
+      rows.push_back({configuration_name(results, c), with_unit(name.symbol, name.unit),
                       base::value_text(quantity->estimate->value - correction, sd), base::error_text(-correction, sd)});
     }
     for (const core::Note& note : c.notes) {
@@ -213,11 +222,11 @@ std::string analysis_text(const core::AnalysisResults& results) {
 
 namespace {
 
-/// K/m, µ, α and the terminal velocity with ±, for each configuration if there are few; if there are many, they are in
-/// the table.
+constexpr std::size_t kFew = 2;  // configurations, whose values are shown one by one; of more they are in the table
+
+/// K/m, µ, α and the terminal velocity with ± of each configuration, if there are few.
 std::string value_tiles(const core::AnalysisResults& results) {
-  constexpr std::size_t kMostTiled = 2;
-  if (results.configurations.size() > kMostTiled) return {};
+  if (results.configurations.size() > kFew) return {};
   std::string html;
   for (const core::ConfigurationResult& c : results.configurations) {
     html += "<div class=\"tiles\">";
@@ -294,14 +303,16 @@ std::string answer_html(const core::AnalysisResults& results) {
 Page analysis_report(const std::string& title, const core::AnalysisResults& results,
                      const std::vector<core::Preview>& previews, const base::Progress& progress,
                      const Html& with_causes) {
-  Html body = question_heading(title, "What are K/m, µ and α?") +
-              fmt::format("<p class=\"soft\">Analysis by Glidelab, by the {}: {}.</p>\n",
-                          escape(estimator_name(results.estimator)), size_words(results));
-  // If the law is in doubt, the doubt comes before the numbers.
+  Html body = question_heading(title, "What are K/m, µ and α?");
+  // Whether the law fits, and what the numbers mean, comes before the numbers.
   const bool in_doubt = !doubts_about(results).empty();
-  if (in_doubt) body += meaning_of(results);
-  body += answer_html(results) + answer_plot(results) + recovered_section(results) + with_causes;
-  if (!in_doubt) body += bent_lines_note(results) + folded("In words", meaning_of(results));
+  const bool few = results.configurations.size() <= kFew;
+  body += in_doubt || few ? meaning_of(results) : fits_sentence(results);
+  body += answer_html(results) + fmt::format("<p class=\"soft\">By the {}, from {}.</p>\n",
+                                             escape(estimator_name(results.estimator)), size_words(results));
+  body += answer_plot(results) + recovered_section(results) + with_causes;
+  if (!in_doubt) body += bent_lines_note(results);
+  if (!in_doubt && !few) body += folded("In words", meaning_of(results));
   body += folded("Does the law fit the positions?", fitted_section(results));
   body += folded("Phase diagrams: near v = 0, and what the lines leave unexplained", phase_section(results));
   body += folded("Lines, camera, clips and method", details_sections(results, previews, progress));

@@ -237,13 +237,22 @@ PlotData thinned(const Cloud& cloud, const char* kind, std::size_t most, double 
   return never_empty(std::move(data));
 }
 
-/// Each line with its band, from v = 0 to the end of its points.
+/// Where a line's drawing begins: at v = 0, or at its slowest point if v = 0 is farther from its points than they
+/// reach.
+double drawn_from_m_s(const core::LineFit& line) {
+  const double near = std::min(std::abs(line.from_v_m_s), std::abs(line.to_v_m_s));
+  const double far = std::max(std::abs(line.from_v_m_s), std::abs(line.to_v_m_s));
+  return near <= far - near ? 0.0 : std::copysign(near, line.from_v_m_s);
+}
+
+/// Each line with its band, to the end of its points.
 PlotData fitted_lines(const core::ConfigurationResult& configuration, std::size_t index) {
   PlotData data{data_name("lines", index), {}, {"v (m/s)", "a (m/s²)", "half of the line's 95 % interval (m/s²)"}};
   for (const core::LineFit& line : configuration.lines) {
     const double far = std::abs(line.from_v_m_s) > std::abs(line.to_v_m_s) ? line.from_v_m_s : line.to_v_m_s;
+    const double near = drawn_from_m_s(line);
     for (int i = 0; i <= kSteps; ++i) {
-      const double v = far * static_cast<double>(i) / kSteps;
+      const double v = near + (far - near) * static_cast<double>(i) / kSteps;
       data.rows.push_back({v, line_at(line, v), line_half95_m_s2(line, v)});
     }
     data.rows.emplace_back();
@@ -347,7 +356,7 @@ double usual_bar(const std::vector<PlotData>& data) {
 /// If residuals are much smaller than their bars, there is room for the bars.
 std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
   const double bar = residuals ? usual_bar(data) : 0.0;
-  double low = bar > 0.0 ? -bar : HUGE_VAL, high = bar > 0.0 ? bar : -HUGE_VAL, slowest = 0.0, fastest = 0.0;
+  double low = bar > 0.0 ? -bar : HUGE_VAL, high = bar > 0.0 ? bar : -HUGE_VAL, slowest = HUGE_VAL, fastest = -HUGE_VAL;
   for (const PlotData& block : data) {
     const bool lines = block.name.starts_with("lines");
     if (lines && residuals) continue;
@@ -361,6 +370,10 @@ std::string ranges_of(const std::vector<PlotData>& data, bool residuals) {
     }
   }
   if (!(high > low) || !(fastest > slowest)) return {};
+  if (const double half = residuals ? 0.0 : usual_bar(data); half > 0.5 * (high - low)) {  // as in a fall near its end
+    low -= half;
+    high += half;
+  }
   const double margin = 0.08 * (high - low);
   return fmt::format("set yrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", low - margin, high + margin,
                      tick_step(fastest - slowest, kMostSteps));
@@ -466,14 +479,20 @@ std::vector<Plot> phase_plots(const core::AnalysisResults& results, const PhaseG
   const double v_max = fastest(all);
   if (v_max == 0.0) return {};
   std::vector<Plot> plots = {whole_plot(results, group, all)};
-  const Window window = detail_window(results, group, v_max);
-  const Diagram detail = diagram(results, group, all, window.from_v, window.to_v, false);
-  const std::string script =
-      std::string(kFrame) + axes(acceleration_axis(all)) + "unset offsets\n" + window.script + detail.plot;
-  plots.push_back({Drawing{script, detail.data},
-                   std::string("Near v = 0: the step between the lines is twice the Coulomb friction per unit mass") +
-                       (window.has_limit ? ", and the line for v > 0 crosses a = 0 at the terminal velocity" : ""),
-                   "Detail of the phase diagram near v = 0"});
+  const bool near_rest = std::ranges::any_of(group.configurations, [&](std::size_t c) {
+    return std::ranges::any_of(results.configurations[c].lines,
+                               [](const core::LineFit& line) { return drawn_from_m_s(line) == 0.0; });
+  });
+  if (near_rest) {
+    const Window window = detail_window(results, group, v_max);
+    const Diagram detail = diagram(results, group, all, window.from_v, window.to_v, false);
+    const std::string script =
+        std::string(kFrame) + axes(acceleration_axis(all)) + "unset offsets\n" + window.script + detail.plot;
+    plots.push_back({Drawing{script, detail.data},
+                     std::string("Near v = 0: the step between the lines is twice the Coulomb friction per unit mass") +
+                         (window.has_limit ? ", and the line for v > 0 crosses a = 0 at the terminal velocity" : ""),
+                     "Detail of the phase diagram near v = 0"});
+  }
   plots.push_back(residual_plot(results, group, all));
   return plots;
 }

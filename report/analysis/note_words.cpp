@@ -19,7 +19,7 @@ const char* sign_of(int direction) {
 }
 
 std::string with_sd(double deg, double sd_deg) {
-  return fmt::format("{:.3g} ± {:.2g}°", deg + 0.0, sd_deg);  // + 0.0: no "-0"
+  return base::value_and_sd_text(deg, sd_deg) + "°";
 }
 
 /// A sentence for every kind; a kind without one does not compile.
@@ -93,7 +93,7 @@ struct AnalysisSentence {
     return fmt::format("{} rows within the table lack a time or x and are left out", of.rows);
   }
   std::string operator()(const core::RoundedTimes& of) const {
-    return fmt::format("the times are whole multiples of {:.2g} s and taken as even, {:.6g} s apart", of.tick_s,
+    return fmt::format("the times are whole multiples of {:.2g} s and taken as even, {:.4g} s apart", of.tick_s,
                        of.step_s);
   }
 
@@ -311,8 +311,9 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::FitScatters& of) const {
     return fmt::format(
-        "the positions scatter {} times as much about the fitted motion as their noise, or one part of the motion "
-        "disagrees with others by more than it explains: the intervals are widened ({:.0f} degrees of freedom)",
+        "the positions scatter {} times as much about the fitted motion as their noise: the intervals are widened "
+        "({:.0f} "
+        "degrees of freedom)",
         base::number_text(of.ratio, 3), of.degrees);
   }
 };
@@ -329,7 +330,7 @@ std::string contradiction_words(const core::InclineContradiction& of) {
                        *of.beyond_gravity, of.gravity_m_s2, says);
   }
   const char* bound = of.bound == 0 ? "" : of.bound < 0 ? "at most " : "at least ";
-  return fmt::format("the acceleration makes the inclination {}{}, {}", bound, with_sd(of.deg, of.sd_deg), says);
+  return fmt::format("the acceleration gives an inclination of {}{}, but {}", bound, with_sd(of.deg, of.sd_deg), says);
 }
 
 std::string lens_words(const core::LensTerms& lens) {

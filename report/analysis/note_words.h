@@ -12,7 +12,7 @@ std::string note_words(const core::Note& note);
 
 std::vector<std::string> notes_words(const std::vector<core::Note>& notes);
 
-/// "the acceleration makes the inclination 0.42 ± 0.13°, incline_deg says 4.3 ± 0.3°"
+/// "the acceleration gives an inclination of 0.42 ± 0.13°, but incline_deg says 4.30 ± 0.30°"
 std::string contradiction_words(const core::InclineContradiction& contradiction);
 
 /// "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.2 of 9; …)", "fisheye: k1, k2"

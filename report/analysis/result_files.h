@@ -39,7 +39,7 @@ std::string phase_csv(const core::ClipResult& clip);
 /// The text of results.json: the results of an analysis, in a format for other programs. It depends only on the
 /// results.
 ///
-/// A quantity that the data do not determine is null, and the object "why" beside it gives the reason. Beyond the
+/// A quantity that the data do not determine is null, and the object "why" next to it gives the reason. Beyond the
 /// required format, clips contain their stretches, omitted points, notes and the name of their CSV; configurations
 /// contain their group and lines; if there are several folders, the calibration of each is in "calibrations". `with` is
 /// the result of a fit with causes in the model (report/diagnosis/given_causes_report.h); if it is null, there was

@@ -248,7 +248,7 @@ std::string corrections_html(const core::AnalysisResults& results) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (!quantity->estimate || !quantity->smoothing_correction) continue;
       const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      table.row({escape(configuration_name(results, c)), std::string(name.symbol),
+      table.row({escape(configuration_name(results, c)), escape(with_unit(name.symbol, name.unit)),
                  base::value_text(quantity->estimate->value - correction, sd), base::error_text(correction, sd),
                  base::value_and_sd_text(quantity->estimate->value, sd)});
     }
@@ -262,6 +262,22 @@ std::string corrections_html(const core::AnalysisResults& results) {
 
 }  // namespace
 
+std::vector<std::string> undetermined_words(const core::ConfigurationResult& configuration) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;  // and the quantities that each explains
+  for (const auto& [name, quantity] : quantities_of(configuration)) {
+    if (quantity->estimate) continue;
+    const std::string why = core::why_words(quantity->why);
+    auto found = std::ranges::find(reasons, why, [](const auto& one) { return one.first; });
+    if (found == reasons.end()) found = reasons.insert(found, {why, {}});
+    found->second.emplace_back(name.symbol);
+  }
+  std::vector<std::string> words;
+  for (const auto& [why, names] : reasons) {
+    words.push_back(fmt::format("{} {} not determined: {}", list_of(names), names.size() == 1 ? "is" : "are", why));
+  }
+  return words;
+}
+
 std::string recovered_section(const core::AnalysisResults& results) {
   const bool in_doubt = !doubts_about(results).empty();
   const std::string mark = in_doubt ? " *" : "";
@@ -273,10 +289,8 @@ std::string recovered_section(const core::AnalysisResults& results) {
     table.row({fmt::format("{:.6g} kg", c.mass_kg), fmt::format("{:.4g}°", c.incline_deg), escape(c.group),
                quantity_html(c.k_over_m_1_s, ""), quantity_html(c.mu, ""), quantity_html(c.alpha_deg, ""),
                quantity_html(c.v_lim_m_s, ""), r2_of(c.lines, -1), r2_of(c.lines, 1)});
-    for (const auto& [name, quantity] : quantities_of(c)) {
-      if (quantity->estimate) continue;
-      reasons += fmt::format("<li>{}: {} is not determined: {}</li>\n", escape(configuration_name(results, c)),
-                             name.symbol, escape(core::why_words(quantity->why)));
+    for (const std::string& words : undetermined_words(c)) {
+      reasons += fmt::format("<li>{}: {}</li>\n", escape(configuration_name(results, c)), escape(words));
     }
   }
   std::string text = "<h2 id=\"recovered\">Recovered values</h2>\n" + table.str();

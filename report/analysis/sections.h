@@ -14,6 +14,9 @@ namespace glidelab::report {
 /// One row per configuration: the recovered values, and below the table the reasons for missing ones.
 std::string recovered_section(const core::AnalysisResults& results);
 
+/// "µ and α are not determined: …" for each reason why quantities of this configuration are missing.
+std::vector<std::string> undetermined_words(const core::ConfigurationResult& configuration);
+
 /// The phase diagrams of every set-up.
 Html phase_section(const core::AnalysisResults& results);
 

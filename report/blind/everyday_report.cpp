@@ -109,7 +109,7 @@ TextRows number_rows(const EverydayScore& score) {
   }
   for (const auto& [kind, by_quantity] : score.covered) {
     for (const auto& [key, share] : by_quantity) {
-      rows.push_back({"interval of " + core::symbol_of(key) + " holds the truth", words_of_class(kind),
+      rows.push_back({"interval of " + core::symbol_of(key) + " contains the true value", words_of_class(kind),
                       share_and_interval(share)});
     }
   }
@@ -259,7 +259,7 @@ std::vector<EverydayTarget> everyday_targets(const EverydayScore& score) {
        0.0,
        0.05},
       {"off the list: a wrong name above 0.8", sum_of(diagnosis.wrong_name), {}, 0.0, 0.03},
-      {"recovered intervals hold the truth", all_covered(score, ""), {}, 0.90, 0.98}};
+      {"recovered intervals contain the true value", all_covered(score, ""), {}, 0.90, 0.98}};
   EverydayTarget shares{"rms error of the shares of named causes", {}, {}, 0.0, 0.1, true};
   if (diagnosis.share_error.of > 0) shares.value = diagnosis.share_error.rms();
   targets.push_back(std::move(shares));

@@ -146,7 +146,7 @@ std::string twin_words(const Certificate& certificate) {
                   estimator_name(certificate.estimator));
   std::string causes;
   for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
-  text += causes.empty() ? ", with no cause beside the nominal law." : fmt::format(", with {} as diagnosed.", causes);
+  text += causes.empty() ? ", with no cause besides the nominal law." : fmt::format(", with {} as diagnosed.", causes);
   if (certificate.explanations.size() > 1)
     text += " Each likely explanation is used for a share of the twins equal to its probability.";
   if (!certificate.filmed)
@@ -173,9 +173,8 @@ std::string explanation_words(const Certificate& certificate) {
     if (worst == nullptr || one.probability > worst->probability) worst = &one;
   }
   if (worst == nullptr || certificate.explanations.size() < 2) return {};
-  return fmt::format(
-      "They fail with explanations that the diagnosis finds {} % probable together, most of all with {} ({} % hold).",
-      percent(failing), explanation_name(*worst), percent(worst->coverage.share));
+  return fmt::format("They fail under explanations with a total probability of {} %, above all under {} ({} % hold).",
+                     percent(failing), explanation_name(*worst), percent(worst->coverage.share));
 }
 
 /// "The twins are without …: read the answer with that in mind."; empty if nothing is missing.
@@ -230,7 +229,7 @@ Plot certificate_plot(const Certificate& certificate) {
       std::string(kFrame) +
       fmt::format(
           "unset offsets\nunset key\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
-          "set xlabel 'intervals of 95 % that hold the truth  (%)'\n"
+          "set xlabel '95 % intervals that contain the true value  (%)'\n"
           "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\n"
           "plot $q using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}'",
           lowest, row + 0.7, tics, color(0));
@@ -415,9 +414,9 @@ std::string explanations_table(const Certificate& certificate) {
 
 std::string how_judged(const Certificate& certificate) {
   return fmt::format(
-      "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the terminal velocity of the fitted motions (beside a "
-      "named "
-      "cause K/m and µ of the viscous and Coulomb friction in the law). Intervals that hold are those of 95 % that "
+      "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the terminal velocity of the fitted motions (with "
+      "a named cause, K/m and µ are those of the viscous and Coulomb friction in the law). Intervals that hold are "
+      "those of 95 % that "
       "contain it; their share has the interval of Clopper and Pearson, for as many independent intervals as the "
       "shares of single twins scatter like. Bias is the mean error over the stated standard deviation.</p>\n",
       escape(twin_words(certificate)));

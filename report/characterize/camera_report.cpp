@@ -201,10 +201,10 @@ std::string camera_meaning(const core::CameraMeasurement& camera) {
   } else {
     text = "What these frames do not determine is “–” below, with the reason. ";
   }
-  return meaning_section(
-      "<p>" + text +
-      "<code>camera.toml</code> beside this page has the numbers as a scenario's <code>[sensor]</code>, to rehearse an "
-      "experiment with this camera.</p>\n");
+  return meaning_section("<p>" + text +
+                         "<code>camera.toml</code> next to this page has the numbers as a scenario's "
+                         "<code>[sensor]</code>, to rehearse an "
+                         "experiment with this camera.</p>\n");
 }
 
 }  // namespace
@@ -212,7 +212,7 @@ std::string camera_meaning(const core::CameraMeasurement& camera) {
 Page camera_report(const core::CameraMeasurement& camera) {
   Html body = question_heading(camera.folder.name, "How much noise does this camera have?") +
               fmt::format(
-                  "<p class=\"soft\">Measured by Glidelab from {} frames of {} × {} pixels, {} bits, by photon "
+                  "<p class=\"soft\">Measured from {} frames of {} × {} pixels, {} bits, by photon "
                   "transfer (EMVA 1288).</p>\n",
                   camera.frames, camera.width_px, camera.height_px, camera.folder.bit_depth);
   body += camera_meaning(camera);

@@ -22,7 +22,7 @@ struct CameraRow {
 /// The rows in the common order; PRNU and linearity in per cent, as texts. A limit reads "< 3.2" or "> 5400".
 std::vector<CameraRow> camera_rows(const core::CameraMeasurement& camera);
 
-/// Each number as {"value", "sd", "how"}, or null with the reason in "why" beside it (and its limit in "limit").
+/// Each number as {"value", "sd", "how"}, or null with the reason in "why" next to it (and its limit in "limit").
 std::string camera_json(const core::CameraMeasurement& camera);
 
 /// The same as a table for a terminal, with notes and reasons below.

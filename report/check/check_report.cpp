@@ -127,8 +127,10 @@ std::string check_json(const core::RecordingCheck& check) {
 
 namespace {
 
+/// HTML. Of a few pixels it says no more than that they are few.
 std::string share_cell(double share) {
-  return base::number_text(100.0 * share, 3) + " %";
+  constexpr double kFew = 1e-4;
+  return share > 0.0 && share < kFew ? "&lt; 0.01 %" : base::number_text(100.0 * share, 3) + " %";
 }
 
 std::string verdict_of(const core::RecordingCheck& check) {
@@ -192,8 +194,10 @@ std::string extent_words(const core::RecordingCheck& check) {
     if (clip.position_noise_m) noise = std::max(noise.value_or(0.0), *clip.position_noise_m);
   }
   if (frames == 0) return {};
-  std::string text = fmt::format("The marker is found in {} of {} frames of {} clip{}", seen, frames,
-                                 check.clips.size(), check.clips.size() == 1 ? "" : "s");
+  const bool images = std::ranges::any_of(check.clips, [](const core::ClipCheck& clip) { return clip.images; });
+  const std::string clips = fmt::format("{} clip{}", check.clips.size(), check.clips.size() == 1 ? "" : "s");
+  std::string text = images ? fmt::format("The marker is found in {} of {} frames of {}", seen, frames, clips)
+                            : fmt::format("{} positions in {}", seen, clips);
   if (noise)
     text += fmt::format("; position noise: at most {} mm (one standard deviation)", base::number_text(1e3 * *noise, 2));
   return text + ".";
@@ -206,7 +210,7 @@ std::string check_meaning(const core::RecordingCheck& check) {
         "An analysis of this recording would fail, or give misleading numbers: fix what “must change” below "
         "first.";
   } else if (wants_change(check)) {
-    text = "The changes marked “improve” below would make its numbers more precise if you record again.";
+    text = "The changes marked “improve” below would make its numbers more precise.";
   } else {
     text = "Nothing needs to be recorded again.";
   }
@@ -281,65 +285,91 @@ Html pattern_section(const core::RecordingCheck& check) {
   return text;
 }
 
-/// Rows of the clips' table: the name, and its text.
-struct ClipRow {
+constexpr const char* kNothing = "–";
+
+/// A column of the clips' table: its head, its text for a clip, and what it means; of a clip to which it does not apply
+/// kNothing.
+struct ClipColumn {
   const char* title;
   std::string (*text)(const core::ClipCheck&);
+  const char* meaning = "";
 };
 
-const std::vector<ClipRow> kClipRows = {
+const std::vector<ClipColumn> kClipColumns = {
     {"frames", [](const core::ClipCheck& clip) { return fmt::format("{}", clip.frames); }},
-    {"seen in", [](const core::ClipCheck& clip) { return fmt::format("{}", clip.seen); }},
+    {"seen in", [](const core::ClipCheck& clip) { return fmt::format("{}", clip.seen); },
+     "frames or times with a position"},
     {"frames/s", [](const core::ClipCheck& clip) { return base::number_text(clip.frame_rate_hz, 5); }},
     {"in the file",
      [](const core::ClipCheck& clip) {
-       return clip.container_rate_hz ? base::number_text(*clip.container_rate_hz, 5) : std::string("–");
-     }},
+       return clip.container_rate_hz ? base::number_text(*clip.container_rate_hz, 5) : std::string(kNothing);
+     },
+     "the rate that the file states"},
     {"lost / repeated",
      [](const core::ClipCheck& clip) {
-       return clip.images ? fmt::format("{} / {}", clip.jumps, std::max(clip.repeated, clip.stalls)) : std::string("–");
-     }},
-    {"speed (m/s)", [](const core::ClipCheck& clip) { return base::digits_text(clip.top_speed_m_s, 3); }},
+       return clip.images ? fmt::format("{} / {}", clip.jumps, std::max(clip.repeated, clip.stalls))
+                          : std::string(kNothing);
+     },
+     "frames missing or repeated, as far as the marker's motion and the images show"},
+    {"speed (m/s)", [](const core::ClipCheck& clip) { return base::digits_text(clip.top_speed_m_s, 3); },
+     "the highest"},
     {"blur (px)",
      [](const core::ClipCheck& clip) {
-       if (!clip.images) return std::string("–");
+       if (!clip.images) return std::string(kNothing);
        return clip.blur_px ? base::digits_text(*clip.blur_px, 2) : "&lt; " + base::number_text(clip.longest_blur_px, 2);
-     }},
+     },
+     "the smear at that speed"},
     {"marker (px)",
-     [](const core::ClipCheck& clip) { return clip.images ? base::digits_text(clip.marker_px, 3) : std::string("–"); }},
+     [](const core::ClipCheck& clip) {
+       return clip.images ? base::digits_text(clip.marker_px, 3) : std::string(kNothing);
+     },
+     "its diameter"},
     {"contrast",
-     [](const core::ClipCheck& clip) { return clip.contrast ? share_cell(*clip.contrast) : std::string("–"); }},
-    {"over noise",
+     [](const core::ClipCheck& clip) { return clip.contrast ? share_cell(*clip.contrast) : std::string(kNothing); },
+     "the marker's difference from its surroundings, as a share of the camera's range"},
+    {"contrast / noise",
      [](const core::ClipCheck& clip) {
        return clip.contrast && clip.pixel_noise > 0.0 ? base::number_text(*clip.contrast / clip.pixel_noise, 3)
-                                                      : std::string("–");
-     }},
+                                                      : std::string(kNothing);
+     },
+     "the contrast over the noise of a pixel"},
     {"white, black",
      [](const core::ClipCheck& clip) {
-       return clip.images ? share_cell(clip.saturated) + ", " + share_cell(clip.dark) : std::string("–");
-     }},
+       return clip.images ? share_cell(clip.saturated) + ", " + share_cell(clip.dark) : std::string(kNothing);
+     },
+     "pixels at the ends of the range"},
     {"noise (mm)",
      [](const core::ClipCheck& clip) {
-       return clip.position_noise_m ? base::digits_text(1e3 * *clip.position_noise_m, 2) : std::string("–");
-     }},
+       return clip.position_noise_m ? base::digits_text(1e3 * *clip.position_noise_m, 2) : std::string(kNothing);
+     },
+     "of a position"},
 };
 
+std::string cell_of(const ClipColumn& column, const core::ClipCheck& clip) {
+  return clip.failure.empty() ? column.text(clip) : kNothing;
+}
+
 std::string clips_section(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
+  std::vector<const ClipColumn*> columns;  // those that say something about some clip
+  for (const ClipColumn& column : kClipColumns) {
+    const auto says = [&](const core::ClipCheck& clip) { return cell_of(column, clip) != kNothing; };
+    if (std::ranges::any_of(check.clips, says)) columns.push_back(&column);
+  }
   std::vector<std::string> header = {"clip"};
-  for (const ClipRow& row : kClipRows) header.emplace_back(row.title);
+  std::string meanings;
+  for (const ClipColumn* const column : columns) {
+    header.emplace_back(column->title);
+    const std::string_view meaning = column->meaning;
+    if (!meaning.empty()) meanings += fmt::format("{}“{}”: {}", meanings.empty() ? "" : "; ", column->title, meaning);
+  }
   HtmlTable table(header);
   for (const core::ClipCheck& clip : check.clips) {
     std::vector<std::string> cells = {escape(clip.name)};
-    for (const ClipRow& row : kClipRows) cells.push_back(clip.failure.empty() ? row.text(clip) : "–");
+    for (const ClipColumn* const column : columns) cells.push_back(cell_of(*column, clip));
     table.row(cells);
   }
-  std::string text = "<h2>Clips</h2>\n" + table.str() +
-                     "<p class=\"soft\">Seen in: frames in which the marker was found. In the file: the rate that the "
-                     "file states. Lost / repeated: frames missing or repeated, as far as the marker's motion and the "
-                     "images show. Speed: the highest; blur: the smear at that speed. Marker: its "
-                     "diameter; contrast: its difference from the "
-                     "surroundings, as a share of the camera's range, and over the noise of a pixel. White, black: "
-                     "pixels at the ends of the range. Noise: of a position.</p>\n";
+  std::string text = "<h2>Clips</h2>\n" + table.str();
+  if (!meanings.empty()) text += fmt::format("<p class=\"soft\">{}.</p>\n", escape(meanings));
   std::string shown;
   for (std::size_t i = 0; i < previews.size(); ++i) {
     for (const core::PreviewFrame& frame : previews[i].frames) {
@@ -369,19 +399,22 @@ std::string check_text(const core::RecordingCheck& check) {
     text += fmt::format("{}: {}: {}{}{}.\n", word_of(finding.severity), finding.about, finding.headline(),
                         finding.advice.empty() ? "" : "; ", finding.advice);
   }
-  std::vector<std::vector<std::string>> rows = {{"clip", "seen", "speed m/s", "blur px", "marker px", "noise mm"}};
+  const bool images = std::ranges::any_of(check.clips, [](const core::ClipCheck& clip) { return clip.images; });
+  std::vector<std::string> header = {"clip", "seen", "speed m/s"};
+  if (images) header.insert(header.end(), {"blur px", "marker px"});
+  header.emplace_back("noise mm");
+  std::vector<std::vector<std::string>> rows = {header};
   for (const core::ClipCheck& clip : check.clips) {
-    if (!clip.failure.empty()) {
-      rows.push_back({clip.name, "-", "-", "-", "-", "-"});
-      continue;
+    std::vector<std::string>& row = rows.emplace_back(header.size(), "-");
+    row[0] = clip.name;
+    if (!clip.failure.empty()) continue;
+    row[1] = fmt::format("{} of {}", clip.seen, clip.frames);
+    row[2] = base::number_text(clip.top_speed_m_s, 3);
+    if (clip.images) {
+      row[3] = clip.blur_px ? base::number_text(*clip.blur_px, 2) : "< " + base::number_text(clip.longest_blur_px, 2);
+      row[4] = base::number_text(clip.marker_px, 3);
     }
-    rows.push_back({clip.name, fmt::format("{} of {}", clip.seen, clip.frames),
-                    base::number_text(clip.top_speed_m_s, 3),
-                    !clip.images   ? "-"
-                    : clip.blur_px ? base::number_text(*clip.blur_px, 2)
-                                   : "< " + base::number_text(clip.longest_blur_px, 2),
-                    clip.images ? base::number_text(clip.marker_px, 3) : "-",
-                    clip.position_noise_m ? base::number_text(1e3 * *clip.position_noise_m, 2) : "-"});
+    if (clip.position_noise_m) row.back() = base::number_text(1e3 * *clip.position_noise_m, 2);
   }
   return text + "\n" + text_table(rows, 1);
 }

@@ -37,7 +37,7 @@ Plot coverage_plot(const validate::Coverage& coverage) {
   }
   script += fmt::format(
       "unset offsets\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
-      "set xlabel 'intervals of 95 % that hold the truth  (%)'\nset key outside top center horizontal maxcols 1\n"
+      "set xlabel '95 % intervals that contain the true value  (%)'\nset key outside top center horizontal maxcols 1\n"
       "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
       lowest, row_number + 0.7, tics);
   for (std::size_t e = 0; e < estimators.size(); ++e) {
@@ -69,7 +69,7 @@ Plot reliability_plot(const validate::Coverage& coverage) {
       fmt::format(
           "unset offsets\nset xrange [-0.5:{}]\nset yrange [-2:102]\nset key maxcols 2\nset xtics ({})\n"
           "set xlabel 'level that the intervals state  (%)'\n"
-          "set ylabel 'intervals that hold the truth  (%)'\n"
+          "set ylabel 'intervals that contain the true value  (%)'\n"
           "plot $band using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '#dddddd' title 'chance (95 %)', "
           "$stated using 1:2:3 with xerrorbars pt 0 lw 1 lc rgb '#555555' title 'as stated'",
           static_cast<double>(coverage.levels.size()) - 0.5, tics);
@@ -89,7 +89,7 @@ Plot reliability_plot(const validate::Coverage& coverage) {
   }
   return {
       Drawing{script, data, {560, 480}},
-      fmt::format("How many of the intervals of each level hold the truth: a point for each quantity, the "
+      fmt::format("How many of the intervals of each level contain the true value: a point for each quantity, the "
                   "estimators side by side; grey: the range that chance gives 95 times in 100, with {} replicates and "
                   "intervals that are right",
                   coverage.replicates),
@@ -147,7 +147,8 @@ std::string level_table(const validate::Coverage& coverage) {
     table.row(cells);
   }
   return "<h2 id=\"levels\">Every level</h2>\n" + table.str() +
-         "<p class=\"soft\">Fraction of the intervals of each level that hold the truth, and the probability that "
+         "<p class=\"soft\">Fraction of the intervals of each level that contain the true value, and the probability "
+         "that "
          "chance alone gives a count at least that far from the level (exact binomial test, two-sided). Marked: below "
          "1 % divided by the number of all intervals and levels except the naive ones (Bonferroni). An interval of "
          "another level than 95 % is the stated one, scaled by the quantiles of Student's t.</p>\n";
@@ -223,14 +224,17 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
   std::string text;
   if (narrow.empty()) {
     text +=
-        "<p>The intervals of every estimator but the naive one hold the truth as often as they say, as far as this "
+        "<p>The intervals of every estimator but the naive one contain the true value as often as stated, as far as "
+        "this "
         "many replicates can tell.</p>\n";
   } else {
-    text += "<p>These intervals hold the truth less often than they say (how often, at each stated level):</p>\n" +
-            failures_html(narrow);
+    text +=
+        "<p>These intervals contain the true value less often than stated (how often, at each stated level):</p>\n" +
+        failures_html(narrow);
   }
   if (!wide.empty()) {
-    text += "<p>These are wider than they need to be, and hold the truth more often:</p>\n" + failures_html(wide);
+    text +=
+        "<p>These are wider than they need to be, and contain the true value more often:</p>\n" + failures_html(wide);
   }
   const std::vector<validate::CoverageRow> astray = scattered(coverage);
   if (!astray.empty()) {
@@ -299,15 +303,16 @@ std::string coverage_answer(const validate::Coverage& coverage) {
   if (counted.empty()) return {};
   const auto [least, most] = std::minmax_element(
       counted.begin(), counted.end(), [](const auto* a, const auto* b) { return a->coverage < b->coverage; });
-  std::string text = fmt::format("The stated 95 % intervals hold the truth in {:.1f} to {:.1f} % of {} replicates, ",
-                                 100.0 * (*least)->coverage, 100.0 * (*most)->coverage, coverage.replicates);
+  std::string text =
+      fmt::format("The stated 95 % intervals contain the true value in {:.1f} to {:.1f} % of {} replicates, ",
+                  100.0 * (*least)->coverage, 100.0 * (*most)->coverage, coverage.replicates);
   std::set<std::string> failing;
   for (const validate::CoverageFailure& one : validate::too_narrow(coverage)) {
     failing.insert(fmt::format("{} of {} by the {}", symbol_of(one.row.quantity), one.row.configuration,
                                estimator_name(one.row.estimator)));
   }
-  if (failing.empty()) return text + "as often as they say, as far as this many replicates can tell.";
-  return text + fmt::format("less often than they say for {} of {}: {}.", failing.size(), counted.size(),
+  if (failing.empty()) return text + "as often as stated, as far as this many replicates can tell.";
+  return text + fmt::format("less often than stated for {} of {}: {}.", failing.size(), counted.size(),
                             fmt::join(failing, "; "));
 }
 
@@ -341,7 +346,7 @@ std::string coverage_text(const validate::Coverage& coverage) {
 }
 
 Page coverage_page(const std::string& title, const validate::Coverage& coverage) {
-  Html body = question_heading(title, "How often do the stated intervals hold the truth?") +
+  Html body = question_heading(title, "How often do the stated intervals contain the true value?") +
               fmt::format(
                   "<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} of independent "
                   "noise in every position{}, a clock that is off by 20 ppm (one standard deviation) and no lost "
@@ -374,7 +379,7 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
   body +=
       "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
       "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the fraction "
-      "of 95 % intervals that hold the truth, with its own 95 % interval (Clopper and Pearson).</p>\n";
+      "of 95 % intervals that contain the true value, with its own 95 % interval (Clopper and Pearson).</p>\n";
   if (coverage.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*coverage.outside)));
   return page(title, body);
 }

@@ -12,11 +12,12 @@
 namespace glidelab::report {
 namespace {
 
-constexpr double kAll = 100.0;       // percent of the excess
-constexpr double kThick = 0.15;      // half of a bar's thickness, with rows 1 apart
-constexpr double kNameAbove = 0.24;  // of a row: its name, above the bar
-constexpr double kBelow = 0.14;      // of a bar's middle under its row, to make room for the name
-constexpr double kRoom = 3.0;        // percent, at both ends
+constexpr double kAll = 100.0;         // percent of the excess
+constexpr double kThick = 0.15;        // half of a bar's thickness, with rows 1 apart
+constexpr double kNameAbove = 0.24;    // of a row: its name, above the bar
+constexpr double kBelow = 0.14;        // of a bar's middle under its row, to make room for the name
+constexpr double kLeastWhisker = 0.3;  // percent; a shorter one is a dot on its bar
+constexpr double kRoom = 3.0;          // percent, at both ends
 constexpr int kWidth = 520, kRowPoints = 54, kFramePoints = 84;  // narrow: readable on a telephone
 constexpr std::size_t kLongLine = 54;                            // characters per line at the usual size
 
@@ -39,7 +40,7 @@ std::vector<Row> rows_of(const diagnose::Diagnosis& diagnosis) {
   }
   const double left = bars.back().to;
   const double gap = diagnosis.remainder ? diagnosis.remainder->gap : diagnosis.explained.back().gap_after;
-  rows.push_back({fmt::format("left: {}, {}", share_text(left / kAll), over_noise_text(gap)),
+  rows.push_back({fmt::format("remainder: {}, {}", share_text(left / kAll), over_noise_text(gap)),
                   {0.0, left, left, left},
                   kColors[0]});
   return rows;
@@ -72,7 +73,7 @@ std::vector<Plot> waterfall_plots(const diagnose::Diagnosis& diagnosis) {
     const WaterfallBar& bar = rows[i].bar;
     const double row = -static_cast<double>(i), middle = row - kBelow;
     bars.rows.push_back({bar.from, bar.to, middle, bar.low, bar.high, static_cast<double>(i)});
-    if (bar.low != bar.high) errors.rows.push_back({bar.to, middle, bar.low, bar.high});
+    if (bar.high - bar.low > kLeastWhisker) errors.rows.push_back({bar.to, middle, bar.low, bar.high});
     least = std::min({least, bar.to, bar.low});
     most = std::max({most, bar.high});
     script += fmt::format("set object rectangle from {},{} to {},{} fc rgb '{}' fs solid 0.85 noborder\n",

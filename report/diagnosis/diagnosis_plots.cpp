@@ -22,8 +22,10 @@ constexpr double kNoBar = 5e-4;                    // a probability too small fo
 constexpr std::size_t kLongName = 66;              // characters that fit in a bar plot at the usual text size
 constexpr std::size_t kCurves = 3;                 // number of most likely curves that fill the gap
 constexpr std::size_t kPoints = 800;               // per clip
-constexpr std::size_t kInFull = 8;  // clips for which every residual is drawn; for k times as many, one in k
-constexpr int kMarks = 6;           // steps of an axis whose labels do not overlap
+constexpr std::size_t kInFull = 8;    // clips for which every residual is drawn; for k times as many, one in k
+constexpr std::size_t kOneDigit = 9;  // columns whose numbers have one digit
+constexpr const char *kToTheRight = "to the right", *kDownwards = "downwards";
+constexpr int kMarks = 6;  // steps of an axis whose labels do not overlap
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Room around the points except at the left: time begins at 0, and room there would make the axis begin before 0.
 constexpr const char* kFromStart = "set offsets 0, graph 0.02, graph 0.06, graph 0.06\n";
@@ -221,12 +223,14 @@ std::string lines_of(const OverTime& of, int dashes, bool names) {
   return text;
 }
 
-/// Names side by side in the legend, as many as fit its width.
-std::string key_of(const OverTime& of) {
-  constexpr std::size_t kLongClip = 10;
-  const bool narrow =
-      std::all_of(of.clips.begin(), of.clips.end(), [](const std::string& name) { return name.size() <= kLongClip; });
-  return fmt::format("set key maxcols {}\n", narrow ? 3 : 1);
+/// Names side by side in the legend, as many as fit its width: those of the clips, and others.
+std::string key_of(const OverTime& of, const std::vector<std::string>& others = {}) {
+  constexpr std::size_t kShort = 10, kMiddling = 20;
+  std::size_t longest = 0;
+  for (const auto* names : {&of.clips, &others}) {
+    for (const std::string& name : *names) longest = std::max(longest, name.size());
+  }
+  return fmt::format("set key maxcols {} width 1\n", longest <= kShort ? 3 : longest <= kMiddling ? 2 : 1);
 }
 
 }  // namespace
@@ -317,11 +321,13 @@ std::vector<Plot> image_plots(const diagnose::Diagnosis& diagnosis) {
   const OverTime down = over_time(curves, "drift down", {"down", {}, {"t (s)", "downwards (px)"}}, 1.0);
   if (across.data.rows.empty() || down.data.rows.empty()) return plots;
   const std::string script =
-      std::string(kFrame) + kFromStart + key_of(across) +
+      std::string(kFrame) + kFromStart + key_of(across, {kToTheRight, kDownwards}) +
       "set xlabel 'time t (s)'\nset ylabel 'position of the fixed scene  (px)'\nplot " + lines_of(across, 1, true) +
       ", " + lines_of(down, 3, false) +
-      ", keyentry with lines lw 1.5 lc rgb '#000000' title 'to the right', keyentry with lines lw 1.5 dt 3 lc rgb "
-      "'#000000' title 'downwards'\n";
+      fmt::format(
+          ", keyentry with lines lw 1.5 lc rgb '#000000' title '{}', keyentry with lines lw 1.5 dt 3 lc rgb "
+          "'#000000' title '{}'\n",
+          kToTheRight, kDownwards);
   plots.push_back({Drawing{script, std::vector{across.data, down.data}},
                    "Position of the fixed scene in the image: with a camera at rest it stays at 0, up to noise",
                    "Drift of the scene in the image over time"});
@@ -348,13 +354,14 @@ std::vector<Plot> isolability_plots(const diagnose::Isolability& isolability) {
     columns += fmt::format("{}'{}' {}", comma, i + 1, i);
   }
   script += fmt::format(
-      "unset key\nunset grid\nset offsets 0,0,0,0\nset ytics ({}) scale 0 noenhanced\nset xtics ({}) scale 0\nset "
+      "unset key\nunset grid\nset offsets 0,0,0,0\nset ytics ({}) scale 0 noenhanced\nset xtics ({}) scale 0{}\nset "
       "xrange [-0.5:{}]\nset yrange [{}:0.5]\nset cbrange [0:1]\nset palette defined (0 '#ffffff', 0.7 '#9ecae1', 0.95 "
-      "'#3182bd', 1 '#08306b')\nset lmargin at screen 0.43\nset rmargin at screen 0.87\n"
+      "'#3182bd', 1 '#08306b')\nset cblabel 'likeness (cosine)'\nset lmargin at screen 0.41\nset rmargin at screen "
+      "0.84\n"
       "plot $cells using 1:2:3 with image pixels\n",
-      rows, columns, static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
+      rows, columns, n > kOneDigit ? " font ',11'" : "", static_cast<double>(n) - 0.5, 0.5 - static_cast<double>(n));
   return {
-      {Drawing{script, std::vector{data}, {600, 60 + 24 * std::max(6, static_cast<int>(n))}},
+      {Drawing{script, std::vector{data}, {660, 60 + 24 * std::max(6, static_cast<int>(n))}},
        "How alike two effects (a row and a numbered column) are in these clips, with everything else fitted: at 1 they "
        "cannot be told apart, at 0 they can",
        "Similarity of the effects"}};

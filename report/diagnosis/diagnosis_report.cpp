@@ -233,11 +233,11 @@ Html image_part(const diagnose::Diagnosis& diagnosis) {
 Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagnosis,
                       const std::vector<validate::TwinMotion>& twin) {
   if (diagnosis.lines) return line_report(title, diagnosis);
-  Html body = question_heading(title, kDiagnosisQuestion) + "<p class=\"soft\">Diagnosis by Glidelab.</p>\n";
+  Html body = question_heading(title, kDiagnosisQuestion);
+  body += diagnosis_meaning(diagnosis);
   // The sentence about the causes contains what the tiles would say.
   const bool told = !sequence_words(diagnosis).empty();
   if (!told) body += tiles(diagnosis);
-  body += diagnosis_meaning(diagnosis);
   body += answer_sections(diagnosis);
   body += "<h2>Details</h2>\n";
   body += folded(
@@ -276,23 +276,29 @@ std::string wrapped(const std::string& text) {
   return lines + line + "\n";
 }
 
-std::string gap_lines(const diagnose::GapSizes& gap, const char* of) {
+/// The gap of held-out clips or lines, before and after what the verdict adds to the model; if it adds nothing, once.
+std::string gap_lines(const diagnose::GapSizes& gap, const char* of, bool one) {
   const diagnose::GapIntervals& over_clips = gap.interval95;
-  std::string text;
+  std::string text = one ? fmt::format("gap of held-out {}: {:.3f} (floor {:.3g})\n", of, gap.before, gap.floor)
+                         : fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor {:.3g})\n", of,
+                                       gap.before, gap.after, gap.floor);
   if (gap.shrink) text += "  it " + shrink_text(gap) + " of its distance from the floor\n";
+  const auto before_and_after = [&](const std::string& before, const std::string& after) {
+    return one ? before : before + " before, " + after + " after";
+  };
   if (!over_clips.too_few) {
-    text += fmt::format("  95 % over {}: {} before, {} after\n", of, interval_text(over_clips.before),
-                        interval_text(over_clips.after));
-  } else {
+    text += fmt::format("  95 % over {}: {}\n", of,
+                        before_and_after(interval_text(over_clips.before), interval_text(over_clips.after)));
+  } else if (!one) {
     text += "  " + too_few_words(over_clips) + "\n";
   }
   if (!gap.acceleration_before || !gap.acceleration_after) return text;
   const auto acceleration = [&](double size, const std::optional<diagnose::GapInterval>& interval) {
     return base::number_text(size, 3) + " m/s²" + (interval ? " (" + interval_text(interval) + ")" : "");
   };
-  return text + fmt::format("  in acceleration {} before, {} after, noise included\n",
-                            acceleration(*gap.acceleration_before, over_clips.acceleration_before),
-                            acceleration(*gap.acceleration_after, over_clips.acceleration_after));
+  return text + fmt::format("  in acceleration {}, noise included\n",
+                            before_and_after(acceleration(*gap.acceleration_before, over_clips.acceleration_before),
+                                             acceleration(*gap.acceleration_after, over_clips.acceleration_after)));
 }
 
 /// The individual values of each configuration, one table per effect.
@@ -360,10 +366,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
     if (finding.seen) text += "images: " + wrapped(image_words(finding.fact));
   }
   if (diagnosis.gap) {
-    text += fmt::format("gap of held-out {}: {:.3f} before, {:.3f} after (floor {:.3g})\n",
-                        diagnosis.lines ? "lines" : "clips", diagnosis.gap->before, diagnosis.gap->after,
-                        diagnosis.gap->floor);
-    text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips");
+    text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips", one_model(diagnosis));
   }
   if (sequence.empty()) text += "\nnext: " + wrapped(next_step_words(diagnosis.next));
   for (const std::string& note : notes_words(diagnosis)) text += "note: " + wrapped(note);

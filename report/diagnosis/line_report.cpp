@@ -246,7 +246,7 @@ Json lines_json(const diagnose::LineComparison& lines) {
 Page line_report(const std::string& title, const diagnose::Diagnosis& diagnosis) {
   const diagnose::LineComparison& lines = *diagnosis.lines;
   Html body = question_heading(title, kDiagnosisQuestion) +
-              fmt::format("<p class=\"soft\">Diagnosis of {} published lines by Glidelab.</p>\n", lines.lines);
+              fmt::format("<p class=\"soft\">From {} published lines.</p>\n", lines.lines);
   body += line_tiles(diagnosis);
   body +=
       diagnosis_meaning(diagnosis) + next_step_note(diagnosis) + member_section(diagnosis) + note_paragraphs(diagnosis);

@@ -397,7 +397,7 @@ Page page(std::string_view title, const Html& body) {
   }
   if (!drawn.empty()) {
     text +=
-        "<p class=\"soft\" data-plots>Each plot is also in the folder <code>plots</code> beside this page: SVG, PDF, "
+        "<p class=\"soft\" data-plots>Each plot is also in the folder <code>plots</code> next to this page: SVG, PDF, "
         "its numbers (CSV), and the script that draws it (<code>gnuplot NAME.gp</code>).</p>\n";
   }
   made.html = fmt::format(

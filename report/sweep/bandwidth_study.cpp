@@ -351,7 +351,7 @@ std::string bandwidth_table(const SweepSummary& summary) {
   const auto cells = [&](const ErrorStatistics* of) -> std::vector<std::string> {
     if (of == nullptr) return {"–", "–"};
     known_to = std::max(known_to, 1.0 / std::sqrt(2.0 * static_cast<double>(of->answered)));
-    return {base::number_text(of->rms, 3), fmt::format("{:.1f} %", 100.0 * of->coverage)};
+    return {base::digits_text(of->rms, 3), fmt::format("{:.1f} %", 100.0 * of->coverage)};
   };
   const auto add = [&](const std::string& name, const auto& statistics) {
     std::vector<std::string> row = {name};
@@ -370,11 +370,12 @@ std::string bandwidth_table(const SweepSummary& summary) {
   for (const fit::Estimator& other : fit::judged_estimators()) {
     if (!other.of_lines) add_estimator(std::string(other.title), other.name);
   }
-  return table.str() + fmt::format(
-                           "<p class=\"soft\">Root mean square errors, known to {:.0f} % or better (one standard "
-                           "error, if errors are "
-                           "normal); coverage is the fraction of the stated 95 % intervals that hold the truth.</p>\n",
-                           100.0 * known_to);
+  return table.str() +
+         fmt::format(
+             "<p class=\"soft\">Root mean square errors, known to {:.0f} % or better (one standard "
+             "error, if errors are "
+             "normal); coverage is the fraction of the stated 95 % intervals that contain the true value.</p>\n",
+             100.0 * known_to);
 }
 
 }  // namespace glidelab::report

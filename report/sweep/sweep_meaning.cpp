@@ -387,10 +387,10 @@ std::string intervals(const SweepSummary& summary) {
     }
   }
   if (narrow.empty() && wide.empty()) {
-    return " All stated 95 % intervals hold the truth as often as they say, within three standard errors.";
+    return " All stated 95 % intervals contain the true value as often as stated, within three standard errors.";
   }
-  return two_lists("95 % intervals that hold the truth", series_text(narrow, 2, " %"), series_text(wide, 2, " %"),
-                   "less often", "more often");
+  return two_lists("95 % intervals that contain the true value", series_text(narrow, 2, " %"),
+                   series_text(wide, 2, " %"), "less often", "more often");
 }
 
 /// Stated standard deviations that are far from the errors: a few values that are far off do not show in coverage.

@@ -227,7 +227,7 @@ Html tables_of(const SweepSummary& summary) {
   Html body = "<h2>All runs</h2>\n" + overall_table(summary);
   body +=
       "<p class=\"soft\">Stated sd and least sd (the Cramér-Rao bound, where the noise is known) are root mean squares "
-      "over the runs; coverage is the fraction of the stated 95 % intervals that hold the truth.</p>\n";
+      "over the runs; coverage is the fraction of the stated 95 % intervals that contain the true value.</p>\n";
   body += sweep_advice(summary) + configuration_table(summary);
   body += acceleration_table(summary);
   return body;
@@ -295,7 +295,7 @@ std::string runs_of(const SweepSummary& summary) {
 
 Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
   const std::string soft =
-      "<p class=\"soft\">Sweep by Glidelab. Errors are recovered minus true values, over all configurations of the "
+      "<p class=\"soft\">Errors are recovered minus true values, over all configurations of the "
       "scenario.</p>\n";
   if (const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary)) {
     Html body =

@@ -1,4 +1,4 @@
-/// Numbers and missing numbers in a JSON file: null with the reason in "why" beside it, never NaN.
+/// Numbers and missing numbers in a JSON file: null with the reason in "why" next to it, never NaN.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -218,9 +218,9 @@ std::string agreement_of(const validate::Comparison& comparison) {
   std::string text =
       fmt::format("{} of {} recovered values lie within two of their standard deviations of the truth", near, compared);
   if (farthest != nullptr) {
-    text +=
-        fmt::format("; the farthest off is {} of {} by the {}: {} standard deviations", symbol_of(farthest->quantity),
-                    farthest->configuration, estimator_name(farthest->estimator), base::digits_text(worst, 2));
+    text += fmt::format("; the largest error is that of {} of {} by the {}: {} standard deviations",
+                        symbol_of(farthest->quantity), farthest->configuration, estimator_name(farthest->estimator),
+                        base::digits_text(worst, 2));
   }
   return text + ".";
 }
@@ -383,7 +383,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   for (const validate::LineComparison& line : comparison.lines) lowest_r2 = std::min(lowest_r2, line.r2);
   const validate::RestitutionComparison& restitution = comparison.restitution;
   Html body = question_heading(title, "How well are the true values recovered?") +
-              "<p class=\"soft\">Rehearsal by Glidelab: simulated, filmed, analysed from the images alone by the lines "
+              "<p class=\"soft\">A rehearsal: simulated, filmed, analysed from the images alone by the lines "
               "of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n";
   body += meaning_of(comparison);
   body += "<div class=\"tiles\">" +

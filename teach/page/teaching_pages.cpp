@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -146,11 +147,31 @@ Plot position_plot(const LawStudy& study) {
   return {Drawing{script, data}, "position_caption", "x(t) of " + study.name};
 }
 
+/// gnuplot: which tracks an equilibrium belongs to, where not all of the study's have it; below the dot if the first
+/// has it, otherwise above.
+std::string equilibrium_labels(const LawStudy& study) {
+  std::map<double, std::vector<std::size_t>> tracks;
+  for (std::size_t c = 0; c < study.curves.size(); ++c) {
+    for (const Equilibrium& at : study.curves[c].equilibria) tracks[at.v_m_s].push_back(c);
+  }
+  std::string script;
+  for (const auto& [v, those] : tracks) {
+    if (those.size() == study.curves.size()) continue;
+    std::string names;
+    for (const std::size_t c : those) names += (names.empty() ? "" : ", ") + study.curves[c].configuration;
+    const bool under = those.front() == 0;
+    script += fmt::format("set label {} at {:.6g}, 0 {} offset {} font ',11' front\n", gnuplot_quoted(shortened(names)),
+                          v, under ? "right" : "left", under ? "-0.9,-0.9" : "0.5,0.9");
+  }
+  return script;
+}
+
 Plot phase_plot(const LawStudy& study) {
   std::vector<PlotData> data;
   std::string script = std::string(kFrame) +
                        "set key top right font ',11' maxrows 4\nset xlabel 'v (m/s)'\nset ylabel 'a (m/s²)'\n"
-                       "set xzeroaxis lt 1 lc rgb '#777777'\nset yzeroaxis lt 1 lc rgb '#777777'\nplot ";
+                       "set xzeroaxis lt 1 lc rgb '#777777'\nset yzeroaxis lt 1 lc rgb '#777777'\n" +
+                       equilibrium_labels(study) + "plot ";
   bool first = true;
   const auto add = [&](PlotData block, const std::string& how) {
     if (block.rows.empty()) return;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <utility>
 
@@ -28,6 +29,11 @@ constexpr std::size_t kCharacters = 74, kTitleCharacters = 46;  // in a line
 // Font sizes for gnuplot's PDF: half as many points on paper.
 constexpr int kType = 19, kSmall = 17, kTitle = 30;
 constexpr double kLeft = 0.085, kRight = 0.935;
+constexpr std::string_view kNoBreak = "\u00a0";
+constexpr int kReadDigits = 2;  // of what is read off the figure
+
+/// A text of the sheet's language by its key.
+using Say = std::function<std::string(const std::string& key, const WordValues& values)>;
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
@@ -36,13 +42,16 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-std::string number(const std::string& language, double value, int digits) {
-  const std::string text = std::abs(value) < 1e-12 ? "0" : base::number_text(value, digits);
-  return replaced(replaced(text, "-", "−"), ".", texts_of(language).at("decimal"));
+std::string in_language(const std::string& language, const std::string& number) {
+  return replaced(replaced(number, "-", "−"), ".", texts_of(language).at("decimal"));
 }
 
-/// The text split into lines that fit the sheet.
-std::vector<std::string> lines_of(const std::string& text, std::size_t most = kCharacters) {
+/// The text split into lines that fit the sheet; a number stays with its unit, and "a > 0" on one line.
+std::vector<std::string> lines_of(std::string text, std::size_t most = kCharacters) {
+  for (const char* sign : {"=", "<", ">"})
+    text = replaced(text, fmt::format(" {} ", sign), fmt::format("{0}{1}{0}", kNoBreak, sign));
+  for (const char* unit : {"m/s", "1/s"})
+    text = replaced(text, fmt::format(" {}", unit), fmt::format("{}{}", kNoBreak, unit));
   std::vector<std::string> lines(1);
   std::size_t length = 0;
   std::istringstream words(text);
@@ -80,6 +89,45 @@ class Sheet {
   double from_top_ = 55.0;
   std::string script_;
 };
+
+/// What becomes of gliders on this curve: one sentence for each range of speeds, and the reason for it.
+std::string outcome_text(const LawCurve& curve, const std::function<std::string(double)>& shown, const Say& say) {
+  std::string text;
+  const auto add = [&](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
+  const std::vector<Equilibrium>& all = curve.equilibria;
+  if (all.empty()) {
+    const auto zero = [](double a) { return a == 0.0; };
+    const bool coasts = std::ranges::all_of(curve.up_a_m_s2, zero) && std::ranges::all_of(curve.down_a_m_s2, zero);
+    return say(coasts ? "ws_everywhere" : "ws_never", {});
+  }
+  std::vector<double> left;  // speeds that a glider leaves, on either side
+  bool returns = false;
+  for (const Equilibrium& at : all) {
+    if (at.stable) returns = true;
+    if (!at.stable && at.v_m_s != 0.0) left.push_back(at.v_m_s);
+    if (!at.stable && at.v_m_s == 0.0) add(say("ws_at_rest", {{"ends", say("may_stay", {})}}));
+  }
+  for (std::size_t i = 0; i <= left.size(); ++i) {  // the ranges between them
+    std::string ends = say("ws_runs_away", {});
+    for (const Equilibrium& at : all) {
+      if (!at.stable || (i > 0 && at.v_m_s < left[i - 1]) || (i < left.size() && at.v_m_s > left[i])) continue;
+      ends = at.v_m_s != 0.0 ? say("tends_to_limit", {{"v", shown(at.v_m_s)}})
+                             : say(at.stops ? "comes_to_rest" : "tends_to_rest", {});
+    }
+    WordValues values = {{"ends", ends}};
+    const bool above = i > 0, below = i < left.size();
+    if (above && below) {
+      values["v1"] = shown(left[i - 1]);
+      values["v2"] = shown(left[i]);
+    } else if (above || below) {
+      values["v"] = shown(above ? left[i - 1] : left[i]);
+    }
+    add(say(above && below ? "ws_between" : above ? "ws_faster" : below ? "ws_slower" : "ws_always", values));
+  }
+  if (returns) add(say("ws_stable", {}));
+  for (const double v : left) add(say("ws_unstable", {{"v", shown(v)}}));
+  return text;
+}
 
 report::Plot sheet_of(const LawStudy& study, const WorksheetTexts& texts, const std::string& language, bool teacher) {
   Sheet sheet;
@@ -133,10 +181,10 @@ report::Plot sheet_of(const LawStudy& study, const WorksheetTexts& texts, const 
     data.push_back(std::move(block));
   };
   for (std::size_t c = 0; c < study.curves.size(); ++c) {
-    const LawCurve& curve = study.curves[c];
+    const LawCurve curve = in_both_directions(study.curves[c]);
     const std::string how = fmt::format("with lines lw 2.2 dt {} lc rgb '{}' ", c % 2 == 0 ? 1 : 2, color(c));
     const std::string title = "title " + gnuplot_quoted(report::shortened(curve.configuration));
-    add(fmt::format("up{}", c), curve.up_v_m_s, curve.up_a_m_s2, how + (curve.down_v_m_s.empty() ? title : "notitle"));
+    add(fmt::format("up{}", c), curve.up_v_m_s, curve.up_a_m_s2, how + "notitle");
     add(fmt::format("down{}", c), curve.down_v_m_s, curve.down_a_m_s2, how + title);
   }
   if (teacher) {
@@ -169,37 +217,30 @@ report::Plot sheet_of(const LawStudy& study, const WorksheetTexts& texts, const 
 WorksheetTexts worksheet_texts(const LawStudy& study, const std::string& language) {
   const LawAnswers asked = answers_of(study);
   const LawCurve& curve = study.curves[asked.curve];
-  const auto shown = [&](double value, int digits = 3) { return number(language, value, digits); };
-  const auto say = [&](const std::string& key, const WordValues& values = {}) {
+  const auto read = [&](double value) { return in_language(language, base::digits_text(value, kReadDigits)); };
+  const auto given = [&](double value, int digits = 3) {
+    return in_language(language, base::number_text(value, digits));
+  };
+  const Say say = [&](const std::string& key, const WordValues& values) {
     return replaced(text_in(language, key, values), "v_lim", "vₗᵢₘ");
   };
   const std::string key = key_of(study.name, "scenario");
   const std::string law = key.empty() ? study.name : text_in(language, key);
-  std::string ends;
-  for (const Equilibrium& at : curve.equilibria) {
-    ends += (ends.empty() ? "" : "; ") +
-            (at.v_m_s != 0.0 ? say(at.stable ? "tends_to_limit" : "unstable_at", {{"v", shown(at.v_m_s, 4)}})
-             : !at.stable    ? say("may_stay")
-             : at.stops      ? say("comes_to_rest")
-                             : say("tends_to_rest"));
-  }
-  if (ends.empty()) ends = say("no_limit");
   WorksheetTexts texts;
   texts.title = say("ws_title", {{"law", law}});
   texts.answers_title = say("ws_answers", {{"law", law}});
   texts.questions = {say("ws_question1", {{"track", curve.configuration},
-                                          {"alpha", shown(curve.incline_deg, 4)},
-                                          {"v1", shown(asked.v1_m_s)},
-                                          {"v2", shown(asked.v2_m_s)}}),
-                     say("ws_question2", {{"g", shown(curve.body.gravity_m_s2, 3)}}), say("ws_question3")};
+                                          {"alpha", given(curve.incline_deg, 4)},
+                                          {"v1", given(asked.v1_m_s)},
+                                          {"v2", given(asked.v2_m_s)}}),
+                     say("ws_question2", {{"g", given(curve.body.gravity_m_s2)}}), say("ws_question3", {})};
   const std::string slope = asked.flat() ? "ws_flat" : asked.straight() ? "ws_linear" : "ws_bent";
   WordValues slopes;
   if (!asked.flat())
-    slopes = {{"s1", shown(asked.slope1_1_s)}, {"s2", shown(asked.slope2_1_s)}, {"k", shown(-asked.slope1_1_s)}};
-  texts.answers = {
-      say(slope, slopes),
-      asked.jumps() ? say("ws_jump", {{"jump", shown(asked.jump_m_s2)}, {"mu", shown(asked.mu)}}) : say("ws_no_jump"),
-      say("ws_end", {{"ends", ends}})};
+    slopes = {{"s1", read(asked.slope1_1_s)}, {"s2", read(asked.slope2_1_s)}, {"k", read(-asked.slope1_1_s)}};
+  const std::string jump = !asked.jumps() ? "ws_no_jump" : asked.mu_varies ? "ws_jump_near" : "ws_jump";
+  const WordValues jumps = {{"jump", read(asked.jump_m_s2)}, {"mu", read(asked.mu)}};
+  texts.answers = {say(slope, slopes), say(jump, asked.jumps() ? jumps : WordValues{}), outcome_text(curve, read, say)};
   return texts;
 }
 

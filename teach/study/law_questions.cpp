@@ -46,7 +46,25 @@ LawAnswers answers_of(const LawStudy& study) {
   answers.slope2_1_s = (a(answers.v2_m_s, 1) - a(answers.v1_m_s, 1)) / answers.v1_m_s;
   answers.jump_m_s2 = a(0.0, -1) - a(0.0, 1);
   answers.mu = answers.jump_m_s2 / (2.0 * body.gravity_m_s2 * std::cos(body.incline_rad));
+  const sim::Contact contact = sim::contact_of(body);
+  answers.mu_varies = std::ranges::any_of(body.forces, [&](const auto& force) {
+    const double dry_n = force->force_n(0.0, 1, contact);
+    return dry_n != 0.0 && std::abs(force->force_n(answers.v2_m_s, 1, contact) - dry_n) > kRounding * std::abs(dry_n);
+  });
   return answers;
+}
+
+LawCurve in_both_directions(LawCurve curve) {
+  const auto mirror = [&](const std::vector<double>& from, std::vector<double>& v, std::vector<double>& a,
+                          int direction) {
+    for (const double speed : from) {
+      v.push_back(-0.5 * speed);
+      a.push_back(sim::net_force_n(curve.body, v.back(), direction) / curve.body.mass_kg);
+    }
+  };
+  if (curve.up_v_m_s.empty()) mirror(curve.down_v_m_s, curve.up_v_m_s, curve.up_a_m_s2, -1);
+  if (curve.down_v_m_s.empty()) mirror(curve.up_v_m_s, curve.down_v_m_s, curve.down_a_m_s2, 1);
+  return curve;
 }
 
 }  // namespace glidelab::teach

@@ -16,13 +16,18 @@ struct LawAnswers {
   double slope1_1_s = 0.0, slope2_1_s = 0.0;
   double jump_m_s2 = 0.0;
   double mu = 0.0;
-  bool flat() const;      ///< no slope
-  bool straight() const;  ///< the two slopes are equal within rounding
-  bool jumps() const;     ///< by more than rounding
+  bool mu_varies = false;  ///< some dry friction depends on v, so that `mu` is that near v = 0 alone
+  bool flat() const;       ///< no slope
+  bool straight() const;   ///< the two slopes are equal within rounding
+  bool jumps() const;      ///< by more than rounding
 };
 
 /// Of the curves with a part at v > 0, the first one with a terminal velocity is used, otherwise the last one.
 /// std::logic_error if there is none.
 LawAnswers answers_of(const LawStudy& study);
+
+/// The curve with the side of v = 0 on which no motion of the study lies, half as far: without it nobody can read how
+/// far a(v) jumps there.
+LawCurve in_both_directions(LawCurve curve);
 
 }  // namespace glidelab::teach

@@ -114,7 +114,7 @@ def table(rows):
     yield "dirt alone, any name", fraction(of("named", "none"))
     yield "off the list, a wrong name above 0.8", fraction(of("wrong", "off"))
     yield "shares, rms error", f"{np.sqrt(np.mean(np.square(rests))):.3f} ({len(rests)})" if rests else "-"
-    yield "recovered intervals hold the truth", fraction([h for r in rows for h in r["held"]["all"]])
+    yield "recovered intervals contain the true value", fraction([h for r in rows for h in r["held"]["all"]])
     yield "the same, right causes named", fraction([h for r in rows for h in r["held"]["right"]])
 
 

@@ -70,7 +70,7 @@ class WrongInput(InFolder):
         self.refused(lambda: glidelab.analyze(file, runs=[1], column="2"), key="column")
         self.refused(lambda: glidelab.analyze(t, x, runs="all"), key="runs")
         self.refused(lambda: glidelab.analyze(file, force_n=x), key="force_n")
-        self.refused(lambda: glidelab.analyze(t, x, force_n=x), key="mass_kg", found="none, beside a recorded force")
+        self.refused(lambda: glidelab.analyze(t, x, force_n=x), key="mass_kg", found="none, with a recorded force")
         self.refused(lambda: glidelab.certify(file, twins=5), key="twins")
         self.refused(lambda: glidelab.certify(file, estimator="best"), key="estimator")
         self.refused(lambda: glidelab.certify(file, bandwidth_s=0.0), key="bandwidth_s")

@@ -112,10 +112,11 @@ class RequirementOfTracks(InFolder):
 
 class Quantities(unittest.TestCase):
     def test_a_value_is_rounded_to_its_uncertainty(self):
-        for value, sd, said in ((2.7791, 0.0061, "2.779 ± 0.006"), (2.7791, 0.0132, "2.779 ± 0.013"),
-                                (1234.5, 25.0, "1234 ± 25"), (0.5, None, "0.5"), (2.0, 0.0196, "2.00 ± 0.02")):
+        for value, sd, said in ((2.7791, 0.0061, "2.7791 ± 0.0061"), (2.7791, 0.0132, "2.779 ± 0.013"),
+                                (1234.5, 25.0, "1234 ± 25"), (0.5, None, "0.5"), (2.0, 0.0196, "2.000 ± 0.020"), (0.5, 0.0996, "0.50 ± 0.10")):
             self.assertEqual(str(glidelab.Quantity(value, sd)), said)
-        self.assertEqual(str(glidelab.Quantity(2.7791, 0.0061, unit="1/s")), "2.779 ± 0.006 1/s")
+        self.assertEqual(str(glidelab.Quantity(2.7791, 0.0061, unit="1/s")), "2.7791 ± 0.0061 1/s")
+        self.assertEqual(str(glidelab.Quantity(4.309, 0.0031, unit="°")), "4.3090 ± 0.0031°")
 
 
 class CtrlC(unittest.TestCase):

@@ -149,15 +149,16 @@ TEST_CASE("the first line of coverage is the answer: how often the intervals hol
   coverage.rows[1].coverage = 0.935;
   coverage.rows[2].coverage = 0.1;
   CHECK(report::coverage_answer(coverage) ==
-        "The stated 95 % intervals hold the truth in 93.5 to 95.0 % of 200 replicates, as often as they say, as far as "
+        "The stated 95 % intervals contain the true value in 93.5 to 95.0 % of 200 replicates, as often as stated, as "
+        "far as "
         "this many replicates can tell.");
   coverage.rows[1].coverage = 0.6;
   coverage.rows[1].levels = {{0.95, 120, 0.6, 0.53, 0.67, 1e-40}};
   const std::string text = report::coverage_text(coverage);
-  CHECK(
-      text.substr(0, text.find('\n')) ==
-      "The stated 95 % intervals hold the truth in 60.0 to 95.0 % of 200 replicates, less often than they say for 1 of "
-      "2: µ of m1 by the fit of the whole motion.");
+  CHECK(text.substr(0, text.find('\n')) ==
+        "The stated 95 % intervals contain the true value in 60.0 to 95.0 % of 200 replicates, less often than stated "
+        "for 1 of "
+        "2: µ of m1 by the fit of the whole motion.");
 }
 
 TEST_CASE("coverage names what scatters farther than it states, and the naive lines are not asked") {

@@ -28,7 +28,7 @@ class Reader {
   std::string text(const char* key) const {
     const json* found = find(key);
     if (found != nullptr && found->is_string() && !found->get_ref<const std::string&>().empty()) return *found;
-    reject(key, found, "a text");
+    reject(key, found, "a string");
     return {};
   }
   double number(const char* key) const {

@@ -13,7 +13,7 @@
 /// k1 may be (its size and two standard deviations). k1 itself defines the extent and is not bounded by it.
 ///
 /// High terms go with k1 in lenses as they are. They do not in images that a camera has straightened itself, or in a
-/// lens whose k1 happens to be near zero beside large k2 and k3: there the intervals may be too narrow.
+/// lens whose k1 happens to be near zero with large k2 and k3: there the intervals may be too narrow.
 #pragma once
 
 #include <Eigen/Core>

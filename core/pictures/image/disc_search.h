@@ -29,7 +29,7 @@ std::vector<cv::Rect> parts_with_contrast(const cv::Mat& values, const cv::Rect&
 struct DiscSquares {
   int inner = 0;  ///< half the side of the one within, less half a pixel
   int outer = 0;  ///< of those around
-  int away = 0;   ///< from the disc's centre to those beside it
+  int away = 0;   ///< from the disc's centre to those next to it
 
   explicit DiscSquares(double radius_px);
 };

@@ -165,7 +165,7 @@ void check_overlap(const TomlTable& table, const Recording& recording) {
 void read_tick(const TomlTable& table, ClockSetup& clock, double frame_rate_hz) {
   if (!table.has("stamp_tick_s")) return;
   clock.stamp_tick_s = table.number("stamp_tick_s", {0.0, 0.5 / frame_rate_hz, true, false});
-  if (!clock.variable) table.reject("stamp_tick_s", "a tick", "variable = true beside it: only then there are stamps");
+  if (!clock.variable) table.reject("stamp_tick_s", "a tick", "variable = true as well: only then are there stamps");
 }
 
 void read_clock(const std::optional<TomlTable>& table, Scenario& scenario) {

@@ -68,7 +68,7 @@ void read_tone(const TomlTable& table, ToneCurve& tone) {
     }
     // The curve is refused and set to linear: code that follows computes with the curve and must not use a missing
     // table.
-    table.reject("tone_to", fmt::format("{} numbers, beside {} in tone_from", to.size(), from.size()),
+    table.reject("tone_to", fmt::format("{} numbers, but {} in tone_from", to.size(), from.size()),
                  "as many in both, rising from 0 to 1");
   }
 }
@@ -92,7 +92,7 @@ void read_white(const TomlTable& table, const Scenario& scenario, Exposure& expo
       table.reject("white_level", fmt::format("{}", exposure.white_level), "a white above the offset");
     }
   } else if (table.has("white_level")) {
-    table.reject("white_level", "a level beside white_photons_s", "one of the two");
+    table.reject("white_level", "a level as well as white_photons_s", "one of the two");
     table.number("white_level");
   }
 }
@@ -132,7 +132,7 @@ void read_h264(const TomlTable& table, Scenario& scenario) {
   compression.gop = static_cast<int>(table.integer_or("gop", compression.gop, 1, 10'000));
   compression.bitrate_kbit_s = table.number_or("bitrate_kbit_s", 0.0, base::between(10.0, 1e6));
   if (table.has("bitrate_kbit_s") && table.has("crf")) {
-    table.reject("crf", "a constant rate factor beside a bit rate", "one of the two");
+    table.reject("crf", "a constant rate factor as well as a bit rate", "one of the two");
   }
   compression.crf = table.number_or("crf", compression.crf, base::between(0.0, 51.0));
   const Camera& camera = scenario.camera;

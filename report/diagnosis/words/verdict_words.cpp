@@ -231,7 +231,7 @@ std::string claim(const diagnose::DiagnosedEffect& effect) {
     members.push_back(one.probability ? fmt::format("{} ({}, {})", one.words, one.id, percent(*one.probability))
                                       : fmt::format("{} ({})", one.words, one.id));
   }
-  return fmt::format("one of these {}, {} together, and cannot tell which: {}", count_in_words(members.size()),
+  return fmt::format("one of these {} ({} together), but cannot tell which: {}", count_in_words(members.size()),
                      percent(effect.joint_probability), list_of(members, ", or "));
 }
 

@@ -130,8 +130,8 @@ TEST_CASE("the explorer says what becomes of a motion: held, stopped, ever slowe
       {"0,0,0,0,0", "at rest, and nothing drives it", "comes to rest", false},
       {"2,1,0,0,1", "tends to rest", "comes to rest", true},
       {"0,1,0,0,0", "at rest, and nothing drives it", "tends", true},
-      {"0,1,0.01,0,0", "at rest and stays: nothing pulls it", "comes to rest", true},
-      {"0,1,0.03,1,0", "at rest and stays: the slope pulls", "comes to rest", true},
+      {"0,1,0.01,0,0", "at rest and stays there: nothing pulls it", "comes to rest", true},
+      {"0,1,0.03,1,0", "at rest and stays there: the slope pulls", "comes to rest", true},
       {"3,0,0.01,0,0.5", "comes to rest at t = 5.099 s", "for ever", true},     // v0 / (mu g)
       {"3,0,0,2,-1", "It turns at t = 2.922 s. Without drag", "jumps", false},  // v0 / (g sin alpha)
       {"0,2,0,0.5,0", "tends to v = 0.0428 m/s", "turns", true}};               // g sin(alpha) / k

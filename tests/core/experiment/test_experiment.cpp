@@ -230,7 +230,7 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"format = 1", "format = 2", "1: format: found 2"},
       {"name = \"test\"", "nam = \"test\"",
        "2: nam: found an unknown key, expected a known key; did you mean \"name\"?"},
-      {"name = \"test\"", "name = 3", "2: name: found 3, expected a text"},
+      {"name = \"test\"", "name = 3", "2: name: found 3, expected a string"},
       {"frame_rate_hz = 200.0", "frame_rate_hz = 0", "4: camera.frame_rate_hz: found 0, expected a number above 0"},
       {"frame_rate_hz = 200.0", "frame_rate_hz = nan", "4: camera.frame_rate_hz: found nan"},
       {"frame_rate_hz = 200.0", "frame_rate_hz = \"200\"", "4: camera.frame_rate_hz: found text \"200\""},

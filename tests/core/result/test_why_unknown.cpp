@@ -15,13 +15,14 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::Told{"not done after 60 s"}, "not done after 60 s"},
       {unknown::NoLine{}, "no line: neither direction"},
       {unknown::NoDownhillLine{}, "no line for v > 0"},
-      {unknown::NotBothLines{true, false}, "no line for v < 0: friction and slope"},
-      {unknown::NotBothLines{false, true}, "no line for v > 0: friction and slope"},
-      {unknown::NotBothLines{true, true}, "no line for v < 0 and none for v > 0: friction and slope"},
+      {unknown::NotBothLines{true, false}, "no line for v < 0, and only both directions"},
+      {unknown::NotBothLines{false, true}, "no line for v > 0, and only both directions"},
+      {unknown::NotBothLines{true, true}, "no line for v < 0 and none for v > 0, and only both directions"},
       {unknown::MeanBeyondGravity{10.5}, "the mean of a0 is 10.5 m/s², which is gravity or more"},
       {unknown::RateNotPositive{true}, "K/m for v > 0 is not above zero"},
       {unknown::RateNotPositive{false}, "K/m is not above zero"},
-      {unknown::InterceptNotPositive{}, "a0 for v > 0 is not above zero"},
+      {unknown::InterceptNotPositive{},
+       "nothing drives the glider downhill: at v = 0 the line for v > 0 is not above zero"},
       {unknown::NoFreeMotion{}, "no free motion"},
       {unknown::NoFit{}, "does not converge"},
       {unknown::OneDirection{1, 0.6874, 0.0012},
@@ -37,7 +38,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::FreeFall{}, "no normal force"},
       {unknown::NoBalance{}, "not balance at any downhill speed"},
       {unknown::DragNotViscous{}, "square of the speed"},
-      {unknown::KernelNotStated{}, "neither how wide the kernel was"}};
+      {unknown::KernelNotStated{}, "neither the bandwidth nor the stretch"}};
   std::vector<bool> seen(std::variant_size_v<AnyReason>, false);
   for (const auto& [reason, part] : reasons) {
     const std::string words = why_words(WhyUnknown{reason});

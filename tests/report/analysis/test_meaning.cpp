@@ -52,7 +52,7 @@ TEST_CASE("a drag or a friction below zero by more than chance is doubted, by le
   core::AnalysisResults results = one_clip();
   results.configurations[0].k_over_m_1_s = tests::known(-0.367, 0.055);
   CHECK(any_has(report::doubts_about(results), "K/m = -0.367 ± 0.055 is below zero"));
-  CHECK(report::meaning_of(results).find("decelerates it at -") == std::string::npos);
+  CHECK(report::meaning_of(results).find("takes it 63 %") == std::string::npos);
   results.configurations[0].k_over_m_1_s = tests::known(-0.367, 0.355);
   CHECK(report::doubts_about(results).empty());
   results.configurations[0].mu = tests::known(-0.010, 0.002);
@@ -92,12 +92,47 @@ TEST_CASE("points far off their line are told with the clip and the next step, o
   CHECK(report::doubts_about(results).empty());
 }
 
+TEST_CASE("the page of an analysis says first that the law fits and what the numbers mean, then the numbers") {
+  core::AnalysisResults results = one_clip();
+  const std::string page = report::analysis_report("fits", results, {}).html;
+  const std::size_t fits = page.find("Nothing in these clips contradicts the law");
+  const std::size_t words = page.find("takes it 63\u00a0% of the way to its final speed in 0.37\u00a0s");
+  REQUIRE(fits != std::string::npos);
+  REQUIRE(words != std::string::npos);  // 1 / 2.7
+  CHECK(fits < words);
+  CHECK(words < page.find("class=\"tile\""));
+  // Of many configurations the table has the values, and the words are folded.
+  results.configurations.resize(3, results.configurations.front());
+  const std::string many = report::analysis_report("fits", results, {}).html;
+  CHECK(many.find("Nothing in these clips contradicts the law") < many.find("over 3 configurations"));
+  CHECK(many.find("<summary>In words</summary>") != std::string::npos);
+  // Where nothing is determined, or nothing but zero, nothing fits.
+  results.configurations.resize(1);
+  results.configurations[0].k_over_m_1_s = tests::known(-0.1, 9.8);
+  results.configurations[0].mu = {};
+  CHECK(report::meaning_of(results).find("contradicts the law") == std::string::npos);
+  results.configurations[0].k_over_m_1_s = results.configurations[0].mu = {};
+  CHECK(report::meaning_of(results).find("contradicts the law") == std::string::npos);
+}
+
+TEST_CASE("a reason for several missing quantities is told once") {
+  core::AnalysisResults results = one_clip();
+  const core::WhyUnknown one_way{core::unknown::NotBothLines{true, false}};
+  results.configurations[0].mu.estimate.reset();
+  results.configurations[0].mu.why = results.configurations[0].alpha_deg.why = one_way;
+  results.configurations[0].v_lim_m_s.why = core::WhyUnknown{core::unknown::NoDownhillLine{}};
+  const std::string text = report::analysis_text(results);
+  CHECK(text.find("µ and α are not determined: no line for v < 0, and only both directions tell friction from slope") !=
+        std::string::npos);
+  CHECK(text.find("terminal velocity is not determined: no line for v > 0") != std::string::npos);
+}
+
 TEST_CASE("where the law is in doubt the doubt comes first and the numbers are called no more than what a fit gives") {
   core::AnalysisResults results = one_clip();
   results.configurations[0].mu = tests::known(-0.010, 0.002);
   const std::string doubted = report::meaning_of(results);
   CHECK(doubted.find("does not fit") != std::string::npos);
-  CHECK(doubted.find("decelerates it at") == std::string::npos);
+  CHECK(doubted.find("takes it 63 %") == std::string::npos);
   CHECK(doubted.find("Coulomb friction is") == std::string::npos);
   const std::string page = report::analysis_report("doubted", results, {}).html;
   const std::size_t doubt = page.find("does not fit"), number = page.find("<b>2.7");
@@ -212,7 +247,7 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
   CHECK(tells(page(), "position noise: at most 0.0036\u00a0mm (one standard deviation)"));
   check.findings = {{core::Severity::change, {}, core::found::Dark{0.2}}};
-  CHECK(tells(page(), "if you record again"));
+  CHECK(tells(page(), "would make its numbers more precise"));
   check.findings = {{core::Severity::unusable, {}, core::found::Dark{0.0}}};
   check.usable = false;
   CHECK(tells(page(), "fix what “must change”"));

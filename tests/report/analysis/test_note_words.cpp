@@ -42,7 +42,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::CountedAlongMotion{}, "its sign is reversed"},
       {core::RowsIncomplete{1}, "one row within the table lacks a time or x"},
       {core::RowsIncomplete{4}, "4 rows within the table lack a time or x"},
-      {core::RoundedTimes{0.01, 1.0 / 30.0}, "multiples of 0.01 s and taken as even, 0.0333333 s apart"},
+      {core::RoundedTimes{0.01, 1.0 / 30.0}, "multiples of 0.01 s and taken as even, 0.03333 s apart"},
       {core::NoLengthUnit{}, "no unit of length"},
       {core::PointMassTaken{"cart", "+X", false, true}, "x is the X of point mass \"cart\""},
       {core::PointMassTaken{"cart", "+X", false, false}, "positive towards +X: it moves most along X"},
@@ -105,8 +105,9 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::AgainstLaunch{1, 0.542, 0.3, false}, "motion towards +x before 0.542 s"},
       {core::MassInGrams{335.0, 0.335}, "mass_kg = 335, but 0.335 for the lightest glider"},
       {core::MassInGrams{400.0, {}}, "looks like grams (0.4 kg)"},
-      {one_way, "the acceleration makes the inclination at most 4.71 ± 0.013°, the plumb line says 10°: an angle"},
-      {beyond, "12.3 m/s² without friction, is more than gravity_m_s2 = 9.80665; incline_deg says 4.3 ± 0.3°"},
+      {one_way,
+       "the acceleration gives an inclination of at most 4.712 ± 0.013°, but the plumb line says 10°: an angle"},
+      {beyond, "12.3 m/s² without friction, is more than gravity_m_s2 = 9.80665; incline_deg says 4.30 ± 0.30°"},
       {core::RobustFit{4, 400}, "robust: 4 of 400 positions"},
       {core::FitScatters{1.234, 17.0}, "scatter 1.23 times"}};
   std::vector<bool> seen(std::variant_size_v<core::AnyNote>, false);

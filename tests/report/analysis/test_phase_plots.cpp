@@ -106,6 +106,27 @@ TEST_CASE("the overview has all configurations, with the inclination where there
   CHECK_FALSE(report::phase_overview(results));
 }
 
+TEST_CASE("a line is drawn to v = 0 only from points that reach as far as it is drawn beyond them") {
+  core::AnalysisResults results = tests::made_results();
+  const report::PhaseGroup group = report::phase_groups(results).front();
+  const auto first_v = [&](double from_v_m_s, double to_v_m_s) {
+    for (const std::size_t c : group.configurations) {
+      core::LineFit line = tests::made_line(1, 2.768, 0.667);
+      line.from_v_m_s = from_v_m_s;
+      line.to_v_m_s = to_v_m_s;
+      results.configurations[c].lines = {line};
+    }
+    const std::vector<report::Plot> plots = report::phase_plots(results, group);
+    const double first = block(plots.front(), "lines0").rows.front()[0];
+    CHECK(plots.size() == (first == 0.0 ? 3 : 2));  // without a line at v = 0 there is no detail of it
+    return first;
+  };
+  CHECK(first_v(0.1, 0.5) == 0.0);
+  CHECK(first_v(0.25, 0.5) == 0.0);
+  CHECK(first_v(1.298, 1.302) == 1.298);  // a fall near its terminal velocity
+  CHECK(first_v(-1.302, -1.298) == -1.298);
+}
+
 TEST_CASE("residuals that are far below their intervals are drawn beside these") {
   core::AnalysisResults results = tests::made_results();
   // Every point on the line of its direction, as smoothers leave them that know the law's exponential.

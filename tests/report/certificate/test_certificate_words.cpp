@@ -120,10 +120,9 @@ TEST_CASE("a certificate says which explanation breaks the intervals where anoth
   made.explanations = {{{}, 0.7, 28, {83, 84, 0.988, 0.93, 1.0}},
                        {{"quadratic_drag"}, 0.3, 12, {12, 36, 0.333, 0.2, 0.5}}};
   const std::string text = report::certificate_text(made);
-  CHECK(
-      text.substr(text.find('\n') + 1)
-          .starts_with("They fail with explanations that the diagnosis finds 30 % probable together, most of all with "
-                       "quadratic drag (33 % hold).\n"));
+  CHECK(text.substr(text.find('\n') + 1)
+            .starts_with("They fail under explanations with a total probability of 30 %, above all under "
+                         "quadratic drag (33 % hold).\n"));
   const std::string page = report::certificate_page("a", made).html;
   CHECK(page.find("the nominal law alone") != std::string::npos);
   CHECK(page.find("Each explanation") != std::string::npos);
@@ -151,7 +150,7 @@ TEST_CASE("every limitation of a recording has a name, what its twins have inste
       {TwinLimit::codec, "codec", "no compression loss",
        "Compress less: a higher bit rate or quality, or a lossless codec"},
       {TwinLimit::rounding, "rounding", "positions with all their digits", "Export more digits"},
-      {TwinLimit::cause, "a cause beside the law", "the viscous and the Coulomb friction alone",
+      {TwinLimit::cause, "a cause that the law lacks", "the viscous and the Coulomb friction alone",
        "Remove the cause from the experiment"},
       {TwinLimit::clip_scatter, "what differs from clip to clip", "one law for every clip",
        "Make the clips alike: the track clean and level, the air still, nothing that touches the glider"},

@@ -37,7 +37,7 @@ TEST_CASE("findings that are notes are in words, those that read the same are on
   REQUIRE(findings.size() == 3);
   CHECK(findings[0]["found"] == "square_m = 40 looks like millimetres (0.04 m): 2 findings follow");
   CHECK(findings[0]["follow"] ==
-        nlohmann::json({"up: the acceleration makes the inclination 0.42 ± 0.13°, incline_deg says 4.3 ± 0.3°",
+        nlohmann::json({"up: the acceleration gives an inclination of 0.42 ± 0.13°, but incline_deg says 4.30 ± 0.30°",
                         "down: the glider runs 900 m, but length_m in [track] is 1.5 m"}));
   CHECK(findings[1]["about"] == "up, down");
   CHECK(findings[1]["found"] == "the marker looks 33 % larger than its diameter predicts");
@@ -45,4 +45,35 @@ TEST_CASE("findings that are notes are in words, those that read the same are on
   CHECK(findings[2]["about"] == "late");
   const std::string text = report::check_text(check);
   CHECK(text.find("note: up, down: the marker looks 33 % larger") != std::string::npos);
+}
+
+TEST_CASE("the clips of a check have no column that says nothing about any of them") {
+  core::RecordingCheck check;
+  check.usable = true;
+  check.clips.resize(2);
+  for (core::ClipCheck& clip : check.clips) {
+    clip.name = "track";
+    clip.images = false;
+    clip.frames = clip.seen = 60;
+    clip.frame_rate_hz = 60.0;
+    clip.top_speed_m_s = 0.5;
+  }
+  check.clips[0].position_noise_m = 2e-4;
+  std::string text = report::check_text(check), page = report::check_report(check, {}).html;
+  CHECK(text.find("noise mm") != std::string::npos);
+  CHECK(text.find("blur px") == std::string::npos);
+  CHECK(page.find("noise (mm)</th>") != std::string::npos);
+  CHECK(page.find("120 positions in 2 clips") != std::string::npos);
+  for (const char* title : {"blur (px)", "marker (px)", "contrast", "white, black", "in the file"}) {
+    INFO(title);
+    CHECK(page.find(title) == std::string::npos);
+  }
+  check.clips[1].images = true;
+  check.clips[1].marker_px = 18.0;
+  check.clips[1].saturated = 1.54e-6;
+  text = report::check_text(check);
+  page = report::check_report(check, {}).html;
+  CHECK(text.find("blur px") != std::string::npos);
+  CHECK(page.find("“marker (px)”: its diameter") != std::string::npos);
+  CHECK(page.find("&lt; 0.01\u00a0%, 0\u00a0%") != std::string::npos);
 }

@@ -101,7 +101,8 @@ TEST_CASE("every kind of finding of a check has words, with its data in the unit
       {found::MarkerSizeOff{16.0, 10.0, 0.6, true}, "diameter_m and [scale] predict", "diameter_m and [scale] again"},
       {found::BeyondTrack{0.9, 0.5, {true, false, true}}, "runs 0.9 m, but length_m in [track] is 0.5 m",
        "check square_m, the unit of x in the tracks (metres)"},
-      {found::InclineOff{plumb, {false, true, false}, true}, "the inclination 0.42 ± 0.13°, the plumb line says 4.3 ±",
+      {found::InclineOff{plumb, {false, true, false}, true},
+       "an inclination of 0.42 ± 0.13°, but the plumb line says 4.30 ±",
        "the plumb line, gravity_m_s2, [scale], frame_rate_hz (its square enters)"},
       {turned,
        "in 2 of 2 clips the glider moves opposite to the stated launch, most clearly in down-1: it moves "

@@ -30,13 +30,16 @@ TEST_CASE("the waterfall names the gap before, each cause with its share, and wh
   REQUIRE(plots.size() == 1);
   const std::string& script = plots.front().drawing.script;
   for (const char* name : {"'nominal model: 5.3 times the noise'", "'quadratic drag: 91 % (86 to 95 %)'",
-                           "'inertia without weight: 6 %'", "'left: 3 %, 1.35 times the noise'"}) {
+                           "'inertia without weight: 6 %'", "'remainder: 3 %, 1.35 times the noise'"}) {
     INFO(name);
     CHECK(script.find(name) != std::string::npos);
   }
   REQUIRE(plots.front().drawing.data.size() == 2);
   CHECK(plots.front().drawing.data[0].rows.size() == 4);
   CHECK(plots.front().drawing.data[1].rows.size() == 1);  // whiskers where there is an interval
+  const double share = of.explained.front().share;
+  of.explained.front().share_interval95 = diagnose::GapInterval{share - 0.001, share + 0.001};  // as thin as its line
+  CHECK(report::waterfall_plots(of).front().drawing.data.size() == 1);
   of.explained.front().share_interval95.reset();
   CHECK(report::waterfall_plots(of).front().drawing.data.size() == 1);
   CHECK_FALSE(report::page("waterfall", report::figures(report::waterfall_plots(of))).html.empty());

@@ -56,7 +56,7 @@ TEST_CASE("every sweep's page says first who errs least, along which key it chan
   CHECK(has(meaning, "smallest rms error over all runs is that of trajectory in µ (0.0001)"));
   CHECK(has(meaning, "<li>along rate_hz: 0.0001 at 200 Hz and 0.0002 at 50 Hz, 2 times as much</li>"));
   CHECK(has(meaning, "turning: 0.00008; straight: 0.00016"));
-  CHECK(has(meaning, "as often as they say"));
+  CHECK(has(meaning, "as often as stated"));
   of.overall[0].groups[0].statistics.coverage = 0.9;  // 4.6 binomial standard errors of 400
   CHECK(has(report::sweep_meaning(of), "less often: µ by phase-diagram (90 %)"));
   of.overall.clear();

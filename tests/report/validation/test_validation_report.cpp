@@ -46,8 +46,9 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(first.find("0.007120 ± 0.000020 (0.007100)") != std::string::npos);
   CHECK(first.find("2.780") == std::string::npos);  // the lines' value is below
   CHECK(first.find("α (°)") == std::string::npos);  // of which nothing is known here
-  CHECK(first.find("3 of 4 recovered values lie within two of their standard deviations of the truth; the farthest off "
-                   "is K/m of m1 by the lines of the phase diagram: 3.0 standard deviations.") != std::string::npos);
+  CHECK(first.find("3 of 4 recovered values lie within two of their standard deviations of the truth; the largest "
+                   "error is that of K/m of m1 by the lines of the phase diagram: 3.0 standard deviations.") !=
+        std::string::npos);
   CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
 }
 

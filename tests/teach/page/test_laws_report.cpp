@@ -61,6 +61,13 @@ TEST_CASE("the page of laws tells coming to rest from tending to it, and marks w
   CHECK(has(script->second, "with points pt 6"));
   CHECK(has(script->second, "with points pt 7"));
   CHECK(has(said, "circles: speeds that they leave"));
+  // Which track an equilibrium belongs to; none is named where all have it.
+  CHECK(has(script->second, "set label 'viscous, coulomb' at 0, 0"));
+  CHECK(has(script->second, "set label 'stribeck' at 0.4874, 0"));
+  study.curves.pop_back();
+  for (const auto& [name, text] : teach::laws_report({study}, {teach::LawFilm{}}).files) {
+    CHECK_FALSE(has(text, "set label 'viscous"));
+  }
 }
 
 TEST_CASE("every page that teach can make either reads no file or is among those whose texts are tested here") {

@@ -196,8 +196,8 @@ class BaselineReader {
     return value;
   }
   std::string text(const char* key) const {
-    const json& value = at(key, "a text");
-    if (!value.is_string()) fail(key, value.type_name(), "a text");
+    const json& value = at(key, "a string");
+    if (!value.is_string()) fail(key, value.type_name(), "a string");
     return value;
   }
   const json& list(const char* key) const {

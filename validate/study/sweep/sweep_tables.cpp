@@ -143,8 +143,8 @@ std::string of_wrong_type(const std::string& column, const std::string& type) {
 std::string words_of_type(const std::string& type) {
   return type == "INTEGER" ? "a whole number"
          : type == "REAL"  ? "a finite number"
-         : type == "TEXT"  ? "a text"
-                           : "a finite number or a text";
+         : type == "TEXT"  ? "text"
+                           : "a finite number or text";
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::ContradictedIncline{"flat", diagnose::Against::plumb, 0.1, 0.001, 0.2, 0.001, true, 70.0},
        "by the plumb line"},
       {diagnose::ContradictedReading{0.3, {{0.0, {}, "incline_deg"}, 2.0, 0.1}},
-       "With 0.3 kg the acceleration makes the inclination 2 ± 0.1°, incline_deg says 0°"},
+       "With 0.3 kg the acceleration gives an inclination of 2.00 ± 0.10°, but incline_deg says 0°"},
       {diagnose::BeyondGravity{4.0, 12.7, 9.81}, "12.7 m/s², more than gravity"},
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "stated at 4° corresponds to an inclination of 3.900°"},
       {diagnose::TableOfLines{12}, "The table of 12 lines"},

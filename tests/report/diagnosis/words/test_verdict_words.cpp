@@ -59,7 +59,7 @@ TEST_CASE("effects that look the same are named as one set, an effect that stand
                               {"scale_error", "a wrong length scale", 0.30},
                               {"frame_rate_error", "a wrong frame rate", {}}};
   CHECK(report::verdict_words(of).starts_with(
-      "The data show one of these three, 98 % together, and cannot tell which: an uneven friction "
+      "The data show one of these three (98 % together), but cannot tell which: an uneven friction "
       "(direction_asymmetry, 49 %), a wrong length scale (scale_error, 30 %), or a wrong frame rate "
       "(frame_rate_error)."));
   // Of 83 %, 82 % leave no doubt which.

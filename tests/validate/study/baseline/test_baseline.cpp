@@ -166,7 +166,7 @@ TEST_CASE("What is wrong with a baseline's file is said by its key, in no librar
   says("{\n\"format\": oops}", ":2: found what is no JSON");
   says("", ":1: found what is no JSON");
   says(R"({"format": "2"})", ": format: found string");
-  says(R"({"format": 2, "scenario": 3})", ": scenario: found number, expected a text");
+  says(R"({"format": 2, "scenario": 3})", ": scenario: found number, expected a string");
   says(head + "}", ": records: found nothing");
   says(head + R"(, "seed": -1, "records": [], "smoothing": []})", ": seed: found -1");
   says(head + R"(, "seed": 1e999})", ": found a number beyond");

@@ -131,7 +131,7 @@ TEST_CASE("a value that no sweep writes is refused with its table, run and colum
   CHECK_THAT(damaged.by("UPDATE result SET sd = 'much'"), Contains("column \"sd\": found 'much'"));
   CHECK_THAT(damaged.by("UPDATE clip SET frames = 1.5"), Contains("column \"frames\": found 1.5, expected a whole"));
   CHECK_THAT(damaged.by("UPDATE run SET why = x'00ff' WHERE run = 0"),
-             Contains("table \"run\", run 0, column \"why\": found X'00FF', expected a text"));
+             Contains("table \"run\", run 0, column \"why\": found X'00FF', expected text"));
   CHECK_THAT(damaged.by("UPDATE run SET \"camera.frame_rate_hz\" = 9e999"), Contains("found Inf"));
 }
 
