@@ -37,6 +37,7 @@ Eigen::Matrix2d random_part(const LineUncertainty& parts) {
 /// One direction of one clip: the weight of its line (the moments of its points, or the line's inverse covariance), and
 /// the line.
 struct Part {
+  std::size_t member = 0;
   LineFit line;
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   std::vector<double> v, a;
@@ -44,10 +45,12 @@ struct Part {
 
 std::vector<Part> parts_of(const std::vector<MemberClip>& members, int direction, LineMethod lines, LawBiasIs bias) {
   std::vector<Part> parts;
-  for (const MemberClip& member : members) {
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const MemberClip& member = members[m];
     for (const LineFit& line : member.clip->segments) {
       if (line.direction != direction) continue;
       Part part;
+      part.member = m;
       part.line = bias == LawBiasIs::kept ? line : without_law_bias(line);
       for (const MotionPoint& point : member.clip->motion) {
         if (point.left_out != LeftOut::used || (point.v_m_s > 0.0 ? 1 : -1) != direction) continue;
@@ -64,11 +67,14 @@ std::vector<Part> parts_of(const std::vector<MemberClip>& members, int direction
   return parts;
 }
 
-/// How much more the clips' own lines scatter about the joint one than their uncertainty allows: chi^2 per degree of
-/// freedom, if that exceeds what chance allows. (Widening for every chi^2 above 1 would make the standard deviation of
-/// two correct lines 17 % too large on average.)
-double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
-  if (parts.size() < 2) return 1.0;
+Eigen::Vector2d off_joint(const Part& part, const Eigen::Vector2d& joint) {
+  return Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value) - joint;
+}
+
+/// Whether the clips' own lines scatter about the joint one by more than their uncertainty and chance allow. (Widening
+/// for every chi^2 above 1 would make the standard deviation of two correct lines 17 % too large on average.)
+bool clips_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
+  if (parts.size() < 2) return false;
   double chi2 = 0.0;
   for (const Part& part : parts) {
     Eigen::Matrix2d covariance = random_part(part.line.parts);
@@ -76,12 +82,32 @@ double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joi
       const Eigen::Vector2d both(shift.k, shift.a0);
       covariance += both * both.transpose();
     }
-    if (!(covariance.determinant() > 0.0)) return 1.0;
-    const Eigen::Vector2d off = Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value) - joint;
+    if (!(covariance.determinant() > 0.0)) return false;
+    const Eigen::Vector2d off = off_joint(part, joint);
     chi2 += off.dot(covariance.inverse() * off);
   }
   const double freedom = 2.0 * static_cast<double>(parts.size() - 1);
-  return chi2 > freedom * chi2_ratio_limit(freedom) ? chi2 / freedom : 1.0;
+  return chi2 > freedom * chi2_ratio_limit(freedom);
+}
+
+/// If the clips' lines scatter: the covariance of the clips' scores N_c (line_c - joint), as one change of the line for
+/// each clip. A clip that has a larger K/m has it in both directions, so the changes of both lines add up with their
+/// signs.
+///
+///     covariance = n/(n - 1) sum of N^-1 N_c d_c d_c' N_c N^-1,     n - 1 degrees of freedom
+///
+/// It contains the noise, and nothing is assumed of how K/m and a0 scatter.
+void add_scatter(const std::vector<Part>& parts, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& joint,
+                 LineUncertainty& to) {
+  if (!clips_scatter(parts, joint)) return;
+  const auto n = static_cast<double>(parts.size());
+  const double wider = std::sqrt(n / (n - 1.0));
+  to.clips.resize(parts.back().member + 1);
+  for (const Part& part : parts) {
+    const Eigen::Vector2d moved = wider * (inverse * (part.normal * off_joint(part, joint)));
+    to.clips[part.member] = {moved[0], moved[1]};
+  }
+  to.clip_degrees = n - 1.0;
 }
 
 /// Least squares through the points of all parts; ordinary: every point with the same weight. The parts' noise is
@@ -117,7 +143,7 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   }
   const Eigen::Matrix2d inverse = normal.inverse();
   const Eigen::Vector2d solution = inverse * line;
-  const Eigen::Matrix2d covariance = inverse * random * inverse * excess_scatter(parts, solution);
+  const Eigen::Matrix2d covariance = inverse * random * inverse;
   joint.k_over_m_1_s.value = solution[0];
   joint.a0_m_s2.value = solution[1];
   joint.parts.var_k = covariance(0, 0);
@@ -126,6 +152,7 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   // Welch-Satterthwaite: degrees of freedom of a sum of variances.
   joint.parts.degrees = var2_per_degree > 0.0 ? std::max(1.0, var_a0 * var_a0 / var2_per_degree)
                                               : std::numeric_limits<double>::infinity();
+  add_scatter(parts, inverse, solution, joint.parts);
   joint.parts.smoothing_k = (inverse * smoothing)[0];
   joint.parts.smoothing_a0 = (inverse * smoothing)[1];
   joint.parts.mass_k = (inverse * mass)[0];
@@ -162,51 +189,84 @@ double degrees_of(double rad) {
   return std::round(degrees * 1e9) / 1e9 + 0.0;  // 4, not 4.000000000000001; + 0.0: no -0
 }
 
+/// A combination of both lines' coefficients: its gradient in one line, and that line.
+struct OfLine {
+  LineShift gradient;
+  const LineFit* line;
+};
+
+/// The variance of a combination of lines: the random part with its degrees of freedom, and with what the lines share.
+struct CombinedVariance {
+  KnownVariance random;
+  double total = 0.0;
+};
+
+/// Errors that lines share add up with their signs, and so does the scatter of the clips that they share.
+CombinedVariance combined(const std::vector<OfLine>& lines) {
+  KnownVariance own{0.0, std::numeric_limits<double>::infinity()}, of_clips = own;
+  double explained = 0.0;  // of the clips' scatter, by the noise of the lines that have one
+  std::vector<double> clips, shared;
+  const auto add = [](const LineShift& gradient, const std::vector<LineShift>& shifts, std::vector<double>& sums) {
+    if (sums.size() < shifts.size()) sums.resize(shifts.size(), 0.0);
+    for (std::size_t i = 0; i < shifts.size(); ++i) sums[i] += gradient.k * shifts[i].k + gradient.a0 * shifts[i].a0;
+  };
+  for (const auto& [gradient, line] : lines) {
+    const LineUncertainty& parts = line->parts;
+    const double of_line = gradient.k * gradient.k * parts.var_k + gradient.a0 * gradient.a0 * parts.var_a0 +
+                           2.0 * gradient.k * gradient.a0 * parts.cov;
+    own.value += of_line;
+    own.degrees = std::min(own.degrees, parts.degrees);
+    if (!parts.clips.empty()) {
+      of_clips.degrees = std::min(of_clips.degrees, parts.clip_degrees);
+      explained += of_line;
+    }
+    add(gradient, parts.clips, clips);
+    add(gradient, shared_shifts(*line), shared);
+  }
+  for (const double sum : clips) of_clips.value += sum * sum;
+  of_clips.value = std::max(0.0, of_clips.value - explained);
+  CombinedVariance made{sum_of(own, of_clips), 0.0};
+  made.total = made.random.value;
+  for (const double sum : shared) made.total += sum * sum;
+  return made;
+}
+
 /// The mean of the directions' K/m, each weighted by one over its variance. If the two differ by more than three
-/// standard deviations, half of the unexplained part is taken as an additional variance of each direction. (DerSimonian
-/// and Laird 1986 add it at any distance; two correct lines would then state 1.2 times their standard deviation on
-/// average.) This evens out the weights, and the standard deviation grows with the spread.
+/// standard deviations, half of the unexplained part is taken as an additional variance of each direction, with one
+/// degree of freedom. (DerSimonian and Laird 1986 add it at any distance; two correct lines would then state 1.2 times
+/// their standard deviation on average.) This evens out the weights, and the standard deviation grows with the spread.
 Quantity mean_k(const std::vector<LineFit>& lines) {
   if (lines.empty()) return undetermined(unknown::NoLine{});
   double between = 0.0;
   if (lines.size() == 2) {
     const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
-    double allowed = lines[0].parts.var_k + lines[1].parts.var_k;
-    const std::vector<LineShift> one = shared_shifts(lines[0]), other = shared_shifts(lines[1]);
-    for (std::size_t i = 0; i < std::max(one.size(), other.size()); ++i) {
-      const double shift = (i < one.size() ? one[i].k : 0.0) - (i < other.size() ? other[i].k : 0.0);
-      allowed += shift * shift;
-    }
+    const double allowed = combined({{{1.0, 0.0}, &lines[0]}, {{-1.0, 0.0}, &lines[1]}}).total;
     if (apart * apart > 9.0 * allowed) between = 0.5 * (apart * apart - allowed);
   }
-  double weights = 0.0, value = 0.0, degrees = std::numeric_limits<double>::infinity();
-  std::vector<double> shared;
+  std::vector<double> weights;
+  double sum = 0.0, value = 0.0;
   for (const LineFit& line : lines) {
-    const double weight = 1.0 / std::max(line.parts.var_k + between, 1e-30);  // noise-free points weigh the same
-    weights += weight;
-    value += weight * line.k_over_m_1_s.value;
-    const std::vector<LineShift> shifts = shared_shifts(line);
-    if (shared.size() < shifts.size()) shared.resize(shifts.size(), 0.0);
-    for (std::size_t k = 0; k < shifts.size(); ++k) shared[k] += weight * shifts[k].k;
-    degrees = std::min(degrees, line.parts.degrees);
+    // Noise-free points weigh the same.
+    weights.push_back(1.0 / std::max(random_variance(line, {1.0, 0.0}).value + between, 1e-30));
+    sum += weights.back();
+    value += weights.back() * line.k_over_m_1_s.value;
   }
-  double variance = 1.0 / weights;
-  for (const double shift : shared) variance += std::pow(shift / weights, 2);
-  return determined(estimate(value / weights, std::sqrt(variance), degrees), std::sqrt(1.0 / weights));
+  std::vector<OfLine> mean;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    mean.push_back({{weights[i] / sum, 0.0}, &lines[i]});
+    squares += weights[i] * weights[i] / (sum * sum);
+  }
+  const CombinedVariance variance = combined(mean);
+  const KnownVariance random = sum_of(variance.random, {squares * between, 1.0});
+  const double shared = variance.total - variance.random.value;
+  return determined(estimate(value / sum, std::sqrt(random.value + shared), random.degrees), std::sqrt(random.value));
 }
 
 /// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+).
 Quantity of_intercepts(double value, double by_minus, double by_plus, const LineFit& minus, const LineFit& plus) {
-  const double random = by_minus * by_minus * minus.parts.var_a0 + by_plus * by_plus * plus.parts.var_a0;
-  double variance = random;
-  const std::vector<LineShift> of_minus = shared_shifts(minus), of_plus = shared_shifts(plus);
-  for (std::size_t k = 0; k < std::max(of_minus.size(), of_plus.size()); ++k) {
-    const double a = k < of_minus.size() ? by_minus * of_minus[k].a0 : 0.0;
-    const double b = k < of_plus.size() ? by_plus * of_plus[k].a0 : 0.0;
-    variance += (a + b) * (a + b);
-  }
-  const double degrees = std::min(minus.parts.degrees, plus.parts.degrees);
-  return determined(estimate(value, std::sqrt(variance), degrees), std::sqrt(random));
+  const auto [random, total] = combined({{{0.0, by_minus}, &minus}, {{0.0, by_plus}, &plus}});
+  return determined(estimate(value, std::sqrt(total), random.degrees), std::sqrt(random.value));
 }
 
 /// Friction and slope of the two lines' intercepts, equation (13) of the paper:

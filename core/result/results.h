@@ -111,6 +111,10 @@ struct LineUncertainty {
   std::optional<LawBias> law = {};  ///< if it can: the line itself keeps it, and counts it as an uncertainty
   double mass_k = 0.0;              ///< change for one standard deviation of the mass (with a known force only)
   double mass_a0 = 0.0;
+  /// Random, of a line through clips that scatter: the change by each clip's departure from the line, a clip's at the
+  /// same place in the lines of both directions; with `clip_degrees` of freedom (join_configurations.h).
+  std::vector<LineShift> clips = {};
+  double clip_degrees = 0.0;
   double scale_relative = 0.0;         ///< standard deviation of one px_per_m: of a0 and v_lim, not of K/m
   std::vector<LineShift> calibration;  ///< for each mode of the cameras and planes, the same modes for all lines
 };

@@ -215,17 +215,38 @@ std::vector<LineShift> shared_shifts(const LineFit& line) {
   return shifts;
 }
 
+KnownVariance random_variance(const LineFit& line, const LineShift& gradient) {
+  const LineUncertainty& parts = line.parts;
+  const double own = gradient.k * gradient.k * parts.var_k + gradient.a0 * gradient.a0 * parts.var_a0 +
+                     2.0 * gradient.k * gradient.a0 * parts.cov;
+  double of_clips = 0.0;
+  for (const LineShift& shift : parts.clips) of_clips += std::pow(gradient.k * shift.k + gradient.a0 * shift.a0, 2);
+  return sum_of({own, parts.degrees}, {std::max(0.0, of_clips - own), parts.clip_degrees});
+}
+
 void complete_line(LineFit& line) {
   const LineUncertainty& parts = line.parts;
-  double var_k = parts.var_k, var_a0 = parts.var_a0;
+  const KnownVariance of_k = random_variance(line, {1.0, 0.0}), of_a0 = random_variance(line, {0.0, 1.0});
+  double var_k = of_k.value, var_a0 = of_a0.value;
   line.covariance = parts.cov;
+  // What the clips' scatter adds to the variances has the correlation of that scatter.
+  LineUncertainty scatter;
+  for (const LineShift& shift : parts.clips) {
+    scatter.var_k += shift.k * shift.k;
+    scatter.var_a0 += shift.a0 * shift.a0;
+    scatter.cov += shift.k * shift.a0;
+  }
+  if (scatter.var_k > parts.var_k && scatter.var_a0 > parts.var_a0) {
+    line.covariance +=
+        scatter.cov * std::sqrt((1.0 - parts.var_k / scatter.var_k) * (1.0 - parts.var_a0 / scatter.var_a0));
+  }
   for (const LineShift& shift : shared_shifts(line)) {
     var_k += shift.k * shift.k;
     var_a0 += shift.a0 * shift.a0;
     line.covariance += shift.k * shift.a0;
   }
-  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, std::sqrt(var_k), parts.degrees);
-  line.a0_m_s2 = estimate(line.a0_m_s2.value, std::sqrt(var_a0), parts.degrees);
+  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, std::sqrt(var_k), of_k.degrees);
+  line.a0_m_s2 = estimate(line.a0_m_s2.value, std::sqrt(var_a0), of_a0.degrees);
 }
 
 Quantity limit_velocity(const std::vector<LineFit>& lines) {
@@ -236,11 +257,10 @@ Quantity limit_velocity(const std::vector<LineFit>& lines) {
   }
   const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
-  const LineUncertainty& parts = found->parts;
-  const double random = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
-  double variance = random;
+  const KnownVariance random = random_variance(*found, {by_k, by_a0});
+  double variance = random.value;
   for (const LineShift& shift : shared_shifts(*found)) variance += std::pow(by_k * shift.k + by_a0 * shift.a0, 2);
-  return determined(estimate(a0 / k, std::sqrt(variance), parts.degrees), std::sqrt(random));
+  return determined(estimate(a0 / k, std::sqrt(variance), random.degrees), std::sqrt(random.value));
 }
 
 bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertainty& parts) {

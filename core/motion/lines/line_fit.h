@@ -37,6 +37,7 @@
 #include "core/motion/free/free_motion.h"
 #include "core/motion/free/motion.h"
 #include "core/motion/smoothing/local_polynomial.h"
+#include "core/result/estimate.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -78,6 +79,10 @@ struct Scatter {
 };
 Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, double k_1_s,
                    const std::vector<double>& autocovariance);
+
+/// The random part of the variance of gradient.k K/m + gradient.a0 a0: the noise with the scatter of points beyond it,
+/// and the part of the scatter between clips that this does not explain.
+KnownVariance random_variance(const LineFit& line, const LineShift& gradient);
 
 /// Fills in the standard deviations and intervals of K/m and a0 from line.parts.
 void complete_line(LineFit& line);
