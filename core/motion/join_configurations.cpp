@@ -13,6 +13,7 @@
 #include "core/motion/lines/line_law.h"
 #include "core/motion/speed_motion.h"
 #include "core/result/estimate.h"
+#include "core/result/one_direction.h"
 
 namespace glidelab::core {
 
@@ -110,6 +111,28 @@ void add_scatter(const std::vector<Part>& parts, const Eigen::Matrix2d& inverse,
   to.clip_degrees = n - 1.0;
 }
 
+/// The covariance of the joint lines, each of the part's weights times the clips' own covariances.
+void join_cross(const std::vector<Part>& minus, const std::vector<Part>& plus, LineFit& of_minus, LineFit& of_plus) {
+  const auto inverse_of = [](const std::vector<Part>& parts) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    for (const Part& part : parts) normal += part.normal;
+    return Eigen::Matrix2d(normal.inverse());
+  };
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const Part& one : minus) {
+    for (const Part& other : plus) {
+      if (one.member != other.member) continue;
+      const LineCross& own = one.line.parts.with_other;
+      Eigen::Matrix2d cross;
+      cross << own.k_k, own.k_a0, own.a0_k, own.a0_a0;
+      sum += one.normal * cross * other.normal;
+    }
+  }
+  const Eigen::Matrix2d joint = inverse_of(minus) * sum * inverse_of(plus);
+  of_minus.parts.with_other = {joint(0, 0), joint(0, 1), joint(1, 0), joint(1, 1)};
+  of_plus.parts.with_other = {joint(0, 0), joint(1, 0), joint(0, 1), joint(1, 1)};
+}
+
 /// Least squares through the points of all parts; ordinary: every point with the same weight. The parts' noise is
 /// independent: cov = N^-1 (sum N_c cov_c N_c) N^-1 with the normal matrices N_c of the parts.
 LineFit join(const std::vector<Part>& parts, int direction) {
@@ -173,10 +196,14 @@ LineFit join(const std::vector<Part>& parts, int direction) {
 /// more than their uncertainty allows, its uncertainty is widened.
 std::vector<LineFit> join_lines(const std::vector<MemberClip>& members, LineMethod lines, LawBiasIs bias) {
   std::vector<LineFit> joined;
+  std::vector<std::vector<Part>> of_lines;
   for (const int direction : {-1, 1}) {
-    const std::vector<Part> parts = parts_of(members, direction, lines, bias);
-    if (!parts.empty()) joined.push_back(join(parts, direction));
+    std::vector<Part> parts = parts_of(members, direction, lines, bias);
+    if (parts.empty()) continue;
+    joined.push_back(join(parts, direction));
+    of_lines.push_back(std::move(parts));
   }
+  if (joined.size() == 2) join_cross(of_lines[0], of_lines[1], joined[0], joined[1]);
   return joined;
 }
 
@@ -223,6 +250,14 @@ CombinedVariance combined(const std::vector<OfLine>& lines) {
     add(gradient, parts.clips, clips);
     add(gradient, shared_shifts(*line), shared);
   }
+  if (lines.size() == 2) {
+    const LineShift &one = lines[0].gradient, &other = lines[1].gradient;
+    const LineCross& cross = lines[0].line->parts.with_other;
+    const double both = 2.0 * (one.k * (other.k * cross.k_k + other.a0 * cross.k_a0) +
+                               one.a0 * (other.k * cross.a0_k + other.a0 * cross.a0_a0));
+    own.value = std::max(0.0, own.value + both);
+    if (!lines[0].line->parts.clips.empty() && !lines[1].line->parts.clips.empty()) explained += both;
+  }
   for (const double sum : clips) of_clips.value += sum * sum;
   of_clips.value = std::max(0.0, of_clips.value - explained);
   CombinedVariance made{sum_of(own, of_clips), 0.0};
@@ -263,41 +298,84 @@ Quantity mean_k(const std::vector<LineFit>& lines) {
   return determined(estimate(value / sum, std::sqrt(random.value + shared), random.degrees), std::sqrt(random.value));
 }
 
-/// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+).
-Quantity of_intercepts(double value, double by_minus, double by_plus, const LineFit& minus, const LineFit& plus) {
+/// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+), and its change for one standard deviation of
+/// gravity.
+Quantity of_intercepts(double value, double by_minus, double by_plus, double of_gravity, const LineFit& minus,
+                       const LineFit& plus) {
   const auto [random, total] = combined({{{0.0, by_minus}, &minus}, {{0.0, by_plus}, &plus}});
-  return determined(estimate(value, std::sqrt(total), random.degrees), std::sqrt(random.value));
+  return determined(estimate(value, std::sqrt(total + of_gravity * of_gravity), random.degrees),
+                    std::sqrt(random.value));
 }
 
 /// Friction and slope of the two lines' intercepts, equation (13) of the paper:
 ///
 ///     (a0- + a0+)/2 = g sin(alpha),     (a0- - a0+)/2 = mu g cos(alpha)
-void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2,
+void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, const Gravity& gravity,
                                 ConfigurationResult& result) {
   const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
   const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);
-  if (std::abs(mean) >= gravity_m_s2) {
+  if (std::abs(mean) >= gravity.m_s2) {
     result.alpha_deg = result.mu = undetermined(unknown::MeanBeyondGravity{mean});
     return;
   }
-  const double alpha = std::asin(mean / gravity_m_s2);
-  const double g_cos = gravity_m_s2 * std::cos(alpha);
-  const double by_mean = base::kDegreesPerRad / g_cos;
-  result.alpha_deg = of_intercepts(alpha * base::kDegreesPerRad, 0.5 * by_mean, 0.5 * by_mean, minus, plus);
+  const double alpha = std::asin(mean / gravity.m_s2);
+  const double g_cos = gravity.m_s2 * std::cos(alpha);
+  const double by_mean = base::kDegreesPerRad / g_cos, by_gravity = -by_mean * mean / gravity.m_s2;
+  result.alpha_deg = of_intercepts(alpha * base::kDegreesPerRad, 0.5 * by_mean, 0.5 * by_mean,
+                                   by_gravity * gravity.sd_m_s2, minus, plus);
   // mu = half_jump / sqrt(g^2 - mean^2)
   const double by_jump = 1.0 / g_cos, mu_by_mean = half_jump * mean / std::pow(g_cos, 3);
-  result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus);
+  const double mu_by_gravity = -half_jump * gravity.m_s2 / std::pow(g_cos, 3);
+  result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump),
+                            mu_by_gravity * gravity.sd_m_s2, minus, plus);
 }
 
-void recover(const std::vector<LineFit>& lines, double gravity_m_s2, ConfigurationResult& result) {
+/// mu of one line and the stated inclination, or the reason why there is none.
+Quantity mu_of_line(const LineFit& line, const Gravity& gravity, const ConfigurationResult& stated) {
+  const double a0 = line.a0_m_s2.value;
+  const auto mu = mu_of_one_direction(stated, line.direction, a0, gravity.m_s2);
+  if (!mu) {
+    return undetermined(unknown::NotBothLines{
+        .minus = line.direction > 0, .plus = line.direction < 0, .incline_would_do = incline_would_do(stated)});
+  }
+  const auto [random, total] = combined({{{0.0, mu->by_a0}, &line}});
+  const double variance = total + mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
+  return determined(estimate(mu->value, std::sqrt(variance), random.degrees), std::sqrt(random.value));
+}
+
+/// Whether a direction has points enough for a line.
+bool has_points(const std::vector<MemberClip>& members) {
+  for (const int direction : {-1, 1}) {
+    std::size_t points = 0;
+    for (const MemberClip& member : members) {
+      for (const MotionPoint& point : member.clip->motion) {
+        points += point.left_out == LeftOut::used && (point.v_m_s > 0.0 ? 1 : -1) == direction;
+      }
+    }
+    if (points >= kFewestLinePoints) return true;
+  }
+  return false;
+}
+
+void recover(const std::vector<LineFit>& lines, const Gravity& gravity, const std::vector<MemberClip>& members,
+             ConfigurationResult& result) {
+  if (lines.empty() && has_points(members)) {
+    result.k_over_m_1_s = result.mu = result.alpha_deg = result.v_lim_m_s = undetermined(unknown::SpeedHardlyChanges{});
+    return;
+  }
   result.k_over_m_1_s = mean_k(lines);
   result.v_lim_m_s = limit_velocity(lines);
   if (lines.size() == 2) {
-    mu_and_alpha_of_intercepts(lines[0], lines[1], gravity_m_s2, result);
+    mu_and_alpha_of_intercepts(lines[0], lines[1], gravity, result);
     return;
   }
-  result.alpha_deg = result.mu = undetermined(unknown::NotBothLines{
-      .minus = lines.empty() || lines.front().direction == 1, .plus = lines.empty() || lines.front().direction == -1});
+  if (lines.empty()) {
+    result.alpha_deg = result.mu = undetermined(unknown::NotBothLines{.minus = true, .plus = true});
+    return;
+  }
+  result.alpha_deg =
+      undetermined(unknown::NotBothLines{.minus = lines.front().direction == 1, .plus = lines.front().direction == -1});
+  result.mu = mu_of_line(lines.front(), gravity, result);
 }
 
 void set_correction(const Quantity& as_fitted, Quantity& recovered) {
@@ -324,7 +402,7 @@ void tell_launch(const std::vector<MemberClip>& members, ConfigurationResult& re
   if (result.k_over_m_1_s.why) result.k_over_m_1_s.why->against_launch = told;
 }
 
-ConfigurationResult join_members(const std::vector<MemberClip>& members, double gravity_m_s2, LineMethod lines) {
+ConfigurationResult join_members(const std::vector<MemberClip>& members, const Gravity& gravity, LineMethod lines) {
   ConfigurationResult result;
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
@@ -341,13 +419,15 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
   }
   result.lines = join_lines(members, lines, LawBiasIs::kept);
   if (!biased) {
-    recover(result.lines, gravity_m_s2, result);
+    recover(result.lines, gravity, members, result);
+    note_mu_from_incline(result);
     tell_launch(members, result);
     return result;
   }
-  ConfigurationResult as_fitted;
-  recover(result.lines, gravity_m_s2, as_fitted);
-  recover(join_lines(members, lines, LawBiasIs::taken_off), gravity_m_s2, result);
+  ConfigurationResult as_fitted = result;
+  recover(result.lines, gravity, members, as_fitted);
+  recover(join_lines(members, lines, LawBiasIs::taken_off), gravity, members, result);
+  note_mu_from_incline(result);
   tell_launch(members, result);
   set_correction(as_fitted.k_over_m_1_s, result.k_over_m_1_s);
   set_correction(as_fitted.mu, result.mu);
@@ -359,7 +439,7 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
 }  // namespace
 
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
-                                                     const std::vector<ClipResult>& clips, double gravity_m_s2,
+                                                     const std::vector<ClipResult>& clips, const Gravity& gravity,
                                                      LineMethod lines) {
   std::vector<std::vector<MemberClip>> configurations;
   for (std::size_t i = 0; i < setups.size(); ++i) {
@@ -374,14 +454,14 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   }
   std::vector<ConfigurationResult> results;
   for (const std::vector<MemberClip>& members : configurations) {
-    results.push_back(join_members(members, gravity_m_s2, lines));
+    results.push_back(join_members(members, gravity, lines));
   }
-  note_statements(results, gravity_m_s2);
+  note_statements(results, gravity.m_s2);
   return results;
 }
 
 AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::vector<TrackData>& tracks,
-                               double gravity_m_s2, const MotionOptions& options, int jobs,
+                               const Gravity& gravity, const MotionOptions& options, int jobs,
                                const base::Progress& progress) {
   assert(setups.size() == tracks.size());
   AnalysisResults results;
@@ -393,8 +473,10 @@ AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::
     results.clips[i].images = tracks[i].images;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });
-  results.gravity_m_s2 = gravity_m_s2;
-  results.configurations = join_configurations(setups, results.clips, gravity_m_s2, options.lines);
+  results.gravity_m_s2 = gravity.m_s2;
+  results.gravity_sd_m_s2 = gravity.sd_m_s2;
+  results.configurations = join_configurations(setups, results.clips, gravity, options.lines);
+  note_gravity(results);
   results.estimator = name_of(options.lines);
   return results;
 }

@@ -128,6 +128,74 @@ TEST_CASE("a configuration of one direction has K/m, and null for mu and alpha w
   CHECK(neither->plus);
 }
 
+TEST_CASE("one line and an inclination with its uncertainty give mu, whose intervals hold and are no wider") {
+  // A block that slides down 20 degrees: the angle is read with an error of 0.1 degrees, a0 has one of 0.004 m/s^2.
+  constexpr double kMu = 0.2, kAngle_deg = 20.0, kAngle_sd_deg = 0.1, kIntercept_sd = 0.004;
+  constexpr int kRepeats = 1000;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  const int direction = GENERATE(-1, 1);
+  const double alpha = kAngle_deg / kDegrees;
+  const double a0 = kGravity * (std::sin(alpha) - direction * kMu * std::cos(alpha));
+  double squares = 0.0;
+  for (int i = 0; i < kRepeats; ++i) {
+    ClipSetup setup = tests::clip_setup(direction > 0 ? Launched::down : Launched::up, 0.0);
+    setup.incline_rad = alpha + kAngle_sd_deg / kDegrees * normal(random);
+    setup.incline_sd_rad = kAngle_sd_deg / kDegrees;
+    const auto result =
+        join({setup}, {clip_on({{direction, 0.05, a0 + kIntercept_sd * normal(random), 0.01, kIntercept_sd}})});
+    REQUIRE(result.mu.estimate);
+    CHECK_FALSE(result.alpha_deg.estimate);
+    REQUIRE(tests::note_of<MuFromIncline>(result.notes) != nullptr);
+    squares += std::pow((result.mu.estimate->value - kMu) / result.mu.estimate->sd, 2);
+    // By hand, to first order: dmu/dalpha = (1 - a0 sin(alpha)/g)/cos^2, dmu/da0 = 1/(g cos). The angle as read is off
+    // by up to 0.006 rad, which changes these by less than 1 %.
+    const double by_angle = (1.0 - a0 / kGravity * std::sin(alpha)) / std::pow(std::cos(alpha), 2);
+    const double hand = std::hypot(by_angle * kAngle_sd_deg / kDegrees, kIntercept_sd / (kGravity * std::cos(alpha)));
+    CHECK(result.mu.estimate->sd == Approx(hand).epsilon(0.01));
+  }
+  // Root mean square z of 1000: sd 1/sqrt(2000) = 0.022; four of them.
+  CHECK(std::sqrt(squares / kRepeats) == Approx(1.0).margin(0.09));
+}
+
+TEST_CASE("without the uncertainty of the inclination one line gives no mu, and the reason says what would") {
+  ClipSetup setup = kDown;
+  const auto why = [&] {
+    const auto result = join({setup}, {clip_on({{1, 2.0, 0.6, 0.01, 0.002}})});
+    const auto* const reason = tests::reason_of<unknown::NotBothLines>(result.mu);
+    REQUIRE(reason != nullptr);
+    return *reason;
+  };
+  CHECK(why().incline_would_do);
+  setup.incline_rad = 90.0 / kDegrees;  // a fall has no normal force
+  setup.incline_sd_rad = 0.1 / kDegrees;
+  CHECK_FALSE(why().incline_would_do);
+}
+
+TEST_CASE("where gravity is not stated, alpha and mu contain its uncertainty, and K/m and v_lim do not") {
+  const tests::Law law{30.0, 0.2, 2.77};
+  const auto with = [&](const Gravity& gravity) {
+    return join_configurations({kUp}, {clip_on({{-1, 2.77, law.a0(-1), 0.0, 0.0}, {1, 2.77, law.a0(1), 0.0, 0.0}})},
+                               gravity)
+        .front();
+  };
+  const auto stated = with(kGravity), assumed = with({kGravity, 0.015});
+  const auto more = [](const Quantity& one, const Quantity& other) {
+    return std::sqrt(std::pow(other.estimate->sd, 2) - std::pow(one.estimate->sd, 2));
+  };
+  // Finite differences of the same lines under another gravity.
+  const auto above = with(kGravity + 1e-3), below = with(kGravity - 1e-3);
+  const auto by_gravity = [&](const Quantity ConfigurationResult::*of) {
+    return std::abs((above.*of).estimate->value - (below.*of).estimate->value) / 2e-3 * 0.015;
+  };
+  // Central differences: (1e-3/g)^2 = 1e-8; a root of a difference of squares that are 1000 times as large: 1e-13 of
+  // rounding.
+  CHECK(more(stated.alpha_deg, assumed.alpha_deg) == Approx(by_gravity(&ConfigurationResult::alpha_deg)).epsilon(1e-6));
+  CHECK(more(stated.mu, assumed.mu) == Approx(by_gravity(&ConfigurationResult::mu)).epsilon(1e-6));
+  CHECK(assumed.k_over_m_1_s.estimate->sd == stated.k_over_m_1_s.estimate->sd);
+  CHECK(assumed.v_lim_m_s.estimate->sd == stated.v_lim_m_s.estimate->sd);
+}
+
 TEST_CASE("an inclination stated as not known, with more than 90 degrees, keeps its standard deviation") {
   ClipSetup vague = kDown;
   vague.incline_sd_rad = 120.0 / kDegrees;

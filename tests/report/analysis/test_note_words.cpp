@@ -59,6 +59,8 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "a mass of 1 kg is assumed, because neither the file nor an option states it (--mass)"},
       {core::AssumedStatements{{}, true},
        "an inclination of 0° is assumed, because neither the file nor an option states it (--incline)"},
+      {core::MuFromIncline{20.0, 0.1}, "µ rests on the stated inclination, 20"},
+      {core::GravityAssumed{9.80665, 0.015}, "µ and α are for 9.80665 m/s², and their ± contains 0.015 m/s² (0.15 %)"},
       {core::AssumedMass{}, "1 kg is assumed"},
       {core::OutlyingView{"view-2.png", 2.0, true},
        "view-2.png departs from the fitted camera by 2 px and is left out"},
