@@ -44,27 +44,47 @@ LineShift shift_by(const LineInput& input, const Eigen::Matrix2d& inverse, const
   return {change[0], change[1]};
 }
 
-/// L Sigma L' for the rows L_k, L_a0 over all positions.
-void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, double k,
-                     const std::vector<double>& autocovariance, LineUncertainty& parts) {
-  std::vector<double> weight_k(input.track_points, 0.0), weight_a0(input.track_points, 0.0);
+/// The rows L_k, L_a0 over all positions, for noise of factor 1.
+struct CoefficientRows {
+  std::vector<double> k, a0;
+};
+
+CoefficientRows rows_of(const LineInput& input, const Eigen::Matrix2d& inverse, double k) {
+  CoefficientRows made{std::vector<double>(input.track_points, 0.0), std::vector<double>(input.track_points, 0.0)};
   for (std::size_t j = 0; j < input.rows.size(); ++j) {
     const Eigen::Vector2d gain = inverse * Eigen::Vector2d(-input.v_m_s[j], 1.0);
     const KernelWeights& weights = *input.rows[j].weights;
     for (std::size_t i = 0; i < weights.a.size(); ++i) {
       const double of_residual = weights.a[i] + k * weights.v[i];
-      weight_k[input.rows[j].first + i] += gain[0] * of_residual;
-      weight_a0[input.rows[j].first + i] += gain[1] * of_residual;
+      made.k[input.rows[j].first + i] += gain[0] * of_residual;
+      made.a0[input.rows[j].first + i] += gain[1] * of_residual;
     }
   }
   for (std::size_t i = 0; i < input.noise_factor.size(); ++i) {
-    weight_k[i] *= input.noise_factor[i];
-    weight_a0[i] *= input.noise_factor[i];
+    made.k[i] *= input.noise_factor[i];
+    made.a0[i] *= input.noise_factor[i];
   }
-  parts.var_k = noise_variance(weight_k, autocovariance);
-  parts.var_a0 = noise_variance(weight_a0, autocovariance);
-  std::vector<double> sum(weight_k.size());
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = weight_k[i] + weight_a0[i];
+  return made;
+}
+
+double noise_covariance_of(const std::vector<double>& one, const std::vector<double>& other,
+                           const std::vector<double>& autocovariance) {
+  std::vector<double> sum(one.size()), difference(one.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    sum[i] = one[i] + other[i];
+    difference[i] = one[i] - other[i];
+  }
+  return 0.25 * (noise_variance(sum, autocovariance) - noise_variance(difference, autocovariance));
+}
+
+/// L Sigma L'.
+void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, double k,
+                     const std::vector<double>& autocovariance, LineUncertainty& parts) {
+  const CoefficientRows rows = rows_of(input, inverse, k);
+  parts.var_k = noise_variance(rows.k, autocovariance);
+  parts.var_a0 = noise_variance(rows.a0, autocovariance);
+  std::vector<double> sum(rows.k.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = rows.k[i] + rows.a0[i];
   parts.cov = 0.5 * (noise_variance(sum, autocovariance) - parts.var_k - parts.var_a0);
 }
 
@@ -140,6 +160,39 @@ void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& norma
 }
 
 }  // namespace
+
+LineCross cross_covariance(const LineInput& one, const LineFit& of_one, const LineInput& other, const LineFit& of_other,
+                           const std::vector<double>& autocovariance) {
+  const CoefficientRows a = rows_of(one, normal_matrix(one.v_m_s).inverse(), of_one.k_over_m_1_s.value);
+  const CoefficientRows b = rows_of(other, normal_matrix(other.v_m_s).inverse(), of_other.k_over_m_1_s.value);
+  return {noise_covariance_of(a.k, b.k, autocovariance), noise_covariance_of(a.k, b.a0, autocovariance),
+          noise_covariance_of(a.a0, b.k, autocovariance), noise_covariance_of(a.a0, b.a0, autocovariance)};
+}
+
+bool speed_varies(const LineInput& input, const std::vector<double>& autocovariance) {
+  constexpr double kLeastOverNoise = 9.0;  // of variances: three standard deviations
+  const std::size_t n = input.v_m_s.size();
+  if (n == 0) return false;
+  double mean = 0.0;
+  std::vector<double> of_mean(input.track_points, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    mean += input.v_m_s[j] / static_cast<double>(n);
+    const std::vector<double>& weights = input.rows[j].weights->v;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      of_mean[input.rows[j].first + i] += weights[i] / static_cast<double>(n);
+    }
+  }
+  double squares = 0.0, of_noise = 0.0;
+  for (std::size_t j = 0; j < n; ++j) {
+    squares += std::pow(input.v_m_s[j] - mean, 2);
+    std::vector<double> off = of_mean;
+    const std::vector<double>& weights = input.rows[j].weights->v;
+    for (std::size_t i = 0; i < weights.size(); ++i) off[input.rows[j].first + i] -= weights[i];
+    for (std::size_t i = 0; i < input.noise_factor.size(); ++i) off[i] *= input.noise_factor[i];
+    of_noise += noise_variance(off, autocovariance);
+  }
+  return squares >= kLeastOverNoise * of_noise;
+}
 
 Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, double k_1_s,
                    const std::vector<double>& autocovariance) {

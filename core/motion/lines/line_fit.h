@@ -64,6 +64,14 @@ struct LineInput {
   std::vector<std::vector<MotionShift>> calibration;
 };
 
+/// The covariance of two lines' coefficients from the noise of positions on which both rest.
+LineCross cross_covariance(const LineInput& one, const LineFit& of_one, const LineInput& other, const LineFit& of_other,
+                           const std::vector<double>& autocovariance);
+
+/// Whether v varies over the points by more than three standard deviations of that variation, so that a slope can be
+/// known: with n_j the noise of v_j about the mean of all, sum of (v_j - mean)^2 >= 9 sum of var n_j.
+bool speed_varies(const LineInput& input, const std::vector<double>& autocovariance);
+
 enum class Misfit { widens, ignored };
 
 inline constexpr std::size_t kFewestLinePoints = 5;
