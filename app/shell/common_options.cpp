@@ -265,9 +265,16 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
   CLI::Option* mass = command.add_option("--mass", options.mass_kg, "For a file: mass of the glider in kilograms")
                           ->type_name("KG")
                           ->check(check_above_0);
-  command.add_option("--incline", options.incline_deg, "For a file: stated inclination in degrees")
+  CLI::Option* incline =
+      command.add_option("--incline", options.incline_deg, "For a file: stated inclination in degrees")
+          ->type_name("DEG")
+          ->check(check_incline);
+  command
+      .add_option("--incline-sd", options.incline_sd_deg,
+                  "With --incline: its standard deviation in degrees; motion in one direction then gives mu")
       ->type_name("DEG")
-      ->check(check_incline);
+      ->check(check_above_0)
+      ->needs(incline);
   CLI::Option* runs =
       command.add_option("--runs", options.runs,
                          "For a file with several runs or masses: which of them become clips, \"all\" or "

@@ -1,6 +1,7 @@
 #include "core/analysis/analyze.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 #include <set>
@@ -34,6 +35,13 @@ std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folde
     }
   }
   return experiments;
+}
+
+/// Its place is known if one of the folders states it; all have the same value.
+Gravity gravity_of(const std::vector<Experiment>& experiments) {
+  const bool stated = std::any_of(experiments.begin(), experiments.end(),
+                                  [](const Experiment& experiment) { return experiment.gravity_stated; });
+  return {experiments.front().gravity_m_s2, stated ? 0.0 : kLocalGravity_sd_m_s2};
 }
 
 /// Clip names that occur in one folder only are kept; the others are prefixed with their folder's name.
@@ -104,8 +112,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     }
   }
   name_uniquely(experiments, setups);
-  AnalysisResults results =
-      analyze_tracks(setups, tracks, experiments.front().gravity_m_s2, how, options.jobs, progress);
+  AnalysisResults results = analyze_tracks(setups, tracks, gravity_of(experiments), how, options.jobs, progress);
   for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = experiment_of[i]->name;
   results.calibrations = std::move(calibrations);
   results.plumbs = std::move(plumbs);

@@ -274,6 +274,7 @@ Experiment read_experiment(const fs::path& path, Permissions permitted) {
   root.integer("format", 1, 1);
   root.ignore("extra");
   experiment.name = root.text("name");
+  experiment.gravity_stated = root.has("gravity_m_s2");
   experiment.gravity_m_s2 = root.number_or("gravity_m_s2", experiment.gravity_m_s2, base::above(0.0));
   if (const auto table = root.maybe_table("camera")) experiment.camera = read_camera(*table);
   if (experiment.camera) experiment.camera->most_pixels = permitted.most_pixels;

@@ -70,6 +70,7 @@ struct Experiment {
   std::filesystem::path file;  ///< of experiment.toml, for messages
   std::string name;
   double gravity_m_s2 = kStandardGravity_m_s2;
+  bool gravity_stated = false;
   std::optional<CameraSettings> camera;
   std::optional<CalibrationSetup> calibration;
   std::optional<ScaleSetup> scale;

@@ -17,4 +17,12 @@ inline constexpr double kLocalGravity_sd_m_s2 = 0.015;
 /// 0.0029, 9.8123 has 0.000029, and 9.8 the spread.
 double gravity_sd_m_s2(double gravity_m_s2);
 
+/// A value of gravity with the standard deviation that alpha and mu take from it.
+struct Gravity {
+  Gravity(double value_m_s2, double standard_deviation_m_s2 = 0.0)  // NOLINT: a number alone is exact
+      : m_s2(value_m_s2), sd_m_s2(standard_deviation_m_s2) {}
+  double m_s2;
+  double sd_m_s2;
+};
+
 }  // namespace glidelab::core

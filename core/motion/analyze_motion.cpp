@@ -187,26 +187,54 @@ struct LineWeights {
   std::vector<double> factors;   ///< of each point's noise; empty: all 1
 };
 
+/// Adds to the line's bias what a rate would change in it. The likeliest motion has none wherever its effect hides in
+/// the noise; the covariance is that of the motion with a rate.
+void add_rate_shift(const SmoothedWhole& whole, const LineInput& input, LineFit& line) {
+  if (whole.without_rate.empty()) return;
+  LineInput under_rate = input;
+  std::size_t of_line = 0;
+  for (std::size_t j = 0; j < whole.points.size(); ++j) {
+    const StretchPoint& point = whole.points[j];
+    if (point.direction != line.direction || point.left_out != LeftOut::used || !point.row) continue;
+    under_rate.v_m_s[of_line] -= whole.without_rate[j].v_m_s;
+    under_rate.a_m_s2[of_line] -= whole.without_rate[j].a_m_s2;
+    ++of_line;
+  }
+  const auto other = fit_line(line.direction, under_rate, {0.0}, 0.0, Misfit::ignored);
+  if (!other) return;
+  line.parts.smoothing_k += line.k_over_m_1_s.value - other->k_over_m_1_s.value;
+  line.parts.smoothing_a0 += line.a0_m_s2.value - other->a0_m_s2.value;
+  complete_line(line);
+}
+
 /// The line of each direction that has one, by least squares. The smoothing's bias under the line's own law is known if
 /// a stretch is smoothed with its own points alone.
 std::vector<LineFit> ordinary_lines(const SmoothedClip& clip, const ClipSetup& setup, const LineWeights& weights,
                                     const SmoothedWhole* whole) {
   const std::vector<double> bias =
-      whole != nullptr ? smoothing_bias(clip.motion, clip.free.stretches, weights.law_m_s2, *whole)
+      whole != nullptr ? smoothing_bias(clip.motion, clip.free.stretches, own_law(weights.law_m_s2, *whole), *whole)
                        : smoothing_bias(clip.motion, clip.free.stretches, weights.law_m_s2, clip.points);
   std::vector<LineFit> lines;
+  std::vector<LineInput> inputs;
   for (const int direction : {-1, 1}) {
     LineInput input = line_input(clip.motion, clip.points, bias, direction, setup.mass_kg, setup.mass_sd_kg);
     input.noise_factor = weights.factors;
     input.calibration = calibration_shifts(clip.motion, input, clip.track.shared_m);
     auto line = fit_line(direction, input, clip.noise.autocovariance, clip.track.scale_sd_relative);
-    if (!line) continue;
+    if (!line || (whole != nullptr && !speed_varies(input, clip.noise.autocovariance))) continue;
+    if (whole != nullptr) add_rate_shift(*whole, input, *line);
     if (whole == nullptr) line->parts.law = law_bias(input, *line, clip.noise.autocovariance);
     if (line->parts.law) {
       line->parts.smoothing_k = line->parts.smoothing_a0 = 0.0;
       complete_line(*line);
     }
     lines.push_back(std::move(*line));
+    if (whole != nullptr) inputs.push_back(std::move(input));
+  }
+  if (inputs.size() == 2) {
+    const LineCross cross = cross_covariance(inputs[0], lines[0], inputs[1], lines[1], clip.noise.autocovariance);
+    lines[0].parts.with_other = cross;
+    lines[1].parts.with_other = {cross.k_k, cross.a0_k, cross.k_a0, cross.a0_a0};
   }
   return lines;
 }

@@ -13,6 +13,7 @@
 #include "core/motion/lines/line_law.h"
 #include "core/motion/speed_motion.h"
 #include "core/result/estimate.h"
+#include "core/result/one_direction.h"
 
 namespace glidelab::core {
 
@@ -37,6 +38,7 @@ Eigen::Matrix2d random_part(const LineUncertainty& parts) {
 /// One direction of one clip: the weight of its line (the moments of its points, or the line's inverse covariance), and
 /// the line.
 struct Part {
+  std::size_t member = 0;
   LineFit line;
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   std::vector<double> v, a;
@@ -44,10 +46,12 @@ struct Part {
 
 std::vector<Part> parts_of(const std::vector<MemberClip>& members, int direction, LineMethod lines, LawBiasIs bias) {
   std::vector<Part> parts;
-  for (const MemberClip& member : members) {
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const MemberClip& member = members[m];
     for (const LineFit& line : member.clip->segments) {
       if (line.direction != direction) continue;
       Part part;
+      part.member = m;
       part.line = bias == LawBiasIs::kept ? line : without_law_bias(line);
       for (const MotionPoint& point : member.clip->motion) {
         if (point.left_out != LeftOut::used || (point.v_m_s > 0.0 ? 1 : -1) != direction) continue;
@@ -64,11 +68,14 @@ std::vector<Part> parts_of(const std::vector<MemberClip>& members, int direction
   return parts;
 }
 
-/// How much more the clips' own lines scatter about the joint one than their uncertainty allows: chi^2 per degree of
-/// freedom, if that exceeds what chance allows. (Widening for every chi^2 above 1 would make the standard deviation of
-/// two correct lines 17 % too large on average.)
-double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
-  if (parts.size() < 2) return 1.0;
+Eigen::Vector2d off_joint(const Part& part, const Eigen::Vector2d& joint) {
+  return Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value) - joint;
+}
+
+/// Whether the clips' own lines scatter about the joint one by more than their uncertainty and chance allow. (Widening
+/// for every chi^2 above 1 would make the standard deviation of two correct lines 17 % too large on average.)
+bool clips_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joint) {
+  if (parts.size() < 2) return false;
   double chi2 = 0.0;
   for (const Part& part : parts) {
     Eigen::Matrix2d covariance = random_part(part.line.parts);
@@ -76,12 +83,54 @@ double excess_scatter(const std::vector<Part>& parts, const Eigen::Vector2d& joi
       const Eigen::Vector2d both(shift.k, shift.a0);
       covariance += both * both.transpose();
     }
-    if (!(covariance.determinant() > 0.0)) return 1.0;
-    const Eigen::Vector2d off = Eigen::Vector2d(part.line.k_over_m_1_s.value, part.line.a0_m_s2.value) - joint;
+    if (!(covariance.determinant() > 0.0)) return false;
+    const Eigen::Vector2d off = off_joint(part, joint);
     chi2 += off.dot(covariance.inverse() * off);
   }
   const double freedom = 2.0 * static_cast<double>(parts.size() - 1);
-  return chi2 > freedom * chi2_ratio_limit(freedom) ? chi2 / freedom : 1.0;
+  return chi2 > freedom * chi2_ratio_limit(freedom);
+}
+
+/// If the clips' lines scatter: the covariance of the clips' scores N_c (line_c - joint), as one change of the line for
+/// each clip. A clip that has a larger K/m has it in both directions, so the changes of both lines add up with their
+/// signs.
+///
+///     covariance = n/(n - 1) sum of N^-1 N_c d_c d_c' N_c N^-1,     n - 1 degrees of freedom
+///
+/// It contains the noise, and nothing is assumed of how K/m and a0 scatter.
+void add_scatter(const std::vector<Part>& parts, const Eigen::Matrix2d& inverse, const Eigen::Vector2d& joint,
+                 LineUncertainty& to) {
+  if (!clips_scatter(parts, joint)) return;
+  const auto n = static_cast<double>(parts.size());
+  const double wider = std::sqrt(n / (n - 1.0));
+  to.clips.resize(parts.back().member + 1);
+  for (const Part& part : parts) {
+    const Eigen::Vector2d moved = wider * (inverse * (part.normal * off_joint(part, joint)));
+    to.clips[part.member] = {moved[0], moved[1]};
+  }
+  to.clip_degrees = n - 1.0;
+}
+
+/// The covariance of the joint lines, each of the part's weights times the clips' own covariances.
+void join_cross(const std::vector<Part>& minus, const std::vector<Part>& plus, LineFit& of_minus, LineFit& of_plus) {
+  const auto inverse_of = [](const std::vector<Part>& parts) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    for (const Part& part : parts) normal += part.normal;
+    return Eigen::Matrix2d(normal.inverse());
+  };
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const Part& one : minus) {
+    for (const Part& other : plus) {
+      if (one.member != other.member) continue;
+      const LineCross& own = one.line.parts.with_other;
+      Eigen::Matrix2d cross;
+      cross << own.k_k, own.k_a0, own.a0_k, own.a0_a0;
+      sum += one.normal * cross * other.normal;
+    }
+  }
+  const Eigen::Matrix2d joint = inverse_of(minus) * sum * inverse_of(plus);
+  of_minus.parts.with_other = {joint(0, 0), joint(0, 1), joint(1, 0), joint(1, 1)};
+  of_plus.parts.with_other = {joint(0, 0), joint(1, 0), joint(0, 1), joint(1, 1)};
 }
 
 /// Least squares through the points of all parts; ordinary: every point with the same weight. The parts' noise is
@@ -117,7 +166,7 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   }
   const Eigen::Matrix2d inverse = normal.inverse();
   const Eigen::Vector2d solution = inverse * line;
-  const Eigen::Matrix2d covariance = inverse * random * inverse * excess_scatter(parts, solution);
+  const Eigen::Matrix2d covariance = inverse * random * inverse;
   joint.k_over_m_1_s.value = solution[0];
   joint.a0_m_s2.value = solution[1];
   joint.parts.var_k = covariance(0, 0);
@@ -126,6 +175,7 @@ LineFit join(const std::vector<Part>& parts, int direction) {
   // Welch-Satterthwaite: degrees of freedom of a sum of variances.
   joint.parts.degrees = var2_per_degree > 0.0 ? std::max(1.0, var_a0 * var_a0 / var2_per_degree)
                                               : std::numeric_limits<double>::infinity();
+  add_scatter(parts, inverse, solution, joint.parts);
   joint.parts.smoothing_k = (inverse * smoothing)[0];
   joint.parts.smoothing_a0 = (inverse * smoothing)[1];
   joint.parts.mass_k = (inverse * mass)[0];
@@ -146,10 +196,14 @@ LineFit join(const std::vector<Part>& parts, int direction) {
 /// more than their uncertainty allows, its uncertainty is widened.
 std::vector<LineFit> join_lines(const std::vector<MemberClip>& members, LineMethod lines, LawBiasIs bias) {
   std::vector<LineFit> joined;
+  std::vector<std::vector<Part>> of_lines;
   for (const int direction : {-1, 1}) {
-    const std::vector<Part> parts = parts_of(members, direction, lines, bias);
-    if (!parts.empty()) joined.push_back(join(parts, direction));
+    std::vector<Part> parts = parts_of(members, direction, lines, bias);
+    if (parts.empty()) continue;
+    joined.push_back(join(parts, direction));
+    of_lines.push_back(std::move(parts));
   }
+  if (joined.size() == 2) join_cross(of_lines[0], of_lines[1], joined[0], joined[1]);
   return joined;
 }
 
@@ -162,82 +216,166 @@ double degrees_of(double rad) {
   return std::round(degrees * 1e9) / 1e9 + 0.0;  // 4, not 4.000000000000001; + 0.0: no -0
 }
 
+/// A combination of both lines' coefficients: its gradient in one line, and that line.
+struct OfLine {
+  LineShift gradient;
+  const LineFit* line;
+};
+
+/// The variance of a combination of lines: the random part with its degrees of freedom, and with what the lines share.
+struct CombinedVariance {
+  KnownVariance random;
+  double total = 0.0;
+};
+
+/// Errors that lines share add up with their signs, and so does the scatter of the clips that they share.
+CombinedVariance combined(const std::vector<OfLine>& lines) {
+  KnownVariance own{0.0, std::numeric_limits<double>::infinity()}, of_clips = own;
+  double explained = 0.0;  // of the clips' scatter, by the noise of the lines that have one
+  std::vector<double> clips, shared;
+  const auto add = [](const LineShift& gradient, const std::vector<LineShift>& shifts, std::vector<double>& sums) {
+    if (sums.size() < shifts.size()) sums.resize(shifts.size(), 0.0);
+    for (std::size_t i = 0; i < shifts.size(); ++i) sums[i] += gradient.k * shifts[i].k + gradient.a0 * shifts[i].a0;
+  };
+  for (const auto& [gradient, line] : lines) {
+    const LineUncertainty& parts = line->parts;
+    const double of_line = gradient.k * gradient.k * parts.var_k + gradient.a0 * gradient.a0 * parts.var_a0 +
+                           2.0 * gradient.k * gradient.a0 * parts.cov;
+    own.value += of_line;
+    own.degrees = std::min(own.degrees, parts.degrees);
+    if (!parts.clips.empty()) {
+      of_clips.degrees = std::min(of_clips.degrees, parts.clip_degrees);
+      explained += of_line;
+    }
+    add(gradient, parts.clips, clips);
+    add(gradient, shared_shifts(*line), shared);
+  }
+  if (lines.size() == 2) {
+    const LineShift &one = lines[0].gradient, &other = lines[1].gradient;
+    const LineCross& cross = lines[0].line->parts.with_other;
+    const double both = 2.0 * (one.k * (other.k * cross.k_k + other.a0 * cross.k_a0) +
+                               one.a0 * (other.k * cross.a0_k + other.a0 * cross.a0_a0));
+    own.value = std::max(0.0, own.value + both);
+    if (!lines[0].line->parts.clips.empty() && !lines[1].line->parts.clips.empty()) explained += both;
+  }
+  for (const double sum : clips) of_clips.value += sum * sum;
+  of_clips.value = std::max(0.0, of_clips.value - explained);
+  CombinedVariance made{sum_of(own, of_clips), 0.0};
+  made.total = made.random.value;
+  for (const double sum : shared) made.total += sum * sum;
+  return made;
+}
+
 /// The mean of the directions' K/m, each weighted by one over its variance. If the two differ by more than three
-/// standard deviations, half of the unexplained part is taken as an additional variance of each direction. (DerSimonian
-/// and Laird 1986 add it at any distance; two correct lines would then state 1.2 times their standard deviation on
-/// average.) This evens out the weights, and the standard deviation grows with the spread.
+/// standard deviations, half of the unexplained part is taken as an additional variance of each direction, with one
+/// degree of freedom. (DerSimonian and Laird 1986 add it at any distance; two correct lines would then state 1.2 times
+/// their standard deviation on average.) This evens out the weights, and the standard deviation grows with the spread.
 Quantity mean_k(const std::vector<LineFit>& lines) {
   if (lines.empty()) return undetermined(unknown::NoLine{});
   double between = 0.0;
   if (lines.size() == 2) {
     const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
-    double allowed = lines[0].parts.var_k + lines[1].parts.var_k;
-    const std::vector<LineShift> one = shared_shifts(lines[0]), other = shared_shifts(lines[1]);
-    for (std::size_t i = 0; i < std::max(one.size(), other.size()); ++i) {
-      const double shift = (i < one.size() ? one[i].k : 0.0) - (i < other.size() ? other[i].k : 0.0);
-      allowed += shift * shift;
-    }
+    const double allowed = combined({{{1.0, 0.0}, &lines[0]}, {{-1.0, 0.0}, &lines[1]}}).total;
     if (apart * apart > 9.0 * allowed) between = 0.5 * (apart * apart - allowed);
   }
-  double weights = 0.0, value = 0.0, degrees = std::numeric_limits<double>::infinity();
-  std::vector<double> shared;
+  std::vector<double> weights;
+  double sum = 0.0, value = 0.0;
   for (const LineFit& line : lines) {
-    const double weight = 1.0 / std::max(line.parts.var_k + between, 1e-30);  // noise-free points weigh the same
-    weights += weight;
-    value += weight * line.k_over_m_1_s.value;
-    const std::vector<LineShift> shifts = shared_shifts(line);
-    if (shared.size() < shifts.size()) shared.resize(shifts.size(), 0.0);
-    for (std::size_t k = 0; k < shifts.size(); ++k) shared[k] += weight * shifts[k].k;
-    degrees = std::min(degrees, line.parts.degrees);
+    // Noise-free points weigh the same.
+    weights.push_back(1.0 / std::max(random_variance(line, {1.0, 0.0}).value + between, 1e-30));
+    sum += weights.back();
+    value += weights.back() * line.k_over_m_1_s.value;
   }
-  double variance = 1.0 / weights;
-  for (const double shift : shared) variance += std::pow(shift / weights, 2);
-  return determined(estimate(value / weights, std::sqrt(variance), degrees), std::sqrt(1.0 / weights));
+  std::vector<OfLine> mean;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    mean.push_back({{weights[i] / sum, 0.0}, &lines[i]});
+    squares += weights[i] * weights[i] / (sum * sum);
+  }
+  const CombinedVariance variance = combined(mean);
+  const KnownVariance random = sum_of(variance.random, {squares * between, 1.0});
+  const double shared = variance.total - variance.random.value;
+  return determined(estimate(value / sum, std::sqrt(random.value + shared), random.degrees), std::sqrt(random.value));
 }
 
-/// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+).
-Quantity of_intercepts(double value, double by_minus, double by_plus, const LineFit& minus, const LineFit& plus) {
-  const double random = by_minus * by_minus * minus.parts.var_a0 + by_plus * by_plus * plus.parts.var_a0;
-  double variance = random;
-  const std::vector<LineShift> of_minus = shared_shifts(minus), of_plus = shared_shifts(plus);
-  for (std::size_t k = 0; k < std::max(of_minus.size(), of_plus.size()); ++k) {
-    const double a = k < of_minus.size() ? by_minus * of_minus[k].a0 : 0.0;
-    const double b = k < of_plus.size() ? by_plus * of_plus[k].a0 : 0.0;
-    variance += (a + b) * (a + b);
-  }
-  const double degrees = std::min(minus.parts.degrees, plus.parts.degrees);
-  return determined(estimate(value, std::sqrt(variance), degrees), std::sqrt(random));
+/// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+), and its change for one standard deviation of
+/// gravity.
+Quantity of_intercepts(double value, double by_minus, double by_plus, double of_gravity, const LineFit& minus,
+                       const LineFit& plus) {
+  const auto [random, total] = combined({{{0.0, by_minus}, &minus}, {{0.0, by_plus}, &plus}});
+  return determined(estimate(value, std::sqrt(total + of_gravity * of_gravity), random.degrees),
+                    std::sqrt(random.value));
 }
 
 /// Friction and slope of the two lines' intercepts, equation (13) of the paper:
 ///
 ///     (a0- + a0+)/2 = g sin(alpha),     (a0- - a0+)/2 = mu g cos(alpha)
-void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, double gravity_m_s2,
+void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, const Gravity& gravity,
                                 ConfigurationResult& result) {
   const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
   const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);
-  if (std::abs(mean) >= gravity_m_s2) {
+  if (std::abs(mean) >= gravity.m_s2) {
     result.alpha_deg = result.mu = undetermined(unknown::MeanBeyondGravity{mean});
     return;
   }
-  const double alpha = std::asin(mean / gravity_m_s2);
-  const double g_cos = gravity_m_s2 * std::cos(alpha);
-  const double by_mean = base::kDegreesPerRad / g_cos;
-  result.alpha_deg = of_intercepts(alpha * base::kDegreesPerRad, 0.5 * by_mean, 0.5 * by_mean, minus, plus);
+  const double alpha = std::asin(mean / gravity.m_s2);
+  const double g_cos = gravity.m_s2 * std::cos(alpha);
+  const double by_mean = base::kDegreesPerRad / g_cos, by_gravity = -by_mean * mean / gravity.m_s2;
+  result.alpha_deg = of_intercepts(alpha * base::kDegreesPerRad, 0.5 * by_mean, 0.5 * by_mean,
+                                   by_gravity * gravity.sd_m_s2, minus, plus);
   // mu = half_jump / sqrt(g^2 - mean^2)
   const double by_jump = 1.0 / g_cos, mu_by_mean = half_jump * mean / std::pow(g_cos, 3);
-  result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump), minus, plus);
+  const double mu_by_gravity = -half_jump * gravity.m_s2 / std::pow(g_cos, 3);
+  result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump),
+                            mu_by_gravity * gravity.sd_m_s2, minus, plus);
 }
 
-void recover(const std::vector<LineFit>& lines, double gravity_m_s2, ConfigurationResult& result) {
+/// mu of one line and the stated inclination, or the reason why there is none.
+Quantity mu_of_line(const LineFit& line, const Gravity& gravity, const ConfigurationResult& stated) {
+  const double a0 = line.a0_m_s2.value;
+  const auto mu = mu_of_one_direction(stated, line.direction, a0, gravity.m_s2);
+  if (!mu) {
+    return undetermined(unknown::NotBothLines{
+        .minus = line.direction > 0, .plus = line.direction < 0, .incline_would_do = incline_would_do(stated)});
+  }
+  const auto [random, total] = combined({{{0.0, mu->by_a0}, &line}});
+  const double variance = total + mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
+  return determined(estimate(mu->value, std::sqrt(variance), random.degrees), std::sqrt(random.value));
+}
+
+/// Whether a direction has points enough for a line.
+bool has_points(const std::vector<MemberClip>& members) {
+  for (const int direction : {-1, 1}) {
+    std::size_t points = 0;
+    for (const MemberClip& member : members) {
+      for (const MotionPoint& point : member.clip->motion) {
+        points += point.left_out == LeftOut::used && (point.v_m_s > 0.0 ? 1 : -1) == direction;
+      }
+    }
+    if (points >= kFewestLinePoints) return true;
+  }
+  return false;
+}
+
+void recover(const std::vector<LineFit>& lines, const Gravity& gravity, const std::vector<MemberClip>& members,
+             ConfigurationResult& result) {
+  if (lines.empty() && has_points(members)) {
+    result.k_over_m_1_s = result.mu = result.alpha_deg = result.v_lim_m_s = undetermined(unknown::SpeedHardlyChanges{});
+    return;
+  }
   result.k_over_m_1_s = mean_k(lines);
   result.v_lim_m_s = limit_velocity(lines);
   if (lines.size() == 2) {
-    mu_and_alpha_of_intercepts(lines[0], lines[1], gravity_m_s2, result);
+    mu_and_alpha_of_intercepts(lines[0], lines[1], gravity, result);
     return;
   }
-  result.alpha_deg = result.mu = undetermined(unknown::NotBothLines{
-      .minus = lines.empty() || lines.front().direction == 1, .plus = lines.empty() || lines.front().direction == -1});
+  if (lines.empty()) {
+    result.alpha_deg = result.mu = undetermined(unknown::NotBothLines{.minus = true, .plus = true});
+    return;
+  }
+  result.alpha_deg =
+      undetermined(unknown::NotBothLines{.minus = lines.front().direction == 1, .plus = lines.front().direction == -1});
+  result.mu = mu_of_line(lines.front(), gravity, result);
 }
 
 void set_correction(const Quantity& as_fitted, Quantity& recovered) {
@@ -264,7 +402,7 @@ void tell_launch(const std::vector<MemberClip>& members, ConfigurationResult& re
   if (result.k_over_m_1_s.why) result.k_over_m_1_s.why->against_launch = told;
 }
 
-ConfigurationResult join_members(const std::vector<MemberClip>& members, double gravity_m_s2, LineMethod lines) {
+ConfigurationResult join_members(const std::vector<MemberClip>& members, const Gravity& gravity, LineMethod lines) {
   ConfigurationResult result;
   result.mass_kg = members.front().setup->mass_kg;
   result.incline_deg = degrees_of(members.front().setup->incline_rad);
@@ -281,13 +419,15 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
   }
   result.lines = join_lines(members, lines, LawBiasIs::kept);
   if (!biased) {
-    recover(result.lines, gravity_m_s2, result);
+    recover(result.lines, gravity, members, result);
+    note_mu_from_incline(result);
     tell_launch(members, result);
     return result;
   }
-  ConfigurationResult as_fitted;
-  recover(result.lines, gravity_m_s2, as_fitted);
-  recover(join_lines(members, lines, LawBiasIs::taken_off), gravity_m_s2, result);
+  ConfigurationResult as_fitted = result;
+  recover(result.lines, gravity, members, as_fitted);
+  recover(join_lines(members, lines, LawBiasIs::taken_off), gravity, members, result);
+  note_mu_from_incline(result);
   tell_launch(members, result);
   set_correction(as_fitted.k_over_m_1_s, result.k_over_m_1_s);
   set_correction(as_fitted.mu, result.mu);
@@ -299,7 +439,7 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, double 
 }  // namespace
 
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
-                                                     const std::vector<ClipResult>& clips, double gravity_m_s2,
+                                                     const std::vector<ClipResult>& clips, const Gravity& gravity,
                                                      LineMethod lines) {
   std::vector<std::vector<MemberClip>> configurations;
   for (std::size_t i = 0; i < setups.size(); ++i) {
@@ -314,14 +454,14 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
   }
   std::vector<ConfigurationResult> results;
   for (const std::vector<MemberClip>& members : configurations) {
-    results.push_back(join_members(members, gravity_m_s2, lines));
+    results.push_back(join_members(members, gravity, lines));
   }
-  note_statements(results, gravity_m_s2);
+  note_statements(results, gravity.m_s2);
   return results;
 }
 
 AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::vector<TrackData>& tracks,
-                               double gravity_m_s2, const MotionOptions& options, int jobs,
+                               const Gravity& gravity, const MotionOptions& options, int jobs,
                                const base::Progress& progress) {
   assert(setups.size() == tracks.size());
   AnalysisResults results;
@@ -333,8 +473,10 @@ AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::
     results.clips[i].images = tracks[i].images;
     progress("phase diagram", static_cast<double>(++done) / static_cast<double>(setups.size()));
   });
-  results.gravity_m_s2 = gravity_m_s2;
-  results.configurations = join_configurations(setups, results.clips, gravity_m_s2, options.lines);
+  results.gravity_m_s2 = gravity.m_s2;
+  results.gravity_sd_m_s2 = gravity.sd_m_s2;
+  results.configurations = join_configurations(setups, results.clips, gravity, options.lines);
+  note_gravity(results);
   results.estimator = name_of(options.lines);
   return results;
 }

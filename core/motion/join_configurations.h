@@ -5,6 +5,7 @@
 #include <vector>
 #include "base/long_work.h"
 #include "core/experiment/clip_setup.h"
+#include "core/experiment/local_gravity.h"
 #include "core/motion/analyze_motion.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"
@@ -18,7 +19,7 @@ namespace glidelab::core {
 ///
 /// K/m is the directions' mean. With generalised lines the clips' own lines are weighted by their inverse covariances.
 std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
-                                                     const std::vector<ClipResult>& clips, double gravity_m_s2,
+                                                     const std::vector<ClipResult>& clips, const Gravity& gravity,
                                                      LineMethod lines = LineMethod::ordinary);
 
 /// All clips of one analysis, once their x(t) is known: each on its own, then joined by configuration.
@@ -26,7 +27,7 @@ std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup
 /// There is one track for each setup (asserted), in the same order; the clips share the glider and the track. `jobs`
 /// clips at a time. The clips' `experiment` is left empty. The progress counts clips.
 AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::vector<TrackData>& tracks,
-                               double gravity_m_s2, const MotionOptions& options, int jobs,
+                               const Gravity& gravity, const MotionOptions& options, int jobs,
                                const base::Progress& progress = base::no_progress);
 
 }  // namespace glidelab::core

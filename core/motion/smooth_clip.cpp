@@ -5,10 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "core/math/least_squares.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
 namespace {
+
+constexpr double kLeastDeterminant = 1e-12;  // relative: rounding alone leaves 1e-16
 
 /// Points of the motion given to a smoother, and the additional frames requested from it.
 struct Gathered {
@@ -133,6 +136,10 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
     if (!is_free[piece.from]) add(motion, piece, false, of_rest);
   }
 
+  std::vector<MotionShift> without_rate(motion.t_s.size());
+  std::vector<std::optional<KernelRow>> held_rows(motion.t_s.size());
+  bool holds_rate = true;
+  bool has_no_rate = false;
   std::vector<double> sd_m_s2(motion.t_s.size(), std::numeric_limits<double>::infinity());
   std::vector<StretchPoint> smoothed(motion.t_s.size());
   for (Gathered* gathered : {&of_free, &of_rest}) {
@@ -169,6 +176,14 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
       const std::size_t i = gathered->point[j];
       StretchPoint& point = smoothed[i];
       if (gathered->input.rows) point.row = in_motion(series.rows[j]);
+      if (!series.held_rows.empty()) {
+        held_rows[i] = in_motion(series.held_rows[j]);
+        holds_rate = false;
+      }
+      if (!series.with_rate.empty() && series.with_rate[j]) {
+        without_rate[i] = {y.v_m_s - series.with_rate[j]->v_m_s, y.a_m_s2 - series.with_rate[j]->a_m_s2};
+        has_no_rate = true;
+      }
       const SmoothedState& x = motion.forced ? *series.along[j] : y;
       point.smoothed = true;
       point.x = {x.x_m, x.v_m_s, x.a_m_s2};
@@ -184,9 +199,17 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
     }
   }
 
-  std::vector<double> typical;
-  for (const std::size_t i : of_free.point) typical.push_back(sd_m_s2[i]);
-  const double most = typical.empty() ? 0.0 : std::sqrt(kEndVariance) * median_of(std::move(typical));
+  // By direction: where a is constant in each, the one that lasts less long is known less well at all of its points.
+  const auto most_of = [&](int direction) {
+    std::vector<double> typical;
+    for (const FreeStretch& stretch : free.stretches) {
+      if (stretch.direction != direction) continue;
+      const auto first = sd_m_s2.begin() + static_cast<std::ptrdiff_t>(stretch.first);
+      typical.insert(typical.end(), first, first + static_cast<std::ptrdiff_t>(stretch.count));
+    }
+    return typical.empty() ? 0.0 : std::sqrt(kEndVariance) * median_of(std::move(typical));
+  };
+  const double most_minus = most_of(-1), most_plus = most_of(1);
   for (std::size_t s = 0; s < free.stretches.size(); ++s) {
     const FreeStretch& stretch = free.stretches[s];
     const std::size_t from = whole.points.size();
@@ -196,10 +219,34 @@ SmoothedWhole smooth_whole(const Smoother& smoother, const TrackData& track, con
       point.stretch = s;
       point.direction = stretch.direction;
       whole.points.push_back(std::move(point));
+      if (has_no_rate) whole.without_rate.push_back(without_rate[i]);
+      if (!holds_rate) whole.held_rows.push_back(std::move(held_rows[i]));
     }
-    leave_out(stretch, most, sd_m_s2, from, whole.points);
+    leave_out(stretch, stretch.direction < 0 ? most_minus : most_plus, sd_m_s2, from, whole.points);
   }
   return whole;
+}
+
+std::vector<double> own_law(const std::vector<double>& pilot_m_s2, const SmoothedWhole& whole) {
+  const auto under_rate = [&](std::size_t j) {
+    return j < whole.without_rate.size() ? whole.without_rate[j] : MotionShift{};
+  };
+  std::vector<double> law = pilot_m_s2;
+  for (const int direction : {-1, 1}) {
+    LineSums sums;
+    for (std::size_t j = 0; j < whole.points.size(); ++j) {
+      const StretchPoint& point = whole.points[j];
+      if (point.direction != direction || point.left_out != LeftOut::used || !point.row) continue;
+      sums.add(1.0, point.x.v_m_s - under_rate(j).v_m_s, point.y.a_m_s2 - under_rate(j).a_m_s2);
+    }
+    if (!sums.is_regular(kLeastDeterminant)) continue;
+    for (std::size_t j = 0; j < whole.points.size(); ++j) {
+      const StretchPoint& point = whole.points[j];
+      if (point.direction != direction || !point.smoothed) continue;
+      law[point.point] = sums.intercept() + sums.slope() * (point.x.v_m_s - under_rate(j).v_m_s);
+    }
+  }
+  return law;
 }
 
 std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeStretch>& stretches,
@@ -231,8 +278,9 @@ std::vector<double> smoothing_bias(const Motion& motion, const std::vector<FreeS
     }
   }
   std::vector<double> bias;
-  for (const StretchPoint& point : whole.points) {
-    bias.push_back(point.row ? weighted_sums(*point.row, place).a_m_s2 - law_m_s2[point.point] : 0.0);
+  for (std::size_t j = 0; j < whole.points.size(); ++j) {
+    const std::optional<KernelRow>& row = whole.held_rows.empty() ? whole.points[j].row : whole.held_rows[j];
+    bias.push_back(row ? weighted_sums(*row, place).a_m_s2 - law_m_s2[whole.points[j].point] : 0.0);
   }
   return bias;
 }

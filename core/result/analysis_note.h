@@ -322,6 +322,16 @@ struct InclineContradiction {
   bool gross = false;    ///< more than a carelessly set up track explains; see incline_contradiction()
 };
 
+/// mu of motion in one direction rests on the stated inclination.
+struct MuFromIncline {
+  double deg = 0.0, sd_deg = 0.0;
+};
+
+/// The experiment does not state gravity: alpha and mu are for this value, and contain its uncertainty.
+struct GravityAssumed {
+  double gravity_m_s2 = 0.0, sd_m_s2 = 0.0;
+};
+
 /// A robust fit of the whole motion.
 struct RobustFit {
   std::size_t left_out = 0, positions = 0;
@@ -342,7 +352,7 @@ using AnyNote =
                  MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine,
                  ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,
                  NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams,
-                 InclineContradiction, RobustFit, FitScatters>;
+                 InclineContradiction, MuFromIncline, GravityAssumed, RobustFit, FitScatters>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

@@ -16,6 +16,14 @@ double student_t975(double degrees) {
   return base::student_t_quantile(degrees, 0.975);
 }
 
+KnownVariance sum_of(const KnownVariance& one, const KnownVariance& other) {
+  const double total = one.value + other.value;
+  const auto spread = [](const KnownVariance& of) { return of.value > 0.0 ? of.value * of.value / of.degrees : 0.0; };
+  const double per_degree = spread(one) + spread(other);
+  return {total,
+          per_degree > 0.0 ? std::max(1.0, total * total / per_degree) : std::numeric_limits<double>::infinity()};
+}
+
 Estimate estimate(double value, double sd, double degrees) {
   const double half = student_t975(degrees) * sd;
   return {value, sd, value - half, value + half};

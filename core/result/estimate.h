@@ -17,6 +17,15 @@ Estimate estimate(double value, double sd, double degrees);
 /// The 97.5 % quantile of Student's t for any degrees above 0; of the normal distribution if they are infinite.
 double student_t975(double degrees);
 
+/// A variance, and how many degrees of freedom its own value has; infinite if it is known.
+struct KnownVariance {
+  double value = 0.0;
+  double degrees = 0.0;
+};
+
+/// The sum of two independent ones (Welch 1947 and Satterthwaite 1946: the degrees that give it the right variance).
+KnownVariance sum_of(const KnownVariance& one, const KnownVariance& other);
+
 /// chi^2 per degree of freedom that is exceeded by chance with a probability of 0.00135, as a normal number exceeds
 /// three standard deviations (Wilson and Hilferty 1931; the probability is accurate to a tenth from 2 degrees on).
 double chi2_ratio_limit(double degrees);

@@ -86,6 +86,11 @@ struct LineShift {
   double a0 = 0.0;
 };
 
+/// Covariance of one line's coefficients with another's: k_a0 is that of the one's K/m with the other's a0.
+struct LineCross {
+  double k_k = 0.0, k_a0 = 0.0, a0_k = 0.0, a0_a0 = 0.0;
+};
+
 /// The kernel's bias of a line that follows its own law (line_law.h), to be subtracted, and the random covariance after
 /// the subtraction.
 struct LawBias {
@@ -111,6 +116,12 @@ struct LineUncertainty {
   std::optional<LawBias> law = {};  ///< if it can: the line itself keeps it, and counts it as an uncertainty
   double mass_k = 0.0;              ///< change for one standard deviation of the mass (with a known force only)
   double mass_a0 = 0.0;
+  /// Random, of a line through clips that scatter: the change by each clip's departure from the line, a clip's at the
+  /// same place in the lines of both directions; with `clip_degrees` of freedom (join_configurations.h).
+  std::vector<LineShift> clips = {};
+  double clip_degrees = 0.0;
+  /// Random, with the line of the other direction, where both rest on positions smoothed together.
+  LineCross with_other = {};
   double scale_relative = 0.0;         ///< standard deviation of one px_per_m: of a0 and v_lim, not of K/m
   std::vector<LineShift> calibration;  ///< for each mode of the cameras and planes, the same modes for all lines
 };
@@ -278,6 +289,7 @@ struct PlumbResult {
 
 struct AnalysisResults {
   double gravity_m_s2 = 0.0;
+  double gravity_sd_m_s2 = 0.0;  ///< in alpha and mu; 0 if the value is stated
   std::vector<ClipResult> clips;
   std::vector<ConfigurationResult> configurations;
   std::vector<CalibrationResult> calibrations;            ///< one for each folder that has a pattern

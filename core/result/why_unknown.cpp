@@ -7,17 +7,27 @@
 namespace glidelab::core {
 namespace {
 
+const char* incline_words(bool would_do) {
+  return would_do ? ", unless the inclination is stated with its uncertainty (incline_deg and incline_sd_deg; for a "
+                    "file --incline and --incline-sd)"
+                  : "";
+}
+
 /// Words for every reason; a reason without them does not compile.
 struct ReasonWords {
   std::string operator()(const unknown::Told& of) const { return of.text; }
 
   std::string operator()(const unknown::NoLine&) const { return "no line: neither direction has enough usable points"; }
   std::string operator()(const unknown::NoDownhillLine&) const { return "no line for v > 0"; }
+  std::string operator()(const unknown::SpeedHardlyChanges&) const {
+    return "the speed hardly changes in the positions that are used, so no slope is known";
+  }
   std::string operator()(const unknown::NotBothLines& of) const {
-    return fmt::format("no line for {}, and only both directions tell friction from slope",
+    return fmt::format("no line for {}, and only both directions tell friction from slope{}",
                        of.minus && of.plus ? "v < 0 and none for v > 0"
                        : of.minus          ? "v < 0"
-                                           : "v > 0");
+                                           : "v > 0",
+                       incline_words(of.incline_would_do));
   }
   std::string operator()(const unknown::MeanBeyondGravity& of) const {
     return fmt::format("the mean of a0 is {:.4g} m/s², which is gravity or more", of.mean_m_s2);
@@ -39,8 +49,8 @@ struct ReasonWords {
     const bool plus = of.direction > 0;
     return fmt::format(
         "motion with v {} 0 only: it determines g (sin(alpha) {} mu cos(alpha)) = {:.4f} ± {:.4f} m/s², not alpha and "
-        "mu separately",
-        plus ? ">" : "<", plus ? "-" : "+", of.a0_m_s2, of.sd_m_s2);
+        "mu separately{}",
+        plus ? ">" : "<", plus ? "-" : "+", of.a0_m_s2, of.sd_m_s2, incline_words(of.incline_would_do));
   }
   std::string operator()(const unknown::NoDownhillMotion&) const { return "no motion with v > 0"; }
   std::string operator()(const unknown::DriveBeyondGravity&) const {

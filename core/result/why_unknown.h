@@ -25,9 +25,13 @@ struct NoLine {};
 /// The terminal velocity follows from the line for v > 0.
 struct NoDownhillLine {};
 
-/// mu and alpha follow from the lines of both directions.
+/// There are points, but their speed changes by too little to show a slope.
+struct SpeedHardlyChanges {};
+
+/// mu and alpha follow from the lines of both directions; mu also from one line, where the inclination is known.
 struct NotBothLines {
   bool minus = false, plus = false;  ///< those that are missing
+  bool incline_would_do = false;     ///< the inclination with its uncertainty would give mu
 };
 
 /// The mean of the lines' a0 exceeds gravity.
@@ -54,6 +58,7 @@ struct NoFit {};
 struct OneDirection {
   int direction = 0;
   double a0_m_s2 = 0.0, sd_m_s2 = 0.0;
+  bool incline_would_do = false;  ///< as above
 };
 
 struct NoDownhillMotion {};
@@ -97,12 +102,12 @@ struct KernelNotStated {};
 }  // namespace unknown
 
 using AnyReason =
-    std::variant<unknown::Told, unknown::NoLine, unknown::NoDownhillLine, unknown::NotBothLines,
-                 unknown::MeanBeyondGravity, unknown::RateNotPositive, unknown::InterceptNotPositive,
-                 unknown::NoFreeMotion, unknown::NoFit, unknown::OneDirection, unknown::NoDownhillMotion,
-                 unknown::DriveBeyondGravity, unknown::NotTold, unknown::NotAnswered, unknown::NoLineOfMotion,
-                 unknown::NotToldApart, unknown::ExplanationsDiffer, unknown::FreeFall, unknown::NoBalance,
-                 unknown::DragNotViscous, unknown::KernelNotStated>;
+    std::variant<unknown::Told, unknown::NoLine, unknown::NoDownhillLine, unknown::SpeedHardlyChanges,
+                 unknown::NotBothLines, unknown::MeanBeyondGravity, unknown::RateNotPositive,
+                 unknown::InterceptNotPositive, unknown::NoFreeMotion, unknown::NoFit, unknown::OneDirection,
+                 unknown::NoDownhillMotion, unknown::DriveBeyondGravity, unknown::NotTold, unknown::NotAnswered,
+                 unknown::NoLineOfMotion, unknown::NotToldApart, unknown::ExplanationsDiffer, unknown::FreeFall,
+                 unknown::NoBalance, unknown::DragNotViscous, unknown::KernelNotStated>;
 
 /// A clip whose motion in a direction without a line is attributed to the hand.
 struct ClipAgainstLaunch {

@@ -113,6 +113,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   clip.mass_assumed = !options.mass_kg && options.masses_kg.empty();
   clip.incline_rad = options.incline_deg.value_or(0.0) * base::kRadPerDegree;
   clip.incline_assumed = !options.incline_deg;
+  if (options.incline_sd_deg) clip.incline_sd_rad = *options.incline_sd_deg * base::kRadPerDegree;
   clip.launched = Launched::unknown;
   clip.group = "all";
   if (options.runs.empty()) {

@@ -17,8 +17,9 @@ namespace glidelab::core {
 struct TrackFileOptions {
   std::string column;                 ///< of x in a table, or a point mass; empty: found
   std::optional<double> mass_kg;      ///< 1 kg if not stated; K/m, mu and alpha depend on it under a recorded force
-  std::optional<double> incline_deg;  ///< as stated; level if not stated. It only names the configuration
-  Permissions permitted = {};         ///< of a folder
+  std::optional<double> incline_deg;  ///< as stated; level if not stated
+  std::optional<double> incline_sd_deg = {};  ///< its standard deviation, with which it gives mu of one direction
+  Permissions permitted = {};                 ///< of a folder
   /// Which of the runs (or masses) of the file become clips: "all", or their numbers from 1 on, "1,3". Empty: the file
   /// is one clip.
   std::string runs = {};

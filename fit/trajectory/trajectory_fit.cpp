@@ -73,36 +73,64 @@ TrajectoryUncertainty::TrajectoryUncertainty(const std::vector<FitBlock>& blocks
 void TrajectoryUncertainty::fill(TrajectoryFit& fit) const {
   const Eigen::Index free = inverse_.rows();
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(free, free);
-  double chi2 = 0.0, count = 0.0, worth = 0.0;
+  double count = 0.0, worth = 0.0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const double weight = 1.0 / variance_of(blocks_[b]);
     for (Eigen::Index i = 0; i < free; ++i) {
       const Eigen::VectorXd noisy = times_noise(blocks_[b].autocovariance_m2, projected_[b].col(i));
       middle.col(i) += weight * weight * transposed_product(projected_[b], noisy);
     }
-    chi2 += weight * at_[b].residual.squaredNorm();
-    const auto points = static_cast<double>(at_[b].residual.size());
+    // A position that a robust fit leaves out has the weight 0, and so no derivative.
+    const auto points = static_cast<double>((at_[b].start.rowwise().squaredNorm().array() > 0.0).count());
     count += points;
     worth += independent(blocks_[b], points);
   }
   fit.covariance = product(product(inverse_, middle), inverse_);
   fit.degrees = std::numeric_limits<double>::infinity();
-  const double freedom = std::max(1.0, count - static_cast<double>(free) - 2.0 * static_cast<double>(blocks_.size()));
-  const double ratio = chi2 / freedom;
+  const auto blocks = static_cast<double>(blocks_.size());
+  const double limit = core::chi2_ratio_limit(worth);
+  const auto ratio_of = [&](const std::vector<Eigen::VectorXd>& residuals, double parameters) {
+    double chi2 = 0.0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) chi2 += residuals[b].squaredNorm() / variance_of(blocks_[b]);
+    return chi2 / std::max(1.0, count - parameters);
+  };
+  std::vector<Eigen::VectorXd> rests = residuals();
+  double ratio = ratio_of(rests, static_cast<double>(free) + 2.0 * blocks);
   fit.scatter = std::sqrt(ratio);
   fit.points = static_cast<std::size_t>(count);
-  if (ratio > core::chi2_ratio_limit(worth)) add_misfit(count, ratio, fit);
+  if (ratio > limit && blocks_.size() >= kFewestBlocks) {
+    rests = own_residuals();
+    ratio = ratio_of(rests, (static_cast<double>(free) + 2.0) * blocks);
+  }
+  if (ratio > limit) add_misfit(rests, count, ratio, fit);
   compare_with_jackknife(fit);
   add_shared(fit);
 }
 
+std::vector<Eigen::VectorXd> TrajectoryUncertainty::residuals() const {
+  std::vector<Eigen::VectorXd> all;
+  for (const Linearised& of : at_) all.push_back(of.residual);
+  return all;
+}
+
+/// What is left of the residuals with parameters of each block's own. A block that has another K/m shows it all along:
+/// the scores of its pieces are larger than that of the block as a whole, and of opposite signs.
+std::vector<Eigen::VectorXd> TrajectoryUncertainty::own_residuals() const {
+  std::vector<Eigen::VectorXd> all = residuals();
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    all[b] -= product(projected_[b], base::least_squares(projected_[b], all[b]));
+  }
+  return all;
+}
+
 /// The scores of pieces of the motion that are long enough to be practically independent.
-void TrajectoryUncertainty::add_misfit(double count, double ratio, TrajectoryFit& fit) const {
+void TrajectoryUncertainty::add_misfit(const std::vector<Eigen::VectorXd>& residuals, double count, double ratio,
+                                       TrajectoryFit& fit) const {
   const auto length = static_cast<Eigen::Index>(std::max(1.0, std::ceil(count / static_cast<double>(kFewestPieces))));
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(inverse_.rows(), inverse_.rows());
   double pieces = 0.0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const Eigen::VectorXd& residual = at_[b].residual;
+    const Eigen::VectorXd& residual = residuals[b];
     for (Eigen::Index from = 0; from < residual.size(); from += length) {
       const Eigen::Index n = std::min(length, residual.size() - from);
       const Eigen::VectorXd score =
@@ -431,7 +459,6 @@ std::optional<TrajectoryFit> fit_trajectories(const std::vector<FitBlock>& block
   fit.iterations = best.found.iterations;
   fit.left_out = best.left_out;
   uncertainty.fill(fit);
-  fit.points -= fit.left_out;
   return fit;
 }
 

@@ -13,8 +13,9 @@
 ///
 /// Uncertainty: correlated noise enters by the sandwich H^-1 J'W Gamma W J H^-1. If the residuals are larger than the
 /// noise explains (core::chi2_ratio_limit), the covariance of the scores of eight or more pieces of the motion is
-/// added, with its degrees of freedom. The errors of the camera and the plane, of the scale, and of the mass by which a
-/// recorded force is divided are propagated as signed shifts.
+/// added, with its degrees of freedom. Of four blocks or more, the pieces' scores are those of what each block leaves
+/// with parameters of its own; how the blocks differ, the jackknife says. The errors of the camera and the plane, of
+/// the scale, and of the mass by which a recorded force is divided are propagated as signed shifts.
 #pragma once
 
 #include <Eigen/Core>
@@ -88,7 +89,9 @@ class TrajectoryUncertainty {
   void fill(TrajectoryFit& fit) const;
 
  private:
-  void add_misfit(double count, double ratio, TrajectoryFit& fit) const;
+  std::vector<Eigen::VectorXd> residuals() const;
+  std::vector<Eigen::VectorXd> own_residuals() const;
+  void add_misfit(const std::vector<Eigen::VectorXd>& residuals, double count, double ratio, TrajectoryFit& fit) const;
   void compare_with_jackknife(TrajectoryFit& fit) const;
   void add_shared(TrajectoryFit& fit) const;
 

@@ -9,13 +9,16 @@
 #include "base/math/angles.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
+#include "core/result/one_direction.h"
 
 namespace glidelab::fit {
 namespace {
 
-core::Quantity quantity_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient) {
+/// `stated_variance`: of what is stated besides the motion, such as gravity.
+core::Quantity quantity_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient,
+                           double stated_variance = 0.0) {
   const double random = gradient.dot(fit.covariance * gradient);
-  double variance = random;
+  double variance = random + stated_variance;
   for (const Eigen::VectorXd& shift : fit.shared) variance += std::pow(gradient.dot(shift), 2);
   return core::determined(core::estimate(value, std::sqrt(variance), fit.degrees), std::sqrt(random));
 }
@@ -32,7 +35,9 @@ core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k,
   return quantity_of(fit, a0 / k.value, gradient);
 }
 
-void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResult& result) {
+void fill(const TrajectoryFit& fit, const core::AnalysisResults& results, core::ConfigurationResult& result) {
+  const double gravity_m_s2 = results.gravity_m_s2;
+  const auto of_gravity = [&](double by_gravity) { return std::pow(by_gravity * results.gravity_sd_m_s2, 2); };
   const double k = fit.parameters[0];
   Eigen::VectorXd by_k = Eigen::VectorXd::Zero(fit.parameters.size());
   by_k[0] = 1.0;
@@ -41,7 +46,15 @@ void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResu
   if (fit.direction != 0) {
     Eigen::VectorXd by_a0 = Eigen::Vector2d(0.0, 1.0);
     const core::Estimate a0 = *quantity_of(fit, fit.parameters[1], by_a0).estimate;
-    result.alpha_deg = result.mu = core::undetermined(core::unknown::OneDirection{fit.direction, a0.value, a0.sd});
+    core::unknown::OneDirection one_way{fit.direction, a0.value, a0.sd};
+    result.alpha_deg = core::undetermined(one_way);
+    if (const auto mu = core::mu_of_one_direction(result, fit.direction, a0.value, gravity_m_s2)) {
+      const double stated = mu->of_incline * mu->of_incline + of_gravity(mu->by_gravity);
+      result.mu = quantity_of(fit, mu->value, mu->by_a0 * by_a0, stated);
+    } else {
+      one_way.incline_would_do = core::incline_would_do(result);
+      result.mu = core::undetermined(one_way);
+    }
     result.v_lim_m_s = limit_velocity(fit, k_estimate, a0.value, by_a0);
     return;
   }
@@ -53,12 +66,16 @@ void fill(const TrajectoryFit& fit, double gravity_m_s2, core::ConfigurationResu
   }
   const double cosine = std::sqrt(1.0 - std::pow(drive / gravity_m_s2, 2));
   const double alpha_by_drive = 1.0 / (gravity_m_s2 * cosine);
+  const double alpha_by_gravity = -alpha_by_drive * drive / gravity_m_s2;
   result.alpha_deg = quantity_of(fit, std::asin(drive / gravity_m_s2) * base::kDegreesPerRad,
-                                 Eigen::Vector3d(0.0, alpha_by_drive * base::kDegreesPerRad, 0.0));
-  // mu = f / (g cos(alpha)); d mu / d alpha = mu tan(alpha)
+                                 Eigen::Vector3d(0.0, alpha_by_drive * base::kDegreesPerRad, 0.0),
+                                 of_gravity(alpha_by_gravity * base::kDegreesPerRad));
+  // mu = f / (g cos(alpha)) = f / sqrt(g^2 - d^2); d mu / d alpha = mu tan(alpha)
   const double mu = friction / (gravity_m_s2 * cosine);
   const double mu_by_drive = mu * drive / gravity_m_s2 / cosine * alpha_by_drive;
-  result.mu = quantity_of(fit, mu, Eigen::Vector3d(0.0, mu_by_drive, 1.0 / (gravity_m_s2 * cosine)));
+  const double mu_by_gravity = -mu / (gravity_m_s2 * cosine * cosine);
+  result.mu =
+      quantity_of(fit, mu, Eigen::Vector3d(0.0, mu_by_drive, 1.0 / (gravity_m_s2 * cosine)), of_gravity(mu_by_gravity));
 }
 
 /// k, d, f from the lines; without lines, a glider without friction.
@@ -117,10 +134,12 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
       leave_out(core::unknown::NoFit{}, configuration);
       continue;
     }
-    fill(*fit, results.gravity_m_s2, configuration);
+    fill(*fit, results, configuration);
+    core::note_mu_from_incline(configuration);
     note_fit(*fit, options, configuration);
   }
   core::note_statements(results.configurations, results.gravity_m_s2);
+  core::note_gravity(results);
   return results;
 }
 

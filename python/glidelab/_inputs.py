@@ -44,7 +44,7 @@ class Track:
     force_n : array_like, shape (n,), optional
         A known force along x, in newtons.
     mass_sd_kg, incline_sd_deg : float, optional
-        Standard deviations of what is stated.
+        Standard deviations of what is stated. With that of the inclination, motion in one direction gives mu.
     launched : {"unknown", "up", "down", "released"}
         How the motion began. Motion against the stated launch is attributed to the hand.
     group : str

@@ -28,11 +28,11 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
   if (c.k_over_m_1_s.estimate) {
     const double rate = c.k_over_m_1_s.estimate->value;
     const double sd = c.k_over_m_1_s.estimate->sd;
-    if (rate > kLeastDoubtSds * sd) {
+    if (rate > kLeastDoubtSds * sd && c.k_over_m_1_s.estimate->low95 > 0.0) {
       text += fmt::format(
           "drag proportional to the speed, K/m = {} 1/s, takes it 63 % of the way to its final speed in {} s",
           base::value_and_sd_text(rate, sd), base::number_text(1.0 / rate, 3));
-    } else if (rate < -kLeastDoubtSds * sd) {
+    } else if (is_below_zero(*c.k_over_m_1_s.estimate)) {
       text += fmt::format("K/m comes out as {} 1/s, below zero", base::value_and_sd_text(rate, sd));
     } else {
       text += fmt::format("drag proportional to the speed cannot be distinguished from zero ({} 1/s)",
@@ -43,9 +43,9 @@ std::string sentence_of(const core::AnalysisResults& results, const core::Config
     const double mu = c.mu.estimate->value, sd = c.mu.estimate->sd;
     const std::string size = base::value_and_sd_text(mu, sd);
     text += text.empty() ? "" : "; ";
-    if (mu > kLeastDoubtSds * sd) {
+    if (mu > kLeastDoubtSds * sd && c.mu.estimate->low95 > 0.0) {
       text += "Coulomb friction is µ = " + size;
-    } else if (mu < -kLeastDoubtSds * sd) {
+    } else if (is_below_zero(*c.mu.estimate)) {
       text += fmt::format("µ comes out as {}, below zero", size);
     } else {
       text += fmt::format("Coulomb friction cannot be distinguished from zero (µ = {})", size);

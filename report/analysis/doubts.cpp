@@ -23,11 +23,15 @@ bool begins_above_gravity(const core::LineFit& line, double gravity_m_s2) {
 
 }  // namespace
 
+bool is_below_zero(const core::Estimate& of) {
+  return of.value < -kLeastDoubtSds * of.sd && of.high95 < 0.0;
+}
+
 std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
   std::vector<std::string> doubts;
   for (const core::ConfigurationResult& c : results.configurations) {
     const auto below_zero = [](const core::Quantity& quantity) {
-      return quantity.estimate && quantity.estimate->value < -kLeastDoubtSds * quantity.estimate->sd;
+      return quantity.estimate && is_below_zero(*quantity.estimate);
     };
     const auto doubt = [&](core::Measurand which, const char* reason) {
       const core::Quantity& quantity = core::value_of(c, which);

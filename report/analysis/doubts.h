@@ -17,6 +17,9 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 
 inline constexpr double kLeastDoubtSds = 2.0;  ///< standard deviations: happens by chance in one of forty
 
+/// By kLeastDoubtSds, and with all of the 95 % interval: a standard deviation from two clips is itself hardly known.
+bool is_below_zero(const core::Estimate& of);
+
 /// Placed below a table of values that are in doubt.
 inline constexpr const char* kIfItHeld = "The law does not fit these clips: the ± would hold only if it did.";
 

@@ -306,6 +306,15 @@ struct AnalysisSentence {
     return contradiction_words(of) +
            ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)";
   }
+  std::string operator()(const core::MuFromIncline& of) const {
+    return fmt::format("motion in one direction: µ rests on the stated inclination, {}", with_sd(of.deg, of.sd_deg));
+  }
+  std::string operator()(const core::GravityAssumed& of) const {
+    return fmt::format(
+        "gravity_m_s2 is not stated: µ and α are for {:.6g} m/s², and their ± contains {:.2g} m/s² ({:.2g} %) for a "
+        "place that is not known",
+        of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
+  }
   std::string operator()(const core::RobustFit& of) const {
     return fmt::format("robust: {} of {} positions are outliers and are left out", of.left_out, of.positions);
   }

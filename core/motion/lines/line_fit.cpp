@@ -44,27 +44,47 @@ LineShift shift_by(const LineInput& input, const Eigen::Matrix2d& inverse, const
   return {change[0], change[1]};
 }
 
-/// L Sigma L' for the rows L_k, L_a0 over all positions.
-void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, double k,
-                     const std::vector<double>& autocovariance, LineUncertainty& parts) {
-  std::vector<double> weight_k(input.track_points, 0.0), weight_a0(input.track_points, 0.0);
+/// The rows L_k, L_a0 over all positions, for noise of factor 1.
+struct CoefficientRows {
+  std::vector<double> k, a0;
+};
+
+CoefficientRows rows_of(const LineInput& input, const Eigen::Matrix2d& inverse, double k) {
+  CoefficientRows made{std::vector<double>(input.track_points, 0.0), std::vector<double>(input.track_points, 0.0)};
   for (std::size_t j = 0; j < input.rows.size(); ++j) {
     const Eigen::Vector2d gain = inverse * Eigen::Vector2d(-input.v_m_s[j], 1.0);
     const KernelWeights& weights = *input.rows[j].weights;
     for (std::size_t i = 0; i < weights.a.size(); ++i) {
       const double of_residual = weights.a[i] + k * weights.v[i];
-      weight_k[input.rows[j].first + i] += gain[0] * of_residual;
-      weight_a0[input.rows[j].first + i] += gain[1] * of_residual;
+      made.k[input.rows[j].first + i] += gain[0] * of_residual;
+      made.a0[input.rows[j].first + i] += gain[1] * of_residual;
     }
   }
   for (std::size_t i = 0; i < input.noise_factor.size(); ++i) {
-    weight_k[i] *= input.noise_factor[i];
-    weight_a0[i] *= input.noise_factor[i];
+    made.k[i] *= input.noise_factor[i];
+    made.a0[i] *= input.noise_factor[i];
   }
-  parts.var_k = noise_variance(weight_k, autocovariance);
-  parts.var_a0 = noise_variance(weight_a0, autocovariance);
-  std::vector<double> sum(weight_k.size());
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = weight_k[i] + weight_a0[i];
+  return made;
+}
+
+double noise_covariance_of(const std::vector<double>& one, const std::vector<double>& other,
+                           const std::vector<double>& autocovariance) {
+  std::vector<double> sum(one.size()), difference(one.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    sum[i] = one[i] + other[i];
+    difference[i] = one[i] - other[i];
+  }
+  return 0.25 * (noise_variance(sum, autocovariance) - noise_variance(difference, autocovariance));
+}
+
+/// L Sigma L'.
+void propagate_noise(const LineInput& input, const Eigen::Matrix2d& inverse, double k,
+                     const std::vector<double>& autocovariance, LineUncertainty& parts) {
+  const CoefficientRows rows = rows_of(input, inverse, k);
+  parts.var_k = noise_variance(rows.k, autocovariance);
+  parts.var_a0 = noise_variance(rows.a0, autocovariance);
+  std::vector<double> sum(rows.k.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = rows.k[i] + rows.a0[i];
   parts.cov = 0.5 * (noise_variance(sum, autocovariance) - parts.var_k - parts.var_a0);
 }
 
@@ -141,6 +161,39 @@ void compare_with_jackknife(const LineInput& input, const Eigen::Matrix2d& norma
 
 }  // namespace
 
+LineCross cross_covariance(const LineInput& one, const LineFit& of_one, const LineInput& other, const LineFit& of_other,
+                           const std::vector<double>& autocovariance) {
+  const CoefficientRows a = rows_of(one, normal_matrix(one.v_m_s).inverse(), of_one.k_over_m_1_s.value);
+  const CoefficientRows b = rows_of(other, normal_matrix(other.v_m_s).inverse(), of_other.k_over_m_1_s.value);
+  return {noise_covariance_of(a.k, b.k, autocovariance), noise_covariance_of(a.k, b.a0, autocovariance),
+          noise_covariance_of(a.a0, b.k, autocovariance), noise_covariance_of(a.a0, b.a0, autocovariance)};
+}
+
+bool speed_varies(const LineInput& input, const std::vector<double>& autocovariance) {
+  constexpr double kLeastOverNoise = 9.0;  // of variances: three standard deviations
+  const std::size_t n = input.v_m_s.size();
+  if (n == 0) return false;
+  double mean = 0.0;
+  std::vector<double> of_mean(input.track_points, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    mean += input.v_m_s[j] / static_cast<double>(n);
+    const std::vector<double>& weights = input.rows[j].weights->v;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      of_mean[input.rows[j].first + i] += weights[i] / static_cast<double>(n);
+    }
+  }
+  double squares = 0.0, of_noise = 0.0;
+  for (std::size_t j = 0; j < n; ++j) {
+    squares += std::pow(input.v_m_s[j] - mean, 2);
+    std::vector<double> off = of_mean;
+    const std::vector<double>& weights = input.rows[j].weights->v;
+    for (std::size_t i = 0; i < weights.size(); ++i) off[input.rows[j].first + i] -= weights[i];
+    for (std::size_t i = 0; i < input.noise_factor.size(); ++i) off[i] *= input.noise_factor[i];
+    of_noise += noise_variance(off, autocovariance);
+  }
+  return squares >= kLeastOverNoise * of_noise;
+}
+
 Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, double k_1_s,
                    const std::vector<double>& autocovariance) {
   double squares = 0.0, expected = 0.0, variance = 0.0;
@@ -215,17 +268,38 @@ std::vector<LineShift> shared_shifts(const LineFit& line) {
   return shifts;
 }
 
+KnownVariance random_variance(const LineFit& line, const LineShift& gradient) {
+  const LineUncertainty& parts = line.parts;
+  const double own = gradient.k * gradient.k * parts.var_k + gradient.a0 * gradient.a0 * parts.var_a0 +
+                     2.0 * gradient.k * gradient.a0 * parts.cov;
+  double of_clips = 0.0;
+  for (const LineShift& shift : parts.clips) of_clips += std::pow(gradient.k * shift.k + gradient.a0 * shift.a0, 2);
+  return sum_of({own, parts.degrees}, {std::max(0.0, of_clips - own), parts.clip_degrees});
+}
+
 void complete_line(LineFit& line) {
   const LineUncertainty& parts = line.parts;
-  double var_k = parts.var_k, var_a0 = parts.var_a0;
+  const KnownVariance of_k = random_variance(line, {1.0, 0.0}), of_a0 = random_variance(line, {0.0, 1.0});
+  double var_k = of_k.value, var_a0 = of_a0.value;
   line.covariance = parts.cov;
+  // What the clips' scatter adds to the variances has the correlation of that scatter.
+  LineUncertainty scatter;
+  for (const LineShift& shift : parts.clips) {
+    scatter.var_k += shift.k * shift.k;
+    scatter.var_a0 += shift.a0 * shift.a0;
+    scatter.cov += shift.k * shift.a0;
+  }
+  if (scatter.var_k > parts.var_k && scatter.var_a0 > parts.var_a0) {
+    line.covariance +=
+        scatter.cov * std::sqrt((1.0 - parts.var_k / scatter.var_k) * (1.0 - parts.var_a0 / scatter.var_a0));
+  }
   for (const LineShift& shift : shared_shifts(line)) {
     var_k += shift.k * shift.k;
     var_a0 += shift.a0 * shift.a0;
     line.covariance += shift.k * shift.a0;
   }
-  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, std::sqrt(var_k), parts.degrees);
-  line.a0_m_s2 = estimate(line.a0_m_s2.value, std::sqrt(var_a0), parts.degrees);
+  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, std::sqrt(var_k), of_k.degrees);
+  line.a0_m_s2 = estimate(line.a0_m_s2.value, std::sqrt(var_a0), of_a0.degrees);
 }
 
 Quantity limit_velocity(const std::vector<LineFit>& lines) {
@@ -236,11 +310,10 @@ Quantity limit_velocity(const std::vector<LineFit>& lines) {
   }
   const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
-  const LineUncertainty& parts = found->parts;
-  const double random = by_k * by_k * parts.var_k + by_a0 * by_a0 * parts.var_a0 + 2.0 * by_k * by_a0 * parts.cov;
-  double variance = random;
+  const KnownVariance random = random_variance(*found, {by_k, by_a0});
+  double variance = random.value;
   for (const LineShift& shift : shared_shifts(*found)) variance += std::pow(by_k * shift.k + by_a0 * shift.a0, 2);
-  return determined(estimate(a0 / k, std::sqrt(variance), parts.degrees), std::sqrt(random));
+  return determined(estimate(a0 / k, std::sqrt(variance), random.degrees), std::sqrt(random.value));
 }
 
 bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertainty& parts) {

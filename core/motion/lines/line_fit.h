@@ -37,6 +37,7 @@
 #include "core/motion/free/free_motion.h"
 #include "core/motion/free/motion.h"
 #include "core/motion/smoothing/local_polynomial.h"
+#include "core/result/estimate.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -63,6 +64,14 @@ struct LineInput {
   std::vector<std::vector<MotionShift>> calibration;
 };
 
+/// The covariance of two lines' coefficients from the noise of positions on which both rest.
+LineCross cross_covariance(const LineInput& one, const LineFit& of_one, const LineInput& other, const LineFit& of_other,
+                           const std::vector<double>& autocovariance);
+
+/// Whether v varies over the points by more than three standard deviations of that variation, so that a slope can be
+/// known: with n_j the noise of v_j about the mean of all, sum of (v_j - mean)^2 >= 9 sum of var n_j.
+bool speed_varies(const LineInput& input, const std::vector<double>& autocovariance);
+
 enum class Misfit { widens, ignored };
 
 inline constexpr std::size_t kFewestLinePoints = 5;
@@ -78,6 +87,10 @@ struct Scatter {
 };
 Scatter scatter_of(const LineInput& input, const std::vector<double>& residual, double k_1_s,
                    const std::vector<double>& autocovariance);
+
+/// The random part of the variance of gradient.k K/m + gradient.a0 a0: the noise with the scatter of points beyond it,
+/// and the part of the scatter between clips that this does not explain.
+KnownVariance random_variance(const LineFit& line, const LineShift& gradient);
 
 /// Fills in the standard deviations and intervals of K/m and a0 from line.parts.
 void complete_line(LineFit& line);

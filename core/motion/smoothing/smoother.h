@@ -55,6 +55,11 @@ struct SmoothedSeries {
   /// Rows of the points, over all positions, if requested. If kernels reach over much of a motion, neighbours carry the
   /// same information, and only a few hundred points spread over it have a row.
   std::vector<std::optional<KernelRow>> rows;
+  /// With `rate_in_rows`, if the smoothed motion has no rate k: the points under the most likely rate, to which the
+  /// rows then belong. A motion without a rate knows nothing of how uncertain k = 0 is.
+  std::vector<std::optional<SmoothedState>> with_rate;
+  /// With `rate_in_rows`: the rows with that rate held.
+  std::vector<std::optional<KernelRow>> held_rows;
 };
 
 class Smoother {

@@ -65,6 +65,20 @@ const Choice& likeliest(const std::vector<Choice>& all) {
                            [](const Choice& a, const Choice& b) { return a.at.minus_two_log < b.at.minus_two_log; });
 }
 
+/// The most likely process with a rate.
+Choice likeliest_rate(const MotionParts& parts, std::vector<Choice> orders) {
+  std::erase_if(orders, [](const Choice& one) { return one.at.rate_sd_1_s == 0.0; });
+  Choice choice = likeliest(orders);
+  for_order(choice.order, [&](auto order) {
+    const PartedMotion<order> motion(parts);
+    choice.at = parts.breaks() ? with_jump(motion, choice.at) : refined(motion, choice.at);
+    // The motion without process noise, wherever that is possible: noise of a and a small k look alike.
+    const AtTau without_noise = exact(motion, choice.at);
+    if (without_noise.minus_two_log <= choice.at.minus_two_log + kMostOrderDeficit) choice.at = without_noise;
+  });
+  return choice;
+}
+
 /// Moves the breaks to where v = 0 until they stay; returns the largest displacement of the first iteration.
 double settle_breaks(MotionParts& parts, const Choice& choice) {
   double first = 0.0;
@@ -271,6 +285,7 @@ class WienerSmoother final : public Smoother {
       orders = search(parts, {0.0, likeliest(orders).at.how.rate_1_s});
       if (moved < kBreakSettled * parts.step_s) break;
     }
+    const Choice with_rate = made.rows.empty() || !input.rate_in_rows ? Choice{} : likeliest_rate(parts, orders);
     const double least = likeliest(orders).at.minus_two_log;
     std::erase_if(orders, [&](const Choice& one) { return one.at.minus_two_log > least + kMostOrderDeficit; });
     for (Choice& choice : orders) {
@@ -297,6 +312,10 @@ class WienerSmoother final : public Smoother {
 
     const Choice chosen = by_ == StrengthBy::likelihood ? most : cross_validated(parts, orders);
     for_order(chosen.order, [&](auto order) { finish<order>(parts, chosen, std::move(ensemble), made); });
+    if (!input.rows) return made;
+    const bool shows_no_rate = input.rate_in_rows && chosen.at.rate_sd_1_s == 0.0;
+    const Choice of_rows = shows_no_rate ? with_rate : chosen;
+    for_order(of_rows.order, [&](auto order) { add_rows<order>(parts, of_rows, shows_no_rate, made); });
     return made;
   }
 
@@ -354,13 +373,10 @@ class WienerSmoother final : public Smoother {
     strength.bandwidth_s = like_bandwidth(posteriors, parts.step_s);
     if (parts.breaks()) strength.jump_sd_m_s2 = strength.noise_sd_m * chosen.at.how.jump_1_s2;
     const auto sd = standard_deviations(ensemble);
-    const double most_rows = std::max(kMostRows, kRowsOfParameter * sums.trace);
-    const std::size_t every = std::max<std::size_t>(1, static_cast<std::size_t>(parts.points / most_rows));
     for (std::size_t p = 0; p < parts.parts.size(); ++p) {
       const SmoothedPart& part = parts.parts[p];
       strength.breaks_s.insert(strength.breaks_s.end(), part.breaks_s.begin(), part.breaks_s.end());
       fill(posteriors[p], sd[p], part, made.points, made.at);
-      if (parts.input.rows) fill_rows(posteriors[p], part, every, made.rows);
     }
     if (!parts.input.along_m.empty()) {
       SmoothingInput other = parts.input;
@@ -372,13 +388,34 @@ class WienerSmoother final : public Smoother {
         fill(of_other[p], sd[p], parts.parts[p], made.along, made.along_at);
       }
     }
-    if (parts.input.rows && parts.input.rate_in_rows && chosen.at.rate_sd_1_s > 0.0) {
-      const OfRate by = of_rate(motion, chosen.at, variance);
-      for (std::size_t p = 0; p < parts.parts.size(); ++p) {
-        add_rate(posteriors[p], by.nodes[p], by.point_gain, parts.parts[p], made);
-      }
-    }
     if (parts.input.simultaneous) strength.simultaneous_a = simultaneous_factor(ensemble, sd);
+  }
+
+  /// The rows of a process, and its points if they are not those of the smoothed motion.
+  template <int N>
+  void add_rows(const MotionParts& parts, const Choice& of, bool points_too, SmoothedSeries& made) const {
+    const PartedMotion<N> motion(parts);
+    const std::vector<ChainPosterior<N>> posteriors = motion.posteriors(of.at.how);
+    const SmoothedSums sums = sums_of(posteriors, parts);
+    const double most_rows = std::max(kMostRows, kRowsOfParameter * sums.trace);
+    const std::size_t every = std::max<std::size_t>(1, static_cast<std::size_t>(parts.points / most_rows));
+    if (points_too) made.with_rate.resize(parts.input.t_s.size());
+    std::vector<std::optional<SmoothedState>> times(parts.input.at_s.size());
+    for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+      fill_rows(posteriors[p], parts.parts[p], every, made.rows);
+      if (!points_too) continue;
+      const std::vector<Eigen::Array3d> unasked(posteriors[p].size(), Eigen::Array3d::Zero());
+      fill(posteriors[p], unasked, parts.parts[p], made.with_rate, times);
+    }
+    if (!parts.input.rate_in_rows || !(of.at.rate_sd_1_s > 0.0)) return;
+    made.held_rows = made.rows;
+    const double variance = by_ == StrengthBy::likelihood || parts.input.noise_sd_m
+                                ? motion.noise_variance(motion.fit(of.at.how))
+                                : sums.noise_variance();
+    const OfRate by = of_rate(motion, of.at, variance);
+    for (std::size_t p = 0; p < parts.parts.size(); ++p) {
+      add_rate(posteriors[p], by.nodes[p], by.point_gain, parts.parts[p], made);
+    }
   }
 
   template <int N>

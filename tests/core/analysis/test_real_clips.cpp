@@ -1,6 +1,7 @@
 // Real clips that no one here made.
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "tests/catch.h"
 #include "tests/core/notes.h"
@@ -38,9 +39,14 @@ TEST_CASE(
     // Seen: 0.17 to 0.4 px.
     CHECK(clip.position_noise_m * kPxPerM < 0.6);
   }
-  // One direction only: K/m has a value, mu and alpha do not separate, and it says so.
+  // One direction only: K/m has a value and alpha has none, and it says so; mu rests on the inclination as read.
   for (const core::ConfigurationResult& configuration : results->configurations) {
-    CHECK_FALSE(configuration.mu.estimate);
-    CHECK(configuration.mu.why);
+    CHECK_FALSE(configuration.alpha_deg.estimate);
+    CHECK(configuration.alpha_deg.why);
+    REQUIRE(configuration.incline_sd_deg);
+    REQUIRE(configuration.mu.estimate);
+    CHECK(tests::note_of<core::MuFromIncline>(configuration.notes) != nullptr);
+    // mu = tan(alpha) - a0 / (g cos(alpha)): no better known than the angle.
+    CHECK(configuration.mu.estimate->sd > 0.9 * *configuration.incline_sd_deg * std::numbers::pi / 180.0);
   }
 }

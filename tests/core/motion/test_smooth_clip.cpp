@@ -1,13 +1,18 @@
 #include "core/motion/smooth_clip.h"
 
+#include <Eigen/Dense>
+
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "base/errors.h"
 #include "core/motion/analyze_motion.h"
 #include "core/motion/join_configurations.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
 
 using namespace glidelab;
@@ -85,6 +90,163 @@ TEST_CASE("95 % intervals of lines by other smoothers hold the truth in 95 % of 
     CAPTURE(smoother, name);
     // Binomial, 150 of 0.95: fewer than 134 has a probability of 2e-3.
     CHECK(count >= 134);
+  }
+}
+
+namespace {
+
+ConfigurationResult recovered(const Law& law, const tests::Filming& how, const std::string& smoother) {
+  const ClipResult clip = analyze_motion(kUp, tests::film(tests::launch(law, -1.0, how.duration_s), how), by(smoother));
+  return join_configurations({kUp}, {clip}, tests::kGravity).front();
+}
+
+/// The Cramér-Rao bound of K/m for white noise, by finite differences of the closed form in alpha, mu, K/m, v_0, x_0.
+double least_sd_of_k(const Law& law, const tests::Filming& how) {
+  const auto positions = [&](const Law& of, double v_m_s) {
+    return tests::film(tests::launch(of, v_m_s, how.duration_s), {how.frame_rate_hz, how.duration_s, 0.0, 1}).x_m;
+  };
+  constexpr double kStep = 1e-4;
+  const auto moved = [&](double sign) {
+    const double by = sign * kStep;
+    return std::vector{positions({law.alpha_deg, law.mu, law.k_1_s + by}, -1.0),
+                       positions({law.alpha_deg + by, law.mu, law.k_1_s}, -1.0),
+                       positions({law.alpha_deg, law.mu + by, law.k_1_s}, -1.0), positions(law, -1.0 + by)};
+  };
+  const auto above = moved(1.0), below = moved(-1.0);
+  const auto n = static_cast<Eigen::Index>(above[0].size());
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Ones(n, 5);  // the last column: x_0
+  for (Eigen::Index c = 0; c < 4; ++c) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto p = static_cast<std::size_t>(i);
+      jacobian(i, c) = (above[static_cast<std::size_t>(c)][p] - below[static_cast<std::size_t>(c)][p]) / (2.0 * kStep);
+    }
+  }
+  return how.noise_m * std::sqrt(Eigen::MatrixXd((jacobian.transpose() * jacobian).inverse())(0, 0));
+}
+
+/// Root mean squares of z = (value - truth) / sd over the clips, and the mean sd of K/m.
+void check_z(const std::string& smoother, int clips) {
+  CAPTURE(smoother, clips);
+  std::map<std::string, double> squares;
+  double sd_of_k = 0.0;
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(clips); ++seed) {
+    const ConfigurationResult found = recovered(kInclined, {200.0, 2.0, 5e-5, seed}, smoother);
+    const auto add = [&](const std::string& name, const Quantity& quantity, double truth) {
+      REQUIRE(quantity.estimate);
+      squares[name] += std::pow((quantity.estimate->value - truth) / quantity.estimate->sd, 2) / clips;
+    };
+    add("K/m", found.k_over_m_1_s, kInclined.k_1_s);
+    add("mu", found.mu, kInclined.mu);
+    add("alpha", found.alpha_deg, kInclined.alpha_deg);
+    add("v_lim", found.v_lim_m_s, kInclined.v_lim());
+    sd_of_k += found.k_over_m_1_s.estimate->sd / clips;
+  }
+  const double band = 3.0 / std::sqrt(2.0 * clips);  // three standard deviations of a root mean square z
+  for (const auto& [name, sum] : squares) {
+    CAPTURE(name);
+    CHECK(std::sqrt(sum) == Approx(1.0).margin(band));
+  }
+  // The sd goes with the noise, and without noise it is small: smoothing leaves nothing of the law's own motion.
+  const double quiet = recovered(kInclined, {200.0, 2.0, 5e-6, 1}, smoother).k_over_m_1_s.estimate->sd;
+  CHECK(sd_of_k / quiet == Approx(10.0).epsilon(0.3));
+  const Estimate exact = *recovered(kInclined, {200.0, 2.0, 0.0, 1}, smoother).k_over_m_1_s.estimate;
+  CHECK(std::abs(exact.value - kInclined.k_1_s) < 1e-3);
+  CHECK(exact.sd < 1e-3);
+}
+
+/// `least`: the fewest intervals that must hold.
+void check_small_rate(const std::string& smoother, double k_1_s, int clips, int least_held) {
+  CAPTURE(smoother, k_1_s);
+  const Law law{4.3, 0.0071, k_1_s};
+  const double least = least_sd_of_k(law, {200.0, 2.0, 5e-5, 1});
+  int hold = 0;
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(clips); ++seed) {
+    const ConfigurationResult found = recovered(law, {200.0, 2.0, 5e-5, seed}, smoother);
+    CAPTURE(seed);
+    CHECK(found.lines.size() == 2);  // also where each direction has one a, known better where the motion lasts longer
+    REQUIRE(found.k_over_m_1_s.estimate);
+    const Estimate& k = *found.k_over_m_1_s.estimate;
+    hold += k.low95 <= k_1_s && k_1_s <= k.high95;
+    CHECK(k.sd > 0.5 * least);
+    CHECK(k.sd < 6.0 * least);
+    REQUIRE(found.mu.estimate);
+    CHECK(found.mu.estimate->sd < 1e-3);
+  }
+  CHECK(hold >= least_held);
+}
+
+}  // namespace
+
+TEST_CASE("standard deviations of K/m, mu and alpha by a Kalman smoother are those of their errors") {
+  check_z("kalman", 12);
+}
+
+TEST_CASE("standard deviations of K/m, mu and alpha by other smoothers are those of their errors", "[slow]") {
+  check_z("kalman", 100);
+  check_z("spline", 100);
+}
+
+TEST_CASE("a K/m so small that the smoothed motion has no rate has the uncertainty of one with a rate") {
+  // Binomial, 6 of 0.95: fewer than 4 has a probability of 2e-3.
+  check_small_rate("kalman", GENERATE(0.0, 0.001), 6, 4);
+}
+
+TEST_CASE("K/m so small that motions have no rate has the uncertainty of one with a rate by every smoother", "[slow]") {
+  // Binomial, 40 of 0.95: fewer than 33 has a probability of 2e-3.
+  check_small_rate(GENERATE("kalman", "spline"), GENERATE(0.0, 0.0005, 0.001, 0.002), 40, 33);
+}
+
+TEST_CASE("both directions have a line where a is constant in each, however long they last", "[slow]") {
+  const std::string smoother = GENERATE("kalman", "spline");
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    CAPTURE(smoother, seed);
+    CHECK(recovered({4.3, 0.0071, 0.0}, {200.0, 2.0, 5e-5, 700 + seed}, smoother).lines.size() == 2);
+  }
+}
+
+TEST_CASE("a fall at its terminal speed gives no K/m that is tight by chance") {
+  // Quadratic drag from rest, x = v^2/g log cosh(g t/v): a(v) has the slope 2 g/v = 15 1/s at the end.
+  constexpr double kLimit_m_s = 1.3;
+  const std::string smoother = GENERATE("kalman", "spline");
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0.0, 5e-4);
+    TrackData track;
+    track.frame_rate_hz = 60.0;
+    for (std::size_t i = 0; i < 73; ++i) {
+      const double t = static_cast<double>(i) / 60.0;
+      track.t_s.push_back(t);
+      track.x_m.push_back(kLimit_m_s * kLimit_m_s / tests::kGravity *
+                              std::log(std::cosh(tests::kGravity * t / kLimit_m_s)) +
+                          noise(random));
+      track.frame.push_back(i);
+    }
+    track.frame_t_s = track.t_s;
+    ClipSetup fall = tests::clip_setup(Launched::unknown, 90.0, 0.002);
+    const ClipResult clip = analyze_motion(fall, track, by(smoother));
+    const Quantity k = join_configurations({fall}, {clip}, tests::kGravity).front().k_over_m_1_s;
+    CAPTURE(smoother, seed);
+    if (k.estimate) CHECK(k.estimate->high95 - k.estimate->low95 > 3.0);
+  }
+}
+
+TEST_CASE("a motion at one speed gives no line, because the speed hardly changes") {
+  TrackData track;
+  track.frame_rate_hz = 200.0;
+  for (std::size_t i = 0; i < 400; ++i) {
+    track.t_s.push_back(static_cast<double>(i) / 200.0);
+    track.x_m.push_back(0.3 * track.t_s.back());
+    track.frame.push_back(i);
+  }
+  track.frame_t_s = track.t_s;
+  const ClipSetup down = tests::clip_setup(Launched::down, 4.0);
+  for (const std::string smoother : {"local-polynomial", "kalman", "spline"}) {
+    CAPTURE(smoother);
+    const ClipResult clip = analyze_motion(down, track, by(smoother));
+    const ConfigurationResult found = join_configurations({down}, {clip}, tests::kGravity).front();
+    for (const Quantity* quantity : {&found.k_over_m_1_s, &found.mu, &found.alpha_deg, &found.v_lim_m_s}) {
+      CHECK(tests::reason_of<unknown::SpeedHardlyChanges>(*quantity) != nullptr);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 #include "fit/trajectory/trajectory_fit.h"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -136,6 +137,32 @@ TEST_CASE("motion in one direction determines K/m and the intercept, and says th
   CHECK(one_way->direction == 1);
   CHECK(std::abs(one_way->a0_m_s2 - (kLaw[1] - kLaw[2])) < 5.0 * one_way->sd_m_s2);
   CHECK(one_way->sd_m_s2 < 1e-3);
+}
+
+TEST_CASE("motion in one direction gives mu where the inclination is stated with its uncertainty") {
+  constexpr double kDegrees = 180.0 / std::numbers::pi, kAngle_sd_deg = 0.05;
+  const double alpha = std::asin(kLaw[1] / kGravity), mu = kLaw[2] / (kGravity * std::cos(alpha));
+  core::AnalysisResults results = downhill_only();
+  core::ConfigurationResult& stated = results.configurations[0];
+  stated.incline_deg = alpha * kDegrees;
+  stated.incline_sd_deg = kAngle_sd_deg;
+  const core::ConfigurationResult found = fit::with_trajectory_fits(results).configurations[0];
+  REQUIRE(found.mu.estimate);
+  CHECK_FALSE(found.alpha_deg.estimate);
+  CHECK(tests::note_of<core::MuFromIncline>(found.notes) != nullptr);
+  const auto* const one_way = tests::reason_of<core::unknown::OneDirection>(found.alpha_deg);
+  REQUIRE(one_way != nullptr);
+  CHECK(std::abs(found.mu.estimate->value - mu) < 5.0 * one_way->sd_m_s2 / kGravity);
+  // mu = tan(alpha) - a0/(g cos): to first order in alpha, whose square is 0.006.
+  const double by_hand = std::hypot(kAngle_sd_deg / kDegrees, one_way->sd_m_s2 / kGravity);
+  CHECK(found.mu.estimate->sd == Approx(by_hand).epsilon(0.01));
+
+  stated.incline_sd_deg.reset();
+  const core::ConfigurationResult without = fit::with_trajectory_fits(results).configurations[0];
+  const auto* const why = tests::reason_of<core::unknown::OneDirection>(without.mu);
+  REQUIRE(why != nullptr);
+  CHECK(why->incline_would_do);
+  CHECK(tests::note_of<core::MuFromIncline>(without.notes) == nullptr);
 }
 
 TEST_CASE("the fit of the whole motion keeps what was said of the recording, and doubts stated inclinations only") {
@@ -308,4 +335,28 @@ TEST_CASE("every quantity has the variance of its numerical gradient, errors tha
   const auto one_way = variances_of(*of_down, k_and_limit);
   check_sds(found[1].k_over_m_1_s, of_down->parameters[0], one_way[0]);
   check_sds(found[1].v_lim_m_s, of_down->parameters[1] / of_down->parameters[0], one_way[1]);
+}
+
+TEST_CASE("where gravity is not stated, alpha and mu of the whole motion contain its uncertainty, and a note says so") {
+  std::mt19937 random(9);
+  const Pair pair(5e-5, random);
+  core::AnalysisResults results = results_of(pair);
+  core::ConfigurationResult both;
+  both.clips = {"up", "down"};
+  results.configurations = {both};
+  const auto with = [&](double gravity_m_s2, double sd_m_s2) {
+    results.gravity_m_s2 = gravity_m_s2;
+    results.gravity_sd_m_s2 = sd_m_s2;
+    return fit::with_trajectory_fits(results).configurations[0];
+  };
+  const auto stated = with(kGravity, 0.0), assumed = with(kGravity, 0.015);
+  const auto above = with(kGravity + 1e-3, 0.0), below = with(kGravity - 1e-3, 0.0);
+  for (const auto of : {&core::ConfigurationResult::alpha_deg, &core::ConfigurationResult::mu}) {
+    const double by_gravity = ((above.*of).estimate->value - (below.*of).estimate->value) / 2e-3;
+    const double sd = std::hypot((stated.*of).estimate->sd, 0.015 * by_gravity);
+    CHECK((assumed.*of).estimate->sd == Approx(sd).epsilon(1e-6));  // central differences: (1e-3/g)^2 = 1e-8
+  }
+  CHECK(assumed.k_over_m_1_s.estimate->sd == stated.k_over_m_1_s.estimate->sd);
+  CHECK(tests::note_of<core::GravityAssumed>(assumed.notes) != nullptr);
+  CHECK(tests::note_of<core::GravityAssumed>(stated.notes) == nullptr);
 }

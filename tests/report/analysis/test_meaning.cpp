@@ -57,6 +57,11 @@ TEST_CASE("a drag or a friction below zero by more than chance is doubted, by le
   CHECK(report::doubts_about(results).empty());
   results.configurations[0].mu = tests::known(-0.010, 0.002);
   CHECK(any_has(report::doubts_about(results), "µ = -0.0100 ± 0.0020 is below zero"));
+  // Of two clips, whose standard deviation has one degree of freedom: 12.7 of them on either side.
+  results.configurations[0].mu = core::determined(core::estimate(-0.010, 0.002, 1.0));
+  CHECK(report::doubts_about(results).empty());
+  CHECK(report::meaning_of(results).find("cannot be distinguished from zero (µ = -0.0100 ± 0.0020)") !=
+        std::string::npos);
 }
 
 TEST_CASE("a downhill line that begins above gravity is doubted: no slope and no friction can cause it") {

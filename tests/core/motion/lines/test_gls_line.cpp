@@ -129,6 +129,40 @@ TEST_CASE("generalised lines cover the truth, come near the bound, and textbook 
   }
 }
 
+TEST_CASE("generalised lines of times that jitter by most of a step state the errors that they have") {
+  constexpr int kReplicates = 150;
+  constexpr double kNoise_m = 5e-5, kStep_s = 0.005, kJitter = 0.4;
+  const tests::SimulatedMotion motion = tests::launch(kInclined, -1.0, 2.1);
+  const core::ClipSetup setup = tests::clip_setup(core::Launched::up, kInclined.alpha_deg);
+  core::MotionOptions options;
+  options.lines = LineMethod::generalised;
+  double of_mu = 0.0, of_alpha = 0.0, of_k = 0.0;
+  for (unsigned seed = 1; seed <= kReplicates; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0.0, kNoise_m);
+    std::uniform_real_distribution<double> jitter(-kJitter, kJitter);
+    core::TrackData track;
+    track.frame_rate_hz = 1.0 / kStep_s;
+    for (std::size_t i = 0; i < 400; ++i) {
+      track.t_s.push_back((static_cast<double>(i) + 0.5 + jitter(random)) * kStep_s);
+      track.x_m.push_back(motion.x(track.t_s.back()) + noise(random));
+      track.frame.push_back(i);
+    }
+    track.frame_t_s = track.t_s;
+    const core::ClipResult clip = core::analyze_motion(setup, track, options);
+    const auto found = core::join_configurations({setup}, {clip}, tests::kGravity, options.lines).front();
+    const auto z2 = [](const core::Quantity& quantity, double truth) {
+      REQUIRE(quantity.estimate);
+      return std::pow((quantity.estimate->value - truth) / quantity.estimate->sd, 2) / kReplicates;
+    };
+    of_mu += z2(found.mu, kInclined.mu);
+    of_alpha += z2(found.alpha_deg, kInclined.alpha_deg);
+    of_k += z2(found.k_over_m_1_s, kInclined.k_1_s);
+  }
+  // Root mean square z of 150: sd 1/sqrt(300) = 0.058; three of them.
+  for (const double sum : {of_mu, of_alpha, of_k}) CHECK(std::sqrt(sum) == Approx(1.0).margin(0.175));
+}
+
 TEST_CASE("generalised lines do not depend on the bandwidth, and have no bias by it") {
   for (const double h : {0.02, 0.043, 0.08}) {
     double k[2] = {}, a0[2] = {};
