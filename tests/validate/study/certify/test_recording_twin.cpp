@@ -289,6 +289,7 @@ TEST_CASE("a twin by a scale is filmed without a pattern, and its positions are 
   RecordingTwin twin;
   twin.scenario = render::read_scenario(tests::tiny_scenario(), "tiny.toml", render::ScenarioChecks::values);
   twin.scenario.motion.configurations.front().motions.front().duration_s = 0.5;
+  twin.scenario.marker.diameter_m = 0.06;   // 6 px
   twin.scenario.pattern.plane_x_m = {5.0};  // far outside the image: it must not be looked for
   twin.filmed = twin.by_scale = true;
   const auto path_over_truth = [&](const TwinChange& change) {
