@@ -31,6 +31,11 @@ struct CertifyCommand {
   core::TrackFileOptions bare;
 };
 
+/// "40 s", "12 min".
+std::string rough_time(double seconds) {
+  return seconds < 90.0 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60.0);
+}
+
 void certify(const CertifyCommand& options, bool bandwidth_given) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   const fs::path out = output_folder(options.common, "certify", folders.front());
@@ -50,6 +55,11 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   how.seed = options.common.seed.value_or(1);
   how.jobs = options.common.jobs;
   how.bare = options.bare;
+  how.before_filming = [&](const validate::FilmingSize& size) {
+    display.clear();
+    say(options.common, fmt::format("{} twins to film, by the first about {} of processor time on {} threads",
+                                    size.twins, rough_time(size.processor_time_s), options.common.jobs));
+  };
   const validate::Certificate certificate = validate::certify(folders, how, display.callback());
   const std::string json = report::certificate_json(certificate);
   base::write_file(staged.dir() / "certify.json", json);
@@ -63,7 +73,7 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   say(options.common, fmt::format("{} twins and their changes in {:.0f} s; report: {}", certificate.runs, seconds,
                                   (out / "report.html").string()));
   if (certificate.empty()) {
-    throw base::NotMet("there is nothing to count: no twin yields K/m, mu or alpha with a known true value");
+    throw base::NotMet("there is nothing to count: no twin yields a quantity with a known true value");
   }
   if (!certificate.holds()) {
     throw base::NotMet(

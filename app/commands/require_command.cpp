@@ -53,9 +53,10 @@ void require_command(const RequireOptions& options) {
   how.before_rendering = [&](const validate::ConfirmationSize& size) {
     display.clear();
     say(options.common,
-        fmt::format("the bound allows {} of {}: {} recordings to render, about {:.2g} min on {} threads; candidates "
-                    "close to the target take longer, and so does finding what limits those that miss it",
-                    size.close, size.points, size.recordings, size.seconds / 60.0, options.common.jobs));
+        fmt::format("the bound allows {} of {}; they are filmed from the cheapest up, until one reaches the target: "
+                    "about {:.2g} min on {} threads if it is the first, {:.2g} min or more if it is the last",
+                    size.close, size.points, size.seconds / 60.0, options.common.jobs,
+                    std::max(size.seconds, size.seconds_each) / 60.0));
   };
   how.watch = throw_if_interrupted;
   const validate::Requirement requirement = validate::find_requirement(sweep, how, display.callback());
@@ -93,8 +94,8 @@ void add_require(CLI::App& app, Command& chosen) {
       ->required();
   command
       ->add_option("--confirm", options->confirm,
-                   "How to judge what the bound allows: by rendered \"clips\" (the default for a sweep of level "
-                   "clips), by \"tracks\" with the predicted noise (the default otherwise), or by \"none\"")
+                   "How to judge what the bound allows: by rendered \"clips\" (the default if the sweep says level "
+                   "= \"clips\"), by \"tracks\" with the predicted noise (the default otherwise), or by \"none\"")
       ->type_name("HOW")
       ->check(CLI::IsMember({"tracks", "clips", "none"}));
   CLI::Option* runs = command

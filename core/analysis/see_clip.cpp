@@ -127,8 +127,9 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     if (!usual_px) usual_px = radius_px;
     return radius_px.value_or(usual_px.value_or(kSomeRadiusPx));
   };
-  MarkerTracker tracker = any != nullptr ? MarkerTracker::of_any_shape(clip.file, marker, radius_at, clip.start_s)
-                                         : MarkerTracker(clip.file, marker, radius_at, clip.start_s);
+  MarkerTracker tracker =
+      any != nullptr ? MarkerTracker::of_any_shape(clip.file, marker, radius_at, clip.start_s, any->blur_px > 0.0)
+                     : MarkerTracker(clip.file, marker, radius_at, clip.start_s);
   SeenClip seen;
   const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
   constexpr std::size_t kTellEvery = 10;
@@ -262,6 +263,8 @@ SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const Cam
   const auto in_more_frames = [&](const SeenClip& found) {
     return static_cast<double>(found.marker.sightings.size()) > kLeastSeenRatio * seen_before;
   };
+  // A marker that is seen in most frames, but not well, cannot be surpassed by as much.
+  if (seen && static_cast<double>(again.frames) <= kLeastSeenRatio * seen_before) return steady(*std::move(seen), clip);
   std::vector<SeenClip> rough;
   for (const AnyShape& any : {AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}}) {
     auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, any);

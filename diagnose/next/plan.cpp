@@ -63,7 +63,7 @@ Plan plan_of(const core::AnalysisResults& results, const std::vector<core::ClipS
         std::string(list[e].id), std::string(list[e].words), std::string(parameter.key), 0.0, false, {}};
     if (direction.square > 0.0) {
       const double size = kVisible_sd / std::sqrt(direction.square);
-      planned.seen = size <= range_of(set, parameter).high;
+      planned.seen = size <= range_of(set, parameter).high && prior_odds(set, e) > 0.0;
       planned.seen_from = std::abs(size_for_reader(parameter, size));
     }
     if (planned.seen) {

@@ -19,7 +19,7 @@ struct PlannedEffect {
   std::string words;
   std::string key;                 ///< of its size, with the unit
   double seen_from = 0.0;          ///< size of four standard deviations; for n and s the deviation from 1
-  bool seen = false;               ///< the largest size that is considered reaches that
+  bool seen = false;               ///< the largest size that is considered reaches that, and a diagnosis may name it
   std::vector<std::string> alike;  ///< those whose cosine with it is kAlike or more
 };
 

@@ -289,7 +289,7 @@ class Plan(Result):
     def _repr_html_(self) -> str:
         rows = [[one.id, one.parameter, "" if one.seen_from is None else f"{one.seen_from:.3g}", ", ".join(one.alike)]
                 for one in self.effects if one.seen]
-        return html_table(["effect", "parameter", "seen from", "looks like"], rows)
+        return html_table(["effect", "parameter", "smallest size that shows", "looks like"], rows)
 
 
 def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[float] = None,

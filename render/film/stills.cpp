@@ -163,6 +163,15 @@ std::size_t count_stills(const Scenario& scenario) {
          (scenario.plumb ? 1 : 0);
 }
 
+std::vector<std::string> still_names(const Scenario& scenario) {
+  std::vector<std::string> names;
+  const std::size_t planes = scenario.pattern.plane_x_m.size();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(scenario.pattern.views); ++i) names.push_back(view_name(i));
+  for (std::size_t i = 0; i < planes; ++i) names.push_back(plane_name(i, planes));
+  if (scenario.plumb) names.emplace_back("plumb.png");
+  return names;
+}
+
 void take_stills(const Scenario& scenario, const Stage& stage, std::uint64_t seed, int jobs, const StillTaker& take) {
   const std::vector<Still> stills = stills_of(scenario, seed);
   const Readout readout(with_8_bits(scenario.sensor), scenario.recording.exposure_s, seed, scenario.camera.width_px,

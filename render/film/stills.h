@@ -26,6 +26,9 @@ std::size_t count_stills(const Scenario& scenario);
 /// call; perhaps from several threads at once.
 using StillTaker = std::function<void(const std::string& name, const cv::Mat& codes)>;
 
+/// Their names, in the order in which they are taken.
+std::vector<std::string> still_names(const Scenario& scenario);
+
 /// Takes all stills with a stage that was set for the scenario (clip_renderer.h). Still i draws its noise from stream
 /// kFirstStillStream + i.
 void take_stills(const Scenario& scenario, const Stage& stage, std::uint64_t seed, int jobs, const StillTaker& take);

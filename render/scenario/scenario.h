@@ -40,9 +40,9 @@ CameraFile read_camera_name(const std::filesystem::path& path);
 /// does not fit into the image, a clip without an end (clip_motion.h).
 Scenario read_scenario(const std::filesystem::path& path);
 
-/// How much of a scenario's text is checked: everything, or everything but the camera's view (for callers that make no
-/// images).
-enum class ScenarioChecks { all, values };
+/// How much of a scenario's text is checked: everything, everything but the view of the pattern and the plumb line (for
+/// clips alone), or everything but the camera's view (for callers that make no images).
+enum class ScenarioChecks { all, clips, values };
 
 /// The same of a text, as if it stood in the file `path`.
 Scenario read_scenario(std::string_view text, const std::filesystem::path& path,

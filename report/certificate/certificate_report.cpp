@@ -1,6 +1,7 @@
 #include "report/certificate/certificate_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,13 +80,12 @@ std::string bias_words(const Certificate& certificate) {
                      std::abs(worst->bias_sds.value));
 }
 
-/// Quantities whose intervals contain the truth too rarely: "µ, terminal velocity".
-std::string narrow_names(const Certificate& certificate) {
-  std::string names;
-  for (const CertifiedQuantity& quantity : certificate.quantities) {
-    if (quantity.too_narrow()) names += (names.empty() ? "" : ", ") + symbol_of(quantity.quantity);
-  }
-  return names;
+/// "µ", "µ and terminal velocity", "K/m, µ and α".
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
 }
 
 /// Values of one twin alone have no standard deviation.
@@ -188,18 +188,59 @@ std::string all_lacks(const Certificate& certificate) {
 
 }  // namespace
 
+namespace {
+
+/// "the terminal velocity", "µ": within a sentence.
+std::string named(const CertifiedQuantity& quantity) {
+  return (is_headline(quantity) ? "" : "the ") + symbol_of(quantity.quantity);
+}
+
+/// The intervals that hold too rarely, each with its share; empty if there are none.
+std::string narrow_words(const Certificate& certificate) {
+  std::vector<std::string> names, shares;
+  for (const CertifiedQuantity& quantity : certificate.quantities) {
+    if (!quantity.too_narrow()) continue;
+    names.push_back(named(quantity));
+    shares.push_back(share_text(quantity.coverage));
+  }
+  if (names.empty()) return {};
+  return fmt::format("Do not trust the intervals of {}: they hold in {} of recordings like yours, not in 95 %",
+                     joined(names), joined(shares));
+}
+
+/// The command whose law has the cause beside the law; empty if there is none.
+std::string with_causes(const Certificate& certificate) {
+  for (const ChangedTwin& change : certificate.changes) {
+    if (change.limit != validate::TwinLimit::cause || change.causes.empty()) continue;
+    return fmt::format(" `glidelab analyze --with {}` has the cause in its law.", fmt::join(change.causes, " --with "));
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string certificate_answer(const Certificate& certificate) {
   if (certificate.empty()) {
-    return "There is nothing to count: no twin of this recording yields K/m, µ or α with a known true value.";
+    return "There is nothing to count: no twin of this recording yields K/m, µ, α or a terminal velocity with a known "
+           "true value.";
   }
-  const std::string share = share_text(certificate.together), bias = bias_words(certificate);
+  const bool is_headline_known = certificate.together.of > 0;
+  const std::string bias = is_headline_known ? "; " + bias_words(certificate) : "";
+  if (const std::string narrow = narrow_words(certificate); !narrow.empty())
+    return narrow + bias + "." + with_causes(certificate);
+  if (!is_headline_known) {
+    const auto known = std::find_if(certificate.quantities.begin(), certificate.quantities.end(),
+                                    [](const CertifiedQuantity& quantity) { return quantity.answered() > 0; });
+    return fmt::format("Intervals of {} hold in {} of recordings like yours. K/m, µ and α have no known true value.",
+                       named(*known), share_text(known->coverage));
+  }
+  const std::string share = share_text(certificate.together);
   if (certificate.holds()) {
-    return fmt::format("Intervals of {} hold in {} of recordings like yours; {}.", headline_names(certificate), share,
+    return fmt::format("Intervals of {} hold in {} of recordings like yours{}.", headline_names(certificate), share,
                        bias);
   }
-  const std::string narrow = narrow_names(certificate);
-  return fmt::format("Do not trust the intervals{}: those of {} hold in {} of recordings like yours, not in 95 %; {}.",
-                     narrow.empty() ? "" : " of " + narrow, headline_names(certificate), share, bias);
+  return fmt::format("Do not trust the intervals: those of {} hold in {} of recordings like yours, not in 95 %{}.{}",
+                     headline_names(certificate), share, bias, with_causes(certificate));
 }
 
 std::vector<std::string> best_changes(const Certificate& certificate) {

@@ -44,7 +44,8 @@ std::string what_follows(const diagnose::Plan& plan) {
   if (plan.effects.empty()) return {};
   const bool any = std::any_of(plan.effects.begin(), plan.effects.end(), [](const auto& of) { return of.seen; });
   if (!any) return "With these motions no effect could be detected; a verdict of “none” would be meaningless.";
-  return "With these motions a diagnosis can detect an effect of at least the size in “seen from”. If it finds none, "
+  return "With these motions a diagnosis can detect an effect of at least the smallest size that shows. If "
+         "it finds none, "
          "smaller ones may still act, and those that are not seen may have any size.";
 }
 
@@ -61,7 +62,8 @@ std::string advice(const diagnose::Plan& plan) {
 
 constexpr const char* kPlanMethod =
     "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
-    "adjust (K, µ, inclinations, starts) has been adjusted. Two effects are alike where the angle between the changes "
+    "adjust (K, µ, inclinations, starts) has been adjusted, and if a diagnosis of so many clips may name it. Two "
+    "effects are alike where the angle between the changes "
     "that remain is below 18 degrees (cosine 0.95). The table has the effects that change the positions in one way, "
     "more or less strongly; waves, late releases, missing frames, uneven frame times and outliers have no single such "
     "change and are not in it.";
@@ -87,11 +89,18 @@ std::string plan_json(const diagnose::Plan& plan) {
 }
 
 std::string plan_text(const diagnose::Plan& plan) {
-  std::vector<std::vector<std::string>> rows = {{"effect", "seen from", "indistinguishable from"}};
+  std::vector<std::vector<std::string>> rows = {{"effect", "smallest size that shows", "indistinguishable from"}};
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     rows.push_back({effect_name(effect.id), seen_text(effect), alike_text(effect_names(effect.alike))});
   }
   std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
+  std::string letters;
+  for (const diagnose::PlannedEffect& effect : plan.effects) {
+    const std::string meaning = effect_meaning(effect.id);
+    if (effect.seen && !meaning.empty())
+      letters += printable(fmt::format("{}: {}", effect_name(effect.id), meaning)) + "\n";
+  }
+  if (!letters.empty()) text += "\n" + letters;
   if (!advice(plan).empty()) text += fmt::format("\n{}\n", advice(plan));
   for (const std::string& note : notes_words(plan.notes)) text += "\n" + note + "\n";
   return text;
@@ -105,7 +114,7 @@ Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   for (const std::string& note : notes_words(plan.notes))
     body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   body += "<h2>What can be seen</h2>\n";
-  HtmlTable table({"effect", "what it is", "seen from", "indistinguishable from"}, 4);
+  HtmlTable table({"effect", "what it is", "smallest size that shows", "indistinguishable from"}, 4);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     const std::string meaning = effect_meaning(effect.id);
     table.row({effect_html(effect.id), escape(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning)),

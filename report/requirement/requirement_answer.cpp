@@ -97,7 +97,7 @@ std::string error_words(const Target& target, const std::string& value) {
   const std::string symbol = symbol_of(target.quantity), number = value + unit_suffix(unit_of(target.quantity));
   switch (target.measure) {
     case Target::Measure::error95:
-      return fmt::format("{} ± {}", symbol, number);
+      return fmt::format("{} within {}", symbol, number);
     case Target::Measure::sd:
       return fmt::format("an rms error of {} of {}", symbol, number);
     default:
@@ -120,6 +120,7 @@ std::string requirement_answer(const Requirement& requirement) {
       text += fmt::format(" {} cheaper {} may be good enough too: more runs would decide.", undecided,
                           undecided == 1 ? "one" : "ones");
     }
+    if (!first->price_class.empty()) text += " Prices are rough, and without the computer.";
     return text;
   }
   const Candidate* const near = nearest(requirement);

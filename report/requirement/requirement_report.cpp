@@ -65,7 +65,8 @@ std::string targets_text(const Requirement& requirement) {
 }
 
 std::string order_text(const Requirement& requirement) {
-  return requirement.by_price ? "the cheapest" : "the fewest pixels a second (not all have a price)";
+  return requirement.by_price ? "the cheapest (by the middle of its price range)"
+                              : "the fewest pixels a second (not all have a price)";
 }
 
 /// "3 of 200"; empty if none was run.
@@ -133,16 +134,21 @@ std::string noise_cell(const Candidate& candidate) {
 
 /// "5 of 16 reach it, 2 are undecided, 9 do not."
 std::string counts_text(const Requirement& requirement) {
-  std::size_t reaching = 0, undecided = 0, possible = 0;
+  std::size_t reaching = 0, undecided = 0, possible = 0, not_filmed = 0;
   for (const Candidate& candidate : requirement.candidates) {
     reaching += reached(candidate) ? 1 : 0;
     undecided += candidate.verdict == Verdict::undecided ? 1 : 0;
-    possible += candidate.verdict == Verdict::unconfirmed ? 1 : 0;
+    possible += candidate.verdict == Verdict::unconfirmed && candidate.judged_by == validate::Confirm::none ? 1 : 0;
+    not_filmed += candidate.verdict == Verdict::unconfirmed && candidate.judged_by != validate::Confirm::none ? 1 : 0;
   }
   std::string text = fmt::format("{} of {} reach it", reaching, requirement.candidates.size());
   if (undecided > 0) text += fmt::format(", {} may (more runs would decide)", undecided);
   if (possible > 0) text += fmt::format(", {} can by the bound, but nothing was run", possible);
-  const std::size_t not_at_all = requirement.candidates.size() - reaching - undecided - possible;
+  if (not_filmed > 0) {
+    text += fmt::format(", {} more expensive {} as tracks and {} not filmed", not_filmed,
+                        not_filmed == 1 ? "one does" : "ones do", not_filmed == 1 ? "was" : "were");
+  }
+  const std::size_t not_at_all = requirement.candidates.size() - reaching - undecided - possible - not_filmed;
   if (not_at_all > 0) text += fmt::format(", {} {} not", not_at_all, not_at_all == 1 ? "does" : "do");
   return text + ".";
 }
@@ -197,7 +203,8 @@ std::string judged_by_text(const Requirement& requirement) {
   const std::vector<std::uint64_t> looks = validate::looks(requirement.runs);
   return fmt::format(
       "Where the bound allows the target, rendered runs decide, each with a calibration of its own, by the better "
-      "estimator: {} of each camera{}, and {} of the cheapest that reaches the target. All limits at one look have a "
+      "estimator: {} of a camera{}, the cheapest camera first, and {} of the first that reaches the target; what is "
+      "more expensive is then judged by tracks alone. All limits at one look have a "
       "confidence of {:.3g} %, so that the looks together err in at most 5 % of all cases. Up to {} runs of tracks "
       "with the predicted noise and the clock are made as well: a camera that misses the target there and reaches it "
       "in fewer than {} rendered runs is undecided.",

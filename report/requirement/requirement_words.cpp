@@ -13,7 +13,7 @@ std::string candidate_verdict(const validate::Candidate& candidate) {
     case Verdict::by_bound:
       return "reached: the bound is well below the target";
     case Verdict::unconfirmed:
-      return "possible, not run";
+      return candidate.judged_by == validate::Confirm::none ? "possible, not run" : "possible, not filmed";
     case Verdict::undecided:
       return fmt::format("undecided, by {}", by);
     case Verdict::missed:

@@ -153,9 +153,14 @@ std::string rule_words(const SweepSummary& summary, const Curves& curves, double
                      low == high ? "" : fmt::format(" ({} to {} in eight of ten clips)", low, high), errors);
 }
 
-/// "the fit of the whole motion, which needs no bandwidth, has an error 4 to 8 times smaller".
-std::string fit_words(const SweepSummary& summary, const Curves& curves, double use) {
-  std::string text;
+/// An estimator without a bandwidth. First, where all its errors are smaller: "Use `--estimator trajectory`: it needs
+/// no bandwidth and errs 4 to 8 times less. "; else last: "; the fit of …, which needs no bandwidth, has an error …".
+struct FitWords {
+  std::string first, last;
+};
+
+FitWords fit_words(const SweepSummary& summary, const Curves& curves, double use) {
+  FitWords words;
   for (const fit::Estimator& other : fit::judged_estimators()) {
     if (other.of_lines) continue;
     double least = std::numeric_limits<double>::infinity(), most = 0.0;
@@ -167,10 +172,17 @@ std::string fit_words(const SweepSummary& summary, const Curves& curves, double 
     }
     if (most == 0.0 || (least < 1.1 && most < 1.1)) continue;
     const std::string from = base::number_text(least, 2), to = base::number_text(most, 2);
-    text += fmt::format("; the {}, which needs no bandwidth, has an error {} times smaller", other.title,
-                        from == to ? from : from + " to " + to);
+    const std::string times = from == to ? from : from + " to " + to;
+    if (least >= 1.1 && words.first.empty()) {
+      words.first =
+          fmt::format("Use `--estimator {}`: the {} needs no bandwidth, and its errors are {} times smaller. ",
+                      other.name, other.title, times);
+    } else {
+      words.last +=
+          fmt::format("; the {}, which needs no bandwidth, has an error {} times smaller", other.title, times);
+    }
   }
-  return text;
+  return words;
 }
 
 }  // namespace
@@ -204,7 +216,9 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
   while (to + 1 != all.end() && loss(curves, *(to + 1), answer.use_s) <= kNearlyAsGood) ++to;
   answer.from_s = *from;
   answer.to_s = *to;
-  answer.text = fmt::format("Use h = {}", seconds_text(answer.use_s));
+  const FitWords fit = fit_words(summary, curves, answer.use_s);
+  answer.text =
+      fmt::format("{} h = {}", fit.first.empty() ? "Use" : fit.first + "For lines, use", seconds_text(answer.use_s));
   answer.text +=
       answer.from_s < answer.to_s
           ? fmt::format("; anything from {} to {} gives errors at most {:.0f} % larger", base::number_text(*from, 3),
@@ -221,7 +235,7 @@ std::optional<BandwidthAnswer> bandwidth_answer(const SweepSummary& summary) {
     for (const double h : answer.unanswered_s) values.push_back(base::number_text(h, 3));
     answer.text += fmt::format("; with {} s some clips have no line", list_of(values));
   }
-  answer.text += rule_words(summary, curves, answer.use_s) + fit_words(summary, curves, answer.use_s) + ".";
+  answer.text += rule_words(summary, curves, answer.use_s) + fit.last + ".";
   return answer;
 }
 

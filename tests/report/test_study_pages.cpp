@@ -128,7 +128,8 @@ TEST_CASE("a plan says sizes with their units, and what to do about effects that
                   {"scale_error", "a wrong scale", "e", 0.28, true, {}},
                   {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
   const std::string text = report::plan_text(plan);
-  CHECK(has(text, "c = 0.0028 kg/m   magnetic drag that levels off"));
+  CHECK(has(text, "c = 0.0028 kg/m           magnetic drag that levels off"));
+  CHECK(has(text, "\nquadratic drag: a force "));  // what the letter c is
   CHECK_FALSE(has(text, "eddy_rolloff"));
   CHECK(has(text, "v_c up to 20 m/s"));
   CHECK(has(text, "k = 0.00071 1/m²"));

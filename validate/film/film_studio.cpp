@@ -18,6 +18,7 @@
 #include "render/film/clip_renderer.h"
 #include "render/film/render_experiment.h"
 #include "render/film/stills.h"
+#include "render/scenario/scene.h"
 
 namespace glidelab::validate {
 
@@ -202,6 +203,24 @@ core::Experiment rendered(const render::Scenario& scenario, const fs::path& fold
   return core::read_experiment(images);
 }
 
+/// States, in place of the pattern, how many pixels a metre of the track has in the image, and where downhill is.
+void state_scale(const render::Scenario& scenario, core::Experiment& experiment) {
+  constexpr double kStep_m = 1e-3;
+  const double incline_rad = scenario.motion.configurations.front().body.incline_rad;
+  const auto seen = [&](double x_m) {
+    return render::project(scenario.camera, render::marker_position_W(scenario, incline_rad, x_m));
+  };
+  const auto from = seen(-kStep_m), to = seen(kStep_m);
+  if (!from || !to) throw base::NumericalError("a scale: the camera does not see the track's reference point");
+  const Eigen::Vector2d along = *to - *from;
+  experiment.calibration.reset();
+  experiment.scale = core::ScaleSetup{along.norm() / (2.0 * kStep_m), 0.0};
+  experiment.groups.clear();
+  const bool across = std::abs(along.y()) > std::abs(along.x());
+  experiment.track.downhill = across ? (along.y() > 0.0 ? core::Downhill::plus_y : core::Downhill::minus_y)
+                                     : (along.x() > 0.0 ? core::Downhill::plus_x : core::Downhill::minus_x);
+}
+
 /// Tracks do not use a plumb line.
 render::Scenario without_plumb(render::Scenario scenario) {
   scenario.plumb.reset();
@@ -211,8 +230,8 @@ render::Scenario without_plumb(render::Scenario scenario) {
 }  // namespace
 
 FilmStudio::FilmStudio(const render::Scenario& with_plumb, std::uint64_t seed, int jobs,
-                       std::shared_ptr<const render::Stage> stage, base::Progress progress)
-    : folder_("run"), progress_(std::move(progress)), stage_(std::move(stage)) {
+                       std::shared_ptr<const render::Stage> stage, base::Progress progress, LengthFrom length)
+    : folder_("run"), progress_(std::move(progress)), stage_(std::move(stage)), length_(length) {
   const render::Scenario scenario = without_plumb(with_plumb);
   if (!stage_) stage_ = render::set_stage(scenario, jobs, [this] { progress_("stage", 0.0); });
   // The images stay in memory; empty files stand in for them.
@@ -220,6 +239,10 @@ FilmStudio::FilmStudio(const render::Scenario& with_plumb, std::uint64_t seed, i
   std::map<fs::path, cv::Mat> stills;
   std::mutex mutex;
   fs::create_directories(images / "calibration");
+  if (length_ == LengthFrom::scale) {
+    for (const std::string& name : render::still_names(scenario)) base::write_file(images / name, "");
+    return;
+  }
   render::take_stills(scenario, *stage_, seed, jobs, [&](const std::string& name, const cv::Mat& codes) {
     progress_("rendering", 0.0);
     base::write_file(images / name, "");
@@ -259,13 +282,16 @@ MadeTracks FilmStudio::film(const render::Scenario& with_plumb, std::uint64_t se
     pattern.calibration.covariance.setZero();
   }
   const bool lossy = render::lossy(scenario.codec);
-  const core::Experiment experiment = rendered(scenario, folder_.path(), seed, jobs, lossy, stage_, progress_);
+  core::Experiment experiment = rendered(scenario, folder_.path(), seed, jobs, lossy, stage_, progress_);
+  if (length_ == LengthFrom::scale) state_scale(scenario, experiment);
   const core::FrameOpener open =
       lossy ? core::FrameOpener(core::open_frames)
             : rendered_opener(std::make_shared<const render::ClipSet>(scenario, stage_), seed, canvases_);
   MadeTracks made = make_tracks(scenario, seed);
   made.setups = experiment.clips;
-  made.tracks = core::tracks_of(experiment, jobs, progress_, open, false, &pattern).tracks;
+  made.tracks =
+      core::tracks_of(experiment, jobs, progress_, open, false, length_ == LengthFrom::scale ? nullptr : &pattern)
+          .tracks;
   return made;
 }
 

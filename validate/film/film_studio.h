@@ -60,6 +60,12 @@ std::unique_ptr<core::FrameSource> rendered_frames(std::shared_ptr<const render:
 core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, std::uint64_t seed,
                                   std::shared_ptr<CanvasPool> pool = std::make_shared<CanvasPool>());
 
+/// What gives a filmed experiment its metres.
+enum class LengthFrom {
+  pattern,  ///< the calibration from drawn stills
+  scale     ///< one number of pixels per metre, without error: no still is drawn
+};
+
 /// A camera with its calibration, for any number of recordings: of scenarios whose stills are those of the first
 /// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills stay
 /// in memory; experiment.toml and everything that needs a file lie in a separate folder below the system's temporary
@@ -67,14 +73,17 @@ core::FrameOpener rendered_opener(std::shared_ptr<const render::ClipSet> set, st
 class FilmStudio {
  public:
   /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio for the same scene may
-  /// be given. `progress` is called with every image and, in film(), every few frames, from any thread.
+  /// be given. With a scale nothing is drawn. `progress` is called with every image and, in film(), every few frames,
+  /// from any thread.
   FilmStudio(const render::Scenario& scenario, std::uint64_t seed, int jobs,
-             std::shared_ptr<const render::Stage> stage = nullptr, base::Progress progress = base::no_progress);
+             std::shared_ptr<const render::Stage> stage = nullptr, base::Progress progress = base::no_progress,
+             LengthFrom length = LengthFrom::pattern);
 
   /// The scenario's clips with the noise of this seed, tracked, with the truth of the scenario. A lossy codec's clips
   /// are written and read back. The truth's positions are relative to the track's reference point, the tracks' to the
   /// pattern. With `lens`, that camera replaces the calibrated one, as if it were known without error; the position of
-  /// the plane is still found from the drawn pattern.
+  /// the plane is still found from the drawn pattern. With a scale the tracks' positions count from the image's corner,
+  /// and `lens` is not used.
   MadeTracks film(const render::Scenario& scenario, std::uint64_t seed, int jobs,
                   const std::optional<core::CameraModel>& lens = std::nullopt);
 
@@ -85,6 +94,7 @@ class FilmStudio {
   base::Progress progress_;
   std::shared_ptr<const render::Stage> stage_;
   std::shared_ptr<CanvasPool> canvases_ = std::make_shared<CanvasPool>();
+  LengthFrom length_;
   core::SeenPattern pattern_;
 };
 

@@ -1,11 +1,10 @@
 #include "core/pictures/marker/marker_method.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <queue>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "core/math/quantile.h"
@@ -34,73 +33,75 @@ cv::Rect box_around(const Signal& signal, const MarkerGuess& guess) {
   return cv::Rect(corner.x, corner.y, side, side) & cv::Rect(0, 0, signal.values.cols, signal.values.rows);
 }
 
-/// Squared: a box around a large marker has a hundred thousand pixels.
-double distance2_of(int u, int v, const MarkerGuess& guess) {
-  const double du = u - guess.centre.x, dv = v - guess.centre.y;
-  return du * du + dv * dv;
-}
+constexpr unsigned char kMarked = 255;
 
-double near2_of(const MarkerGuess& guess) {
-  const double near = std::max(guess.radius_px, kSmallest_px);
-  return near * near;
-}
-
-std::optional<Peak> peak_in(const Signal& signal, const cv::Rect& box, const MarkerGuess& guess) {
-  std::vector<double> rim, near;
-  const double near2 = near2_of(guess), rim2 = std::pow(kMostRadiiOfMarker * guess.radius_px, 2.0);
-  for (int v = box.y; v < box.br().y; ++v) {
-    for (int u = box.x; u < box.br().x; ++u) {
-      const double distance2 = distance2_of(u, v, guess);
-      if (distance2 > rim2) rim.push_back(signal.at(u, v));
-      if (distance2 < near2) near.push_back(signal.at(u, v));
-    }
+/// Marks the pixels of a box that are no farther from the guess than `radius_px`.
+cv::Mat mask_within(const cv::Rect& box, const MarkerGuess& guess, double radius_px) {
+  cv::Mat mask = cv::Mat::zeros(box.size(), CV_8U);
+  for (int v = 0; v < box.height; ++v) {
+    const double dv = v + box.y - guess.centre.y, half2 = radius_px * radius_px - dv * dv;
+    if (half2 < 0.0) continue;
+    const double middle = guess.centre.x - box.x, half = std::sqrt(half2);
+    const int first = std::max(0, static_cast<int>(std::ceil(middle - half)));
+    const int last = std::min(box.width - 1, static_cast<int>(std::floor(middle + half)));
+    if (first <= last) std::fill_n(mask.ptr<unsigned char>(v) + first, last - first + 1, kMarked);
   }
-  if (rim.size() < kFewestOfRim || near.empty()) return std::nullopt;
-  const double level = median_of(std::move(rim));
-  const auto high = near.begin() + static_cast<std::ptrdiff_t>(9 * near.size() / 10);
-  std::nth_element(near.begin(), high, near.end());
-  const double amplitude = *high - level;
+  return mask;
+}
+
+/// How often each value from `least` to `most` occurs under a mask.
+class Levels {
+ public:
+  Levels(const cv::Mat& values, const cv::Mat& mask, double least, double most) : least_(least) {
+    const int channel = 0, bins = static_cast<int>(most - least) + 1;
+    const float range[] = {static_cast<float>(least), static_cast<float>(most + 1.0)};
+    const float* ranges[] = {range};
+    cv::calcHist(&values, 1, &channel, mask, counts_, 1, &bins, ranges);
+    size_ = static_cast<std::size_t>(cv::countNonZero(mask));
+  }
+  std::size_t size() const { return size_; }
+  /// Number `rank` of the sorted values, from 0; below size().
+  double sorted(std::size_t rank) const {
+    double below = 0.0;
+    int bin = 0;
+    while (bin + 1 < counts_.rows && (below += counts_.at<float>(bin)) <= static_cast<double>(rank)) ++bin;
+    return least_ + bin;
+  }
+
+ private:
+  cv::Mat counts_;
+  double least_;
+  std::size_t size_ = 0;
+};
+
+std::optional<Peak> peak_in(const cv::Mat& values, const cv::Mat& near, const cv::Mat& rim) {
+  double least = 0.0, most = 0.0;
+  cv::minMaxLoc(values, &least, &most);
+  const Levels around(values, rim, least, most), inside(values, near, least, most);
+  if (around.size() < kFewestOfRim || inside.size() == 0) return std::nullopt;
+  const double level = around.sorted(around.size() / 2);
+  const double amplitude = inside.sorted(9 * inside.size() / 10) - level;
   if (!(amplitude > 0.0)) return std::nullopt;
   return Peak{level, amplitude};
 }
 
-/// The brightest pixel near the guess that stands above the floor.
-std::optional<cv::Point> brightest(const Signal& signal, const cv::Rect& box, const MarkerGuess& guess, double floor) {
-  std::optional<cv::Point> found;
-  double best = floor;
-  const double near2 = near2_of(guess);
-  for (int v = box.y; v < box.br().y; ++v) {
-    for (int u = box.x; u < box.br().x; ++u) {
-      if (distance2_of(u, v, guess) > near2) continue;
-      if (signal.at(u, v) <= best) continue;
-      best = signal.at(u, v);
-      found = cv::Point(u, v);
-    }
-  }
-  return found;
-}
+/// The pixels above the floor that are connected, side by side, with the brightest one near the guess.
+struct Spot {
+  cv::Mat mask;  ///< kTaken where a pixel is one of them
+  cv::Rect part;
+  static constexpr int kTaken = 1;
+};
 
-/// Pixels of the box above the floor that are connected with the seed side by side, the nearest first.
-std::vector<cv::Point> connected(const Signal& signal, const cv::Rect& box, cv::Point seed, double floor) {
-  cv::Mat taken = cv::Mat::zeros(box.size(), CV_8U);
-  std::vector<cv::Point> found;
-  std::queue<cv::Point> open;
-  const auto take = [&](cv::Point at) {
-    unsigned char& mark = taken.at<unsigned char>(at.y - box.y, at.x - box.x);
-    if (mark == 0) open.push(at);
-    mark = 1;
-  };
-  take(seed);
-  while (!open.empty()) {
-    const cv::Point here = open.front();
-    open.pop();
-    found.push_back(here);
-    for (const cv::Point off : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
-      const cv::Point next = here + off;
-      if (box.contains(next) && signal.at(next.x, next.y) > floor) take(next);
-    }
-  }
-  return found;
+std::optional<Spot> spot_in(const cv::Mat& values, const cv::Mat& near, double floor) {
+  double brightest = 0.0;
+  cv::Point seed;
+  cv::minMaxLoc(values, nullptr, &brightest, nullptr, &seed, near);
+  if (!(brightest > floor)) return std::nullopt;
+  Spot spot;
+  cv::compare(values, floor, spot.mask, cv::CMP_GT);
+  constexpr int kSideBySide = 4;
+  cv::floodFill(spot.mask, seed, Spot::kTaken, &spot.part, {}, {}, kSideBySide);
+  return spot;
 }
 
 }  // namespace
@@ -109,20 +110,29 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
   const cv::Rect box = box_around(signal, guess);
   if (box.width < 3 || box.height < 3) return std::nullopt;
   signal.see(box);
-  const std::optional<Peak> peak = peak_in(signal, box, guess);
+  const cv::Mat values = signal.values(box);
+  const cv::Mat near = mask_within(box, guess, std::max(guess.radius_px, kSmallest_px));
+  cv::Mat rim;
+  cv::bitwise_not(mask_within(box, guess, kMostRadiiOfMarker * guess.radius_px), rim);
+  const std::optional<Peak> peak = peak_in(values, near, rim);
   if (!peak) return std::nullopt;
   const double floor = peak->floor();
-  const std::optional<cv::Point> seed = brightest(signal, box, guess, floor);
-  if (!seed) return std::nullopt;
+  const std::optional<Spot> spot = spot_in(values, near, floor);
+  if (!spot) return std::nullopt;
 
   double sum = 0.0, sum_u = 0.0, sum_v = 0.0, area = 0.0;
-  for (const cv::Point& here : connected(signal, box, *seed, floor)) {
-    // The weight rises linearly from 0 at the floor, so that a pixel that comes or goes there does not matter.
-    const double weight = std::min((signal.at(here.x, here.y) - floor) / ((1.0 - kFloorOfPeak) * peak->amplitude), 1.0);
-    sum += weight;
-    sum_u += weight * here.x;
-    sum_v += weight * here.y;
-    area += std::min(weight * 2.0, 1.0);
+  for (int v = spot->part.y; v < spot->part.br().y; ++v) {
+    const unsigned char* const mask = spot->mask.ptr<unsigned char>(v);
+    for (int u = spot->part.x; u < spot->part.br().x; ++u) {
+      if (mask[u] != Spot::kTaken) continue;
+      // The weight rises linearly from 0 at the floor, so that a pixel that comes or goes there does not matter.
+      const double above = signal.at(u + box.x, v + box.y) - floor;
+      const double weight = std::min(above / ((1.0 - kFloorOfPeak) * peak->amplitude), 1.0);
+      sum += weight;
+      sum_u += weight * (u + box.x);
+      sum_v += weight * (v + box.y);
+      area += std::min(weight * 2.0, 1.0);
+    }
   }
   if (!(sum > 0.0)) return std::nullopt;
   MarkerFit marker;
@@ -166,30 +176,54 @@ struct Remeasured {
   std::size_t both = 0;   ///< frames with both fits
 };
 
+bool are_most(std::size_t some, std::size_t all) {
+  return 10 * some >= 9 * all;
+}
+
+/// Whether a method measures most samples. Those that are left once it fails in too many are not measured if
+/// `needs_most`.
+bool remeasure_by(MarkerMethod method, const std::vector<MarkerSample>& samples, SignalKind kind, bool needs_most,
+                  std::map<std::size_t, MarkerFit>& fits) {
+  std::size_t failed = 0;
+  for (const MarkerSample& sample : samples) {
+    if (needs_most && !are_most(samples.size() - failed, samples.size())) break;
+    auto fit = measure_marker(sample.window, sample.guess, method, kind);
+    if (!fit) {
+      ++failed;
+      continue;
+    }
+    fit->centre += cv::Point2d(sample.corner);
+    fits[sample.frame] = *fit;
+  }
+  return are_most(fits.size(), samples.size());
+}
+
 Remeasured remeasure(const std::vector<MarkerSample>& samples, SignalKind kind) {
   Remeasured again;
+  std::vector<MarkerSample> large;
   for (const MarkerSample& sample : samples) {
-    std::vector<MarkerMethod> methods{MarkerMethod::uniform};
-    if (sample.guess.radius_px >= kSmallestShadedPx) methods.push_back(MarkerMethod::shaded);
-    if (may_have_any_shape(kind)) methods.push_back(MarkerMethod::centroid);
-    for (const MarkerMethod method : methods) {
-      auto fit = measure_marker(sample.window, sample.guess, method, kind);
-      if (!fit) continue;
-      fit->centre += cv::Point2d(sample.corner);
-      again.fits[method][sample.frame] = *fit;
-    }
-    const auto uniform = again.fits[MarkerMethod::uniform].find(sample.frame);
-    const auto shaded = again.fits[MarkerMethod::shaded].find(sample.frame);
-    if (uniform == again.fits[MarkerMethod::uniform].end() || shaded == again.fits[MarkerMethod::shaded].end())
-      continue;
-    again.bic_gain += uniform->second.bic - shaded->second.bic;
+    if (sample.guess.radius_px >= kSmallestShadedPx) large.push_back(sample);
+  }
+  auto& uniform = again.fits[MarkerMethod::uniform];
+  auto& shaded = again.fits[MarkerMethod::shaded];
+  auto& centroid = again.fits[MarkerMethod::centroid];
+  const bool is_centroid =
+      may_have_any_shape(kind) && remeasure_by(MarkerMethod::centroid, samples, kind, false, centroid);
+  const bool may_be_shaded =
+      are_most(large.size(), samples.size()) && remeasure_by(MarkerMethod::shaded, large, kind, true, shaded);
+  // Without most samples by either surface it is the centroid.
+  remeasure_by(MarkerMethod::uniform, samples, kind, is_centroid && !may_be_shaded, uniform);
+  for (const auto& [frame, fit] : shaded) {
+    const auto other = uniform.find(frame);
+    if (other == uniform.end()) continue;
+    again.bic_gain += other->second.bic - fit.bic;
     ++again.both;
   }
   return again;
 }
 
 MarkerMethod best_of(const Remeasured& again, std::size_t samples, SignalKind kind) {
-  const auto most = [&](MarkerMethod method) { return 10 * again.fits.at(method).size() >= 9 * samples; };
+  const auto most = [&](MarkerMethod method) { return are_most(again.fits.at(method).size(), samples); };
   const auto jitter = [&](MarkerMethod method) {
     Places places;
     for (const auto& [frame, fit] : again.fits.at(method)) places[frame] = fit.centre;

@@ -21,6 +21,7 @@ constexpr std::size_t kLostAfter = 25;              // frames without a sighting
 constexpr std::size_t kRestFrames = 12;             // sightings after which a path that has not moved may sleep
 constexpr std::size_t kMovingFrames = 10;           // sightings of a path that counts as moving after five radii
 constexpr std::size_t kFewestSightings = 5;         // a path with fewer is noise
+constexpr std::size_t kNoDisc = 3;                  // sightings by centroid in a row, after which no disc is fitted
 constexpr double kSmallestRadiusPx = 1.2;
 constexpr std::size_t kFewestResponseWindows = 16;  // from which the response of the pixels is found,
 constexpr std::size_t kResponsePixels = 8000;       // and about the number of their pixels
@@ -28,6 +29,15 @@ constexpr std::size_t kResponsePixels = 8000;       // and about the number of t
 bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
   return std::any_of(places.begin(), places.end(),
                      [&](cv::Point2d other) { return cv::norm(other - here) < distance; });
+}
+
+/// How the object of a path is sought in the next frame. One that was not a disc several times in a row is not fitted
+/// as one again: choose_method() does so once, in all samples.
+MarkerMethod next_method(const MarkerPath& path) {
+  if (path.method != MarkerMethod::undecided || path.seen.size() < kNoDisc) return path.method;
+  const bool no_disc = std::all_of(path.seen.end() - kNoDisc, path.seen.end(),
+                                   [](const MarkerSeen& seen) { return !(seen.fit.blur_px > 0.0); });
+  return no_disc ? MarkerMethod::centroid : path.method;
 }
 
 }  // namespace
@@ -41,9 +51,10 @@ MarkerTracker::MarkerTracker(std::filesystem::path clip, MarkerSetup marker, Rad
       start_s_(start_s) {}
 
 MarkerTracker MarkerTracker::of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
-                                          std::optional<double> start_s) {
+                                          std::optional<double> start_s, bool blurred) {
   MarkerTracker tracker(std::move(clip), marker, std::move(radius_at), start_s);
   tracker.kind_ = SignalKind::any_shape;
+  if (blurred) tracker.first_method_ = MarkerMethod::centroid;
   return tracker;
 }
 
@@ -52,6 +63,7 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
                                                               const std::vector<cv::Point2d>& taken) const {
   const cv::Point2d expected = path.predict(frame);
   const bool is_new = path.seen.size() < 2;
+  const MarkerMethod method = next_method(path);
   MarkerGuess guess;
   guess.centre = expected;
   guess.radius_px = path.radius_px;
@@ -61,7 +73,7 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
     guess.shape = last.shape;
   }
   if (!is_new && !is_near_any(taken, expected, 0.5 * path.radius_px)) {
-    const auto fit = measure_marker(signal, guess, path.method, kind_);
+    const auto fit = measure_marker(signal, guess, method, kind_);
     if (fit && path.is_like(*fit)) return Found{guess, *fit};
   }
   // Nothing is known of the speed of a new path. A known speed changes little from frame to frame, but the object may
@@ -85,7 +97,7 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
   for (const Blob& blob : blobs) {
     if (is_near_any(taken, blob.centre, 0.7 * path.radius_px)) continue;
     guess.centre = blob.centre;
-    const auto fit = measure_marker(signal, guess, path.method, kind_);
+    const auto fit = measure_marker(signal, guess, method, kind_);
     if (!fit || !path.is_like(*fit)) continue;
     if (is_near_any(taken, fit->centre, 0.7 * path.radius_px)) continue;
     return Found{guess, *fit};
@@ -273,7 +285,7 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
         is_near_any(sleeping, blob.centre, 0.7 * guess.radius_px)) {
       continue;
     }
-    const auto fit = measure_marker(signal, guess, MarkerMethod::undecided, kind_);
+    const auto fit = measure_marker(signal, guess, first_method_, kind_);
     if (!fit || fit->elongation > kLargestElongation || is_near_any(known, fit->centre, 0.7 * guess.radius_px))
       continue;
     known.push_back(fit->centre);
@@ -288,6 +300,7 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
       continue;
     }
     Path path;
+    path.method = first_method_;
     accept(path, signal, frame, {guess, *fit});
     follow_back(path);
     paths_.push_back(std::move(path));

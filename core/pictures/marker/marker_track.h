@@ -33,8 +33,9 @@ class MarkerTracker {
   MarkerTracker(std::filesystem::path clip, MarkerSetup marker, RadiusAt radius_at, std::optional<double> start_s = {});
 
   /// A tracker of something bright, in grey values, that need not look like a disc, such as the lit part of a sphere.
+  /// What is `blurred` has no outline, and is measured by its centroid alone.
   static MarkerTracker of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
-                                    std::optional<double> start_s = {});
+                                    std::optional<double> start_s = {}, bool blurred = false);
 
   /// Limits the memory of windows around sightings; the default is 128 MiB. Sightings without a window keep the shift
   /// by a colour mosaic or a tone curve, and a note says how many there are.
@@ -84,6 +85,7 @@ class MarkerTracker {
   std::filesystem::path clip_;
   MarkerSetup marker_;
   SignalKind kind_;
+  MarkerMethod first_method_ = MarkerMethod::undecided;  ///< of a new path
   RadiusAt radius_at_;
   double radius_px_ = 0.0;  ///< expected radius in the middle of the image
   std::vector<Path> paths_;

@@ -31,6 +31,19 @@ TEST_CASE("a plan knows an effect's standard deviation before the effect is ther
   CHECK(std::abs(drag.seen_from / (4.0 * diagnosis.effects.front().parameters.front().sd) - 1.0) < 0.25);
 }
 
+TEST_CASE("a plan counts no effect that a diagnosis of so many clips cannot name") {
+  const auto made = tests::made_experiment(tests::made_launches(), {}, 3);
+  REQUIRE(made.setups.size() >= 3);
+  CHECK(effect_of(diagnose::plan_of(made.results, made.setups), "friction_drift").seen);
+  auto two = made.results;
+  two.clips.resize(2);
+  const std::vector<core::ClipSetup> setups(made.setups.begin(), made.setups.begin() + 2);
+  const diagnose::Plan plan = diagnose::plan_of(two, setups);
+  CHECK_FALSE(effect_of(plan, "friction_drift").seen);  // of two clips one always has more friction
+  CHECK(std::find(plan.isolability.ids.begin(), plan.isolability.ids.end(), "friction_drift") ==
+        plan.isolability.ids.end());
+}
+
 TEST_CASE("a plan says what will look the same, and what one mass cannot show") {
   const auto made = tests::made_experiment(tests::made_launches({0.4}), {}, 3);
   const diagnose::Plan plan = diagnose::plan_of(made.results, made.setups);

@@ -61,15 +61,42 @@ TEST_CASE("a certificate of intervals that do not hold begins with do not trust 
   validate::Certificate made = certificate();
   made.quantities[2].wide_coverage = {20, 40, 0.5, 0.3, 0.7};
   CHECK_FALSE(made.holds());
+  made.quantities[2].coverage = {20, 40, 0.5, 0.35, 0.65};
+  CHECK(report::certificate_answer(made) ==
+        "Do not trust the intervals of the terminal velocity: they hold in 50 % (35 to 65 %) of recordings like yours, "
+        "not in 95 %; µ is off by 0.3 standard deviations on average.");
+  made.quantities[1].wide_coverage.high = 0.9;
   CHECK(report::certificate_answer(made).starts_with(
-      "Do not trust the intervals of terminal velocity: those of K/m, µ hold "
-      "in 94 % (90 to 97 %)"));
+      "Do not trust the intervals of µ and the terminal velocity: they hold in 95 % (83 to 99 %) and 50 % (35 to 65 %) "
+      "of"));
   made = certificate();
   made.together.high = 0.94;  // one in forty is so by chance
   CHECK(made.holds());
   made.wide_together = {113, 120, 0.9, 0.85, 0.94};
   CHECK_FALSE(made.holds());
   CHECK(report::certificate_answer(made).starts_with("Do not trust the intervals: "));
+}
+
+TEST_CASE("where the terminal velocity alone has a known true value, the first line is about it") {
+  validate::Certificate fall = certificate();
+  fall.together = fall.wide_together = {};
+  fall.quantities = {fall.quantities[2]};
+  CHECK_FALSE(fall.empty());
+  CHECK(fall.holds());
+  CHECK(report::certificate_answer(fall) ==
+        "Intervals of the terminal velocity hold in 95 % (83 to 99 %) of recordings like yours. K/m, µ and α have no "
+        "known true value.");
+  fall.quantities[0].coverage = {74, 200, 0.37, 0.3, 0.44};
+  fall.quantities[0].wide_coverage = {74, 200, 0.37, 0.28, 0.46};
+  fall.changes = {change(TwinLimit::cause, false)};
+  fall.changes[0].causes = {"quadratic_drag"};
+  CHECK_FALSE(fall.holds());
+  CHECK(report::certificate_answer(fall) ==
+        "Do not trust the intervals of the terminal velocity: they hold in 37 % (30 to 44 %) of recordings like yours, "
+        "not in 95 %. `glidelab analyze --with quadratic_drag` has the cause in its law.");
+  fall.quantities[0].failed = fall.quantities[0].asked;
+  CHECK(fall.empty());
+  CHECK(report::certificate_answer(fall).starts_with("There is nothing to count"));
 }
 
 TEST_CASE("a bias that one twin alone shows has no standard deviation") {

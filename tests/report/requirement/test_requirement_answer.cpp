@@ -40,8 +40,9 @@ validate::Requirement cameras() {
 TEST_CASE("the first line of require says what to buy, how to set it and what to expect, on screen and page") {
   const std::string line =
       "Buy: board (OV5647), 8-25 EUR; set it to 640 x 480 pixels, 90 frames/s, exposure 2 ms, H.264 at 8 Mbit/s; "
-      "expect µ ± 0.00006 (95 % of 20 rendered experiments, analysed by the fit of the whole motion; the target was "
-      "µ ± 0.0001).";
+      "expect µ within 0.00006 (95 % of 20 rendered experiments, analysed by the fit of the whole motion; the target "
+      "was "
+      "µ within 0.0001). Prices are rough, and without the computer.";
   CHECK(report::requirement_answer(cameras()) == line);
   CHECK(report::requirement_text(cameras()).starts_with(line + "\n"));
   CHECK(report::enough_words(cameras()).empty());
@@ -67,6 +68,15 @@ TEST_CASE("a cheaper camera that is undecided is named beside the one to buy") {
              Contains("1 cheaper one may be good enough too: more runs would decide"));
 }
 
+TEST_CASE("a camera more expensive than the one to buy is said to be not filmed") {
+  validate::Requirement requirement = cameras();
+  requirement.candidates[2].verdict = validate::Verdict::unconfirmed;
+  requirement.candidates[2].judged_by = validate::Confirm::tracks;
+  const std::string text = report::requirement_text(requirement);
+  CHECK_THAT(text, Contains("1 of 3 reach it, 1 more expensive one does as tracks and was not filmed, 1 does not.") &&
+                       Contains("possible, not filmed") && !Contains("nothing was run"));
+}
+
 TEST_CASE("where nothing reaches the target the nearest is named, with what limits it") {
   validate::Requirement requirement = cameras();
   for (validate::Candidate& candidate : requirement.candidates) candidate.verdict = validate::Verdict::missed;
@@ -74,7 +84,7 @@ TEST_CASE("where nothing reaches the target the nearest is named, with what limi
   requirement.candidates[1].results[0].found = 3e-4;
   requirement.candidates[2].limits = {{validate::Limitation::light, 3.0}};
   CHECK_THAT(report::requirement_answer(requirement),
-             Contains("Nothing here reaches µ ± 0.0001. phone comes nearest: expect µ ± 0.0002") &&
+             Contains("Nothing here reaches µ within 0.0001. phone comes nearest: expect µ within 0.0002") &&
                  Contains("Its main limitation: light (no shot noise)"));
   const std::string html = report::requirement_report(requirement).html;
   CHECK_THAT(html, Contains("What limits the others") && Contains("<li><b>phone</b>: light (no shot noise) 3.0x</li>"));

@@ -58,12 +58,13 @@ TEST_CASE("a bandwidth study says which h to use, what is nearly as good, and wh
   CHECK(answer->to_s == 0.05);
   CHECK(answer->wide_s == std::vector<double>{0.08, 0.16});
   CHECK(answer->narrow_s == std::vector<double>{0.01});
-  CHECK_THAT(answer->text, Contains("Use h = 0.04 s; anything from 0.04 to 0.05 s gives errors at most 30 % larger"));
+  CHECK(
+      answer->text.starts_with("Use `--estimator trajectory`: the fit of the whole motion needs no bandwidth, and its "
+                               "errors are 7.1 times smaller. For lines, use h = 0.04 s; "));
+  CHECK_THAT(answer->text, Contains("use h = 0.04 s; anything from 0.04 to 0.05 s gives errors at most 30 % larger"));
   CHECK_THAT(answer->text, Contains("at 0.01 s the stated intervals are too narrow"));
   CHECK_THAT(answer->text, Contains("beyond 0.05 s the stated intervals are too wide"));
   CHECK_THAT(answer->text, Contains("the default rule chooses 0.05 s (0.045 to 0.06 in eight of ten clips)"));
-  CHECK_THAT(answer->text,
-             Contains("the fit of the whole motion, which needs no bandwidth, has an error 7.1 times smaller"));
   CHECK(report::sweep_text(study()).starts_with(answer->text + "\n"));
 }
 
@@ -91,7 +92,13 @@ TEST_CASE("the plot of a bandwidth study has bias, noise and total, and the choi
   CHECK(at[2] == Approx(1e-4));
   CHECK(at[3] == Approx(1e-4));
   const std::string html = report::sweep_report(study()).html;
-  CHECK(html.find("Use h = ") < html.find("<figure"));
+  CHECK(html.find("use h = ") < html.find("<figure"));
+}
+
+TEST_CASE("an estimator without a bandwidth that errs more in a quantity is not what to use first") {
+  validate::SweepSummary summary = study();
+  summary.overall.back().groups[0].statistics.rms = 2e-4;
+  CHECK(report::bandwidth_answer(summary)->text.starts_with("Use h = 0.04 s; "));
 }
 
 TEST_CASE("a sweep without three bandwidths is no bandwidth study") {

@@ -122,10 +122,10 @@ struct Certificate {
   std::vector<NotInTwins> without;                    ///< of the recording, and not in its twins
   double recorded_noise_m = 0.0, twin_noise_m = 0.0;  ///< of positions: medians over clips
 
-  /// Whether the intervals hold, for K/m, mu, alpha together and for each on its own.
+  /// Whether the intervals hold, for K/m, mu, alpha together and for each quantity on its own.
   bool holds() const;
-  /// Whether there is nothing to count.
-  bool empty() const { return together.of == 0; }
+  /// Whether there is nothing to count: no quantity has a value beside a known truth.
+  bool empty() const;
 };
 
 }  // namespace glidelab::validate

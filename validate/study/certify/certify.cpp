@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <utility>
 
@@ -240,7 +241,7 @@ std::vector<WantedChange> wanted_changes(const RecordingTwin& twin) {
     wanted.push_back({{.double_rate = true}, TwinLimit::frame_rate});
   }
   const bool by_scale = twin.scale_sd_relative > 0.0;
-  if (by_scale || twin.filmed)
+  if (by_scale || (twin.filmed && !twin.by_scale))
     wanted.push_back({{.camera_known = true}, by_scale ? TwinLimit::scale : TwinLimit::calibration});
   if (twin.filmed && render::lossy(twin.scenario.codec)) wanted.push_back({{.lossless = true}, TwinLimit::codec});
   if (std::any_of(twin.clips.begin(), twin.clips.end(), [](const ClipNoise& clip) { return clip.rounding_m > 0.0; }))
@@ -296,6 +297,10 @@ ChangedTwin changed_twin(const WantedChange& wanted, const Outcomes& before, con
   return result;
 }
 
+std::size_t runs_of_change(const RecordingTwin& twin, const CertifyOptions& options) {
+  return twin.filmed ? std::min(kFilmedChanges, options.runs) : options.runs;
+}
+
 void check_runs(std::size_t runs) {
   if (runs < kFewestTwins || runs > kMostTwins) {
     throw base::InputError(base::Issue{"", 0, "twins", fmt::format("{}", runs),
@@ -309,6 +314,11 @@ bool Certificate::holds() const {
   return !(together.of > 0 && wide_together.high < kConfidence) &&
          std::none_of(quantities.begin(), quantities.end(),
                       [](const CertifiedQuantity& quantity) { return quantity.too_narrow(); });
+}
+
+bool Certificate::empty() const {
+  return std::none_of(quantities.begin(), quantities.end(),
+                      [](const CertifiedQuantity& quantity) { return quantity.answered() > 0; });
 }
 
 Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& options, const base::Progress& progress) {
@@ -326,15 +336,15 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   }
 
   const std::vector<WantedChange> wanted = options.changes ? wanted_changes(twin) : std::vector<WantedChange>{};
-  const std::size_t runs_of_change = twin.filmed ? std::min(kFilmedChanges, options.runs) : options.runs;
-  const std::size_t all = options.runs + wanted.size() * runs_of_change;
+  const std::size_t changed_runs = runs_of_change(twin, options);
+  const std::size_t all = options.runs + wanted.size() * changed_runs;
   std::atomic<std::size_t> finished = 0;
   const auto tell = [&] { progress("twins", static_cast<double>(finished) / static_cast<double>(all)); };
   const auto done = [&] {
     ++finished;
     tell();
   };
-  TwinStudios studios(runs_of_change);
+  TwinStudios studios(changed_runs);
   const Twins twins{twin, truths_of(twin), options, studios, [&](std::string_view, double) { tell(); }};
   const Outcomes outcomes = record_all(twins, {}, options.runs, done);
   const std::vector<RunCount> held = counts_of(outcomes, 0, kHeadline, std::nullopt);
@@ -356,7 +366,7 @@ Certificate certify_twin(const RecordingTwin& twin, const CertifyOptions& option
   for (const WantedChange& change : wanted) {
     Twins with_change = twins;
     if (change.change.nominal) with_change.truths = truths_of(twin, true);
-    const Outcomes after = record_all(with_change, change.change, runs_of_change, done);
+    const Outcomes after = record_all(with_change, change.change, changed_runs, done);
     certificate.changes.push_back(changed_twin(change, outcomes, after, wanted.size()));
   }
   std::stable_sort(certificate.changes.begin(), certificate.changes.end(),
@@ -385,6 +395,16 @@ void match_noise(RecordingTwin& twin, const CertifyOptions& options, const base:
   scale_noise(twin.scenario.sensor, factor);
 }
 
+/// A twin with every clip twice counts as two.
+FilmingSize size_of_filming(const RecordingTwin& twin, const CertifyOptions& options, double one_s) {
+  FilmingSize size;
+  size.twins = options.runs;
+  for (const WantedChange& wanted : options.changes ? wanted_changes(twin) : std::vector<WantedChange>{})
+    size.twins += (wanted.change.twice ? 2 : 1) * runs_of_change(twin, options);
+  size.processor_time_s = static_cast<double>(size.twins) * one_s;
+  return size;
+}
+
 }  // namespace
 
 Certificate certify(const std::vector<std::filesystem::path>& folders, const CertifyOptions& options,
@@ -411,8 +431,14 @@ Certificate certify(const std::vector<std::filesystem::path>& folders, const Cer
   RecordingTwin twin = twin_of_recording(results, diagnosis, experiments);
   progress("twins", 0.0);
   if (twin.filmed) {
-    const auto pilot = [&](std::string_view, double) { progress("twins", 0.0); };
+    std::clock_t start = std::clock();
+    const auto pilot = [&](std::string_view what, double) {
+      if (what == "stage") start = std::clock();  // drawn once for all twins
+      progress("twins", 0.0);
+    };
     match_noise(twin, options, pilot);
+    const double one_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    if (options.before_filming) options.before_filming(size_of_filming(twin, options, one_s));
   }
   return certify_twin(twin, options, progress);
 }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,12 @@ namespace glidelab::validate {
 
 inline constexpr std::size_t kFewestTwins = 20, kMostTwins = 200;
 
+/// What is about to be filmed.
+struct FilmingSize {
+  std::size_t twins = 0;        ///< of the recording, and of its changes
+  double processor_time_s = 0;  ///< for all of them, from the first, which is filmed for this purpose
+};
+
 struct CertifyOptions {
   std::size_t runs = 40;
   fit::Estimator estimator = fit::default_estimator();
@@ -30,6 +37,7 @@ struct CertifyOptions {
   int jobs = 1;
   bool changes = true;  ///< also find what limits the recording
   core::TrackFileOptions bare = {};
+  std::function<void(const FilmingSize&)> before_filming = {};
 };
 
 /// InputError for any error in a folder or file, for a table of lines, for a number of runs outside kFewestTwins to

@@ -146,9 +146,11 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
   RecordingTwin twin;
   constexpr const char* kName = "twin of the recording";
   twin.scenario = render::read_scenario(diagnosis.twin, kName, render::ScenarioChecks::values);
+  twin.by_scale = std::ranges::any_of(folders, [](const core::Experiment& folder) { return folder.scale.has_value(); });
   if (is_filmed(results, folders)) {
     try {
-      twin.scenario = render::read_scenario(diagnosis.twin, kName);
+      const auto checks = twin.by_scale ? render::ScenarioChecks::clips : render::ScenarioChecks::all;
+      twin.scenario = render::read_scenario(diagnosis.twin, kName, checks);
       twin.filmed = true;
     } catch (const base::InputError& error) {  // the camera of a scenario cannot see it
       twin.without.emplace_back(lacking::Images{error.what()});
@@ -384,8 +386,9 @@ void add_remainder(const TwinExplanation& explanation, const render::Scenario& s
 /// A seed's calibration, and the stage of a change.
 class TwinFilm {
  public:
-  TwinFilm(TwinStudios& studios, const TwinChange& change, std::size_t explanation, std::uint64_t seed)
-      : studios_(studios), change_(change), explanation_(explanation), seed_(seed) {}
+  TwinFilm(TwinStudios& studios, const TwinChange& change, std::size_t explanation, std::uint64_t seed,
+           LengthFrom length)
+      : studios_(studios), change_(change), explanation_(explanation), seed_(seed), length_(length) {}
 
   MadeTracks film(const render::Scenario& scenario, const std::optional<core::CameraModel>& lens,
                   const base::Progress& progress) {
@@ -409,23 +412,24 @@ class TwinFilm {
       if (as_recorded() && kept != studios_.of_seed_.end()) return kept->second;
       if (const auto drawn = studios_.stages_.find(scene()); drawn != studios_.stages_.end()) stage = drawn->second;
     }
-    return std::make_shared<FilmStudio>(scenario, seed_, 1, stage, progress);
+    return std::make_shared<FilmStudio>(scenario, seed_, 1, stage, progress, length_);
   }
 
   TwinStudios& studios_;
   const TwinChange& change_;
   std::size_t explanation_;
   std::uint64_t seed_;
+  LengthFrom length_;
 };
 
 namespace {
 
 MadeTracks filmed(const RecordingTwin& twin, const TwinChange& change, const render::Scenario& scenario, double scale,
                   std::uint64_t seed, TwinStudios& studios, const base::Progress& progress) {
-  const bool by_scale = twin.scale_sd_relative > 0.0;
-  const auto lens = by_scale || change.camera_known ? true_camera(scenario.camera) : std::nullopt;
-  MadeTracks made = TwinFilm(studios, change, explanation_of(twin, seed), seed).film(scenario, lens, progress);
-  if (!by_scale) return made;
+  const auto lens = change.camera_known ? true_camera(scenario.camera) : std::nullopt;
+  const LengthFrom length = twin.by_scale ? LengthFrom::scale : LengthFrom::pattern;
+  MadeTracks made = TwinFilm(studios, change, explanation_of(twin, seed), seed, length).film(scenario, lens, progress);
+  if (!twin.by_scale) return made;
   for (core::TrackData& track : made.tracks) {
     track.shared_m.clear();
     track.scale_sd_relative = change.camera_known ? 0.0 : twin.scale_sd_relative;

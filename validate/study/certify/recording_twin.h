@@ -68,7 +68,8 @@ struct RecordingTwin {
   std::vector<TwinExplanation> explanations;  ///< empty: the scenario, without remainder
   bool filmed = false;
   std::vector<ClipNoise> clips;    ///< of tracks: one for each clip of the scenario, in its order
-  double scale_sd_relative = 0.0;  ///< of one px_per_m
+  bool by_scale = false;           ///< lengths come from one px_per_m, not from a pattern
+  double scale_sd_relative = 0.0;  ///< of that
   double scale_error = 0.0;        ///< as diagnosed: x is seen as (1 + e) x / (1 + p x)
   double perspective_1_m = 0.0;
   double from_m = 0.0;              ///< x of the recording at which the twin's x is 0

@@ -15,7 +15,8 @@ namespace glidelab::validate {
 
 enum class Confirm { none, tracks, clips };
 
-/// Rendered runs of every point that the bound allows; twice as many, and so on, if these do not decide.
+/// Rendered runs of a point that the bound allows and than which none cheaper reaches the target; twice as many, and so
+/// on, if these do not decide.
 inline constexpr std::uint64_t kLeastRendered = 2;
 /// Rendered runs with each limitation removed, of a point that does not reach the target.
 inline constexpr std::uint64_t kLimitRuns = 4;
@@ -27,12 +28,12 @@ std::vector<std::uint64_t> looks(std::uint64_t most);
 /// kConfidence.
 double confidence_of_look(std::uint64_t most);
 
-/// What is about to be rendered.
+/// What is about to be rendered. Times are on the requested threads, estimated from one recording.
 struct ConfirmationSize {
-  std::uint64_t close = 0, points = 0;  ///< points to be rendered, and all points
-  std::uint64_t recordings = 0;         ///< kLeastRendered for each, and the full number for one, the one to buy
-  double seconds = 0.0;  ///< on the requested threads, estimated from one recording; points close to the target take
-                         ///< longer
+  std::uint64_t close = 0, points = 0;  ///< points that the bound allows, and all points
+  std::uint64_t recordings = 0;         ///< of the cheapest of them, if it is the one to buy
+  double seconds = 0.0;                 ///< for these
+  double seconds_each = 0.0;            ///< for kLeastRendered of each; points close to the target take longer
 };
 
 struct RequirementOptions {
@@ -110,7 +111,7 @@ struct Limit {
 enum class Verdict {
   reached,      ///< by runs: `high` of every target is within it
   by_bound,     ///< the bound has room of kClearMargin
-  unconfirmed,  ///< the bound allows it, and nothing was run
+  unconfirmed,  ///< the bound allows it, and nothing was run; or tracks reach it, and a cheaper one is the one to buy
   undecided,    ///< by runs: `low` is within the target, `high` is not; or tracks miss what a few rendered runs reach
   missed,       ///< by runs: `low` of a target is beyond it
   impossible,   ///< the bound is above the target

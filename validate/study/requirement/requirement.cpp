@@ -89,7 +89,8 @@ RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
 void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& trial) {
   Candidate& candidate = trial.candidate;
   candidate.limits.clear();
-  const bool none = candidate.verdict == Verdict::reached || candidate.verdict == Verdict::refused;
+  const bool none = candidate.verdict == Verdict::reached || candidate.verdict == Verdict::unconfirmed ||
+                    candidate.verdict == Verdict::refused;
   if (none || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
   if (runs != nullptr) {
@@ -195,19 +196,21 @@ ConfirmationSize size_of(const std::vector<Trial*>& trials, std::size_t points, 
   size.points = points;
   size.close = trials.size();
   if (trials.empty()) return size;
-  const std::uint64_t least = std::min(kLeastRendered, options.runs), rest = options.runs - least;
-  size.recordings = least * size.close + rest;
+  size.recordings = options.runs;
   const auto work = [](const Trial* trial) { return work_of(trial->setting->scenario); };
-  double all = work(trials.front()) * static_cast<double>(rest);  // the cheapest may be the one to buy
+  const auto stage_work = [](const Trial* trial) { return stage_work_of(trial->setting->scenario); };
+  double each = 0.0;
   for (const Trial* trial : trials) {
-    all += work(trial) * static_cast<double>(least) + stage_work_of(trial->setting->scenario);
+    each += work(trial) * static_cast<double>(std::min(kLeastRendered, options.runs)) + stage_work(trial);
   }
+  const double first = work(trials.front()) * static_cast<double>(options.runs) + stage_work(trials.front());
   const Trial* smallest = *std::ranges::min_element(trials, {}, work);
   const auto start = std::chrono::steady_clock::now();
   film_tracks(smallest->setting->scenario, 1, 1, [&](std::string_view, double) { options.watch(); });
   const double one_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const double one = work(smallest) + stage_work_of(smallest->setting->scenario);
-  size.seconds = one_s * all / one / std::max(1, options.jobs);
+  const double per_work = one_s / (work(smallest) + stage_work(smallest)) / std::max(1, options.jobs);
+  size.seconds = per_work * first;
+  size.seconds_each = per_work * each;
   return size;
 }
 
@@ -279,8 +282,24 @@ void judge_by_clips(const RequirementOptions& options, Trial& trial) {
   if (candidate.verdict == Verdict::refused) trial.settled = true;
 }
 
-/// Renders those that the bound allows: all of them kLeastRendered times, then the undecided ones again and again;
-/// finally, in full, the cheapest that reaches the targets.
+/// Renders one point more and more often until its verdict is final, and `options.runs` times if it reaches the
+/// targets.
+void render_until_settled(const RequirementOptions& options, Rendering& rendering, Trial& trial) {
+  const auto render = [&](std::uint64_t runs) {
+    const std::uint64_t more = runs - std::min(runs, trial.runs->planned());
+    rendering.expect(work_of(trial.setting->scenario) * static_cast<double>(more));
+    rendering.render({&trial}, runs);
+    judge_by_clips(options, trial);
+  };
+  for (const std::uint64_t runs : looks(options.runs)) {
+    render(runs);
+    if (trial.settled) break;
+  }
+  if (trial.candidate.verdict == Verdict::reached) render(options.runs);
+}
+
+/// Renders those that the bound allows, the cheapest first, until one reaches the targets: what is more expensive
+/// cannot change what to buy. A more expensive one that reaches them as tracks is unconfirmed.
 void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, const base::Progress& progress,
                       std::vector<Trial>& trials) {
   std::vector<Trial*> chosen;
@@ -291,38 +310,21 @@ void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, con
   if (options.before_rendering) options.before_rendering(size);
   const RequirementOptions as_clips = options_of(options, Confirm::clips);
   Rendering rendering(options, progress);
-  for (Trial* const trial : chosen) {
-    trial->tracks_miss = trial->candidate.verdict == Verdict::missed;
-    for (TargetResult& result : trial->candidate.results) result.by_tracks = result.found;
-    trial->runs = std::make_unique<RecordedRuns>(sweep, *trial->setting, trial->point, as_clips);
+  auto buy = chosen.begin();
+  for (; buy != chosen.end(); ++buy) {
+    Trial& trial = **buy;
+    trial.tracks_miss = trial.candidate.verdict == Verdict::missed;
+    for (TargetResult& result : trial.candidate.results) result.by_tracks = result.found;
+    trial.runs = std::make_unique<RecordedRuns>(sweep, *trial.setting, trial.point, as_clips);
+    render_until_settled(options, rendering, trial);
+    if (trial.candidate.verdict == Verdict::reached) break;
   }
-  const auto work_of_more = [](const std::vector<Trial*>& some, std::uint64_t runs) {
-    double work = 0.0;
-    for (const Trial* trial : some) {
-      work += work_of(trial->setting->scenario) * static_cast<double>(runs - std::min(runs, trial->runs->planned()));
-    }
-    return work;
-  };
-  if (!chosen.empty())
-    rendering.expect(work_of_more({chosen.front()}, options.runs - std::min(kLeastRendered, options.runs)));
-  std::vector<Trial*> open = chosen;
-  for (const std::uint64_t runs : looks(options.runs)) {
-    rendering.expect(work_of_more(open, runs));
-    rendering.render(open, runs);
-    for (Trial* const trial : open) judge_by_clips(options, *trial);
-    std::erase_if(open, [](const Trial* trial) { return trial->settled; });
-  }
-  for (Trial* const trial : chosen) {
-    if (trial->candidate.verdict != Verdict::reached) continue;
-    rendering.expect(work_of_more({trial}, options.runs));
-    rendering.render({trial}, options.runs);
-    judge_by_clips(options, *trial);
-    if (trial->candidate.verdict == Verdict::reached) break;
+  for (auto trial = buy; trial != chosen.end(); ++trial) {
+    if (trial != buy && (*trial)->candidate.verdict == Verdict::reached)
+      (*trial)->candidate.verdict = Verdict::unconfirmed;
   }
   progress("rendered runs", 1.0);
   // For the cheaper points rendered runs show what limits them; for the more expensive ones the bound does.
-  const auto buy =
-      std::ranges::find(chosen, Verdict::reached, [](const Trial* trial) { return trial->candidate.verdict; });
   for (auto trial = chosen.begin(); trial != chosen.end(); ++trial) {
     progress("what limits the others",
              static_cast<double>(trial - chosen.begin()) / static_cast<double>(chosen.size()));

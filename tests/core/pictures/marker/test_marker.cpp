@@ -1,7 +1,9 @@
 #include "core/pictures/marker/marker.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "core/pictures/marker/marker_method.h"
 #include "tests/catch.h"
@@ -243,4 +245,82 @@ TEST_CASE("the centroid of an object of any shape moves with it") {
     CHECK(cv::norm(found->centre - centre) < 0.03);
     CHECK(std::abs(found->radius_px - std::sqrt(154.0 / std::numbers::pi)) < 0.5);
   }
+}
+
+namespace {
+
+/// The centroid as its description in marker_method.h says, by loops over lists of pixels.
+std::optional<core::MarkerFit> centroid_by_loops(const core::Signal& signal, const core::MarkerGuess& guess) {
+  const double reach = 2.2 * guess.radius_px + 2.0;
+  const cv::Point corner(cvFloor(guess.centre.x - reach), cvFloor(guess.centre.y - reach));
+  const cv::Rect box =
+      cv::Rect(corner, cv::Size(2 * cvCeil(reach) + 1, 2 * cvCeil(reach) + 1)) & cv::Rect({}, signal.values.size());
+  std::vector<double> rim, near;
+  std::vector<cv::Point> pixels;
+  cv::Point seed;
+  double best = -1.0;
+  for (int v = box.y; v < box.br().y; ++v) {
+    for (int u = box.x; u < box.br().x; ++u) {
+      pixels.emplace_back(u, v);
+      const double off = cv::norm(cv::Point2d(u, v) - guess.centre);
+      if (off > 1.6 * guess.radius_px) rim.push_back(signal.at(u, v));
+      if (off > guess.radius_px) continue;
+      near.push_back(signal.at(u, v));
+      if (signal.at(u, v) > best) best = signal.at(u, v), seed = {u, v};
+    }
+  }
+  std::sort(rim.begin(), rim.end());
+  std::sort(near.begin(), near.end());
+  core::MarkerFit fit;
+  fit.background = rim[rim.size() / 2];
+  fit.amplitude = near[9 * near.size() / 10] - fit.background;
+  const double floor = fit.background + 0.2 * fit.amplitude;
+  if (!(fit.amplitude > 0.0) || !(best > floor)) return std::nullopt;
+  std::vector<cv::Point> spot{seed};
+  std::erase(pixels, seed);
+  for (std::size_t k = 0; k < spot.size(); ++k) {
+    const cv::Point here = spot[k];
+    std::erase_if(pixels, [&](cv::Point p) {
+      const bool beside = std::abs(p.x - here.x) + std::abs(p.y - here.y) == 1 && signal.at(p.x, p.y) > floor;
+      if (beside) spot.push_back(p);
+      return beside;
+    });
+  }
+  double sum = 0.0, area = 0.0;
+  for (const cv::Point p : spot) {
+    const double weight = std::min((signal.at(p.x, p.y) - floor) / (0.8 * fit.amplitude), 1.0);
+    sum += weight;
+    fit.centre += weight * cv::Point2d(p);
+    area += std::min(2.0 * weight, 1.0);
+  }
+  fit.centre /= sum;
+  fit.radius_px = std::sqrt(area / std::numbers::pi);
+  if (!core::has_expected_size(fit, guess)) return std::nullopt;
+  return fit;
+}
+
+}  // namespace
+
+TEST_CASE("the centroid is that of a sum over pixels, for any depth, place and tie") {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> place(4.0, 45.0), size(1.2, 11.0);
+  std::size_t found = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double radius = size(random);
+    const cv::Point2d centre(place(random), place(random));
+    cv::Mat image = image_of(centre, radius, 0.2 * radius);
+    // Of 8 bits with few levels, many pixels tie for the brightest; of 16 bits, none do.
+    const core::Signal signal = k % 2 == 0 ? exact(image) : core::Signal{tests::expose(0.06 * image, 0.4, 20 + k)};
+    const core::MarkerGuess guess = guess_of(centre, radius, 0.5);
+    const auto by_loops = centroid_by_loops(signal, guess);
+    const auto centroid = core::centroid_of_marker(signal, guess);
+    REQUIRE(centroid.has_value() == by_loops.has_value());
+    if (!centroid) continue;
+    ++found;
+    CHECK(centroid->background == by_loops->background);
+    CHECK(centroid->amplitude == by_loops->amplitude);
+    CHECK(cv::norm(centroid->centre - by_loops->centre) < 1e-11);  // rounding of sums over 2000 pixels
+    CHECK(std::abs(centroid->radius_px - by_loops->radius_px) < 1e-11);
+  }
+  CHECK(found > 100);
 }

@@ -332,6 +332,24 @@ TEST_CASE("small and large markers are found") {
   }
 }
 
+TEST_CASE("what is blurred is followed by its centroid alone, though a disc would fit it") {
+  auto tracker = core::MarkerTracker::of_any_shape(
+      "clip.mkv", marker(), [](cv::Point2d) { return kRadius; }, {}, true);
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    cv::Mat image(kSize, CV_64F, cv::Scalar(40.0));
+    tests::put_disc(image, place(k), kRadius, 200.0, 0.5 * kRadius);
+    core::Frame frame;
+    frame.index = k;
+    frame.grey = tests::expose(image, 2.0, 500 + k);
+    tracker.add(frame);
+  }
+  const core::TrackedMarker tracked = tracker.finish();
+  CHECK(tracked.method == core::MarkerMethod::centroid);
+  REQUIRE(tracked.sightings.size() == kFrames);
+  for (const core::MarkerSighting& sighting : tracked.sightings)
+    CHECK(cv::norm(cv::Point2d(sighting.u_px, sighting.v_px) - place(sighting.frame)) < 0.3);
+}
+
 TEST_CASE("the lit part of a sphere is followed if it need not look like a disc") {
   std::vector<cv::Mat> frames;
   for (std::size_t k = 0; k < kFrames; ++k) {

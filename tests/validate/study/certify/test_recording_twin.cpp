@@ -270,3 +270,42 @@ TEST_CASE("a recording whose camera would not see enough is simulated as tracks,
   REQUIRE(images != nullptr);
   CHECK(images->error.find("twin of the recording") != std::string::npos);
 }
+
+TEST_CASE("a folder that states a scale has filmed twins, though a pattern would not be in their images") {
+  std::string toml = tests::tiny_scenario();
+  const std::string at = "[calibration]\n";
+  REQUIRE(toml.find(at) != std::string::npos);
+  toml.replace(toml.find(at), at.size(), "[calibration]\nplane_x_m = [5.0]\n");
+  Filmed filmed(toml);
+  CHECK_FALSE(twin_of_recording(filmed.results, filmed.diagnosis, {filmed.folder}).filmed);
+  filmed.folder.scale = core::ScaleSetup{180.0, 2.0};
+  const RecordingTwin twin = twin_of_recording(filmed.results, filmed.diagnosis, {filmed.folder});
+  CHECK(twin.filmed);
+  CHECK(twin.by_scale);
+  CHECK(twin.without.empty());
+}
+
+TEST_CASE("a twin by a scale is filmed without a pattern, and its positions are the truth's times the scale's error") {
+  RecordingTwin twin;
+  twin.scenario = render::read_scenario(tests::tiny_scenario(), "tiny.toml", render::ScenarioChecks::values);
+  twin.scenario.motion.configurations.front().motions.front().duration_s = 0.5;
+  twin.scenario.marker.diameter_m = 0.06;   // 6 px
+  twin.scenario.pattern.plane_x_m = {5.0};  // far outside the image: it must not be looked for
+  twin.filmed = twin.by_scale = true;
+  const auto path_over_truth = [&](const TwinChange& change) {
+    const MadeTracks made = record(twin, change, 7);
+    const core::TrackData& track = made.tracks.at(0);
+    REQUIRE(track.x_m.size() > 20);
+    CHECK(track.shared_m.empty());
+    const std::vector<double>& truth = made.truth.clips.at(0).x_m;
+    return (track.x_m.back() - track.x_m.front()) / (truth.at(track.frame.back()) - truth.at(track.frame.front()));
+  };
+  // The camera looks down by 0.1 m in 2.4 m: a metre of the track is shorter by less than a part in a thousand where
+  // its middle is seen, and by perspective at its ends; noise of a tenth of a pixel in some fifty.
+  const double exact = path_over_truth({});
+  CHECK(exact == Approx(1.0).margin(1e-2));
+  twin.scale_sd_relative = 0.05;
+  const double stated = path_over_truth({});
+  CHECK(std::abs(stated / exact - 1.0) > 1e-3);  // one normal deviate of 5 %, drawn with this seed
+  CHECK(path_over_truth({.camera_known = true}) == Approx(exact).margin(1e-12));
+}

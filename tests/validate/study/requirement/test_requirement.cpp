@@ -259,6 +259,40 @@ TEST_CASE("Rendered runs say what shutter, codec, and lens and calibration cost,
   CHECK(gain(Limitation::calibration) < gain(Limitation::codec));
 }
 
+TEST_CASE("The cheapest that reaches the target is filmed in full, and nothing more expensive") {
+  const tests::TempDir dir;
+  base::write_file(dir / "scenario.toml",
+                   tests::kSweptScenario + "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n");
+  base::write_file(dir / "sweep.toml",
+                   "format = 1\nname = \"order\"\nscenario = \"scenario.toml\"\nlevel = \"clips\"\n"
+                   "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [120, 60, 90]\n");
+  const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
+  validate::RequirementOptions options;
+  options.confirm = validate::Confirm::clips;
+  options.runs = 4;
+  options.track_runs = 60;
+  options.targets = {validate::parse_target("k_over_m_1_s:sd=1000")};
+  validate::ConfirmationSize size;
+  options.before_rendering = [&](const validate::ConfirmationSize& told) { size = told; };
+  const validate::Requirement requirement = validate::find_requirement(sweep, options);
+  REQUIRE(requirement.candidates.size() == 3);
+  CHECK(size.close == 3);
+  CHECK(size.recordings == 4);
+  const validate::Candidate& buy = requirement.candidates[0];
+  CHECK(buy.frame_rate_hz == 60.0);  // the fewest pixels a second: there are no prices
+  CHECK(buy.verdict == validate::Verdict::reached);
+  CHECK(buy.judged_by == validate::Confirm::clips);
+  CHECK(buy.results[0].runs == 4);
+  CHECK(requirement.first_reached() == &buy);
+  for (std::size_t i = 1; i < 3; ++i) {
+    const validate::Candidate& other = requirement.candidates[i];
+    CHECK(other.verdict == validate::Verdict::unconfirmed);
+    CHECK(other.judged_by == validate::Confirm::tracks);
+    CHECK(other.results[0].runs == 60);
+    CHECK(other.limits.empty());
+  }
+}
+
 TEST_CASE("Whoever wants to stop while a recording is made waits for an image or some frames, not for its end") {
   const tests::TempDir dir;
   base::write_file(dir / "s.toml",
