@@ -30,7 +30,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::NoFit{}, "does not converge"},
       {unknown::OneDirection{1, 0.6874, 0.0012},
        "motion with v > 0 only: it determines g (sin(alpha) - mu cos(alpha)) = 0.6874 ± 0.0012 m/s²"},
-      {unknown::OneDirection{-1, 0.7, 0.01, true}, "separately, or with the inclination and its uncertainty"},
+      {unknown::OneDirection{-1, 0.7, 0.01, true}, "separately, unless the inclination is stated with its uncertainty"},
       {unknown::OneDirection{-1, 0.7, 0.01}, "v < 0 only: it determines g (sin(alpha) + mu cos(alpha))"},
       {unknown::NoDownhillMotion{}, "no motion with v > 0"},
       {unknown::DriveBeyondGravity{}, "exceeds gravity"},
