@@ -110,8 +110,6 @@ double price_of(const RemainderSizes& sizes) {
   return price;
 }
 
-constexpr Eigen::Index kStart = 2;  // x0 and v0, the first of a motion's own parameters
-
 }  // namespace
 
 RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const RemainderExtra* extra) {
@@ -146,9 +144,7 @@ RemainderSpace::RemainderSpace(const TrackSet& set, const MotionFit& fit, const 
     z.col(0) = of.residual;
     z.middleCols(1, common_) = of.global;
     if (extra_ > 0) z.middleCols(1 + common_, extra_) = extra->columns.middleRows(row, of.residual.size());
-    const Eigen::RowVectorXd norms = of.own.colwise().norm().array() + 1e-300;
-    z.rightCols(of.own.cols()) = of.own * norms.cwiseInverse().asDiagonal();
-    log_norms_ += norms.head(kStart).array().log().sum();
+    z.rightCols(of.own.cols()) = of.own * (of.own.colwise().norm().array() + 1e-300).inverse().matrix().asDiagonal();
     row += of.residual.size();
     Motion motion;
     motion.z_z = base::transposed_product(z, z);
@@ -267,7 +263,7 @@ double RemainderSpace::log_likelihood(const Sums& sums) const {
   double log = -0.5 * (sums.square - along.squaredNorm()) - 0.5 * sums.log_determinant;
   log -= lower.diagonal().array().log().sum() - scale_.array().log().sum();
   if (extra_ > 0) log -= static_cast<double>(extra_) * std::log(extra_sd_);
-  return log + log_within_ranges(lower, along) - log_norms_;
+  return log + log_within_ranges(lower, along);
 }
 
 double RemainderSpace::chi2(const RemainderSizes& sizes) const {

@@ -53,6 +53,8 @@ class RemainderSpace {
   /// of the extra columns over theirs. A K, a gravity or an inclination with a range is integrated over that range
   /// alone, whether the fit is at its edge or not. It holds up to a constant that all fits to one set share, and
   /// without the 0.5 log(2 pi) of each parameter. The factor f of a motion costs 4 log f.
+  /// A motion's own parameters count in units of what they do to its positions, so that it does not matter which speed
+  /// describes it, that of its start or that of its end.
   double log_likelihood(const RemainderSizes& sizes) const;
 
   /// chi² of the positions and statements at the minimum under these sizes.
@@ -119,9 +121,6 @@ class RemainderSpace {
   std::vector<Ranged> ranged_;
   Eigen::Index common_ = 0, extra_ = 0;
   double extra_sd_ = 0.0, part_s_ = 0.0;
-  /// A motion's own columns are scaled to a norm of one. The logarithms of the norms of x0 and v0: the prior is flat in
-  /// these, not in what they are scaled to, which differs from law to law (by 1.8 in a fall at its terminal velocity).
-  double log_norms_ = 0.0;
   bool only_falls_ = false;
   Eigen::VectorXd scale_;
 };

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "diagnose/fit/drag_of_air.h"
-#include "diagnose/fit/motion_fit.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/tracks/whitening.h"
@@ -130,24 +129,6 @@ TEST_CASE("the likelihood of a remainder is that of its dense covariance") {
     CHECK(difference == Approx(dense_likelihood(of, sizes, parts) - dense_zero).margin(0.02));
     CHECK(std::abs(difference) > 0.1);  // otherwise the test would show nothing
   }
-}
-
-TEST_CASE(
-    "the likelihoods of two laws share their constant: the prior of v0 is flat in v0, whatever the law makes of it") {
-  Fitted of = fitted({{0.4, 4.0, 0.3, -1.1}, {0.4, 4.0, -0.6, 1.2}}, 5);
-  const auto log_ratio = [&](const Fitted& at) {
-    return diagnose::RemainderSpace(at.set, at.fit).log_likelihood(diagnose::RemainderSizes{}) -
-           dense_likelihood(at, {}, 15);
-  };
-  const double nominal = log_ratio(of);
-  const double norm = of.fit.motions[0].own.col(1).norm();
-  diagnose::FitPoint stronger = of.fit.at;
-  stronger.global[0] *= 1.5;
-  of.fit = diagnose::linearise_at(of.set, {}, stronger);
-  // The start matters less for the motion where the drag is stronger: the test would show nothing otherwise.
-  REQUIRE(std::abs(std::log(norm / of.fit.motions[0].own.col(1).norm())) > 0.1);
-  // The small floor for directions that nobody sees, and ten digits of a difference of determinants.
-  CHECK(log_ratio(of) == Approx(nominal).margin(1e-3));
 }
 
 TEST_CASE("whitening with a remainder turns noise and remainder into unit white noise, and can be undone") {
