@@ -74,10 +74,26 @@ class Levels {
   std::size_t size_ = 0;
 };
 
-std::optional<Peak> peak_in(const cv::Mat& values, const cv::Mat& near, const cv::Mat& rim) {
+/// Pixels of a box near the guess: the smallest box around them, relative to the first one, with their mask.
+struct Near {
+  cv::Rect part;
+  cv::Mat mask;
+
+  Near(const cv::Rect& box, const MarkerGuess& guess) {
+    const double radius = std::max(guess.radius_px, kSmallest_px);
+    const cv::Point first(static_cast<int>(std::floor(guess.centre.x - radius)),
+                          static_cast<int>(std::floor(guess.centre.y - radius)));
+    const int side = static_cast<int>(std::ceil(2.0 * radius)) + 2;
+    const cv::Rect whole = cv::Rect(first.x, first.y, side, side) & box;
+    part = whole - box.tl();
+    if (!part.empty()) mask = mask_within(whole, guess, radius);
+  }
+};
+
+std::optional<Peak> peak_in(const cv::Mat& values, const Near& near, const cv::Mat& rim) {
   double least = 0.0, most = 0.0;
   cv::minMaxLoc(values, &least, &most);
-  const Levels around(values, rim, least, most), inside(values, near, least, most);
+  const Levels around(values, rim, least, most), inside(values(near.part), near.mask, least, most);
   if (around.size() < kFewestOfRim || inside.size() == 0) return std::nullopt;
   const double level = around.sorted(around.size() / 2);
   const double amplitude = inside.sorted(9 * inside.size() / 10) - level;
@@ -92,15 +108,15 @@ struct Spot {
   static constexpr int kTaken = 1;
 };
 
-std::optional<Spot> spot_in(const cv::Mat& values, const cv::Mat& near, double floor) {
+std::optional<Spot> spot_in(const cv::Mat& values, const Near& near, double floor) {
   double brightest = 0.0;
   cv::Point seed;
-  cv::minMaxLoc(values, nullptr, &brightest, nullptr, &seed, near);
+  cv::minMaxLoc(values(near.part), nullptr, &brightest, nullptr, &seed, near.mask);
   if (!(brightest > floor)) return std::nullopt;
   Spot spot;
   cv::compare(values, floor, spot.mask, cv::CMP_GT);
   constexpr int kSideBySide = 4;
-  cv::floodFill(spot.mask, seed, Spot::kTaken, &spot.part, {}, {}, kSideBySide);
+  cv::floodFill(spot.mask, seed + near.part.tl(), Spot::kTaken, &spot.part, {}, {}, kSideBySide);
   return spot;
 }
 
@@ -111,7 +127,8 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
   if (box.width < 3 || box.height < 3) return std::nullopt;
   signal.see(box);
   const cv::Mat values = signal.values(box);
-  const cv::Mat near = mask_within(box, guess, std::max(guess.radius_px, kSmallest_px));
+  const Near near(box, guess);
+  if (near.part.empty()) return std::nullopt;
   cv::Mat rim;
   cv::bitwise_not(mask_within(box, guess, kMostRadiiOfMarker * guess.radius_px), rim);
   const std::optional<Peak> peak = peak_in(values, near, rim);

@@ -21,7 +21,7 @@ constexpr std::size_t kLostAfter = 25;              // frames without a sighting
 constexpr std::size_t kRestFrames = 12;             // sightings after which a path that has not moved may sleep
 constexpr std::size_t kMovingFrames = 10;           // sightings of a path that counts as moving after five radii
 constexpr std::size_t kFewestSightings = 5;         // a path with fewer is noise
-constexpr std::size_t kNoDisc = 3;                  // sightings by centroid in a row, after which no disc is fitted
+constexpr std::size_t kNoDisc = 2;                  // sightings by centroid in a row, after which no disc is fitted
 constexpr double kSmallestRadiusPx = 1.2;
 constexpr std::size_t kFewestResponseWindows = 16;  // from which the response of the pixels is found,
 constexpr std::size_t kResponsePixels = 8000;       // and about the number of their pixels
@@ -31,7 +31,7 @@ bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, doubl
                      [&](cv::Point2d other) { return cv::norm(other - here) < distance; });
 }
 
-/// How the object of a path is sought in the next frame. One that was not a disc several times in a row is not fitted
+/// How the object of a path is sought in the next frame. One that was no disc twice in a row is not fitted
 /// as one again: choose_method() does so once, in all samples.
 MarkerMethod next_method(const MarkerPath& path) {
   if (path.method != MarkerMethod::undecided || path.seen.size() < kNoDisc) return path.method;
