@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -73,9 +74,15 @@ void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetu
         if (assumed.level && taken != nullptr) configuration.notes.emplace_back(*taken);  // it may be a fall
       }
       if (assumed.mass_kg || assumed.level) configuration.notes.emplace_back(assumed);
-      if (const std::optional<MayBeAFall> fall = suspected_fall(results.clips[i]); fall && assumed.level) {
-        configuration.notes.emplace_back(*fall);
+      std::optional<MayBeAFall> longest;
+      for (const ClipResult& clip : results.clips) {
+        if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {
+          continue;
+        }
+        const std::optional<MayBeAFall> fall = suspected_fall(clip);
+        if (fall && (!longest || fall->positions > longest->positions)) longest = fall;
       }
+      if (longest && assumed.level) configuration.notes.emplace_back(*longest);
       break;
     }
   }

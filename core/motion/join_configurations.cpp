@@ -298,7 +298,7 @@ Quantity mean_k(const std::vector<LineFit>& lines) {
   const CombinedVariance variance = combined(mean);
   const KnownVariance random = widened(variance.random, {squares * between, 1.0});
   const double shared = variance.total - variance.random.value;
-  return determined(estimate(value / sum, std::sqrt(random.value + shared), random.degrees), std::sqrt(random.value));
+  return determined(estimate(value / sum, random, shared), std::sqrt(random.value));
 }
 
 /// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+), and its change for one standard deviation of
@@ -306,8 +306,7 @@ Quantity mean_k(const std::vector<LineFit>& lines) {
 Quantity of_intercepts(double value, double by_minus, double by_plus, double of_gravity, const LineFit& minus,
                        const LineFit& plus) {
   const auto [random, total] = combined({{{0.0, by_minus}, &minus}, {{0.0, by_plus}, &plus}});
-  return determined(estimate(value, std::sqrt(total + of_gravity * of_gravity), random.degrees),
-                    std::sqrt(random.value));
+  return determined(estimate(value, random, total - random.value + of_gravity * of_gravity), std::sqrt(random.value));
 }
 
 /// Friction and slope of the two lines' intercepts, equation (13) of the paper:
@@ -342,8 +341,8 @@ Quantity mu_of_line(const LineFit& line, const Gravity& gravity, const Configura
         .minus = line.direction > 0, .plus = line.direction < 0, .incline_would_do = incline_would_do(stated)});
   }
   const auto [random, total] = combined({{{0.0, mu->by_a0}, &line}});
-  const double variance = total + mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
-  return determined(estimate(mu->value, std::sqrt(variance), random.degrees), std::sqrt(random.value));
+  const double stated = mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
+  return determined(estimate(mu->value, random, total - random.value + stated), std::sqrt(random.value));
 }
 
 /// Whether a direction has points enough for a line.

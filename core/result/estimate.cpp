@@ -26,6 +26,13 @@ Estimate estimate(double value, double sd, double degrees) {
   return {value, sd, value - half, value + half};
 }
 
+Estimate estimate(double value, const KnownVariance& random, double known) {
+  const double of_random = student_t975(random.degrees),
+               of_known = student_t975(std::numeric_limits<double>::infinity());
+  const double half = std::sqrt(of_random * of_random * random.value + of_known * of_known * known);
+  return {value, std::sqrt(random.value + known), value - half, value + half};
+}
+
 double chi2_ratio_limit(double degrees) {
   const double variance = 2.0 / (9.0 * std::max(1.0, degrees));
   return std::pow(1.0 - variance + 3.0 * std::sqrt(variance), 3);

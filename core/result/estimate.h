@@ -23,6 +23,11 @@ struct KnownVariance {
   double degrees = 0.0;
 };
 
+/// The value with a variance in two parts: one that is estimated, and one that is known, as that of a stated
+/// inclination or of the camera. The interval's half is the root of the sum of squares of what each part alone has;
+/// Student's t belongs to the first.
+Estimate estimate(double value, const KnownVariance& random, double known);
+
 /// A variance widened by a scatter: the sum, with the fewer degrees of the two wherever the scatter adds anything.
 /// (Those of Welch and Satterthwaite are those of a sum whose parts are both drawn; here the scatter is what matters
 /// where it is seen at all, and with them intervals of two clips whose K/m scatters held in 82 instead of 92 %.)

@@ -135,12 +135,20 @@ namespace {
 /// rest between two motions in one direction, most speeds of the dip are near 0.
 void check_signs(const TrackData& track, int downhill, const std::string& file, const std::string& column) {
   constexpr double kDip = 0.3, kNearZero = 0.05;  // of the lower of the highest speeds before and after
+  constexpr double kSlowReturn = 0.2;             // of kDip of the highest: a glider may return far more slowly
   constexpr double kMostNearZero = 0.4;  // of the dip: a V has a sixth of its points below a sixth of its height
   if (track.v_m_s.empty()) return;
   std::vector<double> v = track.v_m_s;
   for (double& one : v) one *= downhill;
-  const auto lowest = std::min_element(v.begin(), v.end());
-  if (*lowest < 0.0 || lowest == v.begin()) return;
+  if (*std::min_element(v.begin(), v.end()) < 0.0) return;
+  // The lowest between the first and the last speed that is fast: a rest at either end is no dip.
+  const double fast = kDip * *std::max_element(v.begin(), v.end());
+  const auto moves = [&](double one) { return one > kSlowReturn * fast; };
+  const auto first = std::find_if(v.begin(), v.end(), moves);
+  const auto last = std::find_if(v.rbegin(), v.rend(), moves).base();
+  if (first >= last) return;
+  const auto lowest = std::min_element(first, last);
+  if (lowest == first) return;
   const double height = std::min(*std::max_element(v.begin(), lowest), *std::max_element(lowest, v.end()));
   if (*lowest > kNearZero * height) return;
   const auto is_out = [&](double one) { return one > kDip * height; };

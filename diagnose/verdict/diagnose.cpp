@@ -65,7 +65,7 @@ void refuse_heights(const std::vector<std::filesystem::path>& files, const core:
     for (const core::Note& note : of.notes) {
       const auto* const taken = std::get_if<core::HeightTaken>(&note);
       if (taken == nullptr) continue;
-      throw base::InputError(base::Issue{files.front().string(), 0, "--incline",
+      throw base::InputError(base::Issue{files.size() == 1 ? files.front().string() : of.clips.front(), 0, "--incline",
                                          fmt::format("none, and x is \"{}\", a height", taken->column),
                                          "the inclination in degrees: --incline 90 for a fall"});
     }

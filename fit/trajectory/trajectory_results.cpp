@@ -18,9 +18,9 @@ namespace {
 core::Quantity quantity_of(const TrajectoryFit& fit, double value, const Eigen::VectorXd& gradient,
                            double stated_variance = 0.0) {
   const double random = gradient.dot(fit.covariance * gradient);
-  double variance = random + stated_variance;
-  for (const Eigen::VectorXd& shift : fit.shared) variance += std::pow(gradient.dot(shift), 2);
-  return core::determined(core::estimate(value, std::sqrt(variance), fit.degrees), std::sqrt(random));
+  double known = stated_variance;
+  for (const Eigen::VectorXd& shift : fit.shared) known += std::pow(gradient.dot(shift), 2);
+  return core::determined(core::estimate(value, core::KnownVariance{random, fit.degrees}, known), std::sqrt(random));
 }
 
 core::Quantity limit_velocity(const TrajectoryFit& fit, const core::Estimate& k, double a0,

@@ -97,8 +97,8 @@ std::string fits_sentence(const core::AnalysisResults& results) {
   for (const core::ConfigurationResult& c : results.configurations) {
     for (const auto& [name, quantity] : quantities_of(c)) {
       if (quantity->estimate && std::abs(quantity->estimate->value) > kLeastDoubtSds * quantity->estimate->sd) {
-        return "<p>Nothing in these clips contradicts the law (drag proportional to the speed, dry friction, "
-               "gravity).</p>\n";
+        return "<p>The points show no clear departure from the law (drag proportional to the speed, dry friction, "
+               "gravity); <code>glidelab diagnose</code> tests it.</p>\n";
       }
     }
   }

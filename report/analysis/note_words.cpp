@@ -136,8 +136,8 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::MayBeAFall& of) const {
     return fmt::format(
-        "{} positions are taken for those in a hand, and it speeds up there by {:.2g} m/s², as in a fall: if it falls, "
-        "state an inclination of 90° (--incline 90)",
+        "{} positions are taken for those in a hand; in them the body accelerates at {:.2g} m/s², as in a fall. If it "
+        "falls, state an inclination of 90° (--incline 90)",
         of.positions, of.a_m_s2);
   }
   std::string operator()(const core::AssumedMass&) const {

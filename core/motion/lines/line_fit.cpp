@@ -280,7 +280,7 @@ KnownVariance random_variance(const LineFit& line, const LineShift& gradient) {
 void complete_line(LineFit& line) {
   const LineUncertainty& parts = line.parts;
   const KnownVariance of_k = random_variance(line, {1.0, 0.0}), of_a0 = random_variance(line, {0.0, 1.0});
-  double var_k = of_k.value, var_a0 = of_a0.value;
+  double known_k = 0.0, known_a0 = 0.0;
   line.covariance = parts.cov;
   // What the clips' scatter adds to the variances has the correlation of that scatter.
   LineUncertainty scatter;
@@ -294,12 +294,12 @@ void complete_line(LineFit& line) {
         scatter.cov * std::sqrt((1.0 - parts.var_k / scatter.var_k) * (1.0 - parts.var_a0 / scatter.var_a0));
   }
   for (const LineShift& shift : shared_shifts(line)) {
-    var_k += shift.k * shift.k;
-    var_a0 += shift.a0 * shift.a0;
+    known_k += shift.k * shift.k;
+    known_a0 += shift.a0 * shift.a0;
     line.covariance += shift.k * shift.a0;
   }
-  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, std::sqrt(var_k), of_k.degrees);
-  line.a0_m_s2 = estimate(line.a0_m_s2.value, std::sqrt(var_a0), of_a0.degrees);
+  line.k_over_m_1_s = estimate(line.k_over_m_1_s.value, of_k, known_k);
+  line.a0_m_s2 = estimate(line.a0_m_s2.value, of_a0, known_a0);
 }
 
 Quantity limit_velocity(const std::vector<LineFit>& lines) {
@@ -311,9 +311,9 @@ Quantity limit_velocity(const std::vector<LineFit>& lines) {
   const double k = found->k_over_m_1_s.value, a0 = found->a0_m_s2.value;
   const double by_k = -a0 / (k * k), by_a0 = 1.0 / k;
   const KnownVariance random = random_variance(*found, {by_k, by_a0});
-  double variance = random.value;
-  for (const LineShift& shift : shared_shifts(*found)) variance += std::pow(by_k * shift.k + by_a0 * shift.a0, 2);
-  return determined(estimate(a0 / k, std::sqrt(variance), random.degrees), std::sqrt(random.value));
+  double known = 0.0;
+  for (const LineShift& shift : shared_shifts(*found)) known += std::pow(by_k * shift.k + by_a0 * shift.a0, 2);
+  return determined(estimate(a0 / k, random, known), std::sqrt(random.value));
 }
 
 bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertainty& parts) {

@@ -142,7 +142,7 @@ struct Sentence {
   }
   std::string operator()(const diagnose::SuspectedFall& of) const {
     return fmt::format(
-        "{} positions are taken for those in a hand, and the body speeds up there by {:.2g} m/s², as in a fall. If it "
+        "{} positions are taken for those in a hand; in them the body accelerates at {:.2g} m/s², as in a fall. If it "
         "falls, state an inclination of 90° (--incline 90): nothing else here holds then.",
         of.found.positions, of.found.a_m_s2);
   }

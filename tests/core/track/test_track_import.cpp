@@ -314,6 +314,11 @@ TEST_CASE("speeds without their sign are refused where the motion turns, and not
   };
   CHECK_THROWS_WITH(read([](double t) { return std::abs(t - 0.5); }),
                     Contains("speeds without sign") && Contains("touch 0 at 0.5 s"));
+  // It rests, is pushed up, turns, and comes back.
+  CHECK_THROWS_WITH(read([](double t) { return t < 0.2   ? 0.0
+                                               : t < 0.3 ? 5.0 * (t - 0.2)
+                                                         : std::abs(0.8 - t); }),
+                    Contains("speeds without sign"));
   CHECK_NOTHROW(read([](double t) { return t - 0.5; }));
   CHECK_NOTHROW(read([](double t) { return t; }));
   // Launched up fast, it comes back at a terminal velocity of a tenth of that.

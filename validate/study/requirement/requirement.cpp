@@ -89,8 +89,8 @@ RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
 void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& trial) {
   Candidate& candidate = trial.candidate;
   candidate.limits.clear();
-  const bool none = candidate.verdict == Verdict::reached || candidate.verdict == Verdict::unconfirmed ||
-                    candidate.verdict == Verdict::refused;
+  const bool not_filmed = candidate.verdict == Verdict::unconfirmed && options.confirm != Confirm::none;
+  const bool none = candidate.verdict == Verdict::reached || not_filmed || candidate.verdict == Verdict::refused;
   if (none || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
   if (runs != nullptr) {

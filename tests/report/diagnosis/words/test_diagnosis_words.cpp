@@ -43,7 +43,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::MeanIncline{4.0, 3.9, 0.3}, "stated at 4° corresponds to an inclination of 3.900°"},
       {diagnose::TableOfLines{12}, "The table of 12 lines"},
       {diagnose::OnlyFalls{}, "not determined"},
-      {diagnose::SuspectedFall{{26, 5.61}}, "by 5.6 m/s²"},
+      {diagnose::SuspectedFall{{26, 5.61}}, "at 5.6 m/s²"},
       {diagnose::OneOrigin{}, "one origin"},
       {diagnose::NoMassStated{}, "each kilogram of the true mass"},
       {diagnose::FallsThroughAir{}, "without any drag"},
