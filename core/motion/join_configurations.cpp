@@ -341,8 +341,8 @@ Quantity mu_of_line(const LineFit& line, const Gravity& gravity, const Configura
         .minus = line.direction > 0, .plus = line.direction < 0, .incline_would_do = incline_would_do(stated)});
   }
   const auto [random, total] = combined({{{0.0, mu->by_a0}, &line}});
-  const double stated = mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
-  return determined(estimate(mu->value, random, total - random.value + stated), std::sqrt(random.value));
+  const double known = mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
+  return determined(estimate(mu->value, random, total - random.value + known), std::sqrt(random.value));
 }
 
 /// Whether a direction has points enough for a line.
