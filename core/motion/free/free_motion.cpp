@@ -118,6 +118,7 @@ constexpr double kLeastShareAlong =
     0.05;  // of the points against the launch: below that, motion along it does not count
 constexpr double kLeastOfLongest = 0.574;  // of the longest: 4^(-2/5), see the header
 constexpr double kFall_rad = 80.0 * base::kRadPerDegree;
+constexpr std::size_t kFewestOfFall = 24;  // of fewer points the pilot's kernel spans all of the speeding up
 constexpr double kMostGravity_m_s2 = 1.02 * kStandardGravity_m_s2;  // at any place, and a scale that is off by 1 %
 
 /// The direction of every point, 0 at rest. Motion that is stated to be free is not rest: it continues the adjacent
@@ -145,9 +146,9 @@ class Finder {
         pilot_(first_smoothing(motion)),
         runs_(find_runs(motion, pilot_)),
         direction_(directions(runs_, setup)),
-        falling_(motion.forced || std::abs(setup.incline_rad) < kFall_rad ? 0
-                 : setup.incline_rad > 0.0                                ? 1
-                                                                          : -1),
+        falling_(motion.forced || motion.t_s.size() < kFewestOfFall || std::abs(setup.incline_rad) < kFall_rad ? 0
+                 : setup.incline_rad > 0.0                                                                     ? 1
+                                                                                                               : -1),
         n_(motion.t_s.size()) {}
 
   FreeMotion find() {
