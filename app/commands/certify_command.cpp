@@ -31,11 +31,6 @@ struct CertifyCommand {
   core::TrackFileOptions bare;
 };
 
-/// "40 s", "12 min".
-std::string rough_time(double seconds) {
-  return seconds < 90.0 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60.0);
-}
-
 void certify(const CertifyCommand& options, bool bandwidth_given) {
   const std::vector<fs::path> folders(options.experiments.begin(), options.experiments.end());
   const fs::path out = output_folder(options.common, "certify", folders.front());
@@ -57,8 +52,9 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   how.bare = options.bare;
   how.before_filming = [&](const validate::FilmingSize& size) {
     display.clear();
-    say(options.common, fmt::format("{} twins to film, by the first about {} of processor time on {} threads",
-                                    size.twins, rough_time(size.processor_time_s), options.common.jobs));
+    say(options.common,
+        fmt::format("{} twins will be filmed; judging by the first, they take about {} of processor time", size.twins,
+                    duration_text(size.processor_time_s)));
   };
   const validate::Certificate certificate = validate::certify(folders, how, display.callback());
   const std::string json = report::certificate_json(certificate);

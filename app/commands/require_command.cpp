@@ -54,7 +54,7 @@ void require_command(const RequireOptions& options) {
     display.clear();
     say(options.common,
         fmt::format("the bound allows {} of {}; they are filmed from the cheapest up, until one reaches the target: "
-                    "about {:.2g} min on {} threads if it is the first, {:.2g} min or more if it is the last",
+                    "about {:.2g} min on {} threads if the first does, {:.2g} min or more if only the last does",
                     size.close, size.points, size.seconds / 60.0, options.common.jobs,
                     std::max(size.seconds, size.seconds_each) / 60.0));
   };

@@ -58,13 +58,6 @@ std::string check_shard(const std::string& text) {
   return fmt::format("\"{}\" is not a part such as 2/8, with at most {} parts", text, kMostShards);
 }
 
-std::string duration_text(double seconds) {
-  if (seconds < 90.0) return fmt::format("{:.2g} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  if (seconds < 172800.0) return fmt::format("{:.1f} h", seconds / 3600.0);
-  return fmt::format("{:.0f} days", seconds / 86400.0);
-}
-
 std::string bytes_text(double bytes) {
   if (bytes < 1e6) return fmt::format("{:.0f} kB", bytes / 1e3);
   if (bytes < 1e9) return fmt::format("{:.0f} MB", bytes / 1e6);

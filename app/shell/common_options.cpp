@@ -294,7 +294,8 @@ void check_bare_options(const core::TrackFileOptions& options, const std::vector
   if (options.column.empty() && !options.mass_kg && !options.incline_deg && options.runs.empty()) return;
   for (const std::string& input : inputs) {
     if (core::is_bare_track(input)) continue;
-    throw base::InputError(base::Issue{input, 0, "--column, --mass, --incline, --runs", "not a file with a track",
+    throw base::InputError(base::Issue{input, 0, "--column, --mass, --incline, --incline-sd, --runs",
+                                       "not a file with a track",
                                        "a file; for a folder, experiment.toml states column, mass_kg and incline_deg"});
   }
 }
@@ -339,6 +340,13 @@ void add_outside_options(CLI::App& command, OutsideOptions& options, const std::
       ->check(CLI::Range(0.0, kMostMegabytes))
       ->needs(judged)
       ->capture_default_str();
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  if (seconds < 172800.0) return fmt::format("{:.1f} h", seconds / 3600.0);
+  return fmt::format("{:.0f} days", seconds / 86400.0);
 }
 
 }  // namespace glidelab::app

@@ -139,4 +139,7 @@ struct OutsideOptions {
 void add_outside_options(CLI::App& command, OutsideOptions& options,
                          const std::string& use = "Also judge an estimator of your own");
 
+/// "40 s", "12 min", "3.5 h", "4 days".
+std::string duration_text(double seconds);
+
 }  // namespace glidelab::app

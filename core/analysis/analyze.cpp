@@ -1,7 +1,6 @@
 #include "core/analysis/analyze.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +41,7 @@ std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folde
 Gravity gravity_of(const std::vector<Experiment>& experiments) {
   const bool stated = std::any_of(experiments.begin(), experiments.end(),
                                   [](const Experiment& experiment) { return experiment.gravity_stated; });
-  return {experiments.front().gravity_m_s2, stated ? 0.0 : kLocalGravity_sd_m_s2};
+  return stated_gravity(stated ? std::optional(experiments.front().gravity_m_s2) : std::nullopt);
 }
 
 /// Clip names that occur in one folder only are kept; the others are prefixed with their folder's name.

@@ -18,16 +18,14 @@
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/marker_body.h"
 #include "core/track/bare_track.h"
-#include "core/track/fall_direction.h"
 
 namespace glidelab::core {
 
 namespace {
 
-constexpr double kSlantedRad = 15.0 * base::kRadPerDegree;       // "X lies along the track to within a few degrees"
-constexpr double kAcrossRad = 80.0 * base::kRadPerDegree;        // off the axis along which downhill is stated
-constexpr double kSurelyAFall_rad = 80.0 * base::kRadPerDegree;  // stated inclination
-constexpr double kLeastPath = 0.5;                               // marker diameters from end to end
+constexpr double kSlantedRad = 15.0 * base::kRadPerDegree;  // "X lies along the track to within a few degrees"
+constexpr double kAcrossRad = 80.0 * base::kRadPerDegree;   // off the axis along which downhill is stated
+constexpr double kLeastPath = 0.5;                          // marker diameters from end to end
 
 struct PlanePoint {
   MarkerSighting sighting;
@@ -237,7 +235,7 @@ void count_falls_downwards(const Experiment& experiment, std::vector<TrackData>&
     if (!clip.file.empty()) continue;
     const bool has_direction = clip.launched == Launched::up || clip.launched == Launched::down;
     if (has_direction || !tracks[i].force_n.empty() || downhill_of(experiment, clip.group) ||
-        clip.incline_rad < kSurelyAFall_rad) {
+        !is_fall(clip.incline_rad) || clip.incline_rad < 0.0) {
       stated.insert(clip.group);
     }
     falls[clip.group].push_back(&tracks[i]);

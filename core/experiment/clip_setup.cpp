@@ -36,6 +36,11 @@ std::string name_of(Downhill downhill) {
   return kDownhillNames.at(static_cast<std::size_t>(downhill));
 }
 
+bool is_fall(double incline_rad) {
+  constexpr double kFall_rad = 80.0 * base::kRadPerDegree, kRounding_rad = 1e-9;
+  return std::abs(incline_rad) >= kFall_rad - kRounding_rad;
+}
+
 bool contradicts(const ClipSetup& one, const ClipSetup& other) {
   if (!one.incline_sd_rad || !other.incline_sd_rad) return false;
   const double apart = std::abs(one.incline_rad - other.incline_rad);

@@ -75,6 +75,10 @@ struct GroupSetup {
   std::optional<Downhill> downhill;
 };
 
+/// Whether a motion on this stated inclination is a fall: from 80 degrees on, sin(alpha) is known to 0.3 % if alpha is
+/// known to a degree, and the normal force is less than a sixth of the weight.
+bool is_fall(double incline_rad);
+
 inline constexpr double kSameIncline_rad = 1e-9;  ///< stated angles that differ by less are the same
 
 /// Whether two readings of one inclination are further apart than five standard deviations of their difference. A clip

@@ -23,4 +23,8 @@ double gravity_sd_m_s2(double gravity_m_s2) {
   return std::min(kLocalGravity_sd_m_s2, 0.5 * std::pow(10.0, -decimals) / std::sqrt(3.0));
 }
 
+Gravity stated_gravity(std::optional<double> m_s2) {
+  return m_s2 ? Gravity(*m_s2) : Gravity(kStandardGravity_m_s2, kLocalGravity_sd_m_s2);
+}
+
 }  // namespace glidelab::core

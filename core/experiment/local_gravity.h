@@ -1,6 +1,8 @@
 /// How well the acceleration of gravity of an experiment is known.
 #pragma once
 
+#include <optional>
+
 namespace glidelab::core {
 
 /// The standard value, which is taken where nothing is stated. It is that of no particular place.
@@ -24,5 +26,8 @@ struct Gravity {
   double m_s2;
   double sd_m_s2;
 };
+
+/// As stated, and then exact; otherwise that of a place that is not known.
+Gravity stated_gravity(std::optional<double> m_s2);
 
 }  // namespace glidelab::core

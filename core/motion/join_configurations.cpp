@@ -260,7 +260,7 @@ CombinedVariance combined(const std::vector<OfLine>& lines) {
   }
   for (const double sum : clips) of_clips.value += sum * sum;
   of_clips.value = std::max(0.0, of_clips.value - explained);
-  CombinedVariance made{widened(own, of_clips), 0.0};
+  CombinedVariance made{sum_of(own, of_clips), 0.0};
   made.total = made.random.value;
   for (const double sum : shared) made.total += sum * sum;
   return made;
@@ -283,9 +283,8 @@ Quantity mean_k(const std::vector<LineFit>& lines) {
   std::vector<double> weights;
   double sum = 0.0, value = 0.0;
   for (const LineFit& line : lines) {
-    // Without the scatter of the clips, which both directions share: of few clips it is so badly known that the mean
-    // would follow the direction in which they happen to agree. Noise-free points weigh the same.
-    weights.push_back(1.0 / std::max(line.parts.var_k + between, 1e-30));
+    // Noise-free points weigh the same.
+    weights.push_back(1.0 / std::max(random_variance(line, {1.0, 0.0}).value + between, 1e-30));
     sum += weights.back();
     value += weights.back() * line.k_over_m_1_s.value;
   }
@@ -296,7 +295,7 @@ Quantity mean_k(const std::vector<LineFit>& lines) {
     squares += weights[i] * weights[i] / (sum * sum);
   }
   const CombinedVariance variance = combined(mean);
-  const KnownVariance random = widened(variance.random, {squares * between, 1.0});
+  const KnownVariance random = sum_of(variance.random, {squares * between, 1.0});
   const double shared = variance.total - variance.random.value;
   return determined(estimate(value / sum, random, shared), std::sqrt(random.value));
 }

@@ -16,9 +16,12 @@ double student_t975(double degrees) {
   return base::student_t_quantile(degrees, 0.975);
 }
 
-KnownVariance widened(const KnownVariance& known, const KnownVariance& scatter) {
-  if (!(scatter.value > 0.0)) return known;
-  return {known.value + scatter.value, std::min(known.degrees, scatter.degrees)};
+KnownVariance sum_of(const KnownVariance& one, const KnownVariance& other) {
+  const double total = one.value + other.value;
+  const auto spread = [](const KnownVariance& of) { return of.value > 0.0 ? of.value * of.value / of.degrees : 0.0; };
+  const double per_degree = spread(one) + spread(other);
+  return {total,
+          per_degree > 0.0 ? std::max(1.0, total * total / per_degree) : std::numeric_limits<double>::infinity()};
 }
 
 Estimate estimate(double value, double sd, double degrees) {

@@ -28,10 +28,8 @@ struct KnownVariance {
 /// Student's t belongs to the first.
 Estimate estimate(double value, const KnownVariance& random, double known);
 
-/// A variance widened by a scatter: the sum, with the fewer degrees of the two wherever the scatter adds anything.
-/// (Those of Welch and Satterthwaite are those of a sum whose parts are both drawn; here the scatter is what matters
-/// where it is seen at all, and with them intervals of two clips whose K/m scatters held in 82 instead of 92 %.)
-KnownVariance widened(const KnownVariance& known, const KnownVariance& scatter);
+/// The sum of two independent ones (Welch 1947 and Satterthwaite 1946: the degrees that give it the right variance).
+KnownVariance sum_of(const KnownVariance& one, const KnownVariance& other);
 
 /// chi^2 per degree of freedom that is exceeded by chance with a probability of 0.00135, as a normal number exceeds
 /// three standard deviations (Wilson and Hilferty 1931; the probability is accurate to a tenth from 2 degrees on).

@@ -16,10 +16,11 @@
 #include "base/files/file_io.h"
 #include "base/text/csv.h"
 #include "core/experiment/file_names.h"
+#include "core/experiment/local_gravity.h"
+#include "core/math/signed_drop.h"
 #include "core/math/time_gap.h"
 #include "core/track/column_table.h"
 #include "core/track/even_times.h"
-#include "core/track/fall_direction.h"
 #include "core/track/table_columns.h"
 #include "core/track/workbook.h"
 
@@ -164,6 +165,23 @@ void check_signs(const TrackData& track, int downhill, const std::string& file, 
 }
 
 }  // namespace
+
+void count_downwards(const std::vector<TrackData*>& tracks) {
+  double drop = 0.0;
+  for (const TrackData* track : tracks) {
+    drop +=
+        track->v_m_s.empty() ? signed_drop(track->t_s, track->x_m, kStandardGravity_m_s2) : signed_speed(track->v_m_s);
+  }
+  if (!(drop < 0.0)) return;
+  for (TrackData* track : tracks) {
+    for (std::vector<double>* values : {&track->x_m, &track->v_m_s, &track->force_n}) {
+      for (double& value : *values) value = -value;
+    }
+    const std::size_t reversed_before =
+        std::erase_if(track->notes, [](const Note& note) { return std::holds_alternative<CountedAlongMotion>(note); });
+    if (reversed_before == 0) track->notes.emplace_back(CountedAlongMotion{});
+  }
+}
 
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
                        SpeedsAlone speeds) {

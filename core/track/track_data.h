@@ -63,12 +63,17 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 /// differ in length), and a note counts those that lie between others.
 ///
 /// x is multiplied by `downhill`. If that is not stated and x is a height that was not requested, x is counted
-/// downwards (fall_direction.h). InputError: no or several candidates for x, a curved path, a unit that is neither
+/// downwards (count_downwards()). InputError: no or several candidates for x, a curved path, a unit that is neither
 /// length nor time, times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than
 /// kFewestTrackPoints. A table with speeds and no positions is an InputError, or gives v_m_s; its units are m/s, cm/s,
 /// mm/s or km/h.
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
                        SpeedsAlone speeds = SpeedsAlone::refused);
+
+/// Reverses x (and the force) of all tracks if the sum of their drops (core/math/signed_drop.h) is negative, with a
+/// note in each. The tracks are of one set-up, so that one sign holds for all. Of tables of speeds, the speeds are
+/// reversed.
+void count_downwards(const std::vector<TrackData*>& tracks);
 
 /// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or a table exported
 /// by another program. x and the force are multiplied by `downhill` (+1 or -1; 1 if not stated), so that both are

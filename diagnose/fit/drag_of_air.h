@@ -21,6 +21,10 @@ namespace glidelab::diagnose {
 
 inline constexpr double kStokesDrag_n_s_m = 3.4e-5;
 
+/// The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
+/// m/s.
+inline constexpr double kMostAirAlong_masses = 10.0;
+
 /// Whether K is held at 0, to within Stokes' law, in a model with these effects.
 bool holds_drag(const TrackSet& set, const std::vector<std::size_t>& effects);
 

@@ -16,9 +16,6 @@ namespace {
 // No misfit, however large, makes a K that Stokes' law excludes, a gravity that no place on Earth has, or a slope of a
 // fall.
 constexpr double kMostStokes = 3.0, kMostGravity_sd = 3.0, kMostFall_sd = 3.0;
-// The air that moves with a disc of radius r that falls at v is 17 r/v² (m, s) times its mass: 10 for 0.15 m and 0.5
-// m/s.
-constexpr double kMostAir = 10.0;
 constexpr double kOfOneGram = 1000.0;  // what falls may weigh a gram, where 1 kg is assumed
 // A Maxwell wheel, a ring of radius R on an axle of radius r, has (R/r)² times its mass: 65 mm and 3 mm.
 constexpr double kMostWheel = 500.0;
@@ -78,7 +75,7 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter, c
   if (parameter.reach == Reach::with_mass && set.mass_assumed && only_falls(set)) range.high *= kOfOneGram;
   if (parameter.slot == slot_of(ids::rotational_inertia) && only_falls(set)) {
     const bool of_air = set.through_air && holds_drag(set, beside);
-    range.high = of_air ? std::min(range.high, kMostAir * lightest_kg(set)) : kMostWheel * heaviest_kg;
+    range.high = of_air ? std::min(range.high, kMostAirAlong_masses * lightest_kg(set)) : kMostWheel * heaviest_kg;
   }
   return range;
 }

@@ -19,7 +19,7 @@ constexpr double kNearlyAsCertain = 2.0;                       // relative error
 }  // namespace
 
 bool is_fall(const TrackGroup& group) {
-  return std::abs(group.stated_rad) >= kFall_rad - 1e-9;
+  return core::is_fall(group.stated_rad);
 }
 
 double lightest_kg(const TrackSet& set) {

@@ -86,9 +86,7 @@ struct TrackGroup {
   double x_mid_m = 0.0;                      ///< middle of the range of x
 };
 
-/// From this stated inclination upwards a motion is a fall: sin(alpha) is known to 0.3 % if alpha is known to a degree,
-/// and the normal force is less than a sixth of the weight.
-inline constexpr double kFall_rad = 80.0 * 3.14159265358979 / 180.0;
+/// core::is_fall() of the stated inclination.
 bool is_fall(const TrackGroup& group);
 
 struct TrackedClip {

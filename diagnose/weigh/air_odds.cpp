@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/gap/held_out.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kViscousOdds = 0.05, kDrivingOdds = 0.001;
-constexpr double kDecades = 9.2;                                         // ln 10^4
-constexpr double kLeastSeen = 2.0;                                       // standard deviations
-constexpr double kMostAirAlong_kg = 0.011, kMostAirAlong_masses = 10.0;  // the latter where no mass is stated
+constexpr double kDecades = 9.2;    // ln 10^4
+constexpr double kLeastSeen = 2.0;  // standard deviations
+constexpr double kMostAirAlong_kg = 0.011;
 constexpr double kDragAndWheelOdds = 0.05;  // two causes that have nothing to do with one another
 
 /// Whether the inertia of a fit is certainly larger than that of air.

@@ -15,7 +15,7 @@
 ///
 ///     8/3 rho r³ = 11 g     for r = 0.15 m and rho = 1.2 kg/m³.
 ///
-/// or, where no mass is stated, ten times the mass (fit_model.cpp).
+/// or, where no mass is stated, ten times the mass (fit/drag_of_air.h).
 ///
 /// Such an inertia beside a quadratic drag is a second cause (odds of 1/20), not the air of that drag.
 ///

@@ -312,7 +312,7 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
             x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
             force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
             bandwidth: Union[float, str, None] = None, estimator: str = DEFAULT_ESTIMATOR, robust: bool = False,
-            gravity_m_s2: float = 9.80665, allow_outside: bool = False,
+            gravity_m_s2: Optional[float] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             smoother: str = "local-polynomial", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
             with_effects: Sequence[str] = ()) -> Analysis:
@@ -339,8 +339,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
         Lines in the phase diagram as in the paper, generalised lines, or the fit of the whole motion.
     robust : bool
         With ``"trajectory"``: leave out positions that lie off the motion.
-    gravity_m_s2 : float
-        With arrays.
+    gravity_m_s2 : float, optional
+        With arrays: that of the place. If it is not stated, 9.80665, with 0.015 m/s² in the errors of alpha and mu.
     allow_outside : bool
         With a folder: whether it may name files outside itself.
     most_megapixels : float, optional

@@ -33,7 +33,8 @@ class Effect:
     joint_probability : float
         That one of the set acts.
     parameters : dict
-        ``{"force_n": {"value": ..., "sd": ...}}``
+        ``{"force_n": {"value": ..., "sd": ...}}``; with ``"at_end": True`` where the size stands at an end of the
+        range that is searched
     """
 
     id: str

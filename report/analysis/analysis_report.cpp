@@ -92,19 +92,6 @@ std::string damping_sentence(const core::AnalysisResults& results) {
       base::number_text(mean, 4), base::number_text(100.0 * widest, 2));
 }
 
-/// That the law fits, if it has determined something that differs from zero.
-std::string fits_sentence(const core::AnalysisResults& results) {
-  for (const core::ConfigurationResult& c : results.configurations) {
-    for (const auto& [name, quantity] : quantities_of(c)) {
-      if (quantity->estimate && std::abs(quantity->estimate->value) > kLeastDoubtSds * quantity->estimate->sd) {
-        return "<p>The points show no clear departure from the law (drag proportional to the speed, dry friction, "
-               "gravity); <code>glidelab diagnose</code> tests it.</p>\n";
-      }
-    }
-  }
-  return {};
-}
-
 /// Says so where not every line is straight; empty otherwise.
 std::string bent_lines_note(const core::AnalysisResults& results) {
   double worst = 1.0;
@@ -116,6 +103,20 @@ std::string bent_lines_note(const core::AnalysisResults& results) {
       "<p>Not every a(v) is a clear straight line: the lowest R² is {}. Where the residuals "
       "below show a pattern and not just scatter, the friction is not of the assumed form.</p>\n",
       base::r2_text(worst));
+}
+
+/// That the law fits, if it has determined something that differs from zero and no line is bent.
+std::string fits_sentence(const core::AnalysisResults& results) {
+  if (!bent_lines_note(results).empty()) return {};
+  for (const core::ConfigurationResult& c : results.configurations) {
+    for (const auto& [name, quantity] : quantities_of(c)) {
+      if (quantity->estimate && std::abs(quantity->estimate->value) > kLeastDoubtSds * quantity->estimate->sd) {
+        return "<p>The points show no clear departure from the law (drag proportional to the speed, dry friction, "
+               "gravity); <code>glidelab diagnose</code> tests it.</p>\n";
+      }
+    }
+  }
+  return {};
 }
 
 }  // namespace

@@ -311,8 +311,8 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::GravityAssumed& of) const {
     return fmt::format(
-        "gravity_m_s2 is not stated: µ and α are for {:.6g} m/s², and their ± contains {:.2g} m/s² ({:.2g} %) for a "
-        "place that is not known",
+        "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %), because the place is not "
+        "known. A folder can state gravity_m_s2",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
   }
   std::string operator()(const core::RobustFit& of) const {

@@ -80,14 +80,6 @@ std::string bias_words(const Certificate& certificate) {
                      std::abs(worst->bias_sds.value));
 }
 
-/// "µ", "µ and terminal velocity", "K/m, µ and α".
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
-}
-
 /// Values of one twin alone have no standard deviation.
 std::string bias_text(const CertifiedQuantity& quantity) {
   const std::string value = fmt::format("{:.2f}", quantity.bias_sds.value);
@@ -205,14 +197,15 @@ std::string narrow_words(const Certificate& certificate) {
   }
   if (names.empty()) return {};
   return fmt::format("Do not trust the intervals of {}: they hold in {} of recordings like yours, not in 95 %",
-                     joined(names), joined(shares));
+                     list_of(names), list_of(shares));
 }
 
-/// The command whose law has the cause beside the law; empty if there is none.
+/// The command whose law includes the cause; empty if there is none.
 std::string with_causes(const Certificate& certificate) {
   for (const ChangedTwin& change : certificate.changes) {
     if (change.limit != validate::TwinLimit::cause || change.causes.empty()) continue;
-    return fmt::format(" `glidelab analyze --with {}` has the cause in its law.", fmt::join(change.causes, " --with "));
+    return fmt::format(" `glidelab analyze --with {}` includes this cause in the law.",
+                       fmt::join(change.causes, " --with "));
   }
   return {};
 }

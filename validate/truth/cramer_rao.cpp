@@ -6,8 +6,8 @@
 
 #include "base/math/angles.h"
 #include "base/math/dense.h"
+#include "core/experiment/clip_setup.h"
 #include "core/result/quantity.h"
-#include "diagnose/tracks/tracked_motions.h"
 #include "sim/sensitivity/sensitivity.h"
 
 namespace glidelab::validate {
@@ -92,7 +92,7 @@ LeastSd least_sd(const TrueConfiguration& configuration, const std::vector<const
   if (!covariance) return least;
   least.k_over_m_1_s = std::sqrt((*covariance)(0, 0));
   least.v_lim_m_s = sd_of_limit(*covariance, k, drive - friction, Eigen::Vector3d(0.0, 1.0, -1.0));
-  if (std::abs(alpha) >= diagnose::kFall_rad - 1e-9) return least;
+  if (core::is_fall(alpha)) return least;
   const double level = gravity_m_s2 * std::cos(alpha);
   least.alpha_deg = std::sqrt((*covariance)(1, 1)) / level * base::kDegreesPerRad;
   least.mu = sd_of(*covariance, Eigen::Vector3d(0.0, *configuration.mu * std::tan(alpha) / level, 1.0 / level));

@@ -31,7 +31,7 @@ struct LeastSd {
 };
 
 /// `noise_sd_m` of each clip of the truth, above 0. Only k and v_lim have a bound if all motion is in one direction,
-/// and in a fall (diagnose::kFall_rad): it has hardly a normal force for mu, and its drive hardly depends on alpha.
+/// and in a fall (core::is_fall()): it has hardly a normal force for mu, and its drive hardly depends on alpha.
 std::vector<LeastSd> least_sds(const Truth& truth, const std::vector<double>& noise_sd_m, double gravity_m_s2);
 
 /// The bound of one of core::kQuantities, by its key and in its unit; empty if the motions do not determine it.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "base/math/angles.h"
 #include "core/experiment/local_gravity.h"
 #include "core/math/quantile.h"
 #include "core/motion/free/motion_events.h"
@@ -117,7 +116,6 @@ constexpr std::size_t kLeastStretchPoints = 8;
 constexpr double kLeastShareAlong =
     0.05;  // of the points against the launch: below that, motion along it does not count
 constexpr double kLeastOfLongest = 0.574;  // of the longest: 4^(-2/5), see the header
-constexpr double kFall_rad = 80.0 * base::kRadPerDegree;
 constexpr std::size_t kFewestOfFall = 24;  // of fewer points the pilot's kernel spans all of the speeding up
 constexpr double kMostGravity_m_s2 = 1.02 * kStandardGravity_m_s2;  // at any place, and a scale that is off by 1 %
 
@@ -146,9 +144,9 @@ class Finder {
         pilot_(first_smoothing(motion)),
         runs_(find_runs(motion, pilot_)),
         direction_(directions(runs_, setup)),
-        falling_(motion.forced || motion.t_s.size() < kFewestOfFall || std::abs(setup.incline_rad) < kFall_rad ? 0
-                 : setup.incline_rad > 0.0                                                                     ? 1
-                                                                                                               : -1),
+        falling_(motion.forced || motion.t_s.size() < kFewestOfFall || !is_fall(setup.incline_rad) ? 0
+                 : setup.incline_rad > 0.0                                                         ? 1
+                                                                                                   : -1),
         n_(motion.t_s.size()) {}
 
   FreeMotion find() {

@@ -274,7 +274,7 @@ KnownVariance random_variance(const LineFit& line, const LineShift& gradient) {
                      2.0 * gradient.k * gradient.a0 * parts.cov;
   double of_clips = 0.0;
   for (const LineShift& shift : parts.clips) of_clips += std::pow(gradient.k * shift.k + gradient.a0 * shift.a0, 2);
-  return widened({own, parts.degrees}, {std::max(0.0, of_clips - own), parts.clip_degrees});
+  return sum_of({own, parts.degrees}, {std::max(0.0, of_clips - own), parts.clip_degrees});
 }
 
 void complete_line(LineFit& line) {

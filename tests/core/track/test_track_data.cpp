@@ -1,11 +1,13 @@
 #include "core/track/track_data.h"
 
+#include <functional>
 #include <limits>
 #include <vector>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -25,6 +27,20 @@ std::vector<base::Issue> issues_of(std::vector<double> t_s, std::vector<double> 
 
 const std::vector<double> kTimes = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
 const std::vector<double> kPlaces = {0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
+
+TrackData track_of(double until_s, const std::function<double(double)>& x) {
+  TrackData track;
+  for (int i = 0; i * 0.01 <= until_s; ++i) {
+    track.t_s.push_back(0.01 * i);
+    track.x_m.push_back(x(0.01 * i));
+  }
+  return track;
+}
+
+TrackData reversed(TrackData track) {
+  for (double& x : track.x_m) x = -x;
+  return track;
+}
 
 }  // namespace
 
@@ -83,4 +99,32 @@ TEST_CASE("a time far away from all others is no track of numbers either") {
   CHECK(issues[0].key == "t_s[7]");
   CHECK_THAT(issues[0].found, Catch::Matchers::Contains("a gap of 999999 s"));
   CHECK_THAT(issues[0].expected, Catch::Matchers::Contains("two recordings are two clips"));
+}
+
+TEST_CASE("the tracks of a set-up share one sign, and a second reversal takes the first one's note back") {
+  TrackData fall = reversed(track_of(0.5, [](double t) { return 4.9 * t * t; }));
+  TrackData unclear = track_of(0.1, [](double t) { return 0.01 * t; });  // a hand at the end of the rail
+  const double x_m = unclear.x_m.back();
+  core::count_downwards({&fall, &unclear});
+  CHECK(fall.x_m.back() > fall.x_m.front());
+  CHECK(unclear.x_m.back() == -x_m);
+  CHECK(tests::note_of<core::CountedAlongMotion>(unclear.notes) != nullptr);
+  fall = reversed(fall);
+  core::count_downwards({&fall, &unclear});
+  CHECK(unclear.x_m.back() == x_m);
+  CHECK(tests::note_of<core::CountedAlongMotion>(unclear.notes) == nullptr);
+}
+
+TEST_CASE("speeds and forces are reversed with their track") {
+  TrackData track = track_of(0.5, [](double t) { return -0.5 * 9.81 * t * t; });
+  track.force_n.assign(track.t_s.size(), 2.0);
+  core::count_downwards({&track});
+  CHECK(track.force_n.front() == -2.0);
+  TrackData speeds;
+  for (int i = 0; i < 20; ++i) {
+    speeds.t_s.push_back(0.01 * i);
+    speeds.v_m_s.push_back(-0.1 * i);
+  }
+  core::count_downwards({&speeds});
+  CHECK(speeds.v_m_s.back() == Approx(1.9));
 }

@@ -11,6 +11,7 @@
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/verdict/diagnose.h"
+#include "diagnose/verdict/verdict_details.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 #include "tests/temp_dir.h"
@@ -132,6 +133,25 @@ TEST_CASE("a drag of falls whose mass nobody states is found for each kilogram, 
   const diagnose::DiagnosedParameter& c = diagnosis.effects.front().parameters.front();
   CHECK(std::abs(c.value - 1e3 * kC_kg_m) < 3.0 * c.sd);
   CHECK(c.sd < 0.1 * 1e3 * kC_kg_m);
+}
+
+TEST_CASE("a size at the end of its range is said to be there, and one at which an effect is absent is not") {
+  std::vector<tests::MadeLaunch> launches(3, tests::MadeLaunch{1.0, 90.0, 0.0, 0.3});
+  const std::size_t effect = diagnose::effect_index("quadratic_drag");
+  const auto at_end = [&](double c_kg_m) {
+    tests::MadeEffect drag;
+    drag.force = [c_kg_m](double, double, double v, double) { return -c_kg_m * v * std::abs(v); };
+    const tests::MadeExperiment made =
+        tests::made_experiment(launches, drag, 21, 5e-4, 36, 50.0, 0.0, 0.0, {.k_n_s_m = 0.0, .mu = 0.0});
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+    const diagnose::MotionFit fit = diagnose::fit_with_effect(
+        set, nominal, effect, diagnose::with_effect(set, nominal, effect, {std::clamp(c_kg_m, 0.0, 1.0)}, {}));
+    return diagnose::fitted_parameters(set, fit, effect, 0.0).at(0).at_end;
+  };
+  CHECK(at_end(3.1));  // a stated kilogram may have up to 1 kg/m
+  CHECK_FALSE(at_end(0.31));
+  CHECK_FALSE(at_end(-0.3));  // a drive: the drag that fits best is 0, and 0 is no size
 }
 
 TEST_CASE("a height of a table needs the inclination before it is diagnosed") {

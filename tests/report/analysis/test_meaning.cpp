@@ -111,6 +111,12 @@ TEST_CASE("the page of an analysis says first that the law fits and what the num
   const std::string many = report::analysis_report("fits", results, {}).html;
   CHECK(many.find("show no clear departure from the law") < many.find("over 3 configurations"));
   CHECK(many.find("<summary>In words</summary>") != std::string::npos);
+  // Not next to a sentence that says otherwise.
+  core::AnalysisResults bent = one_clip();
+  for (core::LineFit& line : bent.configurations[0].lines) line.r2 = 0.5;
+  const std::string doubtful = report::analysis_report("bent", bent, {}).html;
+  CHECK(doubtful.find("Not every a(v) is a clear straight line") != std::string::npos);
+  CHECK(doubtful.find("no clear departure from the law") == std::string::npos);
   // Where nothing is determined, or nothing but zero, nothing fits.
   results.configurations.resize(1);
   results.configurations[0].k_over_m_1_s = tests::known(-0.1, 9.8);

@@ -60,7 +60,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::AssumedStatements{{}, true},
        "an inclination of 0° is assumed, because neither the file nor an option states it (--incline)"},
       {core::MuFromIncline{20.0, 0.1}, "µ rests on the stated inclination, 20"},
-      {core::GravityAssumed{9.80665, 0.015}, "µ and α are for 9.80665 m/s², and their ± contains 0.015 m/s² (0.15 %)"},
+      {core::GravityAssumed{9.80665, 0.015}, "gravity of 9.80665 m/s²; their ± includes 0.015 m/s² (0.15 %)"},
       {core::AssumedMass{}, "1 kg is assumed"},
       {core::MayBeAFall{26, 5.61},
        "26 positions are taken for those in a hand; in them the body accelerates at 5.6 m/s²"},

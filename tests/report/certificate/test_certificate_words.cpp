@@ -93,7 +93,7 @@ TEST_CASE("where the terminal velocity alone has a known true value, the first l
   CHECK_FALSE(fall.holds());
   CHECK(report::certificate_answer(fall) ==
         "Do not trust the intervals of the terminal velocity: they hold in 37 % (30 to 44 %) of recordings like yours, "
-        "not in 95 %. `glidelab analyze --with quadratic_drag` has the cause in its law.");
+        "not in 95 %. `glidelab analyze --with quadratic_drag` includes this cause in the law.");
   fall.quantities[0].failed = fall.quantities[0].asked;
   CHECK(fall.empty());
   CHECK(report::certificate_answer(fall).starts_with("There is nothing to count"));

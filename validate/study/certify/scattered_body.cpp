@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "diagnose/tracks/tracked_motions.h"
+#include "core/experiment/clip_setup.h"
 #include "sim/force/law_list.h"
 
 namespace glidelab::validate {
@@ -20,7 +20,7 @@ double quadratic_kg_m(const sim::ForceTerm& term, const sim::Contact& contact) {
 }  // namespace
 
 bool falls(const sim::Body& body) {
-  return std::abs(body.incline_rad) >= diagnose::kFall_rad - 1e-9;
+  return core::is_fall(body.incline_rad);
 }
 
 sim::Body scattered(sim::Body body, ClipScatter by) {

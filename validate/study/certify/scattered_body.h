@@ -14,7 +14,7 @@ struct ClipScatter {
   double drag = 0.0;           ///< relative to K: positive is less drag
 };
 
-/// Whether the body has no normal force to speak of: from diagnose::kFall_rad upwards.
+/// Whether the body has no normal force to speak of: core::is_fall() of its inclination.
 bool falls(const sim::Body& body);
 
 /// The inclination's part is a constant force. The friction's part changes mu, which does not fall below 0; a body

@@ -8,11 +8,13 @@
 /// calibration, the cheapest first: kLeastRendered times, then twice as often, up to `runs` times, until the limits of
 /// the error (of the better estimator) are on one side of the target. The first that reaches it is rendered `runs`
 /// times: it is the one to buy, and nothing more expensive is rendered. The confidence of the limits is such that all
-/// looks together err with at most 5 %; two runs then decide if the errors are ten times smaller than allowed, and four
-/// runs if they are four times smaller. The up to `track_runs` runs as tracks have that noise; they are made because a
-/// bound does not include dropped frames: if fewer than kRunsForQuantile rendered runs reach what the tracks miss, or
-/// if the limits span the target, the point is undecided. Without rendering, the tracks alone judge. If nothing is run,
-/// a bound below the target by kClearMargin is said to have room.
+/// looks at one point together err with at most 5 %. (That holds for a point, not for the search: of k cheaper points
+/// that just miss the target, one is taken with a probability of up to 1 - 0.95^k.) Two runs then decide if the errors
+/// are ten times smaller than allowed, and four runs if they are four times smaller. The up to `track_runs` runs as
+/// tracks have that noise; they are made because a bound does not include dropped frames: if fewer than
+/// kRunsForQuantile rendered runs reach what the tracks miss, or if the limits span the target, the point is undecided.
+/// Without rendering, the tracks alone judge. If nothing is run, a bound below the target by kClearMargin is said to
+/// have room.
 #pragma once
 
 #include <cstdint>

@@ -9,15 +9,12 @@
 
 #include <vector>
 
-#include "core/track/track_data.h"
-
 namespace glidelab::core {
 
-/// How far the body falls, in m; negative if x decreases on the way down. Of speeds, which way they point, in m/s.
-double signed_drop(const TrackData& track);
+/// How far the body falls, in m; negative if x decreases on the way down.
+double signed_drop(const std::vector<double>& t_s, const std::vector<double>& x_m, double gravity_m_s2);
 
-/// Reverses x (and the force) of all tracks if the sum of their drops is negative, with a note in each. The tracks are
-/// of one set-up, so that one sign holds for all.
-void count_downwards(const std::vector<TrackData*>& tracks);
+/// The direction of these speeds as a sum, in m/s; if the body turns, that of their change.
+double signed_speed(const std::vector<double>& v_m_s);
 
 }  // namespace glidelab::core
