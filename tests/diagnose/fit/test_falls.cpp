@@ -136,7 +136,7 @@ TEST_CASE("a drag of falls whose mass nobody states is found for each kilogram, 
 }
 
 TEST_CASE("a size at the end of its range is said to be there, and one at which an effect is absent is not") {
-  std::vector<tests::MadeLaunch> launches(3, tests::MadeLaunch{1.0, 90.0, 0.0, 0.3});
+  std::vector<tests::MadeLaunch> launches(3, tests::MadeLaunch{1.0, 0.0, 0.0, 2.5});
   const std::size_t effect = diagnose::effect_index("quadratic_drag");
   const auto at_end = [&](double c_kg_m) {
     tests::MadeEffect drag;
