@@ -126,8 +126,14 @@ std::string share_text(double share, const std::optional<diagnose::GapInterval>&
   if (is_trifle && std::max(std::abs(interval->low), std::abs(interval->high)) < kNearEnd) {
     return "less than 0.1 %";
   }
+  constexpr double kTenth = 1e-3;  // a tenth of a percent
+  if (interval && interval->low > 1.0 - kTenth && share < 1.0 && share > 1.0 - kTenth &&
+      interval->high < 1.0 + kTenth) {
+    return "over 99.9 %";
+  }
   const bool near_end = share < kNearEnd || share > 1.0 - kNearEnd;
-  const int decimals = near_end && std::abs(share) >= kNothing && std::abs(share - 1.0) >= kNothing ? 1 : 0;
+  const bool is_end = std::abs(share) < kNothing || std::abs(share - 1.0) < kNothing;
+  const int decimals = near_end && (interval || !is_end) ? 1 : 0;
   std::string text = fmt::format("{:.{}f} %", kPercent * share, decimals);
   if (interval) {
     text +=
