@@ -10,7 +10,7 @@
 #include "base/long_work.h"
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/causes/cause_sequence.h"
-#include "diagnose/causes/parameter_prior.h"
+#include "diagnose/causes/explanation_profile.h"
 #include "diagnose/causes/remainder.h"
 #include "diagnose/causes/spread_prior.h"
 #include "diagnose/effects/effect_library.h"
@@ -19,7 +19,6 @@
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/air_odds.h"
-#include "diagnose/weigh/unknown_noise.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -33,61 +32,7 @@ constexpr double kNearlyAsLikely = 0.1;       // relative to the probability of 
 constexpr std::size_t kMostBeside = 8;        // explanations beside which a function without a name is weighed
 constexpr std::size_t kWithScatter = 3;       // laws that are weighed together with clip scatter
 constexpr double kMuchLeft = 0.1;             // of the excess: a law that leaves less needs no clip scatter beside it
-constexpr int kMostSettling = 3;              // fits of an explanation beside its own remainder
-constexpr double kSettledEvidence = 0.5;      // log evidence: a smaller change decides nothing
 constexpr double kNotWeighed = 1e3;           // log evidence by which an explanation without a fit is behind
-
-struct Profile {
-  RemainderSpace::Best best;
-  double chi2 = 0.0;
-  double log_evidence = -std::numeric_limits<double>::infinity();
-};
-
-Profile profile_of(const TrackSet& set, const MotionFit& noise_alone, const RemainderSizes* start,
-                   const RemainderExtra* extra = nullptr) {
-  Profile profile;
-  if (!std::isfinite(noise_alone.cost)) return profile;
-  const RemainderSpace space(set, noise_alone, extra);
-  profile.best = space.likeliest(start);
-  profile.chi2 = space.chi2(profile.best.sizes);
-  profile.log_evidence = profile.best.log_likelihood + log_prior(set, noise_alone, space.solve(profile.best.sizes));
-  return profile;
-}
-
-/// A fit and its remainder.
-struct Settled {
-  MotionFit noise_alone;
-  Profile profile;
-};
-
-/// An explanation at the minimum under its own remainder. The likelihood of a remainder is that of the linear
-/// neighbourhood of a fit. A fit by the noise alone, or by the remainder of another explanation, may lie so far from
-/// the minimum that the linear model promises what the motion cannot do, or hides what it can: the evidence of two
-/// explanations would then differ by where their fits happen to stand.
-Settled settled(const TrackSet& set, MotionFit from, const RemainderSizes& start) {
-  Settled here{linearise_again(set, from), {}};
-  here.profile = profile_of(set, here.noise_alone, &start);
-  for (int round = 0; round < kMostSettling && std::isfinite(here.profile.log_evidence); ++round) {
-    TrackSet with = set;
-    add_remainder(here.noise_alone, here.profile.best.sizes, with);
-    const MotionFit& at = here.noise_alone;
-    const MotionFit anew = fit_motions(with, at.effects, at.at, at.late);
-    if (!std::isfinite(anew.cost)) break;
-    Settled next{linearise_again(set, anew), {}};
-    next.profile = profile_of(set, next.noise_alone, &here.profile.best.sizes);
-    if (!std::isfinite(next.profile.log_evidence)) break;
-    const double change = std::abs(next.profile.log_evidence - here.profile.log_evidence);
-    here = std::move(next);
-    if (change < kSettledEvidence) break;
-  }
-  return here;
-}
-
-/// Takes off what a gain over the nominal model's chi² is worth less where few positions show the noise.
-void allow_for_unknown_noise(const TrackSet& set, const Profile& nominal, Profile& profile) {
-  const double gain = 0.5 * (nominal.chi2 - profile.chi2);
-  profile.log_evidence -= lost_to_unknown_noise(few_positions(set), nominal.chi2, gain);
-}
 
 /// The columns of a family in units of the noise alone: undoes the part of the whitening that the remainder caused.
 RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
@@ -247,192 +192,287 @@ std::optional<double> excess_without_drag(const TrackSet& set, double nominal) {
   return std::max(nominal, held_out_excess(no_drag, fit_nominal(no_drag)));
 }
 
-}  // namespace
-
-WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
-                           const ImageEvidence* images, const std::function<void(double)>& done) {
-  // The remainder of the best explanation so far.
-  std::vector<int> tried{0};
+/// Indices of the likeliest fits by the noise alone, the nominal one first.
+std::vector<std::size_t> likeliest_fits(const Comparison& first) {
+  std::vector<std::size_t> fits{0};
   std::vector<Hypothesis> by_evidence = first.all;
   std::sort(by_evidence.begin(), by_evidence.end(),
             [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
   for (const Hypothesis& one : by_evidence) {
-    if (one.fit <= 0 || tried.size() >= kFirst) continue;
-    if (std::find(tried.begin(), tried.end(), one.fit) == tried.end()) tried.push_back(one.fit);
+    if (one.fit <= 0 || fits.size() >= kFirst) continue;
+    const auto fit = static_cast<std::size_t>(one.fit);
+    if (std::find(fits.begin(), fits.end(), fit) == fits.end()) fits.push_back(fit);
   }
+  return fits;
+}
+
+/// Laws that are fitted together with clip scatter.
+struct LawWithScatter {
+  Hypothesis law;
+  MotionFit both;
+  double chi2_without = 0.0;  ///< of the one of the two that is the simpler, by the noise alone
+};
+
+/// One weighing: what its steps share, and the steps in the order in which run() takes them.
+class CauseWeighing {
+ public:
+  CauseWeighing(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs)
+      : set_(set),
+        first_(first),
+        without_(without),
+        jobs_(jobs),
+        searched_(held_out_excess(set, first.fits.front()) < kLargestExcess) {
+    weighed_.set = set;
+  }
+
+  WeighedCauses run(const ImageEvidence* images, const std::function<void(double)>& done) {
+    count_first_remainder_as_noise();
+    done(0.2);
+    compare_again(images, done);
+    profile_each();
+    measure_excess();
+    done(0.9);
+    take_own_evidence();
+    if (searched_ && !without_.contains(scatter_)) add_laws_with_clip_scatter();
+    add_functions_without_name();
+    weigh_beside_remainder(excess_, comparison());
+    done(1.0);
+    return finished();
+  }
+
+ private:
+  Comparison& comparison() { return weighed_.comparison; }
+  double evidence_of_nominal() const { return profiles_.front().log_evidence; }
+  bool is_weighed(int fit) const {
+    return fit >= 0 && std::isfinite(profiles_[static_cast<std::size_t>(fit)].log_evidence);
+  }
+  const RemainderSizes& sizes_of(const Hypothesis& one) const {
+    return profiles_[static_cast<std::size_t>(one.fit)].best.sizes;
+  }
+
+  void count_first_remainder_as_noise();
+  void compare_again(const ImageEvidence* images, const std::function<void(double)>& done);
+  void profile_each();
+  void measure_excess();
+  void take_own_evidence();
+  void add_laws_with_clip_scatter();
+  std::vector<LawWithScatter> scatter_beside(const std::vector<Hypothesis>& laws) const;
+  std::vector<LawWithScatter> beside_scatter_alone(const std::vector<Hypothesis>& laws);
+  void add(LawWithScatter with, Settled settled);
+  void add_functions_without_name();
+  WeighedCauses finished();
+
+  const std::size_t scatter_ = effect_index(ids::clip_scatter);
+  const TrackSet& set_;      // the noise alone
+  const Comparison& first_;  // by the noise alone
+  const std::set<std::size_t>& without_;
+  const int jobs_;
+  const bool searched_;  // beside a huge gap the noise is negligible, and a remainder would not change what is found
+  WeighedCauses weighed_;
+  RemainderSizes first_remainder_;
+  std::set<int> likeliest_before_;      // fits that are weighed because they are likeliest by the noise alone
+  std::vector<std::size_t> worth_;      // fits that get a remainder of their own
+  std::vector<MotionFit> noise_alone_;  // of each fit of the comparison, as the next two
+  std::vector<Profile> profiles_;
+  LeftExcess excess_;
+};
+
+/// The remainder of the best explanation so far becomes noise of the motions.
+void CauseWeighing::count_first_remainder_as_noise() {
+  const std::vector<std::size_t> tried = likeliest_fits(first_);
   std::vector<Profile> profiles(tried.size());
-  base::for_each_parallel(tried.size(), jobs, [&](std::size_t i) {
-    profiles[i] = profile_of(set, first.fits[static_cast<std::size_t>(tried[i])], nullptr);
-  });
+  base::for_each_parallel(tried.size(), jobs_,
+                          [&](std::size_t i) { profiles[i] = profile_of(set_, first_.fits[tried[i]], nullptr); });
   const auto best = std::max_element(profiles.begin(), profiles.end(), [](const Profile& a, const Profile& b) {
     return a.log_evidence < b.log_evidence;
   });
-  const MotionFit& best_fit =
-      first.fits[static_cast<std::size_t>(tried[static_cast<std::size_t>(best - profiles.begin())])];
-  WeighedCauses weighed;
-  weighed.set = set;
-  const RemainderSizes sizes = best->best.sizes;
-  add_remainder(best_fit, sizes, weighed.set);
-  done(0.2);
+  first_remainder_ = best->best.sizes;
+  add_remainder(first_.fits[tried[static_cast<std::size_t>(best - profiles.begin())]], first_remainder_, weighed_.set);
+}
 
-  Comparison& comparison = weighed.comparison;
-  const MotionFit& nominal = first.fits.front();
-  const bool searched = held_out_excess(set, nominal) < kLargestExcess;
-  if (!searched) {
-    // Beside such a gap the noise is negligible, and a remainder would not change what is found.
-    comparison = first;
-    base::for_each_parallel(comparison.fits.size(), jobs, [&](std::size_t f) {
-      comparison.fits[f] = linearise_again(weighed.set, comparison.fits[f]);
-    });
+/// The explanations of the motions with that remainder, and those that are likeliest by the noise alone.
+void CauseWeighing::compare_again(const ImageEvidence* images, const std::function<void(double)>& done) {
+  if (searched_) {
+    const std::vector<std::size_t> left_out(without_.begin(), without_.end());
+    comparison() =
+        compare_hypotheses(weighed_.set, left_out, jobs_, images, [&](double part) { done(0.2 + 0.5 * part); });
   } else {
-    const std::vector<std::size_t> left_out(without.begin(), without.end());
-    comparison = compare_hypotheses(weighed.set, left_out, jobs, images, [&](double part) { done(0.2 + 0.5 * part); });
+    comparison() = first_;
+    base::for_each_parallel(comparison().fits.size(), jobs_, [&](std::size_t f) {
+      comparison().fits[f] = linearise_again(weighed_.set, comparison().fits[f]);
+    });
   }
-  const std::set<int> also = add_likeliest_of(first, comparison);
+  likeliest_before_ = add_likeliest_of(first_, comparison());
+}
 
-  // Each fit gets a remainder of its own.
-  std::vector<MotionFit> noise_alone(comparison.fits.size());
-  profiles.assign(comparison.fits.size(), {});
-  std::vector<std::size_t> worth = worth_profiling(set, comparison);
-  for (const int fit : also) {
+/// A remainder of its own for each explanation that is worth it.
+void CauseWeighing::profile_each() {
+  noise_alone_.resize(comparison().fits.size());
+  profiles_.resize(comparison().fits.size());
+  worth_ = worth_profiling(set_, comparison());
+  for (const int fit : likeliest_before_) {
     const auto f = static_cast<std::size_t>(fit);
-    if (std::find(worth.begin(), worth.end(), f) == worth.end()) worth.push_back(f);
+    if (std::find(worth_.begin(), worth_.end(), f) == worth_.end()) worth_.push_back(f);
   }
-  LeftExcess excess;
-  excess.of_fits.assign(comparison.fits.size(), std::numeric_limits<double>::quiet_NaN());
-  base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
-    const std::size_t f = worth[k];
-    if (!searched) {
-      noise_alone[f] = linearise_again(set, comparison.fits[f]);
-      profiles[f] = profile_of(set, noise_alone[f], &sizes);
+  base::for_each_parallel(worth_.size(), jobs_, [&](std::size_t k) {
+    const std::size_t f = worth_[k];
+    if (!searched_) {
+      noise_alone_[f] = linearise_again(set_, comparison().fits[f]);
+      profiles_[f] = profile_of(set_, noise_alone_[f], &first_remainder_);
       return;
     }
-    Settled own = settled(set, comparison.fits[f], sizes);
-    noise_alone[f] = std::move(own.noise_alone);
-    profiles[f] = std::move(own.profile);
+    Settled own = settled(set_, comparison().fits[f], first_remainder_);
+    noise_alone_[f] = std::move(own.noise_alone);
+    profiles_[f] = std::move(own.profile);
   });
-  base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {
-    const std::size_t f = worth[k];
-    if (!std::isfinite(noise_alone[f].cost)) return;
-    // A fit by the noise alone differs from one with a remainder. The one that leaves less counts.
-    excess.of_fits[f] = held_out_excess(set, noise_alone[f]);
-    if (f == 0 || !searched || also.contains(static_cast<int>(f))) return;
-    const MotionFit anew = fit_motions(set, comparison.fits[f].effects, comparison.fits[f].at, comparison.fits[f].late);
-    if (std::isfinite(anew.cost)) {
-      excess.of_fits[f] = std::min(excess.of_fits[f], held_out_excess(set, anew));
-    }
+  for (const std::size_t f : worth_) allow_for_unknown_noise(set_, profiles_.front(), profiles_[f]);
+}
+
+/// What each explanation leaves of the gap. A fit by the noise alone differs from one with a remainder: the one that
+/// leaves less counts.
+void CauseWeighing::measure_excess() {
+  excess_.of_fits.assign(comparison().fits.size(), std::numeric_limits<double>::quiet_NaN());
+  base::for_each_parallel(worth_.size(), jobs_, [&](std::size_t k) {
+    const std::size_t f = worth_[k];
+    if (!std::isfinite(noise_alone_[f].cost)) return;
+    double& of_fit = excess_.of_fits[f];
+    of_fit = held_out_excess(set_, noise_alone_[f]);
+    if (f == 0 || !searched_ || likeliest_before_.contains(static_cast<int>(f))) return;
+    const MotionFit& with = comparison().fits[f];
+    const MotionFit anew = fit_motions(set_, with.effects, with.at, with.late);
+    if (std::isfinite(anew.cost)) of_fit = std::min(of_fit, held_out_excess(set_, anew));
   });
-  for (const std::size_t f : worth) allow_for_unknown_noise(set, profiles.front(), profiles[f]);
-  done(0.9);
-  // Functions without a name alone and beside the likeliest explanations, each with a remainder of its own. Those of
-  // the search stand beside what was best with the common remainder, so they are not comparable.
-  std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed && one.fit > 0; });
-  const double nothing = profiles.front().log_evidence;
-  for (Hypothesis& one : comparison.all) {
-    const int fit = one.fit >= 0 ? one.fit : one.effects.empty() ? 0 : -1;
-    const Hypothesis* pure = fit >= 0 ? pure_of(comparison, fit) : nullptr;
+  excess_.of_unnamed = unnamed_excess(set_, first_);
+  excess_.without_drag = excess_without_drag(set_, excess_.of_fits.front());
+}
+
+/// Log evidences beside each explanation's own remainder, over that of the nominal model. Functions without a name that
+/// the search found are dropped: they stand beside what was best with the common remainder.
+void CauseWeighing::take_own_evidence() {
+  std::vector<Hypothesis>& all = comparison().all;
+  std::erase_if(all, [](const Hypothesis& one) { return one.unnamed && one.fit > 0; });
+  const auto fit_of = [](const Hypothesis& one) { return one.fit >= 0 ? one.fit : one.effects.empty() ? 0 : -1; };
+  for (Hypothesis& one : all) {
+    const Hypothesis* pure = fit_of(one) >= 0 ? pure_of(comparison(), fit_of(one)) : nullptr;
     one.unnamed_log_evidence = pure != nullptr && !one.unnamed ? one.log_evidence - pure->log_evidence : 0.0;
   }
-  for (Hypothesis& one : comparison.all) {
-    const int fit = one.fit >= 0 ? one.fit : one.effects.empty() ? 0 : -1;
-    const double profile = fit < 0 ? 0.0 : profiles[static_cast<std::size_t>(fit)].log_evidence;
-    one.log_evidence = fit < 0 || one.unnamed || !std::isfinite(profile)
-                           ? -kNotWeighed
-                           : profile - nothing + std::exchange(one.unnamed_log_evidence, 0.0);
+  for (Hypothesis& one : all) {
+    const bool known = !one.unnamed && is_weighed(fit_of(one));
+    one.log_evidence = known ? profiles_[static_cast<std::size_t>(fit_of(one))].log_evidence - evidence_of_nominal() +
+                                   std::exchange(one.unnamed_log_evidence, 0.0)
+                             : -kNotWeighed;
   }
-  std::erase_if(comparison.all, [](const Hypothesis& one) { return one.unnamed; });
-  excess.of_unnamed = unnamed_excess(set, first);
-  excess.without_drag = excess_without_drag(set, excess.of_fits.front());
-  set_air_odds(weighed.set, comparison);
-  if (const std::size_t scatter = effect_index(ids::clip_scatter); searched && !without.contains(scatter)) {
-    std::vector<Hypothesis> laws = laws_that_leave_much(comparison, excess);
-    const auto by_noise = [&](std::size_t fit) {  // the weighed fits stand at the minimum beside their remainder
-      const MotionFit& of = noise_alone[fit];
-      return fit_motions(set, of.effects, of.at, of.late);
-    };
-    std::vector<std::optional<MotionFit>> pairs(laws.size());
-    std::vector<double> without_it(laws.size());  // chi² of each law by the noise alone
-    base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
-      const MotionFit law = by_noise(static_cast<std::size_t>(laws[k].fit));
-      without_it[k] = law.cost;
-      if (std::isfinite(law.cost)) pairs[k] = with_clip_scatter(set, law);
-    });
-    // Where clips scatter most of all, the law shows beside the scatter alone.
-    const Hypothesis* alone = find(comparison, {scatter});
-    const auto is_weighed = [&](int fit) {
-      return fit >= 0 && std::isfinite(profiles[static_cast<std::size_t>(fit)].log_evidence);
-    };
-    if (alone != nullptr && is_weighed(alone->fit)) {
-      const auto fit = static_cast<std::size_t>(alone->fit);
-      std::set<std::size_t> others = without;
-      for (const Hypothesis& law : laws) others.insert(law.effects.front());
-      const MotionFit clips = by_noise(fit);
-      for (MotionFit& pair : laws_beside_scatter(set, clips, profiles[fit].best.sizes, others)) {
-        laws.push_back(*alone);
-        laws.back().effects = {pair.effects.back()};
-        pairs.emplace_back(std::move(pair));
-        without_it.push_back(clips.cost);
-      }
-    }
-    std::vector<std::optional<Settled>> found(laws.size());
-    base::for_each_parallel(laws.size(), jobs, [&](std::size_t k) {
-      if (pairs[k]) found[k] = settled(set, *pairs[k], profiles[static_cast<std::size_t>(laws[k].fit)].best.sizes);
-    });
-    for (std::size_t k = 0; k < laws.size(); ++k) {
-      if (!found[k]) continue;
-      const std::size_t fit = comparison.fits.size();
-      excess.of_fits.push_back(std::min(held_out_excess(set, *pairs[k]), held_out_excess(set, found[k]->noise_alone)));
-      noise_alone.push_back(std::move(found[k]->noise_alone));
-      profiles.push_back(std::move(found[k]->profile));
-      allow_for_unknown_noise(set, profiles.front(), profiles.back());
-      comparison.fits.push_back(linearise_again(weighed.set, *pairs[k]));
-      worth.push_back(fit);
-      Hypothesis both = laws[k];
-      both.effects.push_back(scatter);
-      both.fit = static_cast<int>(fit);
-      both.converged = pairs[k]->converged;
-      both.gain += std::max(0.0, 0.5 * (without_it[k] - pairs[k]->cost));
-      both.log_evidence =
-          std::isfinite(profiles[fit].log_evidence) ? profiles[fit].log_evidence - nothing : -kNotWeighed;
-      std::erase_if(comparison.all, [&](const Hypothesis& one) {
-        return std::set(one.effects.begin(), one.effects.end()) == std::set(both.effects.begin(), both.effects.end());
-      });
-      comparison.all.push_back(std::move(both));
-    }
-    set_air_odds(weighed.set, comparison);  // of the fits that were added
+  std::erase_if(all, [](const Hypothesis& one) { return one.unnamed; });
+  set_air_odds(weighed_.set, comparison());
+}
+
+/// The likeliest laws that leave much of the gap, each together with clip scatter.
+void CauseWeighing::add_laws_with_clip_scatter() {
+  const std::vector<Hypothesis> laws = laws_that_leave_much(comparison(), excess_);
+  std::vector<LawWithScatter> pairs = scatter_beside(laws);
+  for (LawWithScatter& pair : beside_scatter_alone(laws)) pairs.push_back(std::move(pair));
+  std::vector<Settled> found(pairs.size());
+  base::for_each_parallel(pairs.size(), jobs_,
+                          [&](std::size_t k) { found[k] = settled(set_, pairs[k].both, sizes_of(pairs[k].law)); });
+  for (std::size_t k = 0; k < pairs.size(); ++k) add(std::move(pairs[k]), std::move(found[k]));
+  set_air_odds(weighed_.set, comparison());  // of the fits that were added
+}
+
+/// A weighed fit at its minimum by the noise alone; it stands at the one beside its remainder.
+MotionFit by_noise(const TrackSet& set, const MotionFit& of) {
+  return fit_motions(set, of.effects, of.at, of.late);
+}
+
+std::vector<LawWithScatter> CauseWeighing::scatter_beside(const std::vector<Hypothesis>& laws) const {
+  std::vector<std::optional<LawWithScatter>> found(laws.size());
+  base::for_each_parallel(laws.size(), jobs_, [&](std::size_t k) {
+    const MotionFit law = by_noise(set_, noise_alone_[static_cast<std::size_t>(laws[k].fit)]);
+    if (!std::isfinite(law.cost)) return;
+    if (std::optional<MotionFit> both = with_clip_scatter(set_, law)) found[k] = {laws[k], std::move(*both), law.cost};
+  });
+  std::vector<LawWithScatter> pairs;
+  for (std::optional<LawWithScatter>& one : found) {
+    if (one) pairs.push_back(std::move(*one));
   }
-  const std::vector<Hypothesis> leaders = beside(comparison, excess);
+  return pairs;
+}
+
+/// Where clips scatter most of all, other laws than `laws` show beside the scatter alone.
+std::vector<LawWithScatter> CauseWeighing::beside_scatter_alone(const std::vector<Hypothesis>& laws) {
+  const Hypothesis* alone = find(comparison(), {scatter_});
+  if (alone == nullptr || !is_weighed(alone->fit)) return {};
+  std::set<std::size_t> others = without_;
+  for (const Hypothesis& law : laws) others.insert(law.effects.front());
+  const MotionFit clips = by_noise(set_, noise_alone_[static_cast<std::size_t>(alone->fit)]);
+  std::vector<LawWithScatter> pairs;
+  for (MotionFit& both : laws_beside_scatter(set_, clips, sizes_of(*alone), others)) {
+    Hypothesis law = *alone;
+    law.effects = {both.effects.back()};
+    pairs.push_back({std::move(law), std::move(both), clips.cost});
+  }
+  return pairs;
+}
+
+/// Adds a law with clip scatter to the comparison, in place of what it has for the same effects.
+void CauseWeighing::add(LawWithScatter with, Settled settled) {
+  excess_.of_fits.push_back(std::min(held_out_excess(set_, with.both), held_out_excess(set_, settled.noise_alone)));
+  noise_alone_.push_back(std::move(settled.noise_alone));
+  profiles_.push_back(std::move(settled.profile));
+  allow_for_unknown_noise(set_, profiles_.front(), profiles_.back());
+  const auto fit = static_cast<int>(comparison().fits.size());
+  comparison().fits.push_back(linearise_again(weighed_.set, with.both));
+  worth_.push_back(static_cast<std::size_t>(fit));
+  Hypothesis both = std::move(with.law);
+  both.effects.push_back(scatter_);
+  both.fit = fit;
+  both.converged = with.both.converged;
+  both.gain += std::max(0.0, 0.5 * (with.chi2_without - with.both.cost));
+  both.log_evidence = is_weighed(fit) ? profiles_.back().log_evidence - evidence_of_nominal() : -kNotWeighed;
+  std::erase_if(comparison().all, [&](const Hypothesis& one) {
+    return std::set(one.effects.begin(), one.effects.end()) == std::set(both.effects.begin(), both.effects.end());
+  });
+  comparison().all.push_back(std::move(both));
+}
+
+/// Functions without a name alone and beside the likeliest explanations, each with a remainder of its own.
+void CauseWeighing::add_functions_without_name() {
+  const std::vector<Hypothesis> leaders = beside(comparison(), excess_);
   std::vector<std::vector<UnnamedFamily>> found(leaders.size());
   std::vector<std::optional<double>> logs(leaders.size());
-  base::for_each_parallel(leaders.size(), jobs, [&](std::size_t k) {
+  base::for_each_parallel(leaders.size(), jobs_, [&](std::size_t k) {
     const auto fit = static_cast<std::size_t>(leaders[k].fit);
-    found[k] = fit == 0 ? comparison.unnamed : unnamed_families(ScoreSpace(weighed.set, comparison.fits[fit]));
-    logs[k] = unnamed_profile(set, weighed.set, profiles.front(), noise_alone[fit], found[k], profiles[fit].best.sizes);
+    found[k] = fit == 0 ? comparison().unnamed : unnamed_families(ScoreSpace(weighed_.set, comparison().fits[fit]));
+    logs[k] = unnamed_profile(set_, weighed_.set, profiles_.front(), noise_alone_[fit], found[k], sizes_of(leaders[k]));
   });
   for (std::size_t k = 0; k < leaders.size(); ++k) {
-    const Hypothesis& named = leaders[k];
-    const auto fit = static_cast<std::size_t>(named.fit);
-    const std::optional<double>& log = logs[k];
-    if (!log) continue;
-    Hypothesis both = named;
+    if (!logs[k]) continue;
+    Hypothesis both = leaders[k];
     both.unnamed = true;
-    both.unnamed_log_evidence = *log - profiles[fit].log_evidence;
-    both.log_evidence = *log - nothing;
-    comparison.all.push_back(both);
-    if (fit > 0 && comparison.beside_fit == 0) {
-      comparison.beside_fit = comparison.left_fit = named.fit;
-      comparison.unnamed_left = std::move(found[k]);
+    both.unnamed_log_evidence = *logs[k] - profiles_[static_cast<std::size_t>(both.fit)].log_evidence;
+    both.log_evidence = *logs[k] - evidence_of_nominal();
+    if (both.fit > 0 && comparison().beside_fit == 0) {
+      comparison().beside_fit = comparison().left_fit = both.fit;
+      comparison().unnamed_left = std::move(found[k]);
+    }
+    comparison().all.push_back(std::move(both));
+  }
+}
+
+WeighedCauses CauseWeighing::finished() {
+  weighed_.fits.resize(comparison().fits.size());
+  for (const std::size_t f : worth_) {
+    if (std::isfinite(profiles_[f].log_evidence)) {
+      weighed_.fits[f] = WeighedFit{std::move(noise_alone_[f]), profiles_[f].best.sizes};
     }
   }
-  weigh_beside_remainder(excess, comparison);
-  weighed.fits.resize(comparison.fits.size());
-  for (const std::size_t f : worth) {
-    if (std::isfinite(profiles[f].log_evidence)) {
-      weighed.fits[f] = WeighedFit{std::move(noise_alone[f]), profiles[f].best.sizes};
-    }
-  }
-  done(1.0);
-  return weighed;
+  return std::move(weighed_);
+}
+
+}  // namespace
+
+WeighedCauses weigh_causes(const TrackSet& set, const Comparison& first, const std::set<std::size_t>& without, int jobs,
+                           const ImageEvidence* images, const std::function<void(double)>& done) {
+  return CauseWeighing(set, first, without, jobs).run(images, done);
 }
 
 void allow_for_remainders(const TrackSet& set, const std::set<std::size_t>& without, int jobs, Comparison& comparison) {

@@ -17,10 +17,10 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/nominal_fit.h"
-#include "diagnose/gap/size_uncertainty.h"
 #include "diagnose/tracks/rounded_positions.h"
-#include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
+#include "diagnose/verdict/likely_explanations.h"
+#include "diagnose/verdict/named_explanation.h"
 #include "diagnose/verdict/probabilities_by_share.h"
 #include "diagnose/verdict/verdict.h"
 #include "diagnose/verdict/verdict_details.h"
@@ -33,8 +33,7 @@ constexpr double kLeastDoubt =
     0.05;  // probability of none or unknown, above which names by the noise alone are in doubt
 constexpr double kMostOfOneClip = 0.999;  // the highest probability that one clip can support
 
-constexpr double kLeastNamed = 0.1;       // of the excess: a smaller share counts as part of the remainder
-constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
+constexpr double kLeastNamed = 0.1;        // of the excess: a smaller share counts as part of the remainder
 constexpr double kLeastMeasuredGap = 0.5;  // a gap below which the assumed noise is not that of the positions
 constexpr double kOpenSize = 0.25;    // the least probability of an unknown cause beside a name without a certain size
 constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
@@ -43,11 +42,6 @@ double probability_of_scatter(const Comparison& comparison) {
   double sum = 0.0;
   for (const Hypothesis& one : comparison.all) sum += is_scatter_alone(one) ? one.probability : 0.0;
   return sum;
-}
-
-bool shows_in_images(const Hypothesis& best) {
-  return std::any_of(best.effects.begin(), best.effects.end(),
-                     [](std::size_t e) { return effect_list()[e].search == Search::images; });
 }
 
 /// With an unknown cause, the causes that help and together take less than half of the excess. A cause that would take
@@ -96,21 +90,6 @@ void order_by_share(bool drag_first, Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
-/// The probability of an effect of an explanation or of one that the data cannot tell from it.
-double probability_of(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
-  std::vector<std::size_t> any = not_told_apart(comparison, best, effect, filmed);
-  any.push_back(effect);
-  return probability_of_any(comparison, any);
-}
-
-/// Whether the likeliest effect of an explanation, together with those that the data cannot tell from it, is likelier
-/// than not. A name that is less likely is no answer.
-bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
-  return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
-    return probability_of(comparison, best, e, set.images) >= kLikelierThanNot;
-  });
-}
-
 /// A fit that counts its own remainder as noise, the motions with that noise, and the remainder.
 struct Sized {
   TrackSet set;
@@ -126,113 +105,6 @@ Sized sized_of(const TrackSet& set, const MotionFit& named) {
   sized.fit = fit_motions(sized.set, named.effects, named.at, named.late);
   if (!std::isfinite(sized.fit.cost)) sized.fit = linearise_again(sized.set, named);
   return sized;
-}
-
-/// Whether the size of one of these effects of a fit is larger than its standard deviation. Only sizes that all clips
-/// have in common are looked at: others count as certain.
-bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {
-  const SizeUncertainty uncertainty(set, fit);
-  const auto& globals = fit.layout->globals();
-  return std::any_of(effects.begin(), effects.end(), [&](std::size_t e) {
-    const EffectInfo& info = effect_list()[e];
-    bool has_common = false;
-    for (std::size_t g = 0; g < globals.size(); ++g) {
-      if (globals[g].parameter == nullptr || globals[g].effect != e) continue;
-      const std::size_t slot = globals[g].parameter->slot.parameter;
-      const bool is_size = slot >= info.law.size && slot < info.law.size + info.law.sizes;
-      if (!is_size || globals[g].parameter->each != Each::experiment || info.search == Search::spread) continue;
-      const auto at = static_cast<Eigen::Index>(g);
-      if (std::abs(fit.at.global[at]) > uncertainty.sd(at)) return true;
-      has_common = true;
-    }
-    return !has_common;
-  });
-}
-
-/// If some effects of an explanation have no certain size and others have, the explanation of the others alone: a drag
-/// of size 0 beside a wrong frame rate is no cause. Null if there is no such fit.
-const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
-  const MotionFit& fit = comparison.fits[static_cast<std::size_t>(best.fit)];
-  std::set<std::size_t> certain;
-  for (const std::size_t e : best.effects) {
-    if (has_certain_size(set, fit, {e})) certain.insert(e);
-  }
-  if (certain.empty() || certain.size() == best.effects.size()) return nullptr;
-  const Hypothesis* others = find(comparison, certain);
-  return others != nullptr && others->fit > 0 ? others : nullptr;
-}
-
-/// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the
-/// one that takes most in place of both. Returns the explanation with that cause alone; null if the sequence names it
-/// already, or if no fit has it alone.
-const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
-                                     const CauseSequence& sequence) {
-  if (!sequence.is_gap || best.effects.size() < 2) return nullptr;
-  const std::vector<std::size_t>& named = sequence.named.effects;
-  std::size_t likeliest = best.effects.front();
-  double most = 0.0, of_named = 0.0;
-  for (const std::size_t e : best.effects) {
-    const bool keeps = std::find(named.begin(), named.end(), e) != named.end();
-    const double probability = probability_of(comparison, best, e, filmed);
-    if (keeps) of_named = std::max(of_named, probability);
-    if (keeps || probability <= most) continue;
-    likeliest = e;
-    most = probability;
-  }
-  if (most <= of_named + kClearlyLikelier || !shows_in_motion(effect_list()[likeliest].search)) return nullptr;
-  const Hypothesis* alone = find(comparison, {likeliest});
-  return alone != nullptr && alone->fit > 0 ? alone : nullptr;
-}
-
-constexpr double kLikely = 0.02;  // probability from which an explanation widens what is recovered
-constexpr std::size_t kMostLikely = 6;
-
-/// Adds the explanations other than the reported one, and to that one its probability. The nominal model stands for the
-/// unknown.
-void add_others(const WeighedCauses& weighed, const std::vector<Hypothesis>& all, double unknown,
-                const std::vector<std::size_t>& reported, Explanations& explanations) {
-  const auto add = [&](std::size_t fit, double probability, const std::vector<std::size_t>& effects) {
-    if (probability < kLikely || explanations.size() > kMostLikely || !weighed.fits[fit]) return;
-    explanations.push_back({&weighed.fits[fit]->noise_alone, weighed.fits[fit]->sizes, probability, effects});
-  };
-  if (!reported.empty()) add(0, unknown, {});
-  for (const Hypothesis& one : all) {
-    if (one.unnamed || one.effects.empty()) continue;
-    if (one.effects == reported) {
-      explanations.front().probability += one.probability;
-    } else if (one.fit > 0) {
-      add(static_cast<std::size_t>(one.fit), one.probability, one.effects);
-    }
-  }
-}
-
-/// The same by the noise alone, if nothing was weighed with a remainder.
-void add_others(const Comparison& by_noise, const std::vector<Hypothesis>& all, Explanations& explanations) {
-  for (const Hypothesis& one : all) {
-    const bool fitted = !one.unnamed && !one.effects.empty() && one.fit > 0;
-    const bool reported = fitted && one.effects == explanations.front().effects;
-    if (!fitted || reported || one.probability < kLikely || explanations.size() > kMostLikely) continue;
-    explanations.push_back({&by_noise.fits[static_cast<std::size_t>(one.fit)], {}, one.probability, one.effects});
-    explanations.front().probability -= one.probability;
-  }
-}
-
-/// The motions of each explanation as a scenario, for studies that record them again. Every scenario has the reported
-/// effects of the camera.
-std::vector<LikelyTwin> likely_twins(const TrackSet& set, const Explanations& explanations,
-                                     const std::vector<DiagnosedEffect>& reported) {
-  std::vector<LikelyTwin> twins;
-  for (const LikelyFit& one : explanations) {
-    LikelyTwin twin;
-    twin.toml = twin_of(set, *one.fit, reported, false, std::nullopt).toml;
-    for (const std::size_t e : one.effects) twin.ids.emplace_back(effect_list()[e].id);
-    twin.probability = one.probability;
-    twin.q_m2_s3 = one.sizes.q_m2_s3;
-    twin.force_m_s2 = one.sizes.force_m_s2;
-    twin.drag = one.sizes.drag;
-    twins.push_back(std::move(twin));
-  }
-  return twins;
 }
 
 /// The log evidence by which the positions alone prefer an explanation of a fall, a quadratic drag with or without the
@@ -275,157 +147,275 @@ bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
   return has_gap(set, by_noise.fits[static_cast<std::size_t>(best->fit)]);
 }
 
+/// The fit that a diagnosis reports, and the remainder beside it.
+struct Reported {
+  const MotionFit& fit;
+  RemainderSizes sizes;
+  double part_s = 0.0;  ///< RemainderSpace::part_s()
+};
+
+/// One verdict: what its steps share, and the steps in the order in which run() takes them.
+class VerdictWithCauses {
+ public:
+  VerdictWithCauses(const TrackSet& set, Comparison first, const std::vector<std::size_t>& left_out, int jobs)
+      : set_(set), without_(left_out.begin(), left_out.end()), jobs_(jobs), first_(std::move(first)) {}
+
+  Diagnosis run(ImageEvidence images, const base::Progress& progress) {
+    weigh(images, progress);
+    progress("measuring the gap", 0.9);
+    choose_explanation();
+    choose_measure_of_gap();
+    put_causes_in_order();
+    size_causes();
+    Diagnosis diagnosis =
+        settle_probabilities() ? verdict_beside_remainder(std::move(images)) : verdict_by_noise(std::move(images));
+    const Reported reported = reported_by(diagnosis);
+    add_shares(reported, diagnosis);
+    add_notes(diagnosis);
+    add_recovered(reported, diagnosis);
+    if (set_.clips.size() < 2) cap_probabilities(kMostOfOneClip, diagnosis);
+    return diagnosis;
+  }
+
+ private:
+  /// The comparison that counts.
+  const Comparison& by() const { return weighed_ ? weighed_->comparison : first_; }
+  /// The motions of that comparison.
+  const TrackSet& with() const { return weighed_ ? weighed_->set : set_; }
+  const MotionFit& nominal() const { return first_.fits.front(); }
+  const MotionFit& fit_of(const Hypothesis& one) const {
+    return names_ ? by().fits[static_cast<std::size_t>(one.fit)] : nominal();
+  }
+  /// Named causes of a gap, weighed beside a remainder. Without a gap nothing remains, and an effect without a name
+  /// shows best against the noise alone.
+  bool is_settled() const { return weighed_ && sequence_.is_gap && names_; }
+  const MotionFit& fit_of_gap() const { return sequence_.named.effects.empty() ? fit_of(best_) : sequence_.named; }
+  CauseSequence sequence_with(const Hypothesis& one) const {
+    return sequence_of(gap_set_, gap_nominal_, gap_with_, fit_of(one), without_, weighed_ ? kLeastNamed : 0.0);
+  }
+  NoiseAlone noise_alone() const { return {gap_set_, gap_nominal_, sequence_.named, sized_.set, sized_.fit}; }
+
+  void weigh(const ImageEvidence& images, const base::Progress& progress);
+  void choose_explanation();
+  void choose_measure_of_gap();
+  void put_causes_in_order();
+  void size_causes();
+  bool settle_probabilities();
+  Diagnosis verdict_beside_remainder(ImageEvidence images) const;
+  Diagnosis verdict_by_noise(ImageEvidence images);
+  void doubt_by_share(bool in_images);
+  void move_imperfections_to_none();
+  Reported reported_by(const Diagnosis& diagnosis) const;
+  void add_shares(const Reported& reported, Diagnosis& diagnosis) const;
+  void add_notes(Diagnosis& diagnosis) const;
+  void add_recovered(const Reported& reported, Diagnosis& diagnosis) const;
+
+  const TrackSet& set_;  // the noise alone
+  const std::set<std::size_t> without_;
+  const int jobs_;
+
+  // What is compared.
+  Comparison first_;                      // by the noise alone
+  std::optional<WeighedCauses> weighed_;  // beside a remainder, where that is needed
+  std::vector<Hypothesis> before_;        // the explanations before the share changes their probabilities,
+  double unknown_before_ = 0.0;           // and what then has no name
+  std::optional<Hypothesis> helps_;       // the best explanation, likely enough to be named or not
+
+  // What is named.
+  std::optional<Hypothesis> found_;  // the best explanation
+  bool claims_ = false;              // it is likely enough
+  bool names_ = false;               // it has a fit
+  Hypothesis best_;                  // the explanation that is named; none without names_
+
+  // The gap, and what takes it.
+  bool by_air_ = false;  // the gap is that of a fall without any drag
+  std::optional<double> over_viscous_;
+  TrackSet gap_set_, gap_with_;
+  MotionFit gap_nominal_;
+  CauseSequence sequence_;
+  Sized sized_;             // the causes that keep their name, beside their own remainder
+  bool open_size_ = false;  // a name whose effect may as well have no size at all is not confident
+  std::vector<std::string> traces_;
+};
+
+void VerdictWithCauses::weigh(const ImageEvidence& images, const base::Progress& progress) {
+  if (first_.unknown > kLeastUnknown || leaves_a_gap(set_, first_)) {
+    weighed_ = weigh_causes(set_, first_, without_, jobs_, &images,
+                            [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
+  }
+  before_ = by().all;
+  unknown_before_ = by().none + by().unknown;
+  if (!weighed_) return;
+  if (const Hypothesis* best = best_named(with(), by())) helps_ = *best;
+  move_minorities_to_unknown(weighed_->comparison);
+}
+
+void VerdictWithCauses::choose_explanation() {
+  // Beside a remainder, `none` counts as unknown: there is a gap.
+  const double none = weighed_ ? 0.0 : by().none, unknown = weighed_ ? by().none + by().unknown : by().unknown;
+  claims_ = verdict_by(none, unknown) == Verdict::effect;
+  const Hypothesis* found = claims_ || !helps_ ? best_named(with(), by()) : &*helps_;
+  if (found == nullptr) return;
+  found_ = *found;
+  names_ = found_->fit > 0 && (weighed_ || claims_);
+  if (!names_) return;
+  best_ = *found_;
+  if (const Hypothesis* sized = weighed_ ? with_certain_sizes(with(), by(), best_) : nullptr) best_ = *sized;
+}
+
+/// K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
+void VerdictWithCauses::choose_measure_of_gap() {
+  by_air_ = set_.through_air && claims_ && names_ && has(best_, effect_index(ids::quadratic_drag));
+  if (by_air_) over_viscous_ = evidence_over_viscous(by(), best_);
+  gap_set_ = by_air_ ? without_drag(set_) : set_;
+  gap_with_ = by_air_ ? without_drag(with()) : with();
+  gap_nominal_ = by_air_ ? fit_nominal(gap_set_) : nominal();
+}
+
+/// The causes by their shares. A likelier part of the explanation, or a likelier cause alone, is named in its place if
+/// it takes enough of the gap.
+void VerdictWithCauses::put_causes_in_order() {
+  const bool may_change = weighed_ && claims_;
+  const Hypothesis* likely = names_ && may_change ? likely_part(set_, by(), best_) : nullptr;
+  if (likely != nullptr) sequence_ = sequence_with(*likely);
+  if (likely != nullptr && sequence_.named_share >= kHalfOfGap && is_likelier_than_not(with(), by(), *likely)) {
+    best_ = *likely;
+  } else {
+    sequence_ = sequence_with(best_);
+  }
+  if (const Hypothesis* alone = may_change ? without_the_lesser(by(), set_.images, best_, sequence_) : nullptr) {
+    CauseSequence likelier = sequence_with(*alone);
+    if (!may_displace(likelier, sequence_)) return;
+    best_ = *alone;
+    sequence_ = std::move(likelier);
+  }
+}
+
+void VerdictWithCauses::size_causes() {
+  sized_ = is_settled() ? sized_of(set_, fit_of_gap()) : Sized{with(), fit_of(best_)};
+  open_size_ = names_ && sequence_.is_gap && shows_in_gap(best_) &&
+               !has_certain_size(sized_.set, sized_.fit, fit_of_gap().effects);
+}
+
+/// The probabilities by what the named causes take of the gap. Whether they still make a verdict beside a remainder.
+bool VerdictWithCauses::settle_probabilities() {
+  if (!is_settled()) return false;
+  Comparison& comparison = weighed_->comparison;
+  hold_to_share(sequence_, best_.effects, by_air_, comparison);
+  if (!is_likelier_than_not(with(), comparison, best_)) {
+    set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
+  }
+  if (open_size_) set_unknown(std::max(comparison.unknown, kOpenSize), comparison);
+  return verdict_by(comparison.none, comparison.unknown) == Verdict::effect;
+}
+
+Diagnosis VerdictWithCauses::verdict_beside_remainder(ImageEvidence images) const {
+  const NoiseAlone alone = noise_alone();
+  return verdict_of(with(), by(), std::move(images), &alone);
+}
+
+Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
+  const bool in_images = names_ ? shows_in_images(best_) : found_ && shows_in_images(*found_);
+  // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
+  // anything claimed if the positions follow the model far better than the assumed noise allows.
+  const bool not_measured = noise_is_rounding(set_) || sequence_.gap_before < kLeastMeasuredGap;
+  const bool below_noise = not_measured && !sequence_.is_gap && !in_images;
+  if (below_noise) {
+    move_to_none([](const Hypothesis&) { return true; }, first_);
+    first_.none += std::exchange(first_.unknown, 0.0);
+  }
+  doubt_by_share(in_images);
+  if (!weighed_ && !sequence_.is_gap && !below_noise) move_imperfections_to_none();
+  const NoiseAlone alone = noise_alone();
+  Diagnosis diagnosis = verdict_of(set_, first_, std::move(images), by_air_ && sequence_.is_gap ? &alone : nullptr);
+  if (weighed_ && sequence_.is_gap && !in_images) {
+    const NoiseAlone noise{set_, nominal(), nominal(), set_, nominal()};
+    diagnosis.ranking = ranking_of(with(), by(), &noise);
+  }
+  return diagnosis;
+}
+
+/// Raises the probability of an unknown cause where the named ones do not explain the gap, by the noise alone.
+void VerdictWithCauses::doubt_by_share(bool in_images) {
+  if (weighed_ && sequence_.is_gap && !in_images) {
+    // Nothing that moves the glider explains the gap.
+    first_.unknown += std::exchange(first_.none, 0.0);
+    set_unknown(std::max(by().none + by().unknown, kUnknownIfLess), first_);
+  }
+  if (weighed_) return;
+  // A name that takes less than half of a gap does not explain it.
+  const bool explains = !names_ || !shows_in_gap(best_) || sequence_.named_share >= kHalfOfGap;
+  if (sequence_.is_gap && !explains) set_unknown(1.0, first_);
+  if (sequence_.is_gap && names_ && shows_in_gap(best_) && !in_images && !is_likelier_than_not(set_, first_, best_)) {
+    set_unknown(std::max(first_.unknown, kUnknownIfLess), first_);
+  }
+  if (open_size_ && !in_images) set_unknown(std::max(first_.unknown, kOpenSize), first_);
+}
+
+/// Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no parameter
+/// either: unless it is all but certain, it is a trace.
+void VerdictWithCauses::move_imperfections_to_none() {
+  // Scatter has no fit of its own: the verdict on it is by the noise alone.
+  const bool scatter = found_ && is_scatter_alone(*found_) && claims_;
+  if ((!names_ && !scatter) || found_->effects.empty()) return;
+  if (names_ && shows_in_gap(best_)) allow_for_remainders(set_, without_, jobs_, first_);
+  if (scatter && probability_of_scatter(first_) < kSureScatter) move_to_none(is_scatter_alone, first_);
+  if ((scatter || shows_in_gap(best_)) && verdict_by(first_.none, first_.unknown) == Verdict::none) {
+    for (const std::size_t e : found_->effects) traces_.emplace_back(effect_list()[e].id);
+  }
+}
+
+Reported VerdictWithCauses::reported_by(const Diagnosis& diagnosis) const {
+  // Where causes are named whatever part of the gap they take, all of them are in the fit of the explanation itself.
+  const MotionFit& with_effect = sequence_.is_gap && (is_settled() || by_air_) ? sequence_.named : fit_of(best_);
+  const MotionFit& fit = diagnosis.verdict == Verdict::effect ? with_effect : nominal();
+  const RemainderSpace space(set_, fit);
+  const bool is_sized = is_settled() && &fit == &fit_of_gap();
+  return {fit, is_sized ? sized_.remainder : space.likeliest().sizes, space.part_s()};
+}
+
+void VerdictWithCauses::add_shares(const Reported& reported, Diagnosis& diagnosis) const {
+  diagnosis.traces = traces_;
+  if (noise_is_rounding(set_)) diagnosis.traces.emplace_back(ids::position_rounding);
+  diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence_.causes) : sequence_.causes;
+  order_by_share(by_air_, diagnosis);
+  if (sequence_.is_gap) {
+    diagnosis.remainder = remainder_of(sequence_.gap_before, diagnosis.explained, reported.sizes, reported.part_s);
+    diagnosis.remainder->regions =
+        diagnosis.verdict == Verdict::effect ? regions_beside(set_, sequence_, jobs_) : diagnosis.regions;
+  }
+  diagnosis.levels = levels_of(gap_set_, gap_nominal_, jobs_);
+}
+
+void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
+  if (by_air_) diagnosis.notes.emplace_back(FallsThroughAir{over_viscous_});
+  constexpr double kLeastRatio = 0.01;  // air has 0.001 of the density of what falls through it, or less
+  if (const std::optional<double> ratio = only_falls(set_) ? ratio_of_densities(diagnosis) : std::nullopt;
+      ratio && *ratio > kLeastRatio) {
+    diagnosis.notes.emplace_back(BuoyancyLooksAlike{*ratio});
+  }
+}
+
+void VerdictWithCauses::add_recovered(const Reported& reported, Diagnosis& diagnosis) const {
+  const bool with_names = diagnosis.verdict == Verdict::effect;
+  Explanations explanations{{&reported.fit, reported.sizes, 1.0}};
+  if (weighed_) {
+    explanations.front().probability = with_names ? 0.0 : unknown_before_;
+    add_others(*weighed_, before_, unknown_before_, with_names ? best_.effects : std::vector<std::size_t>(),
+               explanations);
+    explanations.front().probability = std::max(explanations.front().probability, kLikely);
+  }
+  if (with_names) explanations.front().effects = best_.effects;
+  if (!weighed_) add_others(first_, before_, explanations);
+  diagnosis.recovered = recovered_of(set_, explanations);
+  diagnosis.likely_twins = likely_twins(set_, explanations, diagnosis.effects);
+}
+
 }  // namespace
 
 Diagnosis with_causes(const TrackSet& set, Comparison first, ImageEvidence images,
                       const std::vector<std::size_t>& left_out, int jobs, const base::Progress& progress) {
-  const std::set<std::size_t> without(left_out.begin(), left_out.end());
-  const MotionFit& nominal = first.fits.front();
-  std::optional<WeighedCauses> weighed;
-  if (first.unknown > kLeastUnknown || leaves_a_gap(set, first)) {
-    weighed = weigh_causes(set, first, without, jobs, &images,
-                           [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
-  }
-  progress("measuring the gap", 0.9);
-  const std::vector<Hypothesis> all_before =
-      weighed ? weighed->comparison.all : first.all;  // before the share changes the probabilities
-  const double unknown = weighed ? weighed->comparison.none + weighed->comparison.unknown : first.none + first.unknown;
-  const TrackSet& with = weighed ? weighed->set : set;
-  std::optional<Hypothesis> helps;  // the best explanation, likely enough to be named or not
-  if (weighed) {
-    if (const Hypothesis* best = best_named(with, weighed->comparison)) helps = *best;
-    move_minorities_to_unknown(weighed->comparison);
-  }
-  const Comparison& by = weighed ? weighed->comparison : first;
-  // Beside a remainder, `none` counts as unknown: there is a gap.
-  const bool claims =
-      verdict_by(weighed ? 0.0 : by.none, weighed ? by.none + by.unknown : by.unknown) == Verdict::effect;
-  const Hypothesis* found = claims || !helps ? best_named(with, by) : &*helps;
-  const bool names = found != nullptr && found->fit > 0 && (weighed || claims);
-  Hypothesis best = names ? *found : Hypothesis{};  // the comparison's own order changes below
-  if (const Hypothesis* sized = names && weighed ? with_certain_sizes(with, by, best) : nullptr) best = *sized;
-  const auto fit_of = [&](const Hypothesis& one) -> const MotionFit& {
-    return names ? by.fits[static_cast<std::size_t>(one.fit)] : nominal;
-  };
-  const double least_named = weighed ? kLeastNamed : 0.0;
-  // K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
-  const bool by_air = set.through_air && claims && names && has(best, effect_index(ids::quadratic_drag));
-  const std::optional<double> over_viscous = by_air ? evidence_over_viscous(by, best) : std::nullopt;
-  const TrackSet gap_set = by_air ? without_drag(set) : set, gap_with = by_air ? without_drag(with) : with;
-  const MotionFit gap_nominal = by_air ? fit_nominal(gap_set) : nominal;
-  const auto sequence_with = [&](const Hypothesis& one) {
-    return sequence_of(gap_set, gap_nominal, gap_with, fit_of(one), without, least_named);
-  };
-  CauseSequence sequence;
-  const Hypothesis* likely = names && weighed && claims ? likely_part(set, by, best) : nullptr;
-  if (likely != nullptr) sequence = sequence_with(*likely);
-  if (likely != nullptr && sequence.named_share >= kHalfOfGap && is_likelier_than_not(with, by, *likely)) {
-    best = *likely;
-  } else {
-    sequence = sequence_with(best);
-  }
-  if (const Hypothesis* alone = weighed && claims ? without_the_lesser(by, set.images, best, sequence) : nullptr) {
-    CauseSequence likelier = sequence_with(*alone);
-    if (may_displace(likelier, sequence)) {
-      best = *alone;
-      sequence = std::move(likelier);
-    }
-  }
-  const MotionFit& fit = fit_of(best);
-  const bool in_images = names ? shows_in_images(best) : found != nullptr && shows_in_images(*found);
-  // Scatter has no fit of its own: the verdict on it is by the noise alone.
-  const bool scatter = found != nullptr && is_scatter_alone(*found) && claims;
-  const std::vector<std::size_t> named = names || scatter ? found->effects : std::vector<std::size_t>();
-  Diagnosis diagnosis;
-  std::vector<std::string> traces;
-  // Without a gap nothing remains, and an effect without a name shows best against the noise alone.
-  const bool settled = weighed && sequence.is_gap && names;
-  if (settled) hold_to_share(sequence, best.effects, by_air, weighed->comparison);
-  if (settled && !is_likelier_than_not(with, by, best)) {
-    set_unknown(std::max(by.unknown, kUnknownIfLess), weighed->comparison);
-  }
-  const MotionFit& of_gap = sequence.named.effects.empty() ? fit : sequence.named;
-  const Sized sized = settled ? sized_of(set, of_gap) : Sized{with, fit};
-  // A name is not confident if its effect may as well have no size at all.
-  const bool open_size =
-      names && sequence.is_gap && shows_in_gap(best) && !has_certain_size(sized.set, sized.fit, of_gap.effects);
-  if (settled && open_size) set_unknown(std::max(by.unknown, kOpenSize), weighed->comparison);
-  if (settled && verdict_by(by.none, by.unknown) == Verdict::effect) {
-    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, sized.set, sized.fit};
-    diagnosis = verdict_of(with, by, std::move(images), &noise_alone);
-  } else {
-    // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
-    // anything claimed if the positions follow the model far better than the assumed noise allows.
-    const bool not_measured = noise_is_rounding(set) || sequence.gap_before < kLeastMeasuredGap;
-    const bool below_noise = not_measured && !sequence.is_gap && !in_images;
-    if (below_noise) {
-      move_to_none([](const Hypothesis&) { return true; }, first);
-      first.none += std::exchange(first.unknown, 0.0);
-    }
-    // A name that takes less than half of a gap does not explain it.
-    const bool explains = !names || !shows_in_gap(best) || sequence.named_share >= kHalfOfGap;
-    if (!weighed && sequence.is_gap && !explains) set_unknown(1.0, first);
-    if (!weighed && sequence.is_gap && names && shows_in_gap(best) && !in_images &&
-        !is_likelier_than_not(set, first, best)) {
-      set_unknown(std::max(first.unknown, kUnknownIfLess), first);
-    }
-    if (!weighed && open_size && !in_images) set_unknown(std::max(first.unknown, kOpenSize), first);
-    if (weighed && sequence.is_gap && !in_images) {
-      // Nothing that moves the glider explains the gap.
-      first.unknown += std::exchange(first.none, 0.0);
-      set_unknown(std::max(by.none + by.unknown, kUnknownIfLess), first);
-    }
-    // Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no
-    // parameter either: unless it is all but certain, it is a trace.
-    if (!weighed && !sequence.is_gap && !below_noise && !named.empty()) {
-      if (names && shows_in_gap(best)) allow_for_remainders(set, without, jobs, first);
-      if (scatter && probability_of_scatter(first) < kSureScatter) move_to_none(is_scatter_alone, first);
-      if ((scatter || shows_in_gap(best)) && verdict_by(first.none, first.unknown) == Verdict::none) {
-        for (const std::size_t e : named) traces.emplace_back(effect_list()[e].id);
-      }
-    }
-    const NoiseAlone noise_alone{gap_set, gap_nominal, sequence.named, sized.set, sized.fit};
-    diagnosis = verdict_of(set, first, std::move(images), by_air && sequence.is_gap ? &noise_alone : nullptr);
-    if (weighed && sequence.is_gap && !in_images) {
-      const NoiseAlone noise{set, nominal, nominal, set, nominal};
-      diagnosis.ranking = ranking_of(with, by, &noise);
-    }
-  }
-  if (noise_is_rounding(set)) traces.emplace_back(ids::position_rounding);
-  diagnosis.traces = std::move(traces);
-  diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence.causes) : sequence.causes;
-  order_by_share(by_air, diagnosis);
-  // Where causes are named whatever part of the gap they take, all of them are in the fit of the explanation itself.
-  const MotionFit& with_effect = sequence.is_gap && (settled || by_air) ? sequence.named : fit;
-  const MotionFit& reported = diagnosis.verdict == Verdict::effect ? with_effect : nominal;
-  const RemainderSpace space(set, reported);
-  const bool is_sized = settled && &reported == &of_gap;
-  const RemainderSizes sizes = is_sized ? sized.remainder : space.likeliest().sizes;
-  if (sequence.is_gap) {
-    diagnosis.remainder = remainder_of(sequence.gap_before, diagnosis.explained, sizes, space.part_s());
-    diagnosis.remainder->regions =
-        diagnosis.verdict == Verdict::effect ? regions_beside(set, sequence, jobs) : diagnosis.regions;
-  }
-  diagnosis.levels = levels_of(gap_set, gap_nominal, jobs);
-  if (by_air) diagnosis.notes.emplace_back(FallsThroughAir{over_viscous});
-  constexpr double kLeastRatio = 0.01;  // air has 0.001 of the density of what falls through it, or less
-  if (const std::optional<double> ratio = only_falls(set) ? ratio_of_densities(diagnosis) : std::nullopt;
-      ratio && *ratio > kLeastRatio) {
-    diagnosis.notes.emplace_back(BuoyancyLooksAlike{*ratio});
-  }
-  Explanations explanations{{&reported, sizes, 1.0}};
-  if (weighed) {
-    const bool with_names = diagnosis.verdict == Verdict::effect;
-    explanations.front().probability = with_names ? 0.0 : unknown;
-    add_others(*weighed, all_before, unknown, with_names ? best.effects : std::vector<std::size_t>(), explanations);
-    explanations.front().probability = std::max(explanations.front().probability, kLikely);
-  }
-  if (diagnosis.verdict == Verdict::effect) explanations.front().effects = best.effects;
-  if (!weighed) add_others(first, all_before, explanations);
-  diagnosis.recovered = recovered_of(set, explanations);
-  diagnosis.likely_twins = likely_twins(set, explanations, diagnosis.effects);
-  if (set.clips.size() < 2) cap_probabilities(kMostOfOneClip, diagnosis);
-  return diagnosis;
+  return VerdictWithCauses(set, std::move(first), left_out, jobs).run(std::move(images), progress);
 }
 
 }  // namespace glidelab::diagnose

@@ -1,0 +1,86 @@
+#include "diagnose/verdict/named_explanation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "diagnose/causes/cause_odds.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/gap/size_uncertainty.h"
+#include "diagnose/verdict/verdict.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
+
+/// The probability of an effect of an explanation or of one that the data cannot tell from it.
+double probability_of(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
+  std::vector<std::size_t> any = not_told_apart(comparison, best, effect, filmed);
+  any.push_back(effect);
+  return probability_of_any(comparison, any);
+}
+
+}  // namespace
+
+bool shows_in_images(const Hypothesis& explanation) {
+  return std::any_of(explanation.effects.begin(), explanation.effects.end(),
+                     [](std::size_t e) { return effect_list()[e].search == Search::images; });
+}
+
+bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+  return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
+    return probability_of(comparison, best, e, set.images) >= kLikelierThanNot;
+  });
+}
+
+bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {
+  const SizeUncertainty uncertainty(set, fit);
+  const auto& globals = fit.layout->globals();
+  return std::any_of(effects.begin(), effects.end(), [&](std::size_t e) {
+    const EffectInfo& info = effect_list()[e];
+    bool has_common = false;
+    for (std::size_t g = 0; g < globals.size(); ++g) {
+      if (globals[g].parameter == nullptr || globals[g].effect != e) continue;
+      const std::size_t slot = globals[g].parameter->slot.parameter;
+      const bool is_size = slot >= info.law.size && slot < info.law.size + info.law.sizes;
+      if (!is_size || globals[g].parameter->each != Each::experiment || info.search == Search::spread) continue;
+      const auto at = static_cast<Eigen::Index>(g);
+      if (std::abs(fit.at.global[at]) > uncertainty.sd(at)) return true;
+      has_common = true;
+    }
+    return !has_common;
+  });
+}
+
+const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+  const MotionFit& fit = comparison.fits[static_cast<std::size_t>(best.fit)];
+  std::set<std::size_t> certain;
+  for (const std::size_t e : best.effects) {
+    if (has_certain_size(set, fit, {e})) certain.insert(e);
+  }
+  if (certain.empty() || certain.size() == best.effects.size()) return nullptr;
+  const Hypothesis* others = find(comparison, certain);
+  return others != nullptr && others->fit > 0 ? others : nullptr;
+}
+
+const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
+                                     const CauseSequence& sequence) {
+  if (!sequence.is_gap || best.effects.size() < 2) return nullptr;
+  const std::vector<std::size_t>& named = sequence.named.effects;
+  std::size_t likeliest = best.effects.front();
+  double most = 0.0, of_named = 0.0;
+  for (const std::size_t e : best.effects) {
+    const bool keeps = std::find(named.begin(), named.end(), e) != named.end();
+    const double probability = probability_of(comparison, best, e, filmed);
+    if (keeps) of_named = std::max(of_named, probability);
+    if (keeps || probability <= most) continue;
+    likeliest = e;
+    most = probability;
+  }
+  if (most <= of_named + kClearlyLikelier || !shows_in_motion(effect_list()[likeliest].search)) return nullptr;
+  const Hypothesis* alone = find(comparison, {likeliest});
+  return alone != nullptr && alone->fit > 0 ? alone : nullptr;
+}
+
+}  // namespace glidelab::diagnose

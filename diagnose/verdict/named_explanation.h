@@ -1,0 +1,33 @@
+/// Which explanation of a comparison a verdict may name.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/causes/cause_sequence.h"
+#include "diagnose/weigh/hypothesis.h"
+
+namespace glidelab::diagnose {
+
+/// Whether any effect of an explanation shows in the images themselves.
+bool shows_in_images(const Hypothesis& explanation);
+
+/// Whether the likeliest effect of an explanation, together with those that the data cannot tell from it, is likelier
+/// than not. A name that is less likely is no answer.
+bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
+
+/// Whether the size of one of these effects of a fit is larger than its standard deviation. Only sizes that all clips
+/// have in common are looked at: others count as certain.
+bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects);
+
+/// If some effects of an explanation have no certain size and others have, the explanation of the others alone: a drag
+/// of size 0 beside a wrong frame rate is no cause. Null if there is no such fit.
+const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
+
+/// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the
+/// one that takes most in place of both. Returns the explanation with that cause alone; null if the sequence names it
+/// already, or if no fit has it alone.
+const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
+                                     const CauseSequence& sequence);
+
+}  // namespace glidelab::diagnose
