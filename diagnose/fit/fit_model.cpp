@@ -16,6 +16,7 @@ namespace {
 // No misfit, however large, makes a K that Stokes' law excludes, a gravity that no place on Earth has, or a slope of a
 // fall.
 constexpr double kMostStokes = 3.0, kMostGravity_sd = 3.0, kMostFall_sd = 3.0;
+constexpr double kFarthest_m = 1e9;    // no track is longer
 constexpr double kOfOneGram = 1000.0;  // what falls may weigh a gram, where 1 kg is assumed
 // A Maxwell wheel, a ring of radius R on an axle of radius r, has (R/r)² times its mass: 65 mm and 3 mm.
 constexpr double kMostWheel = 500.0;
@@ -286,8 +287,10 @@ Moved moved(const TrackSet& set, const ParameterLayout& layout, const FitPoint& 
   return move(model, set.motions[i].t_s, late.empty() ? std::span<const double>() : std::span(late[i]));
 }
 
+/// Whether a motion stays where a motion can be. Where the drag drives it, it runs off as exp(|K| t/m), and what is
+/// still a number overflows in squares.
 bool is_followed(const std::vector<double>& x_m) {
-  return std::all_of(x_m.begin(), x_m.end(), [](double x) { return std::isfinite(x); });
+  return std::all_of(x_m.begin(), x_m.end(), [](double x) { return std::abs(x) < kFarthest_m; });
 }
 
 }  // namespace

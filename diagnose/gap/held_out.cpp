@@ -72,11 +72,33 @@ std::size_t stretches_of(std::size_t points, bool only) {
   return std::clamp<std::size_t>(points / kFewest, only ? kFewestStretches : 1, kStretches);
 }
 
+/// Adds motions that are held out together, each with a start of its own. `others` has the other motions, and
+/// `together` is the covariance by all. With G the derivatives with respect to the common parameters, C their
+/// covariance by the others and u the residuals of the prediction,
+///
+///     u'(1 + G C G')^-1 u = u'u - (G'u)' (C^-1 + G'G)^-1 (G'u).
+void add_held_out(const TrackSet& set, const std::vector<ProjectedMotion>& motions, const CommonNormal& others,
+                  const Eigen::MatrixXd& together, const std::vector<std::size_t>& which, ClipGap& clip) {
+  const Eigen::VectorXd shift = base::product(inverse_normal(others.matrix), others.right);
+  Eigen::VectorXd gu = Eigen::VectorXd::Zero(shift.size());
+  for (const std::size_t i : which) {
+    const Eigen::VectorXd u = motions[i].residual - base::product(motions[i].common, shift);
+    clip.freedom += motions[i].freedom;
+    clip.chi2 += u.squaredNorm();
+    gu += base::transposed_product(motions[i].common, u);
+    add_accelerations(set, i, coloured(set.motions[i], u), 0, clip);
+  }
+  const Eigen::VectorXd taken = base::product(together, gu);
+  clip.chi2 -= gu.dot(taken);
+}
+
 /// The stretches of a single clip's motions, each predicted from all the others, with the motion's own start and speed
 /// from the rest of the motion. With D a stretch's derivatives with respect to the common and the motion's own
 /// parameters, N the normal matrix of both and r the residuals of the fit to everything,
 ///
 ///     u'(1 + D (N - D'D)^-1 D')^-1 u = r'r + (D'r)' (N - D'D)^-1 D'r,     u = r + D (N - D'D)^-1 D'r.
+///
+/// A motion of too few points for two stretches is held out whole: nothing else tells its start, which is fitted to it.
 HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
   const MotionFit fit = at_linear_minimum(set, at);
   CommonNormal all = statements_normal(fit);
@@ -85,23 +107,33 @@ HeldOutGap gap_of_stretches(const TrackSet& set, const MotionFit& at) {
     projected.push_back(project(motion));
     all.add(projected.back());
   }
+  const Eigen::MatrixXd together = inverse_normal(all.matrix);
   std::vector<ClipGap> clips;
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     const FitMotion& motion = fit.motions[i];
     const TrackedMotion& data = set.motions[i];
+    CommonNormal others = all;
+    others.add(projected[i], -1.0);
+    const std::size_t points = data.t_s.size(), stretches = stretches_of(points, fit.motions.size() == 1);
+    const auto named = [&](std::size_t from, std::size_t to) {
+      return ClipGap{
+          fmt::format("{}, {:.2f} to {:.2f} s", set.clips[data.clip].name, data.t_s[from], data.t_s[to - 1])};
+    };
+    if (stretches == 1) {
+      ClipGap clip = named(0, points);
+      add_held_out(set, projected, others, together, {i}, clip);
+      if (clip.freedom > 0.0) clips.push_back(std::move(clip));
+      continue;
+    }
     const Eigen::Index common = motion.global.cols(), own = motion.own.cols();
     Eigen::MatrixXd columns(motion.global.rows(), common + own);
     columns << motion.global, motion.own;
-    CommonNormal others = all;
-    others.add(projected[i], -1.0);
     Eigen::MatrixXd normal = base::transposed_product(columns, columns);
     normal.topLeftCorner(common, common) += others.matrix;
-    const std::size_t points = data.t_s.size(), stretches = stretches_of(points, fit.motions.size() == 1);
     for (std::size_t k = 0; k < stretches; ++k) {
       const std::size_t from = points * k / stretches, to = points * (k + 1) / stretches;
-      ClipGap clip{fmt::format("{}, {:.2f} to {:.2f} s", set.clips[data.clip].name, data.t_s[from], data.t_s[to - 1])};
+      ClipGap clip = named(from, to);
       for (std::size_t p = from; p < to; ++p) clip.freedom += data.outlier[p] ? 0.0 : 1.0;
-      if (stretches == 1) clip.freedom = projected[i].freedom;  // its start is fitted to it
       if (clip.freedom <= 0.0) continue;
       const auto row = static_cast<Eigen::Index>(from), rows = static_cast<Eigen::Index>(to - from);
       const Eigen::MatrixXd d = columns.middleRows(row, rows);
@@ -144,24 +176,12 @@ HeldOutGap held_out_gap(const TrackSet& set, const MotionFit& fit) {
   std::vector<ClipGap> clips;
   for (std::size_t c = 0; c < set.clips.size(); ++c) {
     ClipGap clip{set.clips[c].name};
+    std::vector<std::size_t> own;
     for (std::size_t i = 0; i < motions.size(); ++i) {
-      if (set.motions[i].clip == c) clip.freedom += motions[i].freedom;
+      if (set.motions[i].clip == c) own.push_back(i);
     }
+    add_held_out(set, motions, without_clip(set, all, motions, c), together, own, clip);
     if (clip.freedom <= 0.0) continue;  // nothing in it moves
-    const CommonNormal others = without_clip(set, all, motions, c);
-    const Eigen::MatrixXd covariance = inverse_normal(others.matrix);
-    const Eigen::VectorXd shift = base::product(covariance, others.right);
-    // u'(1 + G C G')^-1 u = u'u - (G'u)' (C^-1 + G'G)^-1 (G'u)
-    Eigen::VectorXd gu = Eigen::VectorXd::Zero(shift.size());
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      if (set.motions[i].clip != c) continue;
-      const Eigen::VectorXd u = motions[i].residual - base::product(motions[i].common, shift);
-      clip.chi2 += u.squaredNorm();
-      gu += base::transposed_product(motions[i].common, u);
-      add_accelerations(set, i, coloured(set.motions[i], u), 0, clip);
-    }
-    const Eigen::VectorXd taken = base::product(together, gu);
-    clip.chi2 -= gu.dot(taken);
     clips.push_back(std::move(clip));
   }
   return gap_over(std::move(clips));

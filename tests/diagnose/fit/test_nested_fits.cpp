@@ -89,3 +89,20 @@ TEST_CASE("beside a K with which the motion cannot be followed, its derivative i
   }
   CHECK_NOTHROW(diagnose::ScoreSpace(set, edge));
 }
+
+TEST_CASE("derivatives beside which a motion runs off overflow in no square") {
+  // Where the drag drives 0.335 kg with K = -33 N s/m, what is off by 1 m/s is off by 10^257 as much after 6 s.
+  const tests::MadeExperiment made =
+      tests::made_experiment({{0.335, 0.0, 0.0, 0.3}}, {}, 5, 1e-4, 150, 25.0, 0.05, 0.0, {.k_n_s_m = 0.0, .mu = 0.0});
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  diagnose::FitPoint at = diagnose::fit_nominal(set).at;
+  at.global.setZero();
+  at.global[0] = -33.0;
+  at.own[0] = Eigen::Vector2d(0.1, 0.0);  // at rest, and it stays there
+  const diagnose::MotionFit fit = diagnose::linearise_at(set, {}, at);
+  for (const diagnose::FitMotion& motion : fit.motions) {
+    CHECK(motion.global.squaredNorm() < 1e300);
+    CHECK(motion.own.squaredNorm() < 1e300);
+  }
+  CHECK_NOTHROW(diagnose::ScoreSpace(set, fit));
+}

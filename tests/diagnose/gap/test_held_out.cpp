@@ -133,6 +133,31 @@ TEST_CASE("the gap of held-out clips does not depend on where in its linear neig
   for (std::size_t c = 0; c < 3; ++c) CHECK(there.clips[c].chi2 == Approx(here.clips[c].chi2).epsilon(1e-6));
 }
 
+TEST_CASE("a short motion of a single clip is held out as a clip of its own would be") {
+  Linear made = linear_case(true, 0.0, 1.0);
+  constexpr Eigen::Index kShort = 12;  // of too few points for two stretches of 8
+  made.set.motions.pop_back();
+  made.set.clips.pop_back();
+  made.fit.motions.pop_back();
+  made.fit.at.own.pop_back();
+  diagnose::FitMotion& of = made.fit.motions[1];
+  of.own.conservativeResize(kShort, Eigen::NoChange);
+  of.global.conservativeResize(kShort, Eigen::NoChange);
+  of.residual.conservativeResize(kShort);
+  of.plain = of.residual;
+  made.set.motions[1].t_s.resize(kShort);
+  made.set.motions[1].outlier.resize(kShort);
+  const auto apart = diagnose::held_out_gap(made.set, made.fit);
+  REQUIRE(apart.clips.size() == 2);
+  made.set.clips.pop_back();
+  made.set.motions[1].clip = 0;
+  const auto together = diagnose::held_out_gap(made.set, made.fit);
+  REQUIRE(together.clips.size() == 5);  // four stretches of the other motion
+  CHECK(together.clips.back().chi2 == Approx(apart.clips.back().chi2).epsilon(1e-6));
+  CHECK(together.clips.back().freedom == apart.clips.back().freedom);
+  CHECK(apart.clips.back().freedom == kShort - 2);
+}
+
 TEST_CASE("a clip held out by one step of Newton's has the chi² that a fit to the other clips leaves it") {
   // Drag in proportion to the square of the speed, by the effect's own fit.
   const tests::MadeEffect drag{.force = [](double, double, double v, double) { return -0.1 * v * std::abs(v); }};
