@@ -381,6 +381,7 @@ TEST_CASE("--gravity is for files, and alpha contains the uncertainty that its d
   CHECK_FALSE(told({"--gravity", "9.81", "--gravity-sd", "0.0001"}));
   CHECK(tests::glidelab({"analyze", file.string(), "--gravity-sd", "0.0001"}).status == 2);
   CHECK(tests::glidelab({"analyze", file.string(), "--gravity", "0"}).status == 2);
+  fs::create_directories(temp / "folder");
   base::write_file(temp / "folder/experiment.toml", "format = 1\nname = \"x\"\n");
   const tests::ProcessResult folder = tests::glidelab({"check", (temp / "folder").string(), "--gravity", "9.8123"});
   CHECK(folder.status == 1);
