@@ -19,7 +19,8 @@ namespace {
 tests::MadeExperiment analysed(const std::vector<tests::NonsenseClip>& clips) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   tests::MadeExperiment made;
-  made.results.gravity_m_s2 = 9.80665;
+  made.results.gravity_m_s2 = core::kStandardGravity_m_s2;
+  made.results.gravity_sd_m_s2 = core::kLocalGravity_sd_m_s2;
   for (const tests::NonsenseClip& clip : clips) {
     core::ClipSetup setup;
     setup.name = clip.name;

@@ -45,7 +45,9 @@ tests::MadeExperiment fallen(const Fall& fall, unsigned seed) {
   tests::MadeExperiment made =
       tests::made_experiment(launches, drag, seed, fall.noise_m, fall.frames, fall.rate_hz, 0.0, 0.0,
                              {.k_n_s_m = fall.k_n_s_m, .mu = 0.0, .gravity_m_s2 = fall.gravity_m_s2});
-  made.results.gravity_m_s2 = 9.80665;  // as where none is stated
+  const core::Gravity assumed = core::stated_gravity({});  // as where none is stated
+  made.results.gravity_m_s2 = assumed.m_s2;
+  made.results.gravity_sd_m_s2 = assumed.sd_m_s2;
   return made;
 }
 
