@@ -275,13 +275,12 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
       ->type_name("DEG")
       ->check(check_above_0)
       ->needs(incline);
-  CLI::Option* gravity =
-      command
-          .add_option("--gravity", options.gravity_m_s2,
-                      "For a file: gravity at its place in m/s²; without it, or as 9.80665, 9.81 or 9.8, alpha and mu "
-                      "contain 0.015 m/s² of it, and as any other number its last digit")
-          ->type_name("M_S2")
-          ->check(check_above_0);
+  CLI::Option* gravity = command
+                             .add_option("--gravity", options.gravity_m_s2,
+                                         "For a file: gravity at its place in m/s²; without it alpha and mu "
+                                         "contain 0.015 m/s² of it, and with it its last digit")
+                             ->type_name("M_S2")
+                             ->check(check_above_0);
   command.add_option("--gravity-sd", options.gravity_sd_m_s2, "With --gravity: its standard deviation in m/s²")
       ->type_name("M_S2")
       ->check(CLI::Range(0.0, 1.0))

@@ -7,14 +7,7 @@
 #include <string>
 
 namespace glidelab::core {
-namespace {
-
-constexpr double kTextbookGravity_m_s2 = 9.81;  // what most programs and books write, wherever they are
-
-}  // namespace
-
 double gravity_sd_m_s2(double gravity_m_s2) {
-  if (gravity_m_s2 == kStandardGravity_m_s2 || gravity_m_s2 == kTextbookGravity_m_s2) return kLocalGravity_sd_m_s2;
   const std::string digits = fmt::format("{}", gravity_m_s2);  // the shortest that reads back as the same number
   const std::size_t point = digits.find('.'), power = digits.find('e');
   const std::size_t end = power == std::string::npos ? digits.size() : power;
@@ -25,7 +18,8 @@ double gravity_sd_m_s2(double gravity_m_s2) {
 
 Gravity stated_gravity(std::optional<double> m_s2, std::optional<double> sd_m_s2) {
   const double value_m_s2 = m_s2.value_or(kStandardGravity_m_s2);
-  return {value_m_s2, sd_m_s2 ? *sd_m_s2 : gravity_sd_m_s2(value_m_s2)};
+  if (sd_m_s2) return {value_m_s2, *sd_m_s2};
+  return {value_m_s2, m_s2 ? gravity_sd_m_s2(value_m_s2) : kLocalGravity_sd_m_s2};
 }
 
 }  // namespace glidelab::core

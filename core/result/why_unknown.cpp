@@ -66,6 +66,9 @@ struct ReasonWords {
     return "the marker does not move, so its line is unknown";
   }
 
+  std::string operator()(const unknown::NoMinimum&) const {
+    return "the fit with the named causes stopped before it reached a minimum";
+  }
   std::string operator()(const unknown::NotToldApart&) const {
     return "these motions do not separate it from the other quantities";
   }

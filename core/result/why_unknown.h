@@ -84,6 +84,9 @@ struct NoLineOfMotion {};
 /// The motions do not separate it from the other quantities.
 struct NotToldApart {};
 
+/// The fit with the named causes stopped before it reached a minimum.
+struct NoMinimum {};
+
 /// The likely explanations give values that differ too much.
 struct ExplanationsDiffer {};
 
@@ -106,8 +109,8 @@ using AnyReason =
                  unknown::NotBothLines, unknown::MeanBeyondGravity, unknown::RateNotPositive,
                  unknown::InterceptNotPositive, unknown::NoFreeMotion, unknown::NoFit, unknown::OneDirection,
                  unknown::NoDownhillMotion, unknown::DriveBeyondGravity, unknown::NotTold, unknown::NotAnswered,
-                 unknown::NoLineOfMotion, unknown::NotToldApart, unknown::ExplanationsDiffer, unknown::FreeFall,
-                 unknown::NoBalance, unknown::DragNotViscous, unknown::KernelNotStated>;
+                 unknown::NoLineOfMotion, unknown::NotToldApart, unknown::NoMinimum, unknown::ExplanationsDiffer,
+                 unknown::FreeFall, unknown::NoBalance, unknown::DragNotViscous, unknown::KernelNotStated>;
 
 /// A clip whose motion in a direction without a line is attributed to the hand.
 struct ClipAgainstLaunch {

@@ -341,8 +341,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     robust : bool
         With ``"trajectory"``: leave out positions that lie off the motion.
     gravity_m_s2 : float, optional
-        With arrays or a file: that of the place; not stated: 9.80665. That value, 9.81 and 9.8 say nothing of a place,
-        and alpha and mu contain 0.015 m/s²; of any other value they contain half a unit of its last digit over sqrt(3).
+        With arrays or a file: that of the place; not stated: 9.80665, and alpha and mu contain 0.015 m/s². Of a
+        stated value they contain half a unit of its last digit over sqrt(3).
     allow_outside : bool
         With a folder: whether it may name files outside itself.
     most_megapixels : float, optional

@@ -26,6 +26,7 @@ namespace {
 constexpr double kPercent = 100.0;
 constexpr double kNearEnd = 0.01;      // of a share: this close to 0 or 1, a tenth of a percent matters
 constexpr double kNothing = 5e-4;      // a share that prints as 0.0 %
+constexpr double kAboveNoise = 1.1;    // a gap; of a gap of hundreds a share of nothing may be as much as ten
 constexpr std::size_t kSizesTold = 2;  // parameters of a cause that its sentence states
 
 std::string capital(std::string text) {
@@ -68,7 +69,8 @@ std::string sizes_aside(const diagnose::Diagnosis& diagnosis, const std::string&
 }
 
 std::string left_words(const diagnose::GapRemainder& remainder) {
-  if (remainder.share < kNothing) return "nothing is left above the noise";
+  if (remainder.share < kNothing && remainder.gap < kAboveNoise) return "nothing is left above the noise";
+  if (remainder.share < kNothing) return fmt::format("less than 0.1 % remains, {}", over_noise_text(remainder.gap));
   return fmt::format("{} remains, {}", share_text(remainder.share), over_noise_text(remainder.gap));
 }
 
@@ -134,7 +136,8 @@ std::string share_text(double share, const std::optional<diagnose::GapInterval>&
   const bool near_end = share < kNearEnd || share > 1.0 - kNearEnd;
   const bool is_end = std::abs(share) < kNothing || std::abs(share - 1.0) < kNothing;
   const int decimals = near_end && (interval || !is_end) ? 1 : 0;
-  std::string text = fmt::format("{:.{}f} %", kPercent * share, decimals);
+  const double shown = std::abs(share) < kNothing && decimals == 0 ? 0.0 : share;  // and not "-0 %"
+  std::string text = fmt::format("{:.{}f} %", kPercent * shown, decimals);
   if (interval) {
     text +=
         fmt::format(" ({:.{}f} to {:.{}f} %)", kPercent * interval->low, decimals, kPercent * interval->high, decimals);

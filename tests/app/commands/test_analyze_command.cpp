@@ -376,9 +376,9 @@ TEST_CASE("--gravity is for files, and alpha contains the uncertainty that its d
     return result.out.find("because the place is not known") != std::string::npos;
   };
   CHECK(told({}));
-  CHECK(told({"--gravity", "9.81"}));
+  CHECK(told({"--gravity", "9.8"}));
   CHECK_FALSE(told({"--gravity", "9.8123"}));
-  CHECK_FALSE(told({"--gravity", "9.81", "--gravity-sd", "0.0001"}));
+  CHECK_FALSE(told({"--gravity", "9.8", "--gravity-sd", "0.0001"}));
   CHECK(tests::glidelab({"analyze", file.string(), "--gravity-sd", "0.0001"}).status == 2);
   CHECK(tests::glidelab({"analyze", file.string(), "--gravity", "0"}).status == 2);
   fs::create_directories(temp / "folder");

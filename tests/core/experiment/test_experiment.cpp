@@ -131,7 +131,8 @@ TEST_CASE("the uncertainty of gravity is that stated, otherwise that of its digi
   const auto sd_of = [&](const std::string& lines) {
     return folder.read(kHead + lines + kCamera + kCalibration + kMarker + kTrack + kClip).gravity_sd_m_s2;
   };
-  CHECK(sd_of("gravity_m_s2 = 9.81\n") == 0.015);
+  CHECK(sd_of("") == 0.015);
+  CHECK(sd_of("gravity_m_s2 = 9.8\n") == 0.015);
   CHECK(sd_of("gravity_m_s2 = 9.82\n") == Approx(0.01 / std::sqrt(12.0)).epsilon(1e-12));
   CHECK(sd_of("gravity_m_s2 = 9.81\ngravity_sd_m_s2 = 0.0002\n") == 0.0002);
   CHECK(sd_of("gravity_m_s2 = 9.81\ngravity_sd_m_s2 = 0\n") == 0.0);

@@ -163,3 +163,18 @@ TEST_CASE(
   check(drifted, with_effect_of(drifted, diagnose::linearise_again(drifted, diagnose::fit_nominal(drifted)),
                                 diagnose::ids::friction_drift, 0.1));
 }
+
+TEST_CASE("nothing is recovered from a fit that stopped before its minimum") {
+  const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.1 * v * std::abs(v); }};
+  const diagnose::TrackSet set = set_of(7, drag);
+  const diagnose::MotionFit nominal = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  diagnose::MotionFit quadratic = with_effect_of(set, nominal, diagnose::ids::quadratic_drag, 0.05);
+  REQUIRE(diagnose::recovered_of(set, {{&quadratic, {}, 1.0}}).at(0).mu.estimate);
+  quadratic.converged = false;
+  for (const core::Quantity& quantity : {diagnose::recovered_of(set, {{&quadratic, {}, 1.0}}).at(0).mu,
+                                         diagnose::recovered_of(set, {{&quadratic, {}, 1.0}}).at(0).alpha_deg}) {
+    CHECK_FALSE(quantity.estimate);
+    REQUIRE(quantity.why);
+    CHECK(std::holds_alternative<core::unknown::NoMinimum>(quantity.why->reason));
+  }
+}

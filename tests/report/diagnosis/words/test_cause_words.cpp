@@ -22,6 +22,7 @@ TEST_CASE("a share has whole percents, tenths near its ends, and its interval") 
   CHECK(report::share_text(0.003) == "0.3 %");
   CHECK(report::share_text(-0.02) == "-2.0 %");
   CHECK(report::share_text(0.0) == "0 %");
+  CHECK(report::share_text(-2e-4) == "0 %");
   CHECK(report::share_text(1.0) == "100 %");
   CHECK(report::share_text(0.99996, diagnose::GapInterval{0.9998, 1.0001}) == "over 99.9 %");
   CHECK(report::share_text(0.99996, diagnose::GapInterval{0.998, 1.002}) == "100.0 % (99.8 to 100.2 %)");
@@ -55,6 +56,15 @@ TEST_CASE("beside a cause that takes all but a trifle, another is told by what i
   CHECK(report::share_text(3e-4, of.explained[1].share_interval95) == "less than 0.1 %");
   of.explained[1].gap_after = 20.0;  // not less
   CHECK(says(report::sequence_words(of), "explains another less than 0.1 %"));
+}
+
+TEST_CASE("a remainder that is a trifle of a large gap is not called nothing while it stands above the noise") {
+  diagnose::Diagnosis of = tests::two_causes();
+  of.remainder->share = 2e-4;
+  of.remainder->gap = 9.59;
+  CHECK(says(report::sequence_words(of), "; less than 0.1 % remains, 9.59 times the noise."));
+  of.remainder->gap = 1.04;
+  CHECK(says(report::sequence_words(of), "; nothing is left above the noise."));
 }
 
 TEST_CASE("a cause is told without what was not fitted, of each set-up by itself, or not found") {
