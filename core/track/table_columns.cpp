@@ -14,9 +14,10 @@
 #include <utility>
 #include "base/errors.h"
 #include "base/math/angles.h"
-#include "base/math/dense.h"
 #include "core/experiment/file_names.h"
+#include "core/math/plane_path.h"
 #include "core/math/quantile.h"
+#include "core/math/unseen_positions.h"
 
 namespace glidelab::core {
 
@@ -24,8 +25,8 @@ namespace {
 
 constexpr double kOtherAxis = 3.0;      // extent along y over that along x: above it the motion is along y
 constexpr double kStraightPath = 0.08;  // sagitta over length: a wide-angle lens bends a straight path by half of that
-constexpr double kCurveExplains = 0.8;  // of the variance across the path: a smaller share is scatter
-constexpr double kSlanted_deg = 5.0;    // x is then too short by 0.4 %
+constexpr double kBendOverNoise = 5.0, kLeastBend = 2e-3;  // of a notable bend, and over the length of the path
+constexpr double kSlanted_deg = 5.0;                       // x is then too short by 0.4 %
 constexpr std::size_t kFewestOfPath = 8;
 
 bool is_acceleration(const TableColumn& column) {
@@ -118,19 +119,22 @@ void refuse_without_positions(const ColumnTable& table) {
   }
 }
 
-/// The positions in a plane at which a body was seen, first to last.
-struct Path {
-  std::vector<double> x_m, y_m;
-};
-
-Path path_of(const TableColumn& x, const TableColumn& y) {
-  Path path;
+/// Without those that say that nothing was seen: a line to them is no path.
+PlanePath path_of(const TableColumn& x, const TableColumn& y) {
+  PlanePath path;
+  std::vector<double> rows;
   const double x_unit = metres_per(x.unit).value_or(1.0),
                y_unit = y.unit.empty() ? x_unit : metres_per(y.unit).value_or(1.0);
   for (std::size_t row = 0; row < x.values.size(); ++row) {
     if (!x.values[row] || !y.values[row]) continue;
     path.x_m.push_back(*x.values[row] * x_unit);
     path.y_m.push_back(*y.values[row] * y_unit);
+    rows.push_back(static_cast<double>(rows.size()));
+  }
+  for (const std::vector<double>* const places : {&path.x_m, &path.y_m}) {
+    const std::optional<UnseenPositions> unseen = unseen_positions(rows, *places);
+    if (!unseen) continue;
+    return {seen_of(path.x_m, *unseen), seen_of(path.y_m, *unseen)};
   }
   return path;
 }
@@ -139,61 +143,38 @@ double range_of(const std::vector<double>& values) {
   return quantile(values, 0.98) - quantile(values, 0.02);
 }
 
-/// Sagitta of the parabola through `across` over `along`, whose range is 1; 0 if it explains little of `across`.
-double parabola_sagitta(const Eigen::VectorXd& along, const Eigen::VectorXd& across) {
-  Eigen::MatrixXd design(along.size(), 3);
-  design << Eigen::VectorXd::Ones(along.size()), along, along.cwiseAbs2();
-  const Eigen::VectorXd fit = base::least_squares(design, across);
-  const Eigen::VectorXd left = across - base::product(design, fit);
-  const Eigen::VectorXd about_mean = across.array() - across.mean();
-  if (!(left.squaredNorm() < (1.0 - kCurveExplains) * about_mean.squaredNorm())) return 0.0;
-  return 0.25 * std::abs(fit[2]);
+std::string straight_motion(const std::string& y) {
+  return fmt::format(
+      "the motion of a body along a straight line, not a free flight, a swing, a turn or a wavy track; if {} is not a "
+      "position, say which column is x (--column)",
+      y);
 }
 
-/// Sagitta over length of a parabola through the path, across the line from its first position to the one farthest from
-/// it, over the place along that line or over the distance travelled (a flight that comes down again turns back along
-/// the line); 0 if neither parabola explains the deviation across the line.
-double sagitta_of(const Path& path) {
-  double along_x = 0.0, along_y = 0.0;
-  for (std::size_t i = 0; i < path.x_m.size(); ++i) {
-    const double dx = path.x_m[i] - path.x_m[0], dy = path.y_m[i] - path.y_m[0];
-    if (std::hypot(dx, dy) > std::hypot(along_x, along_y)) along_x = dx, along_y = dy;
-  }
-  const double length = std::hypot(along_x, along_y);
-  if (!(length > 0.0)) return 0.0;
-  Eigen::VectorXd place(static_cast<Eigen::Index>(path.x_m.size())), travelled(place.size()), across(place.size());
-  for (Eigen::Index i = 0; i < place.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double dx = path.x_m[k] - path.x_m[0], dy = path.y_m[k] - path.y_m[0];
-    place[i] = (dx * along_x + dy * along_y) / (length * length);
-    across[i] = (dy * along_x - dx * along_y) / (length * length);
-    travelled[i] =
-        i == 0 ? 0.0 : travelled[i - 1] + std::hypot(path.x_m[k] - path.x_m[k - 1], path.y_m[k] - path.y_m[k - 1]);
-  }
-  return std::max(parabola_sagitta(place, across),
-                  parabola_sagitta(travelled / travelled[travelled.size() - 1], across));
-}
-
-/// The angle from the x axis to the line that fits the path best, -90 to 90 degrees.
-double slant_deg(const Path& path) {
-  const auto n = static_cast<Eigen::Index>(path.x_m.size());
-  Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(path.x_m.data(), n),
-                 y = Eigen::Map<const Eigen::ArrayXd>(path.y_m.data(), n);
-  x -= x.mean();
-  y -= y.mean();
-  return 0.5 * std::atan2(2.0 * (x * y).sum(), (x.square() - y.square()).sum()) * base::kDegreesPerRad;
-}
-
-/// InputError if the path is curved.
-void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const Path& path) {
+/// InputError if the path is an arc.
+void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path) {
   const double bend = sagitta_of(path);
   if (!(bend > kStraightPath)) return;
   const std::string &of_x = table.columns[x].name, &of_y = table.columns[y].name;
   throw wrong_column(
       table, fmt::format("a curved path: the sagitta of ({}, {}) is {:.2g} % of its length", of_x, of_y, 100.0 * bend),
-      fmt::format("the motion of a body along a straight line, not a free flight, a swing or a turn; if {} is not a "
-                  "position, say which column is x (--column)",
-                  of_y));
+      straight_motion(of_y));
+}
+
+/// A bend of any shape: InputError if it is as large as that of an arc which is refused, a note if it is clear.
+void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path,
+                std::vector<Note>& notes) {
+  const PathBend bend = bend_of(path);
+  if (bend.range_m < kBendOverNoise * bend.noise_m || bend.range_m < kLeastBend * bend.length_m) return;
+  if (bend.range_m < kStraightPath * bend.length_m) {
+    notes.emplace_back(PathBends{bend.range_m, bend.slope_deg});
+    return;
+  }
+  throw wrong_column(
+      table,
+      fmt::format("a curved path: ({}, {}) strays over {:.2g} mm across the best straight line, {:.2g} % of its length",
+                  table.columns[x].name, table.columns[y].name, 1e3 * bend.range_m,
+                  100.0 * bend.range_m / bend.length_m),
+      straight_motion(table.columns[y].name));
 }
 
 /// The column, x or y, along which the body moves; both if its path makes an angle with the axes.
@@ -202,9 +183,10 @@ ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y,
   chosen.place = x;
   const TableColumn& other = table.columns[y];
   if (!other.unit.empty() && !metres_per(other.unit)) return chosen;  // in pixels, say: no length beside x
-  const Path path = path_of(table.columns[x], other);
+  const PlanePath path = path_of(table.columns[x], other);
   if (path.x_m.size() < kFewestOfPath) return chosen;
   refuse_curve(table, x, y, path);
+  judge_bend(table, x, y, path, notes);
   const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
   const bool upright = range_y > kOtherAxis * range_x;
   if (upright) {
@@ -254,7 +236,7 @@ std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vect
   ChosenColumns chosen;
   chosen.place = 1;
   if (is_rate_of(third, second, times)) return chosen;
-  const Path path = path_of(second, third);
+  const PlanePath path = path_of(second, third);
   if (path.x_m.size() < kFewestOfPath || range_of(path.y_m) > kOtherAxis * range_of(path.x_m)) return {};
   refuse_curve(table, 1, 2, path);
   // Only if the third follows the second is it a place in the same plane.
@@ -293,8 +275,27 @@ ChosenColumns only(std::size_t place) {
   return chosen;
 }
 
+/// Whether all values increase, as times do.
+bool increases(const TableColumn& column) {
+  std::optional<double> last;
+  for (const std::optional<double>& value : column.values) {
+    if (!value) continue;
+    if (last && *value <= *last) return false;
+    last = value;
+  }
+  return last.has_value();
+}
+
+/// Two columns without a header: t and x, unless the second alone increases throughout.
+ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
+  const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
+  const std::size_t time = second && !first ? 1 : 0;
+  if (second) notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});
+  return only(1 - time);
+}
+
 ChosenColumns place_columns(const ColumnTable& table, std::vector<Note>& notes) {
-  if (!table.has_header && table.columns.size() == 2) return only(1);
+  if (!table.has_header && table.columns.size() == 2) return unnamed_pair(table, notes);
   if (const std::optional<ChosenColumns> unnamed = unnamed_columns(table, notes)) return *unnamed;
   const std::vector<std::size_t> found = columns_that(table, is_place_column),
                                  heights = columns_that(table, is_height_column);
@@ -323,7 +324,7 @@ bool is_frame_column(const TableColumn& column) {
 }
 
 std::size_t time_column(const ColumnTable& table, std::size_t place) {
-  if (!table.has_header && place != 0) return 0;
+  if (!table.has_header && (place != 0 || table.columns.size() == 2)) return place == 0 ? 1 : 0;
   std::vector<std::size_t> times;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const bool same_run = table.columns[c].run == table.columns[place].run || table.columns[c].run.empty();

@@ -19,6 +19,7 @@
 #include "core/experiment/local_gravity.h"
 #include "core/math/signed_drop.h"
 #include "core/math/time_gap.h"
+#include "core/math/unseen_positions.h"
 #include "core/track/column_table.h"
 #include "core/track/even_times.h"
 #include "core/track/table_columns.h"
@@ -46,7 +47,24 @@ void put_even(TrackData& track) {
 
 }  // namespace
 
+void leave_out_unseen(TrackData& track) {
+  if (track.x_m.empty()) return;  // speeds
+  const std::optional<UnseenPositions> unseen = unseen_positions(track.t_s, track.x_m);
+  if (!unseen) return;
+  track.notes.emplace_back(PositionsUnseen{unseen->count, unseen->value, unseen->from_s});
+  for (std::vector<double>* values : {&track.t_s, &track.x_m, &track.force_n}) {
+    if (!values->empty()) *values = seen_of(*values, *unseen);
+  }
+  if (track.frame.empty()) return;
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < track.frame.size(); ++i) {
+    if (!unseen->is_unseen[i]) frames.push_back(track.frame[i]);
+  }
+  track.frame = std::move(frames);
+}
+
 void take_rows_as_frames(TrackData& track) {
+  leave_out_unseen(track);
   put_even(track);
   track.frame.resize(track.t_s.size());
   std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
@@ -253,9 +271,9 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   }
   check_gaps(track, table.file, fmt::format("column \"{}\"", t.text), lines);
   check_signs(track, downhill.value_or(1), table.file, fmt::format("column \"{}\"", x.text));
-  if (chosen.is_height && !downhill) count_downwards({&track});
   if (missing > 0) track.notes.emplace_back(RowsIncomplete{missing});
   take_rows_as_frames(track);
+  if (chosen.is_height && !downhill) count_downwards({&track});
   return track;
 }
 
