@@ -275,6 +275,17 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
       ->type_name("DEG")
       ->check(check_above_0)
       ->needs(incline);
+  CLI::Option* gravity =
+      command
+          .add_option("--gravity", options.gravity_m_s2,
+                      "For a file: gravity at its place in m/s²; without it, or as 9.80665, 9.81 or 9.8, alpha and mu "
+                      "contain 0.015 m/s² of it, and as any other number its last digit")
+          ->type_name("M_S2")
+          ->check(check_above_0);
+  command.add_option("--gravity-sd", options.gravity_sd_m_s2, "With --gravity: its standard deviation in m/s²")
+      ->type_name("M_S2")
+      ->check(CLI::Range(0.0, 1.0))
+      ->needs(gravity);
   CLI::Option* runs =
       command.add_option("--runs", options.runs,
                          "For a file with several runs or masses: which of them become clips, \"all\" or "
@@ -291,15 +302,15 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
 }
 
 void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs) {
-  if (options.column.empty() && !options.mass_kg && !options.incline_deg && options.runs.empty() &&
-      options.masses_kg.empty() && options.mass_of_file.empty()) {
-    return;
-  }
+  const bool states = options.mass_kg || options.incline_deg || options.gravity_m_s2;
+  const bool has_masses = !options.masses_kg.empty() || !options.mass_of_file.empty();
+  if (options.column.empty() && !states && options.runs.empty() && !has_masses) return;
   for (const std::string& input : inputs) {
     if (core::is_bare_track(input)) continue;
-    throw base::InputError(base::Issue{input, 0, "--column, --mass, --incline, --incline-sd, --runs, --masses",
-                                       "not a file with a track",
-                                       "a file; for a folder, experiment.toml states column, mass_kg and incline_deg"});
+    throw base::InputError(
+        base::Issue{input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --runs, --masses",
+                    "not a file with a track",
+                    "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
   }
 }
 

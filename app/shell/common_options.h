@@ -117,7 +117,8 @@ std::string decimal_point_for(const std::string& text);
 /// Options of the commands that accept a track file as well as experiment folders (analyze, check, diagnose, certify):
 /// what the file does not state.
 ///
-/// --column, --mass, --incline, --runs, --masses, and, for folders, --allow-outside and --max-megapixels.
+/// --column, --mass, --incline, --incline-sd, --gravity, --gravity-sd, --runs, --masses, and, for folders,
+/// --allow-outside and --max-megapixels.
 void add_bare_options(CLI::App& command, core::TrackFileOptions& options);
 
 /// Options for files have no meaning for folders, whose experiment.toml states the same: InputError if an input is a

@@ -37,11 +37,10 @@ std::vector<Experiment> read_all(const std::vector<std::filesystem::path>& folde
   return experiments;
 }
 
-/// Its place is known if one of the folders states it; all have the same value.
+/// All have the same value, and one folder that knows its place is enough.
 Gravity gravity_of(const std::vector<Experiment>& experiments) {
-  const bool stated = std::any_of(experiments.begin(), experiments.end(),
-                                  [](const Experiment& experiment) { return experiment.gravity_stated; });
-  return stated_gravity(stated ? std::optional(experiments.front().gravity_m_s2) : std::nullopt);
+  const auto best = std::ranges::min_element(experiments, {}, &Experiment::gravity_sd_m_s2);
+  return {best->gravity_m_s2, best->gravity_sd_m_s2};
 }
 
 /// Clip names that occur in one folder only are kept; the others are prefixed with their folder's name.
@@ -59,6 +58,24 @@ void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipS
       for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}-{}", wanted, again);
     }
   }
+}
+
+/// The experiments' names; those of one name get their folder's before it, since results are told apart by them.
+std::vector<std::string> unique_names(const std::vector<Experiment>& experiments) {
+  std::multiset<std::string> names;
+  for (const Experiment& experiment : experiments) names.insert(experiment.name);
+  std::vector<std::string> unique;
+  std::set<std::string> taken;
+  for (const Experiment& experiment : experiments) {
+    std::string name = experiment.name;
+    if (names.count(name) > 1) {
+      name = std::filesystem::absolute(experiment.folder / "x").parent_path().filename().string() + "-" + name;
+    }
+    const std::string wanted = name;
+    for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}-{}", wanted, again);
+    unique.push_back(std::move(name));
+  }
+  return unique;
 }
 
 void note_assumptions(const TrackFileOptions& stated, const std::vector<ClipSetup>& setups,
@@ -96,30 +113,37 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
                           options.smoother};
   check_smoothing(how);
   const std::vector<Experiment> experiments = read_all(folders, options.bare);
+  const std::vector<std::string> names = unique_names(experiments);
   std::vector<CalibrationResult> calibrations;
   std::vector<PlumbResult> plumbs;
   std::vector<ClipSetup> setups;
   std::vector<TrackData> tracks;
   std::size_t modes = 0;  // of the cameras so far: folders share no modes
   std::vector<const Experiment*> experiment_of;
-  for (const Experiment& experiment : experiments) {
+  std::vector<std::string> name_of;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    const Experiment& experiment = experiments[e];
     ImageResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.images);
     for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
       setups.push_back(experiment.clips[i]);
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
       experiment_of.push_back(&experiment);
+      name_of.push_back(names[e]);
     }
     modes += seen.modes;
-    if (seen.calibration) calibrations.push_back(std::move(*seen.calibration));
+    if (seen.calibration) {
+      seen.calibration->experiment = names[e];
+      calibrations.push_back(std::move(*seen.calibration));
+    }
     for (PlumbResult& plumb : seen.plumbs) {
-      plumb.experiment = experiment.name;
+      plumb.experiment = names[e];
       plumbs.push_back(std::move(plumb));
     }
   }
   name_uniquely(experiments, setups);
   AnalysisResults results = analyze_tracks(setups, tracks, gravity_of(experiments), how, options.jobs, progress);
-  for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = experiment_of[i]->name;
+  for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = name_of[i];
   results.calibrations = std::move(calibrations);
   results.plumbs = std::move(plumbs);
   note_assumptions(options.bare, setups, experiment_of, results);

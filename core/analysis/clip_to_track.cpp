@@ -7,7 +7,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <set>
 
 #include "base/errors.h"
 #include "base/long_work.h"
@@ -225,23 +224,53 @@ std::optional<MarkerBody> body_of(const Experiment& experiment, const CameraAndP
   return discs > spheres ? MarkerBody::disc : MarkerBody::sphere;
 }
 
-/// Makes x of falls positive downwards, one sign for each set-up. A stated direction of a launch or of the slope, a
-/// recorded force and an inclination below 0 have the sign of x already.
-void count_falls_downwards(const Experiment& experiment, std::vector<TrackData>& tracks) {
-  std::map<std::string, std::vector<TrackData*>> falls;
-  std::set<std::string> stated;
+/// All that x covers, with the sign of the way in which it first leaves its start by a tenth of that.
+double first_way(const std::vector<double>& x_m) {
+  constexpr double kLeft = 0.1;
+  const auto [low, high] = std::minmax_element(x_m.begin(), x_m.end());
+  const auto left = [&](double x) { return std::abs(x - x_m.front()) > kLeft * (*high - *low); };
+  const auto first = std::find_if(x_m.begin(), x_m.end(), left);
+  return first == x_m.end() ? 0.0 : std::copysign(*high - *low, *first - x_m.front());
+}
+
+/// The tracks of one set-up whose sign may have to be found.
+struct SetUpTracks {
+  std::vector<TrackData*> all, heights;
+  bool only_falls = true;
+  bool has_sign = false;          ///< by a stated direction of the slope, a recorded force, an inclination below 0
+  bool is_launched = false;       ///< up or down, as stated
+  double heights_launched = 0.0;  ///< metres of heights that begin as their launch is stated, less those against it
+};
+
+/// Makes x of falls and of heights positive downwards, one sign for each set-up. A stated direction of the slope, a
+/// recorded force and an inclination below 0 have the sign of x already, and so has the launch of a fall. Heights
+/// follow their launch where it is stated.
+void count_downwards_by_set_up(const Experiment& experiment, std::vector<TrackData>& tracks) {
+  std::map<std::string, SetUpTracks> set_ups;
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
     const ClipSetup& clip = experiment.clips[i];
     if (!clip.file.empty()) continue;
-    const bool has_direction = clip.launched == Launched::up || clip.launched == Launched::down;
-    if (has_direction || !tracks[i].force_n.empty() || downhill_of(experiment, clip.group) ||
-        !is_fall(clip.incline_rad) || clip.incline_rad < 0.0) {
-      stated.insert(clip.group);
-    }
-    falls[clip.group].push_back(&tracks[i]);
+    SetUpTracks& of = set_ups[clip.group];
+    of.all.push_back(&tracks[i]);
+    of.only_falls = of.only_falls && is_fall(clip.incline_rad);
+    of.has_sign =
+        of.has_sign || !tracks[i].force_n.empty() || downhill_of(experiment, clip.group) || clip.incline_rad < 0.0;
+    const bool launched_down = clip.launched == Launched::down;
+    const bool launched = launched_down || clip.launched == Launched::up;
+    of.is_launched = of.is_launched || launched;
+    const bool is_height = std::ranges::any_of(
+        tracks[i].notes, [](const Note& note) { return std::holds_alternative<HeightTaken>(note); });
+    if (!is_height) continue;
+    of.heights.push_back(&tracks[i]);
+    if (launched) of.heights_launched += (launched_down ? 1.0 : -1.0) * first_way(tracks[i].x_m);
   }
-  for (const auto& [group, of_group] : falls) {
-    if (!stated.contains(group)) count_downwards(of_group);
+  for (const auto& [group, of] : set_ups) {
+    if (of.has_sign) continue;
+    if (of.is_launched) {
+      if (of.heights_launched < 0.0) reverse(of.heights);
+    } else {
+      count_downwards(of.only_falls ? of.all : of.heights);
+    }
   }
 }
 
@@ -267,7 +296,7 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
       images.push_back(i);
     }
   }
-  count_falls_downwards(experiment, results.tracks);
+  count_downwards_by_set_up(experiment, results.tracks);
   if (images.empty()) return results;
 
   progress("calibration", 0.0);

@@ -274,8 +274,14 @@ Experiment read_experiment(const fs::path& path, Permissions permitted) {
   root.integer("format", 1, 1);
   root.ignore("extra");
   experiment.name = root.text("name");
-  experiment.gravity_stated = root.has("gravity_m_s2");
+  const bool gravity_stated = root.has("gravity_m_s2");
   experiment.gravity_m_s2 = root.number_or("gravity_m_s2", experiment.gravity_m_s2, base::above(0.0));
+  const std::optional<double> gravity_sd_m_s2 = root.maybe_number("gravity_sd_m_s2", base::at_least(0.0));
+  if (gravity_sd_m_s2 && !gravity_stated) {
+    root.reject("gravity_sd_m_s2", fmt::format("{}", *gravity_sd_m_s2),
+                "gravity_m_s2, whose uncertainty it is, as well");
+  }
+  experiment.gravity_sd_m_s2 = stated_gravity(experiment.gravity_m_s2, gravity_sd_m_s2).sd_m_s2;
   if (const auto table = root.maybe_table("camera")) experiment.camera = read_camera(*table);
   if (experiment.camera) experiment.camera->most_pixels = permitted.most_pixels;
   if (const auto table = root.maybe_table("calibration")) experiment.calibration = read_calibration(*table, folder);

@@ -70,7 +70,7 @@ struct Experiment {
   std::filesystem::path file;  ///< of experiment.toml, for messages
   std::string name;
   double gravity_m_s2 = kStandardGravity_m_s2;
-  bool gravity_stated = false;
+  double gravity_sd_m_s2 = kLocalGravity_sd_m_s2;  ///< as stated, otherwise by stated_gravity()
   std::optional<CameraSettings> camera;
   std::optional<CalibrationSetup> calibration;
   std::optional<ScaleSetup> scale;

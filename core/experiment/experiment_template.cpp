@@ -12,6 +12,7 @@ constexpr std::string_view kToml =
 # A line "#key = value" is a key that you may use: take the # away. A misspelt key is an error, not ignored.
 
 #gravity_m_s2 = 9.80665            # at your place: 9.78 (equator) to 9.83 (poles); this is the default
+#gravity_sd_m_s2 = 0.0001          # its standard deviation; by default 0.015 for 9.80665, 9.81 and 9.8, else the last digit's
 
 # ---- The camera: what it was told to do, or what its data sheet says.
 [camera]

@@ -23,8 +23,9 @@ double gravity_sd_m_s2(double gravity_m_s2) {
   return std::min(kLocalGravity_sd_m_s2, 0.5 * std::pow(10.0, -decimals) / std::sqrt(3.0));
 }
 
-Gravity stated_gravity(std::optional<double> m_s2) {
-  return m_s2 ? Gravity(*m_s2) : Gravity(kStandardGravity_m_s2, kLocalGravity_sd_m_s2);
+Gravity stated_gravity(std::optional<double> m_s2, std::optional<double> sd_m_s2) {
+  const double value_m_s2 = m_s2.value_or(kStandardGravity_m_s2);
+  return {value_m_s2, sd_m_s2 ? *sd_m_s2 : gravity_sd_m_s2(value_m_s2)};
 }
 
 }  // namespace glidelab::core

@@ -13,10 +13,10 @@ inline constexpr double kStandardGravity_m_s2 = 9.80665;
 /// standard deviation of 0.052/sqrt(12) = 0.015 m/s².
 inline constexpr double kLocalGravity_sd_m_s2 = 0.015;
 
-/// Standard deviation of a value of gravity in an experiment's file, in m/s². The standard value and 9.81, which is
-/// written everywhere, say nothing of the place, so they have the spread over the Earth. Any other value is that of the
-/// place, rounded to its last digit: half a unit of it over sqrt(3), but at most the spread over the Earth. 9.82 has
-/// 0.0029, 9.8123 has 0.000029, and 9.8 the spread.
+/// Standard deviation of a value of gravity whose uncertainty is not stated, in m/s². The standard value and 9.81,
+/// which is written everywhere, say nothing of the place, so they have the spread over the Earth. Any other value is
+/// that of the place, rounded to its last digit: half a unit of it over sqrt(3), but at most the spread over the
+/// Earth. 9.82 has 0.0029, 9.8123 has 0.000029, and 9.8 the spread.
 double gravity_sd_m_s2(double gravity_m_s2);
 
 /// A value of gravity with the standard deviation that alpha and mu take from it.
@@ -27,7 +27,8 @@ struct Gravity {
   double sd_m_s2;
 };
 
-/// As stated, and then exact; otherwise that of a place that is not known.
-Gravity stated_gravity(std::optional<double> m_s2);
+/// The one rule for gravity, of folders, files and arrays: as stated, otherwise the standard value; with the standard
+/// deviation as stated, otherwise gravity_sd_m_s2().
+Gravity stated_gravity(std::optional<double> m_s2, std::optional<double> sd_m_s2 = {});
 
 }  // namespace glidelab::core

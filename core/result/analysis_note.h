@@ -345,7 +345,7 @@ struct MuFromIncline {
   double deg = 0.0, sd_deg = 0.0;
 };
 
-/// The experiment does not state gravity: alpha and mu are for this value, and contain its uncertainty.
+/// The value of gravity is that of no particular place: alpha and mu are for it, and contain its uncertainty.
 struct GravityAssumed {
   double gravity_m_s2 = 0.0, sd_m_s2 = 0.0;
 };
@@ -355,9 +355,11 @@ struct RobustFit {
   std::size_t left_out = 0, positions = 0;
 };
 
-/// The intervals of a fit of the whole motion are widened.
+/// The intervals of a fit of the whole motion are widened, because the positions scatter about it by more than their
+/// noise, or because the motions that it joins differ from one another by more than theirs.
 struct FitScatters {
   double ratio = 1.0, degrees = 0.0;
+  bool motions_differ = false;
 };
 
 using AnyNote = std::variant<

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "base/math/angles.h"
+#include "core/experiment/local_gravity.h"
 
 namespace glidelab::core {
 namespace {
@@ -48,7 +49,7 @@ void note_mu_from_incline(ConfigurationResult& configuration) {
 
 void note_gravity(AnalysisResults& results) {
   for (ConfigurationResult& configuration : results.configurations) erase_notes<GravityAssumed>(configuration.notes);
-  if (!(results.gravity_sd_m_s2 > 0.0)) return;
+  if (results.gravity_sd_m_s2 < kLocalGravity_sd_m_s2) return;  // the place is known
   for (ConfigurationResult& configuration : results.configurations) {
     if (!configuration.mu.estimate && !configuration.alpha_deg.estimate) continue;
     configuration.notes.emplace_back(GravityAssumed{results.gravity_m_s2, results.gravity_sd_m_s2});

@@ -190,7 +190,7 @@ struct FreeBlock {
 
 struct ClipResult {
   std::string name;
-  std::string experiment;  ///< name of the folder it comes from
+  std::string experiment;  ///< name of the folder it comes from; another folder's is another name (analyze())
   std::size_t frames = 0;
   std::size_t detected = 0;
   double frame_rate_hz = 0.0;  ///< nominal; of a track, the median
@@ -302,7 +302,7 @@ struct PlumbResult {
 
 struct AnalysisResults {
   double gravity_m_s2 = 0.0;
-  double gravity_sd_m_s2 = 0.0;  ///< in alpha and mu; 0 if the value is stated
+  double gravity_sd_m_s2 = 0.0;  ///< in alpha and mu (core/experiment/local_gravity.h)
   std::vector<ClipResult> clips;
   std::vector<ConfigurationResult> configurations;
   std::vector<CalibrationResult> calibrations;            ///< one for each folder that has a pattern

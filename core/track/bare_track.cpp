@@ -122,6 +122,9 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   experiment.folder = path.parent_path();
   experiment.file = path;
   experiment.name = path.stem().string();
+  const Gravity gravity = stated_gravity(options.gravity_m_s2, options.gravity_sd_m_s2);
+  experiment.gravity_m_s2 = gravity.m_s2;
+  experiment.gravity_sd_m_s2 = gravity.sd_m_s2;
   ClipSetup clip;
   clip.name = experiment.name;
   clip.track = path;

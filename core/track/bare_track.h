@@ -20,7 +20,8 @@ struct TrackFileOptions {
   std::optional<double> mass_kg;      ///< 1 kg if not stated; K/m, mu and alpha depend on it under a recorded force
   std::optional<double> incline_deg;  ///< as stated; level if not stated
   std::optional<double> incline_sd_deg = {};  ///< its standard deviation, with which it gives mu of one direction
-  Permissions permitted = {};                 ///< of a folder
+  std::optional<double> gravity_m_s2 = {}, gravity_sd_m_s2 = {};  ///< as stated (stated_gravity())
+  Permissions permitted = {};                                     ///< of a folder
   /// Which of the runs (or masses) of the file become clips: "all", or their numbers from 1 on, "1,3". Empty: the file
   /// is one clip.
   std::string runs = {};

@@ -208,64 +208,12 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \r") - first + 1);
 }
 
-/// A field without blanks and quotes around it.
-std::string_view field_text(std::string_view field) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
-  while (!field.empty() && blank(field.front())) field.remove_prefix(1);
-  while (!field.empty() && blank(field.back())) field.remove_suffix(1);
-  return field;
-}
-
-/// A delimiter within quotes does not count.
-std::vector<std::string_view> split_at(std::string_view line, char delimiter) {
-  std::vector<std::string_view> fields;
-  std::size_t from = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i <= line.size(); ++i) {
-    if (i < line.size() && line[i] == '"') quoted = !quoted;
-    if (i < line.size() && (quoted || line[i] != delimiter)) continue;
-    fields.push_back(field_text(line.substr(from, i - from)));
-    from = i + 1;
-  }
-  return fields;
-}
-
-constexpr char kBlanks = ' ';  // as a delimiter: any number of blanks and tabs
+constexpr char kOfColumn = '?';  // as a decimal sign: each column has its own
 
 struct Format {
   char delimiter = ',';
   char decimal = '.';
 };
-
-/// At runs of blanks and tabs; a unit in brackets belongs to the name before it.
-std::vector<std::string_view> split_at_blanks(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const auto from = line.find_first_not_of(" \t\r");
-    if (from == std::string_view::npos) return fields;
-    line.remove_prefix(from);
-    const char* const start = line.data();
-    const bool quoted = line.front() == '"';
-    const auto end = quoted ? line.find('"', 1) : line.find_first_of(" \t\r");
-    const auto size = end == std::string_view::npos ? line.size() : end + (quoted ? 1 : 0);
-    const bool is_unit = line.front() == '(' || line.front() == '[';
-    if (is_unit && !fields.empty()) {
-      const char* const first = fields.back().data();
-      fields.back() = std::string_view(first, static_cast<std::size_t>(start + size - first));
-    } else {
-      fields.push_back(field_text(line.substr(0, size)));
-    }
-    line.remove_prefix(size);
-  }
-}
-
-std::vector<std::string_view> split(std::string_view line, char delimiter) {
-  return delimiter == kBlanks ? split_at_blanks(line) : split_at(line, delimiter);
-}
-
-bool is_missing(std::string_view field) {
-  return field.empty() || field == "NaN" || field == "nan" || field == "NAN";
-}
 
 Thousands thousands_of(const Format& format) {
   return format.delimiter == ',' ? Thousands::without_plain_blanks : Thousands::with_blanks;
@@ -276,7 +224,10 @@ bool is_data(const std::vector<std::string_view>& fields, const Format& format) 
   int numbers = 0;
   for (const std::string_view field : fields) {
     if (is_missing(field)) continue;
-    if (!number_in(field, format.decimal, thousands_of(format))) return false;
+    const bool is_number = format.decimal == kOfColumn
+                               ? number_in(field, '.') || number_in(field, ',')
+                               : number_in(field, format.decimal, thousands_of(format)).has_value();
+    if (!is_number) return false;
     ++numbers;
   }
   return numbers >= 2;
@@ -321,7 +272,7 @@ std::vector<std::vector<std::string>> commented_header(const std::vector<Line>& 
   std::vector<std::vector<std::string>> lines;
   for (const Line& comment : comments) {
     if (comment.number > first_data) break;
-    const std::vector<std::string_view> fields = split(comment.text, format.delimiter);
+    const std::vector<std::string_view> fields = split_fields(comment.text, format.delimiter);
     if (fields.size() != width || is_data(fields, format)) continue;
     lines.emplace_back(fields.begin(), fields.end());
   }
@@ -330,16 +281,31 @@ std::vector<std::vector<std::string>> commented_header(const std::vector<Line>& 
   return lines;
 }
 
-/// Empty if no line holds two numbers.
+/// The decimal sign of each column, from the lines that are data.
+std::vector<DecimalSign> signs_of(const std::vector<Line>& lines, const Format& format) {
+  std::vector<DecimalSign> signs;
+  for (const Line& line : lines) {
+    const auto fields = split_fields(line.text, format.delimiter);
+    if (!is_data(fields, format)) continue;
+    if (signs.size() < fields.size()) signs.resize(fields.size());
+    for (std::size_t c = 0; c < fields.size(); ++c) signs[c].see(fields[c]);
+  }
+  return signs;
+}
+
+/// Empty if no line holds two numbers. Signs that differ from column to column count only where the fields cannot be
+/// read otherwise, and not where they differ within a column.
 std::optional<Format> format_of(const std::vector<Line>& lines) {
   std::optional<Format> best;
   std::size_t most = 0;
   for (const Format& format : {Format{'\t', '.'}, Format{'\t', ','}, Format{';', '.'}, Format{';', ','},
                                Format{',', '.'}, Format{kBlanks, '.'}, Format{kBlanks, ','},
-                               Format{',', ','}}) {  // the last with quotes around each number that has a comma
+                               Format{',', ','},  // with quotes around each number that has a comma
+                               Format{'\t', kOfColumn}, Format{';', kOfColumn}}) {
     std::size_t count = 0;
-    for (const Line& line : lines) count += is_data(split(line.text, format.delimiter), format);
-    if (count > most) {
+    for (const Line& line : lines) count += is_data(split_fields(line.text, format.delimiter), format);
+    const auto differ = [](const DecimalSign& sign) { return sign.points && sign.commas; };
+    if (count > most && (format.decimal != kOfColumn || std::ranges::none_of(signs_of(lines, format), differ))) {
       most = count;
       best = format;
     }
@@ -356,7 +322,7 @@ base::Issue no_numbers(const std::string& file, const std::vector<Line>& lines) 
   const auto numbers_of = [](const Line& line, char decimal) {
     std::size_t most = 0;
     for (const char delimiter : {'\t', ';', kBlanks}) {
-      const auto fields = split(line.text, delimiter);
+      const auto fields = split_fields(line.text, delimiter);
       most = std::max(most, static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), [&](auto field) {
                         return field.find(decimal) != std::string_view::npos && number_in(field, decimal);
                       })));
@@ -369,7 +335,7 @@ base::Issue no_numbers(const std::string& file, const std::vector<Line>& lines) 
   bool dates = false, both_signs = false;
   for (const Line& line : lines) {
     if (shown == nullptr && has_digit(line.text)) shown = &line;
-    for (const std::string_view field : split(line.text, ';')) dates |= is_month_and_number(field);
+    for (const std::string_view field : split_fields(line.text, ';')) dates |= is_month_and_number(field);
     both_signs |= numbers_of(line, '.') > 0 && numbers_of(line, ',') > 0;
   }
   if (shown == nullptr) return issue;
@@ -384,9 +350,22 @@ base::Issue no_numbers(const std::string& file, const std::vector<Line>& lines) 
         "; a spreadsheet has turned some of these numbers into dates: export them again from the program "
         "that measured them";
   } else if (both_signs) {
-    issue.expected += "; decimal points and decimal commas do not go together in one file";
+    issue.expected +=
+        "; decimal points and decimal commas do not go together in one column, and only semicolons or "
+        "tabs tell columns of different signs apart";
   }
   return issue;
+}
+
+/// In a table with both decimal signs, a column in which one of them may be neither.
+base::Issue thousands_or_decimals(const ColumnTable& table, std::size_t column, const DecimalSign& sign, int line) {
+  const char* const name = sign.commas ? "comma" : "point";
+  return {
+      table.file, line, fmt::format("column \"{}\"", table.columns[column].text),
+      fmt::format("numbers such as {}, and the other decimal sign in another column", sign.example),
+      fmt::format("one decimal sign in the whole file: with three digits after each {0}, it may be a decimal {0} or "
+                  "stand between thousands",
+                  name)};
 }
 
 /// A delimiter at the end of each line makes a column without a name and without values.
@@ -432,7 +411,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
     throw base::InputError(no_numbers(table.file, lines));
   }
   std::vector<std::vector<std::string_view>> rows;
-  for (const Line& line : lines) rows.push_back(split(line.text, format->delimiter));
+  for (const Line& line : lines) rows.push_back(split_fields(line.text, format->delimiter));
   const auto first_data = static_cast<std::size_t>(
       std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return is_data(row, *format); }) - rows.begin());
   std::size_t width = 0, widest = first_data;
@@ -464,6 +443,15 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   table.columns = columns_of_header(header, width);
 
   std::vector<base::Issue> issues;
+  std::vector<char> decimals(width, format->decimal);
+  if (format->decimal == kOfColumn) {
+    const std::vector<DecimalSign> signs = signs_of(lines, *format);
+    for (std::size_t c = 0; c < width; ++c) {
+      const DecimalSign sign = c < signs.size() ? signs[c] : DecimalSign{};
+      decimals[c] = sign.commas ? ',' : '.';
+      if (sign.may_be_thousands()) issues.push_back(thousands_or_decimals(table, c, sign, lines[first_data].number));
+    }
+  }
   if (table.has_header && header.back().size() < width) {
     const bool ambiguous = format->delimiter == ',';
     issues.push_back({table.file, lines[first_data].number, "",
@@ -477,10 +465,10 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
       const std::string_view field = c < rows[r].size() ? rows[r][c] : std::string_view{};
       std::optional<double> value;
       if (!is_missing(field)) {
-        value = number_in(field, format->decimal, thousands_of(*format));
+        value = number_in(field, decimals[c], thousands_of(*format));
         if (!value) {
           issues.push_back({table.file, lines[r].number, fmt::format("column {}", c + 1), fmt::format("\"{}\"", field),
-                            fmt::format("a number with a decimal {}", format->decimal == ',' ? "comma" : "point")});
+                            fmt::format("a number with a decimal {}", decimals[c] == ',' ? "comma" : "point")});
         }
       }
       table.columns[c].values.push_back(value);

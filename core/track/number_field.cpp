@@ -46,7 +46,59 @@ std::string plain_number(std::string_view field, Thousands thousands) {
   return text.find(' ') == std::string::npos ? text : without_groups(text);
 }
 
+/// A field without blanks and quotes around it.
+std::string_view field_text(std::string_view field) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
+  while (!field.empty() && blank(field.front())) field.remove_prefix(1);
+  while (!field.empty() && blank(field.back())) field.remove_suffix(1);
+  return field;
+}
+
+/// A delimiter within quotes does not count.
+std::vector<std::string_view> split_at(std::string_view line, char delimiter) {
+  std::vector<std::string_view> fields;
+  std::size_t from = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') quoted = !quoted;
+    if (i < line.size() && (quoted || line[i] != delimiter)) continue;
+    fields.push_back(field_text(line.substr(from, i - from)));
+    from = i + 1;
+  }
+  return fields;
+}
+
+/// At runs of blanks and tabs; a unit in brackets belongs to the name before it.
+std::vector<std::string_view> split_at_blanks(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const auto from = line.find_first_not_of(" \t\r");
+    if (from == std::string_view::npos) return fields;
+    line.remove_prefix(from);
+    const char* const start = line.data();
+    const bool quoted = line.front() == '"';
+    const auto end = quoted ? line.find('"', 1) : line.find_first_of(" \t\r");
+    const auto size = end == std::string_view::npos ? line.size() : end + (quoted ? 1 : 0);
+    const bool is_unit = line.front() == '(' || line.front() == '[';
+    if (is_unit && !fields.empty()) {
+      const char* const first = fields.back().data();
+      fields.back() = std::string_view(first, static_cast<std::size_t>(start + size - first));
+    } else {
+      fields.push_back(field_text(line.substr(0, size)));
+    }
+    line.remove_prefix(size);
+  }
+}
+
 }  // namespace
+
+std::vector<std::string_view> split_fields(std::string_view line, char delimiter) {
+  return delimiter == kBlanks ? split_at_blanks(line) : split_at(line, delimiter);
+}
+
+bool is_missing(std::string_view field) {
+  return field.empty() || field == "NaN" || field == "nan" || field == "NAN";
+}
 
 std::optional<double> number_in(std::string_view field, char decimal, Thousands thousands) {
   std::string text = plain_number(field, thousands);
@@ -60,6 +112,17 @@ std::optional<double> number_in(std::string_view field, char decimal, Thousands 
   const auto [end, error] = std::from_chars(first, text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
   return value;
+}
+
+void DecimalSign::see(std::string_view field) {
+  const auto at = field.find_first_of(",.");
+  if (at == std::string_view::npos) return;
+  const std::string_view before = field.substr(0, at), after = field.substr(at + 1);
+  const bool three = after.size() == 3 && after.find_first_not_of("0123456789") == std::string_view::npos;
+  const auto first = before.find_first_of("123456789");  // 0,149 has no thousands
+  (field[at] == ',' ? commas : points) = true;
+  only_thousands = only_thousands && three && first != std::string_view::npos;
+  example = field;
 }
 
 bool is_month_and_number(std::string_view field) {

@@ -1,10 +1,20 @@
-/// Numbers as programs and spreadsheets write them into the fields of a table.
+/// The fields of a table's line, and the numbers in them as programs and spreadsheets write them.
 #pragma once
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace glidelab::core {
+
+inline constexpr char kBlanks = ' ';  ///< as a delimiter: any number of blanks and tabs
+
+/// Without blanks and quotes around them. A delimiter within quotes does not count. At blanks, a unit in brackets
+/// belongs to the name before it.
+std::vector<std::string_view> split_fields(std::string_view line, char delimiter);
+
+/// Nothing, or a spelling of "not a number".
+bool is_missing(std::string_view field);
 
 /// Whether a plain blank may stand between thousands. Where commas separate the fields it may not: "40,5 123,5" are two
 /// numbers with decimal commas.
@@ -14,6 +24,17 @@ enum class Thousands { with_blanks, without_plain_blanks };
 /// groups of three digits ("1 234,5") are understood, as spreadsheets write them in some languages. Empty if the field
 /// holds anything else, also the other decimal sign.
 std::optional<double> number_in(std::string_view field, char decimal, Thousands thousands = Thousands::with_blanks);
+
+/// The decimal sign that the numbers of one column show. `example` is the last of them that has one, a view of it.
+struct DecimalSign {
+  bool points = false, commas = false;
+  bool only_thousands = true;  ///< three digits follow each of them, and a number above zero is before it
+  std::string_view example = {};
+
+  void see(std::string_view field);
+  /// "1,234" and the like in all fields with a sign: 1.234, or 1234.
+  bool may_be_thousands() const { return (points || commas) && only_thousands; }
+};
 
 /// "01.jan", "jan.13": what a spreadsheet makes of 1.01 and 1.13 if it expects a decimal comma.
 bool is_month_and_number(std::string_view field);

@@ -366,8 +366,7 @@ double factor_of(const ColumnTable& table, const TableColumn& column, std::optio
 ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes) {
   ChosenColumns chosen = asked.empty() ? place_columns(table, notes) : only(asked_column(table, asked));
   chosen.time = time_column(table, chosen.place);
-  chosen.is_height = asked.empty() && is_height_column(table.columns[chosen.place]);
-  if (chosen.is_height) {
+  if (asked.empty() && is_height_column(table.columns[chosen.place])) {
     notes.emplace_back(HeightTaken{table.columns[chosen.place].text});
   }
   note_force(table, notes);

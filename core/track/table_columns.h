@@ -36,7 +36,6 @@ struct Across {
 struct ChosenColumns {
   std::size_t place = 0, time = 0;
   std::optional<Across> across = {};
-  bool is_height = false;  ///< x is a height that was not requested: its sign is not stated
 };
 
 /// InputError: no or several candidates for x or t, a curved path.

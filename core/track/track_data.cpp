@@ -184,13 +184,7 @@ void check_signs(const TrackData& track, int downhill, const std::string& file, 
 
 }  // namespace
 
-void count_downwards(const std::vector<TrackData*>& tracks) {
-  double drop = 0.0;
-  for (const TrackData* track : tracks) {
-    drop +=
-        track->v_m_s.empty() ? signed_drop(track->t_s, track->x_m, kStandardGravity_m_s2) : signed_speed(track->v_m_s);
-  }
-  if (!(drop < 0.0)) return;
+void reverse(const std::vector<TrackData*>& tracks) {
   for (TrackData* track : tracks) {
     for (std::vector<double>* values : {&track->x_m, &track->v_m_s, &track->force_n}) {
       for (double& value : *values) value = -value;
@@ -199,6 +193,15 @@ void count_downwards(const std::vector<TrackData*>& tracks) {
         std::erase_if(track->notes, [](const Note& note) { return std::holds_alternative<CountedAlongMotion>(note); });
     if (reversed_before == 0) track->notes.emplace_back(CountedAlongMotion{});
   }
+}
+
+void count_downwards(const std::vector<TrackData*>& tracks) {
+  double drop = 0.0;
+  for (const TrackData* track : tracks) {
+    drop +=
+        track->v_m_s.empty() ? signed_drop(track->t_s, track->x_m, kStandardGravity_m_s2) : signed_speed(track->v_m_s);
+  }
+  if (drop < 0.0) reverse(tracks);
 }
 
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,

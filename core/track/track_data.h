@@ -66,17 +66,20 @@ TrackData track_of_numbers(std::vector<double> t_s, std::vector<double> x_m, std
 /// metres and seconds are assumed, and a note says so. Rows without time or x are left out (columns of several runs
 /// differ in length), and a note counts those that lie between others.
 ///
-/// x is multiplied by `downhill`. If that is not stated and x is a height that was not requested, x is counted
-/// downwards (count_downwards()). InputError: no or several candidates for x, a curved path, a unit that is neither
-/// length nor time, times that do not rise or have a gap that is too long (core/math/time_gap.h), fewer points than
-/// kFewestTrackPoints. A table with speeds and no positions is an InputError, or gives v_m_s; its units are m/s, cm/s,
-/// mm/s or km/h.
+/// x is multiplied by `downhill`. If x is a height that was not requested, a note says so (HeightTaken); its sign is
+/// that of the table, and core/analysis/clip_to_track.h decides for all clips of a set-up together. InputError: no or
+/// several candidates for x, a curved path, a unit that is neither length nor time, times that do not rise or have a
+/// gap that is too long (core/math/time_gap.h), fewer points than kFewestTrackPoints. A table with speeds and no
+/// positions is an InputError, or gives v_m_s; its units are m/s, cm/s, mm/s or km/h.
 TrackData import_track(const std::filesystem::path& file, const std::string& column, std::optional<int> downhill,
                        SpeedsAlone speeds = SpeedsAlone::refused);
 
-/// Reverses x (and the force) of all tracks if the sum of their drops (core/math/signed_drop.h) is negative, with a
-/// note in each. The tracks are of one set-up, so that one sign holds for all. Of tables of speeds, the speeds are
-/// reversed.
+/// Reverses x and the force of all tracks, with a note in each; a second time takes the note back. Of tables of speeds,
+/// the speeds are reversed.
+void reverse(const std::vector<TrackData*>& tracks);
+
+/// Reverses all tracks if the sum of their drops (core/math/signed_drop.h) is negative. The tracks
+/// are of one set-up, so that one sign holds for all.
 void count_downwards(const std::vector<TrackData*>& tracks);
 
 /// Reads a motion that was tracked elsewhere: a CSV with the header `t_s,x_m` or `t_s,x_m,force_n`, or a table exported

@@ -82,6 +82,9 @@ core::Experiment read_recording(const std::filesystem::path& path, const core::T
   experiment.file = path;
   experiment.name = path.stem().string();
   experiment.lines = path;
+  const core::Gravity gravity = core::stated_gravity(bare.gravity_m_s2, bare.gravity_sd_m_s2);
+  experiment.gravity_m_s2 = gravity.m_s2;
+  experiment.gravity_sd_m_s2 = gravity.sd_m_s2;
   return experiment;
 }
 

@@ -9,7 +9,6 @@
 
 #include "base/math/angles.h"
 #include "base/math/dense.h"
-#include "core/experiment/local_gravity.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 #include "diagnose/tracks/rounded_positions.h"
@@ -365,7 +364,7 @@ double neighbour_noise(const std::vector<double>& t_s, const std::vector<double>
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all) {
   TrackSet set;
   set.gravity_m_s2 = results.gravity_m_s2;
-  set.gravity_sd_m_s2 = core::gravity_sd_m_s2(results.gravity_m_s2);
+  set.gravity_sd_m_s2 = results.gravity_sd_m_s2;
   std::size_t camera_modes = 0;
   for (const core::ClipResult& clip : results.clips) {
     camera_modes = std::max(camera_modes, clip.shared_m.size());

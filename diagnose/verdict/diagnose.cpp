@@ -60,14 +60,18 @@ void add_speeds(const core::AnalysisResults& results, std::vector<MeasuredMotion
 }
 
 /// A body whose height is recorded falls, or moves on a slope: assumed to be level, it would be in a hand all the time.
-void refuse_heights(const std::vector<std::filesystem::path>& files, const core::AnalysisResults& results) {
-  for (const core::ConfigurationResult& of : results.configurations) {
-    for (const core::Note& note : of.notes) {
-      const auto* const taken = std::get_if<core::HeightTaken>(&note);
-      if (taken == nullptr) continue;
-      throw base::InputError(base::Issue{files.size() == 1 ? files.front().string() : of.clips.front(), 0, "--incline",
-                                         fmt::format("none, and x is \"{}\", a height", taken->column),
-                                         "the inclination in degrees: --incline 90 for a fall"});
+void refuse_heights(const std::vector<std::filesystem::path>& inputs, const core::TrackFileOptions& bare) {
+  if (bare.incline_deg) return;
+  for (const std::filesystem::path& input : inputs) {
+    if (!core::is_bare_track(input)) continue;
+    for (const core::ClipSetup& clip : core::read_tracks(input, bare).clips) {
+      for (const core::Note& note : core::read_track(clip.track, {}, clip.column).notes) {
+        const auto* const taken = std::get_if<core::HeightTaken>(&note);
+        if (taken == nullptr) continue;
+        throw base::InputError(base::Issue{input.string(), 0, "--incline",
+                                           fmt::format("none, and x is \"{}\", a height", taken->column),
+                                           "the inclination in degrees: --incline 90 for a fall"});
+      }
     }
   }
 }
@@ -118,6 +122,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
 
 core::AnalysisResults analyze_for_diagnosis(const std::vector<std::filesystem::path>& folders,
                                             const DiagnoseOptions& options, const base::Progress& progress) {
+  refuse_heights(folders, options.bare);
   return core::analyze(folders,
                        {.bandwidth_s = {},
                         .jobs = options.jobs,
@@ -147,7 +152,6 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
   }
   indices(options.without);  // a misspelt id is refused before the clips are read
   const core::AnalysisResults results = analyze_for_diagnosis(folders, options, progress);
-  refuse_heights(folders, results);
   return diagnose_results(results, setups, options, progress, cameras, experiments);
 }
 

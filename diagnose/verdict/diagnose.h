@@ -32,6 +32,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
                    const base::Progress& progress = base::no_progress);
 
 /// The analysis on which a diagnosis rests: with times as stated, and with what the images of the clips show.
+/// InputError, before anything is analysed, for a file whose x is a height while no inclination is stated.
 core::AnalysisResults analyze_for_diagnosis(const std::vector<std::filesystem::path>& folders,
                                             const DiagnoseOptions& options,
                                             const base::Progress& progress = base::no_progress);

@@ -88,39 +88,43 @@ void TrajectoryUncertainty::fill(TrajectoryFit& fit) const {
   fit.covariance = product(product(inverse_, middle), inverse_);
   fit.degrees = std::numeric_limits<double>::infinity();
   const auto blocks = static_cast<double>(blocks_.size());
-  const double limit = core::chi2_ratio_limit(worth);
-  const auto ratio_of = [&](const std::vector<Eigen::VectorXd>& residuals, double parameters) {
+  const auto ratio_of = [&](const Rest& rest) {
     double chi2 = 0.0;
-    for (std::size_t b = 0; b < blocks_.size(); ++b) chi2 += residuals[b].squaredNorm() / variance_of(blocks_[b]);
-    return chi2 / std::max(1.0, count - parameters);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) chi2 += rest.of_block[b].squaredNorm() / variance_of(blocks_[b]);
+    return chi2 / std::max(1.0, count - rest.parameters);
   };
-  std::vector<Eigen::VectorXd> rests = residuals();
-  double ratio = ratio_of(rests, static_cast<double>(free) + 2.0 * blocks);
+  const auto exceeds = [&](double ratio, const Rest& rest) {
+    return ratio > core::chi2_ratio_limit(worth * (1.0 - rest.parameters / count));
+  };
+  Rest rest{{}, static_cast<double>(free) + 2.0 * blocks};
+  for (const Linearised& of : at_) rest.of_block.push_back(of.residual);
+  double ratio = ratio_of(rest);
   fit.scatter = std::sqrt(ratio);
   fit.points = static_cast<std::size_t>(count);
-  if (ratio > limit && blocks_.size() >= kFewestBlocks) {
-    rests = own_residuals();
-    ratio = ratio_of(rests, (static_cast<double>(free) + 2.0) * blocks);
+  fit.scatters = exceeds(ratio, rest);
+  if (fit.scatters && blocks_.size() >= kFewestBlocks) {
+    rest = with_parameters_of_their_own(std::move(rest));
+    ratio = ratio_of(rest);
   }
-  if (ratio > limit) add_misfit(rests, count, ratio, fit);
+  if (exceeds(ratio, rest)) add_misfit(rest.of_block, count, ratio, fit);
   compare_with_jackknife(fit);
   add_shared(fit);
 }
 
-std::vector<Eigen::VectorXd> TrajectoryUncertainty::residuals() const {
-  std::vector<Eigen::VectorXd> all;
-  for (const Linearised& of : at_) all.push_back(of.residual);
-  return all;
-}
-
-/// What is left of the residuals with parameters of each block's own. A block that has another K/m shows it all along:
-/// the scores of its pieces are larger than that of the block as a whole, and of opposite signs.
-std::vector<Eigen::VectorXd> TrajectoryUncertainty::own_residuals() const {
-  std::vector<Eigen::VectorXd> all = residuals();
-  for (std::size_t b = 0; b < all.size(); ++b) {
-    all[b] -= product(projected_[b], base::least_squares(projected_[b], all[b]));
+/// What is left with parameters of each block's own. A block that has another K/m shows it all along: the scores of its
+/// pieces are larger than that of the block as a whole, and of opposite signs. A block that moves one way determines
+/// one parameter fewer, since drive and friction change its positions alike.
+TrajectoryUncertainty::Rest TrajectoryUncertainty::with_parameters_of_their_own(Rest rest) const {
+  constexpr double kAlike = 1e-6;  // of the columns' lengths: far above rounding, far below what any position shows
+  rest.parameters = 2.0 * static_cast<double>(rest.of_block.size());
+  for (std::size_t b = 0; b < rest.of_block.size(); ++b) {
+    const Eigen::VectorXd lengths = projected_[b].colwise().norm().cwiseMax(std::numeric_limits<double>::min());
+    const Eigen::MatrixXd basis =
+        base::orthonormal_columns(projected_[b] * lengths.cwiseInverse().asDiagonal(), kAlike);
+    rest.of_block[b] -= product(basis, transposed_product(basis, rest.of_block[b]));
+    rest.parameters += static_cast<double>(basis.cols());
   }
-  return all;
+  return rest;
 }
 
 /// The scores of pieces of the motion that are long enough to be practically independent.
@@ -178,6 +182,7 @@ void TrajectoryUncertainty::compare_with_jackknife(TrajectoryFit& fit) const {
   }
   fit.covariance = growth.asDiagonal() * covariance * growth.asDiagonal();
   fit.degrees = n - 1.0;
+  fit.by_jackknife = true;
 }
 
 void TrajectoryUncertainty::add_shared(TrajectoryFit& fit) const {

@@ -42,7 +42,9 @@ struct TrajectoryFit {
   Eigen::MatrixXd covariance;           ///< random part
   std::vector<Eigen::VectorXd> shared;  ///< signed changes by one standard deviation of each shared error
   double degrees = 0.0;                 ///< of freedom of the covariance; infinite if the covariance is known
-  double scatter = 0.0;                 ///< rms residual over the noise
+  double scatter = 0.0;                 ///< rms residual over the noise,
+  bool scatters = false;                ///< and whether that is more than chance explains
+  bool by_jackknife = false;            ///< the covariance shows how much blocks differ, not the scatter within them
   std::size_t points = 0;
   std::size_t left_out = 0;             ///< positions left out as outliers
   std::vector<Eigen::Vector2d> starts;  ///< x0, v0 of each block
@@ -89,8 +91,12 @@ class TrajectoryUncertainty {
   void fill(TrajectoryFit& fit) const;
 
  private:
-  std::vector<Eigen::VectorXd> residuals() const;
-  std::vector<Eigen::VectorXd> own_residuals() const;
+  /// Residuals of each block, and how many parameters were taken from all of them.
+  struct Rest {
+    std::vector<Eigen::VectorXd> of_block;
+    double parameters = 0.0;
+  };
+  Rest with_parameters_of_their_own(Rest rest) const;
   void add_misfit(const std::vector<Eigen::VectorXd>& residuals, double count, double ratio, TrajectoryFit& fit) const;
   void compare_with_jackknife(TrajectoryFit& fit) const;
   void add_shared(TrajectoryFit& fit) const;

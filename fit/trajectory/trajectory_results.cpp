@@ -96,8 +96,8 @@ void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::
     result.notes.emplace_back(core::RobustFit{fit.left_out, fit.points + fit.left_out});
   }
   if (std::isfinite(fit.degrees)) {
-    result.scatter = fit.scatter;
-    result.notes.emplace_back(core::FitScatters{fit.scatter, fit.degrees});
+    if (fit.scatters) result.scatter = fit.scatter;
+    result.notes.emplace_back(core::FitScatters{fit.scatter, fit.degrees, fit.by_jackknife});
   }
 }
 

@@ -163,7 +163,7 @@ py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisCh
   });
 }
 
-py::tuple analyze_arrays(std::vector<GivenTrack> given, std::optional<double> gravity_m_s2, const std::string& name,
+py::tuple analyze_arrays(std::vector<GivenTrack> given, const GivenGravity& given_gravity, const std::string& name,
                          const AnalysisChoices& choices, const py::object& progress_told) {
   const fit::Estimator& estimator = estimator_of(choices);
   core::check_bandwidth(choices.bandwidth_s, rule_of(choices));
@@ -173,12 +173,12 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, std::optional<double> gr
   how.lines = estimator.lines;
   how.smoother = choices.smoother;
   core::check_smoothing(how);
-  if (gravity_m_s2) check_gravity(*gravity_m_s2);
+  const core::Gravity gravity = read_gravity(given_gravity);
   diagnose::check_given_causes(choices.with_effects, kWithEffects);
   Analysed made = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     const GivenTracks tracks = read_given(std::move(given));
-    core::AnalysisResults of_lines = core::analyze_tracks(
-        tracks.setups, tracks.tracks, core::stated_gravity(gravity_m_s2), how, choices.jobs, progress);
+    core::AnalysisResults of_lines =
+        core::analyze_tracks(tracks.setups, tracks.tracks, gravity, how, choices.jobs, progress);
     for (core::ClipResult& clip : of_lines.clips) clip.experiment = name;
     return with_causes(estimator.estimate(std::move(of_lines), {.robust = choices.robust}), tracks.setups,
                        Cameras(tracks.setups.size()), choices, progress);

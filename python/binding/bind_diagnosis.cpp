@@ -75,13 +75,13 @@ py::tuple diagnose_files(const std::vector<std::string>& inputs, const std::vect
   return told(std::move(diagnosis), title);
 }
 
-py::tuple diagnose_arrays(std::vector<GivenTrack> given, double gravity_m_s2, const std::string& name,
+py::tuple diagnose_arrays(std::vector<GivenTrack> given, const GivenGravity& given_gravity, const std::string& name,
                           const std::vector<std::string>& without, int jobs, const py::object& progress_told) {
-  check_gravity(gravity_m_s2);
+  const core::Gravity gravity = read_gravity(given_gravity);
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     const GivenTracks tracks = read_given(std::move(given));
     // As in diagnose::diagnose() for tracks from files: times as given, no camera.
-    core::AnalysisResults results = core::analyze_tracks(tracks.setups, tracks.tracks, gravity_m_s2,
+    core::AnalysisResults results = core::analyze_tracks(tracks.setups, tracks.tracks, gravity,
                                                          {.lost_frames = core::LostFrameTimes::kept}, jobs, progress);
     for (core::ClipResult& clip : results.clips) clip.experiment = name;
     const std::vector<std::optional<core::CameraSettings>> no_cameras(tracks.setups.size());
@@ -112,12 +112,12 @@ Outcome plan_scenario(const GivenScenario& given, double noise_m, std::optional<
   return told(std::move(plan), fs::path(given.first).stem().string());
 }
 
-Outcome plan_arrays(std::vector<GivenTrack> given, double gravity_m_s2, const std::string& name, int jobs,
+Outcome plan_arrays(std::vector<GivenTrack> given, const GivenGravity& given_gravity, const std::string& name, int jobs,
                     const py::object& progress_told) {
-  check_gravity(gravity_m_s2);
+  const core::Gravity gravity = read_gravity(given_gravity);
   diagnose::Plan plan = WatchedWork(progress_told).run([&](const base::Progress& progress) {
     const GivenTracks tracks = read_given(std::move(given));
-    return diagnose::plan_of(core::analyze_tracks(tracks.setups, tracks.tracks, gravity_m_s2, {}, jobs, progress),
+    return diagnose::plan_of(core::analyze_tracks(tracks.setups, tracks.tracks, gravity, {}, jobs, progress),
                              tracks.setups);
   });
   return told(std::move(plan), name);

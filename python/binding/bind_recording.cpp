@@ -26,12 +26,17 @@ struct Checked {
 };
 
 core::TrackFileOptions file_options(std::string column, std::optional<double> mass_kg,
-                                    std::optional<double> incline_deg, std::string runs, std::vector<double> masses_kg,
-                                    bool allow_outside, std::optional<double> most_megapixels) {
+                                    std::optional<double> incline_deg, std::optional<double> incline_sd_deg,
+                                    std::optional<double> gravity_m_s2, std::optional<double> gravity_sd_m_s2,
+                                    std::string runs, std::vector<double> masses_kg, bool allow_outside,
+                                    std::optional<double> most_megapixels) {
   core::TrackFileOptions options;
   options.column = std::move(column);
   options.mass_kg = mass_kg;
   options.incline_deg = incline_deg;
+  options.incline_sd_deg = incline_sd_deg;
+  options.gravity_m_s2 = gravity_m_s2;
+  options.gravity_sd_m_s2 = gravity_sd_m_s2;
   options.permitted.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
   if (most_megapixels) options.permitted.most_pixels = static_cast<std::size_t>(std::llround(1e6 * *most_megapixels));
   options.runs = std::move(runs);

@@ -109,9 +109,16 @@ GivenTracks read_given(std::vector<GivenTrack> given) {
   return read;
 }
 
-void check_gravity(double gravity_m_s2) {
-  if (std::isfinite(gravity_m_s2) && gravity_m_s2 > 0.0) return;
-  throw base::InputError(base::Issue{"", 0, "gravity_m_s2", fmt::format("{}", gravity_m_s2), "a number above 0"});
+core::Gravity read_gravity(const GivenGravity& given) {
+  const auto& [m_s2, sd_m_s2] = given;
+  if (m_s2 && !(std::isfinite(*m_s2) && *m_s2 > 0.0)) {
+    throw base::InputError(base::Issue{"", 0, "gravity_m_s2", fmt::format("{}", *m_s2), "a number above 0"});
+  }
+  if (sd_m_s2 && !(m_s2 && std::isfinite(*sd_m_s2) && *sd_m_s2 >= 0.0)) {
+    throw base::InputError(base::Issue{"", 0, "gravity_sd_m_s2", fmt::format("{}", *sd_m_s2),
+                                       "a number from 0 on, and gravity_m_s2, whose uncertainty it is"});
+  }
+  return core::stated_gravity(m_s2, sd_m_s2);
 }
 
 void bind_given_track(py::module_& module) {

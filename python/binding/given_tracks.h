@@ -7,9 +7,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
+#include "core/experiment/local_gravity.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::python {
@@ -46,8 +48,11 @@ struct GivenTracks {
 /// word for the launch, readings of one group's inclination that contradict each other.
 GivenTracks read_given(std::vector<GivenTrack> given);
 
-/// InputError if it is not an acceleration of gravity above 0.
-void check_gravity(double gravity_m_s2);
+/// Gravity and its standard deviation as stated; core::stated_gravity() says what is taken where they are not.
+using GivenGravity = std::pair<std::optional<double>, std::optional<double>>;
+
+/// InputError if it is not an acceleration above 0, or if only its standard deviation is stated.
+core::Gravity read_gravity(const GivenGravity& given);
 
 void bind_given_track(pybind11::module_& module);
 

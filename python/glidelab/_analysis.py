@@ -315,7 +315,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
             gravity_m_s2: Optional[float] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             smoother: str = "local-polynomial", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
-            with_effects: Sequence[str] = ()) -> Analysis:
+            with_effects: Sequence[str] = (), incline_sd_deg: Optional[float] = None,
+            gravity_sd_m_s2: Optional[float] = None) -> Analysis:
     """K/m, mu, alpha and the terminal velocity from positions, or from an experiment folder.
 
     Parameters
@@ -340,7 +341,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     robust : bool
         With ``"trajectory"``: leave out positions that lie off the motion.
     gravity_m_s2 : float, optional
-        With arrays: that of the place. If it is not stated, 9.80665, with 0.015 m/s² in the errors of alpha and mu.
+        With arrays or a file: that of the place; not stated: 9.80665. That value, 9.81 and 9.8 say nothing of a place,
+        and alpha and mu contain 0.015 m/s²; of any other value they contain half a unit of its last digit over sqrt(3).
     allow_outside : bool
         With a folder: whether it may name files outside itself.
     most_megapixels : float, optional
@@ -360,6 +362,10 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     with_effects : sequence of str
         Also give K/m, mu, alpha and the terminal velocity with these effects in the model (ids of
         docs/reference/effects.md): `Analysis.with_effects`.
+    incline_sd_deg : float, optional
+        With `incline_deg`: its standard deviation, with which motion in one direction gives mu.
+    gravity_sd_m_s2 : float, optional
+        With `gravity_m_s2`: its standard deviation, in place of the one said there; 0 if it is exact.
 
     Returns
     -------
@@ -385,16 +391,18 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     >>> glidelab.analyze(t, x, mass_kg=0.335) # doctest: +SKIP
     """
     stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
-                              "force_n": force_n}
+                              "incline_sd_deg": incline_sd_deg, "force_n": force_n}
     given = source_of(source, x_m, **stated)
     choices = _choices(bandwidth, estimator, robust, jobs, smoother, with_effects)
     if given.paths:
         refuse({"force_n": force_n})
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
-                             incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
+                             incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
+                             gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
         return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, files, teller(progress)))
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
                                        "most_megapixels": most_megapixels},
-                     {"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
-    return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), gravity_m_s2, name, choices,
-                                                 teller(progress)))
+                     {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
+                      "force_n": force_n})
+    return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), (gravity_m_s2, gravity_sd_m_s2), name,
+                                                 choices, teller(progress)))

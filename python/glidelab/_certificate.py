@@ -172,7 +172,8 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
             bandwidth_s: Optional[float] = None, seed: Optional[int] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
-            masses_kg: Optional[Sequence[float]] = None) -> Certificate:
+            masses_kg: Optional[Sequence[float]] = None, incline_sd_deg: Optional[float] = None,
+            gravity_m_s2: Optional[float] = None, gravity_sd_m_s2: Optional[float] = None) -> Certificate:
     """Records and analyses twins of a recording: do its intervals hold, what limits it, what would help?
 
     Parameters
@@ -188,6 +189,8 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
     seed : int, optional
         Of the twins' noise, clock and calibration; 1.
     allow_outside, most_megapixels, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
+        As in `analyze`.
+    incline_sd_deg, gravity_m_s2, gravity_sd_m_s2
         As in `analyze`.
 
     Returns
@@ -209,7 +212,8 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
         raise input_error("source", f"a {type(source).__name__}", "names of folders or files")
     paths = [os.fspath(one) for one in names]
     files = file_options(paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
-                         incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
+                         incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
+                         gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
     if bandwidth_s is not None and not bandwidth_s > 0.0:
         raise input_error("bandwidth_s", f"{bandwidth_s:g}", "seconds, above 0")
     made = Made(_glidelab.certify(paths, whole("twins", twins, 20, 200), estimator, bandwidth_s, checked_seed(seed),

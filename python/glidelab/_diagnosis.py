@@ -186,9 +186,10 @@ def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, An
 def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
              x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
              force_n: Optional[ArrayLike] = None, name: str = "", without: Sequence[str] = (),
-             gravity_m_s2: float = 9.80665, allow_outside: bool = False,
+             gravity_m_s2: Optional[float] = None, allow_outside: bool = False,
              most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
-             column: str = "", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None) -> Diagnosis:
+             column: str = "", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
+             incline_sd_deg: Optional[float] = None, gravity_sd_m_s2: Optional[float] = None) -> Diagnosis:
     """Which effect, if any, the law of viscous drag and Coulomb friction lacks.
 
     Parameters
@@ -206,6 +207,8 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
         Effects to leave out, by the ids of docs/reference/effects.md.
     gravity_m_s2, allow_outside, most_megapixels, jobs, progress, column, runs, masses_kg
         As in `analyze`.
+    incline_sd_deg, gravity_sd_m_s2
+        As in `analyze`.
 
     Returns
     -------
@@ -222,19 +225,21 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
     docs/guide/diagnosis.md says how far to trust the verdict, docs/reference/weighing.md how explanations are weighed.
     """
     stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
-                              "force_n": force_n}
+                              "incline_sd_deg": incline_sd_deg, "force_n": force_n}
     given = source_of(source, x_m, **stated)
     if given.paths:
         refuse({"force_n": force_n})
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
-                             incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
+                             incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
+                             gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
         return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), list(without), job_count(jobs), files,
                                                       teller(progress)))
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
                                        "most_megapixels": most_megapixels},
-                     {"mass_kg": mass_kg, "incline_deg": incline_deg, "force_n": force_n})
-    return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), gravity_m_s2, name, list(without),
-                                                   job_count(jobs), teller(progress)))
+                     {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
+                      "force_n": force_n})
+    return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), (gravity_m_s2, gravity_sd_m_s2), name,
+                                                   list(without), job_count(jobs), teller(progress)))
 
 
 @dataclass(frozen=True)
@@ -294,7 +299,7 @@ class Plan(Result):
 
 
 def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[float] = None,
-         seed: Optional[int] = None, gravity_m_s2: float = 9.80665, name: str = "", jobs: Optional[int] = None,
+         seed: Optional[int] = None, gravity_m_s2: Optional[float] = None, name: str = "", jobs: Optional[int] = None,
          progress: Progress = None) -> Plan:
     """Which effects motions will show and tell apart, before they are recorded.
 
@@ -330,7 +335,7 @@ def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[f
         _only("noise_m", noise_m, "a scenario: recorded positions show their own noise")
         _only("seed", seed, "a scenario")
         given = source_of(tracks, None)
-        outcome = _glidelab.plan_arrays(given_tracks(given.tracks), gravity_m_s2, name, job_count(jobs),
+        outcome = _glidelab.plan_arrays(given_tracks(given.tracks), (gravity_m_s2, None), name, job_count(jobs),
                                         teller(progress))
     else:
         if noise_m is None:

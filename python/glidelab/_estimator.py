@@ -301,7 +301,7 @@ def _built_in(name: str, tracks: Mapping[str, Sequence[Track]], gravity_m_s2: fl
               jobs: int) -> dict[str, dict[str, Quantity]]:
     """The same by one of Glidelab's, which sees all configurations together."""
     analysis = analyze([track for of in tracks.values() for track in of], estimator=name, gravity_m_s2=gravity_m_s2,
-                       jobs=jobs)
+                       gravity_sd_m_s2=0.0, jobs=jobs)
     results: dict[str, dict[str, Quantity]] = {}
     for configuration, of in tracks.items():
         names = {track.name for track in of}

@@ -114,11 +114,11 @@ def source_of(source: Any, x_m: Optional[ArrayLike], **stated: Any) -> Source:
 Runs = Union[str, Sequence[int], None]
 
 
-def _positive(key: str, value: float) -> float:
+def _positive(key: str, value: float, unit: str = "kilograms") -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise input_error(key, f"a {type(value).__name__}", "kilograms, above 0")
+        raise input_error(key, f"a {type(value).__name__}", f"{unit}, above 0")
     if not (math.isfinite(value) and value > 0.0):
-        raise input_error(key, f"{value:g}", "kilograms, above 0")
+        raise input_error(key, f"{value:g}", f"{unit}, above 0")
     return float(value)
 
 
@@ -154,12 +154,15 @@ def _megapixels(most: Optional[float]) -> Optional[float]:
 
 
 def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Optional[float], *, column: str = "",
-                 mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
+                 mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
+                 incline_sd_deg: Optional[float] = None, gravity_m_s2: Optional[float] = None,
+                 gravity_sd_m_s2: Optional[float] = None, runs: Runs = None,
                  masses_kg: Optional[Sequence[float]] = None) -> _glidelab.FileOptions:
     """What is stated along with files with a track; a folder's experiment.toml says the same of its clips."""
     steepest_deg = 90.0  # a fall
-    given = {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg, "runs": runs,
-             "masses_kg": masses_kg}
+    given = {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg,
+             "incline_sd_deg": incline_sd_deg, "gravity_m_s2": gravity_m_s2, "gravity_sd_m_s2": gravity_sd_m_s2,
+             "runs": runs, "masses_kg": masses_kg}
     for key, value in given.items():
         if value is not None and any(os.path.isdir(path) for path in paths):
             raise input_error(key, repr(value), "none for a folder: its experiment.toml states it")
@@ -171,8 +174,19 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
         raise input_error("mass_kg", repr(mass_kg), "none with masses_kg")
     if incline_deg is not None and not abs(incline_deg) <= steepest_deg:  # NaN is not
         raise input_error("incline_deg", f"{incline_deg:g}", "degrees, from -90 to 90")
+    if incline_sd_deg is not None and incline_deg is None:
+        raise input_error("incline_sd_deg", repr(incline_sd_deg), "incline_deg, whose uncertainty it is, as well")
+    if gravity_sd_m_s2 is not None and gravity_m_s2 is None:
+        raise input_error("gravity_sd_m_s2", repr(gravity_sd_m_s2), "gravity_m_s2, whose uncertainty it is, as well")
+    if gravity_sd_m_s2 is not None and not (math.isfinite(gravity_sd_m_s2) and gravity_sd_m_s2 >= 0.0):
+        raise input_error("gravity_sd_m_s2", f"{gravity_sd_m_s2:g}", "metres per second squared, from 0 on")
     return _glidelab.FileOptions(column, None if mass_kg is None else _positive("mass_kg", mass_kg),
-                                 None if incline_deg is None else float(incline_deg), _runs_text(runs),
+                                 None if incline_deg is None else float(incline_deg),
+                                 None if incline_sd_deg is None else _positive("incline_sd_deg", incline_sd_deg,
+                                                                               "degrees"),
+                                 None if gravity_m_s2 is None else _positive("gravity_m_s2", gravity_m_s2,
+                                                                             "metres per second squared"),
+                                 None if gravity_sd_m_s2 is None else float(gravity_sd_m_s2), _runs_text(runs),
                                  [_positive("masses_kg", one) for one in masses_kg or ()], allow_outside,
                                  _megapixels(most_megapixels))
 

@@ -62,7 +62,9 @@ class RecordingCheck(Result):
 
 def check(source: PathLike, *, allow_outside: bool = False, most_megapixels: Optional[float] = None,
           jobs: Optional[int] = None, progress: Progress = None, column: str = "", mass_kg: Optional[float] = None,
-          incline_deg: Optional[float] = None, runs: Runs = None, masses_kg: Optional[Sequence[float]] = None) -> RecordingCheck:
+          incline_deg: Optional[float] = None, runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
+          incline_sd_deg: Optional[float] = None, gravity_m_s2: Optional[float] = None,
+          gravity_sd_m_s2: Optional[float] = None) -> RecordingCheck:
     """A look at a recording before any analysis: pattern, marker, exposure, blur, frame times, statements.
 
     Parameters
@@ -70,6 +72,8 @@ def check(source: PathLike, *, allow_outside: bool = False, most_megapixels: Opt
     source : str or path
         An experiment folder, or a file with a track.
     allow_outside, most_megapixels, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg
+        As in `analyze`.
+    incline_sd_deg, gravity_m_s2, gravity_sd_m_s2
         As in `analyze`.
 
     Returns
@@ -88,7 +92,8 @@ def check(source: PathLike, *, allow_outside: bool = False, most_megapixels: Opt
     """
     path = os.fspath(source)
     files = file_options([path], allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
-                         incline_deg=incline_deg, runs=runs, masses_kg=masses_kg)
+                         incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
+                         gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
     made = Made(_glidelab.check(path, files, job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     return RecordingCheck(made, found["name"], found["usable"], tuple(

@@ -68,6 +68,7 @@ std::string experiment_toml(const Scenario& scenario) {
   line("format", "1");
   line("name", base::toml_string(scenario.motion.name));
   line("gravity_m_s2", number(scenario.motion.gravity_m_s2));
+  line("gravity_sd_m_s2", "0.0");  // whatever its digits: the motion was computed with it
   table("[camera]");
   line("frame_rate_hz", number(scenario.recording.frame_rate_hz));
   line("exposure_s", number(scenario.recording.exposure_s));

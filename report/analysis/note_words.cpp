@@ -333,13 +333,19 @@ struct AnalysisSentence {
   std::string operator()(const core::GravityAssumed& of) const {
     return fmt::format(
         "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %), because the place is not "
-        "known. A folder can state gravity_m_s2",
+        "known. A folder can state gravity_m_s2, a file --gravity",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
   }
   std::string operator()(const core::RobustFit& of) const {
     return fmt::format("robust: {} of {} positions are outliers and are left out", of.left_out, of.positions);
   }
   std::string operator()(const core::FitScatters& of) const {
+    if (of.motions_differ) {
+      return fmt::format(
+          "the motions fitted together differ from one another by more than their noise explains: the intervals are "
+          "those of fits without one motion after another ({:.0f} degrees of freedom)",
+          of.degrees);
+    }
     return fmt::format(
         "the positions scatter {} times as much about the fitted motion as their noise: the intervals are widened "
         "({:.0f} "

@@ -28,6 +28,10 @@ struct LackWords {
     std::replace(why.begin(), why.end(), '\n', ' ');
     return fmt::format("images and calibration ({})", why);
   }
+  std::string operator()(const validate::lacking::Pattern&) const {
+    return "the calibration by a pattern (one folder has a pattern and another a scale: all twins are measured by the "
+           "scale, with its error)";
+  }
   std::string operator()(const validate::lacking::ClipScatter&) const {
     return "what differs from clip to clip (filming leaves as much)";
   }

@@ -115,6 +115,7 @@ inline MadeExperiment made_experiment(const std::vector<MadeLaunch>& launches, c
   std::normal_distribution<double> normal(0.0, 1.0);
   MadeExperiment made;
   made.results.gravity_m_s2 = glider.gravity_m_s2;
+  made.results.gravity_sd_m_s2 = core::gravity_sd_m_s2(glider.gravity_m_s2);
   for (std::size_t c = 0; c < launches.size(); ++c) {
     core::ClipSetup setup;
     setup.name = "clip" + std::to_string(c);

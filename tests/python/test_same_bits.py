@@ -44,6 +44,22 @@ class SameBits(InFolder):
                 self.assertEqual(glidelab.analyze(folder, **choices).to_json(), said)
                 self.assertEqual(glidelab.analyze(tracks, name="made", **choices).to_json(), said)
 
+    def test_what_is_stated_beside_a_file(self):
+        t, x = damped()
+        file = self.folder / "track.csv"
+        file.write_text("t_s,x_m\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(t.tolist(), x.tolist())))
+        for options, stated in ((), {}), (("--gravity", "9.81"), {"gravity_m_s2": 9.81}), (
+                ("--gravity", "9.8123", "--gravity-sd", "0.002"), {"gravity_m_s2": 9.8123, "gravity_sd_m_s2": 0.002}), (
+                ("--incline", "4", "--incline-sd", "0.1"), {"incline_deg": 4.0, "incline_sd_deg": 0.1}):
+            with self.subTest(stated):
+                said = run("analyze", file, "-q", "--json", "-o", self.folder / "out", *options)
+                of_file = glidelab.analyze(file, **stated)
+                self.assertEqual(of_file.to_json(), said)
+                of_arrays = glidelab.analyze(t, x, **stated)
+                for quantity in ("mu", "alpha_deg"):
+                    one, other = (getattr(of.configurations[0], quantity) for of in (of_file, of_arrays))
+                    self.assertEqual((one.value, one.sd), (other.value, other.sd))
+
     def test_analyze_writes_the_command_s_files(self):
         tracks = made_tracks()
         folder = self.write_experiment(tracks)

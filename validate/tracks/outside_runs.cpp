@@ -25,8 +25,9 @@ constexpr std::string_view kHeader = "t_s,x_m\n";
 void write_track_folder(const MadeTracks& made, const fs::path& folder) {
   fs::create_directories(folder / "tracks");
   // The scenario's name is left out: it may reveal what is to be found.
-  std::string toml = fmt::format("format = 1\nname = \"tracks\"\ngravity_m_s2 = {}\n\n[track]\ndownhill = \"+X\"\n",
-                                 made.gravity_m_s2);
+  std::string toml = fmt::format(
+      "format = 1\nname = \"tracks\"\ngravity_m_s2 = {}\ngravity_sd_m_s2 = 0.0\n\n[track]\ndownhill = \"+X\"\n",
+      made.gravity_m_s2);
   for (std::size_t c = 0; c < made.setups.size(); ++c) {
     const core::ClipSetup& setup = made.setups[c];
     toml += fmt::format(

@@ -282,16 +282,17 @@ void complete_line(LineFit& line) {
   const KnownVariance of_k = random_variance(line, {1.0, 0.0}), of_a0 = random_variance(line, {0.0, 1.0});
   double known_k = 0.0, known_a0 = 0.0;
   line.covariance = parts.cov;
-  // What the clips' scatter adds to the variances has the correlation of that scatter.
+  // What the clips' scatter adds has the correlation of that scatter, also where it adds to one of the variances alone:
+  // the correlation is then a mean of both, and no correlation lies beyond 1.
   LineUncertainty scatter;
   for (const LineShift& shift : parts.clips) {
     scatter.var_k += shift.k * shift.k;
     scatter.var_a0 += shift.a0 * shift.a0;
     scatter.cov += shift.k * shift.a0;
   }
-  if (scatter.var_k > parts.var_k && scatter.var_a0 > parts.var_a0) {
-    line.covariance +=
-        scatter.cov * std::sqrt((1.0 - parts.var_k / scatter.var_k) * (1.0 - parts.var_a0 / scatter.var_a0));
+  if (scatter.var_k > 0.0 && scatter.var_a0 > 0.0) {
+    const double correlation = scatter.cov / std::sqrt(scatter.var_k * scatter.var_a0);
+    line.covariance += correlation * (std::sqrt(of_k.value * of_a0.value) - std::sqrt(parts.var_k * parts.var_a0));
   }
   for (const LineShift& shift : shared_shifts(line)) {
     known_k += shift.k * shift.k;
@@ -325,9 +326,11 @@ bool widen_by_jackknife(const std::vector<Eigen::Vector2d>& moved, LineUncertain
       covariance(0, 0) <= chi2_ratio_limit(n - 1.0) * parts.var_k) {
     return false;
   }
+  // No variance falls below that from the noise; the correlation is the jackknife's.
+  const double correlation = covariance(0, 1) / std::max(std::sqrt(covariance(0, 0) * covariance(1, 1)), 1e-300);
   parts.var_k = std::max(covariance(0, 0), parts.var_k);
-  parts.cov = covariance(0, 1);
   parts.var_a0 = std::max(covariance(1, 1), parts.var_a0);
+  parts.cov = correlation * std::sqrt(parts.var_k * parts.var_a0);
   parts.degrees = n - 2.0;
   return true;
 }

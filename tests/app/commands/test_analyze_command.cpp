@@ -399,6 +399,29 @@ std::string table_of_speeds(unsigned seed) {
 
 }  // namespace
 
+TEST_CASE("--gravity is for files, and alpha contains the uncertainty that its digits or --gravity-sd leave") {
+  const tests::TempDir temp;
+  const fs::path file = temp / "encoder.csv";
+  base::write_file(file, table_of_speeds(7));
+  const auto told = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"analyze", file.string(), "--out", (temp / "out").string()});
+    const tests::ProcessResult result = tests::glidelab(more);
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    return result.out.find("because the place is not known") != std::string::npos;
+  };
+  CHECK(told({}));
+  CHECK(told({"--gravity", "9.81"}));
+  CHECK_FALSE(told({"--gravity", "9.8123"}));
+  CHECK_FALSE(told({"--gravity", "9.81", "--gravity-sd", "0.0001"}));
+  CHECK(tests::glidelab({"analyze", file.string(), "--gravity-sd", "0.0001"}).status == 2);
+  CHECK(tests::glidelab({"analyze", file.string(), "--gravity", "0"}).status == 2);
+  base::write_file(temp / "folder/experiment.toml", "format = 1\nname = \"x\"\n");
+  const tests::ProcessResult folder = tests::glidelab({"check", (temp / "folder").string(), "--gravity", "9.8123"});
+  CHECK(folder.status == 1);
+  CHECK(folder.err.find("gravity_m_s2") != std::string::npos);
+}
+
 TEST_CASE("analyze takes speeds without positions, states none, and other estimators refuse them") {
   const tests::TempDir temp;
   const fs::path file = temp / "encoder.csv";

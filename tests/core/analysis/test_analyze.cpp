@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "base/errors.h"
+#include "core/analysis/clip_to_track.h"
 #include "tests/catch.h"
 #include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
@@ -156,6 +158,95 @@ TEST_CASE("folders that cannot be analysed together are input errors that name t
                                              "\"+X\"\n";
   CHECK_THROWS_WITH(analyze({temp.path()}, {}),
                     Contains("lines: found a table of lines") && Contains("glidelab diagnose"));
+}
+
+TEST_CASE("gravity that is no place's enters alpha with its spread, stated or not, of folders as of files") {
+  const tests::TempDir temp;
+  const auto found = [](const std::filesystem::path& input, const core::TrackFileOptions& bare) {
+    core::AnalysisOptions how;
+    how.bare = bare;
+    return analyze({input}, how);
+  };
+  const auto folder = [&](const std::string& name, const std::string& lines) {
+    return found(make_folder(temp / name, 1, lines), {});
+  };
+  const auto sd_of = [](const core::AnalysisResults& results) {
+    return results.configurations[0].alpha_deg.estimate->sd;
+  };
+  const auto is_told = [](const core::AnalysisResults& results) {
+    return tests::note_of<core::GravityAssumed>(results.configurations[0].notes) != nullptr;
+  };
+  const auto exact = folder("exact", "gravity_m_s2 = 9.81\ngravity_sd_m_s2 = 0.0\n");
+  CHECK_FALSE(is_told(exact));
+  for (const char* const lines : {"", "gravity_m_s2 = 9.80665\n", "gravity_m_s2 = 9.81\n", "gravity_m_s2 = 9.8\n"}) {
+    const auto vague = folder(fmt::format("vague{}", std::string(lines).size()), lines);
+    INFO(lines);
+    CHECK(is_told(vague));
+    CHECK(vague.gravity_sd_m_s2 == 0.015);
+    // alpha = asin(mean / g): d alpha / d g = -tan(alpha) / g. The four g differ by 0.1 %, and so do these.
+    const double tangent = std::tan(kLaw.alpha_deg / 57.29577951308232);
+    const double of_gravity_deg = 57.29577951308232 * tangent * 0.015 / 9.81;
+    CHECK(sd_of(vague) == Approx(std::hypot(sd_of(exact), of_gravity_deg)).epsilon(5e-3));
+  }
+  const auto place = folder("place", "gravity_m_s2 = 9.8123\n");
+  CHECK_FALSE(is_told(place));
+  CHECK(place.gravity_sd_m_s2 == Approx(0.0001 / std::sqrt(12.0)).epsilon(1e-9));
+  write_track(temp / "up.csv", tests::launch(kLaw, -1.3, 1.7), 1);
+  CHECK(is_told(found(temp / "up.csv", {})));
+  core::TrackFileOptions stated;
+  stated.gravity_m_s2 = 9.81;
+  CHECK(is_told(found(temp / "up.csv", stated)));
+  CHECK(found(temp / "up.csv", stated).gravity_m_s2 == 9.81);
+  stated.gravity_sd_m_s2 = 0.0;
+  CHECK_FALSE(is_told(found(temp / "up.csv", stated)));
+  // One that knows its place is enough.
+  std::filesystem::rename(temp / "exact", temp / "again");
+  const auto both = analyze({temp / "again", make_folder(temp / "other", 3, "gravity_m_s2 = 9.81\n")}, {});
+  CHECK(both.gravity_sd_m_s2 == 0.0);
+}
+
+TEST_CASE("recordings of one name in two folders are told apart in the results") {
+  const tests::TempDir temp;
+  for (const char* const folder : {"a", "b"}) {
+    std::filesystem::create_directories(temp / folder);
+    write_track(temp / folder / "run1.csv", tests::launch(kLaw, -1.3, 1.7), 1);
+  }
+  const auto results = analyze({temp / "a/run1.csv", temp / "b/run1.csv"}, {});
+  CHECK(results.clips[0].experiment == "a-run1");
+  CHECK(results.clips[1].experiment == "b-run1");
+}
+
+TEST_CASE(
+    "the heights of a set-up have one sign, also that of a clip too short to show it, and follow a stated launch") {
+  const tests::TempDir temp;
+  std::filesystem::create_directories(temp / "drops");
+  const auto write = [&](const std::string& name, int points, const std::function<double(double)>& height_m) {
+    std::ofstream out(temp / "drops" / name);
+    out << "t (s),y (m)\n";
+    for (int i = 0; i < points; ++i) out << fmt::format("{},{:.5f}\n", 0.01 * i, height_m(0.01 * i));
+  };
+  write("long.csv", 50, [](double t) { return 2.0 - 4.9 * t * t; });
+  write("short.csv", 12, [](double t) { return 0.2 + 0.01 * t; });  // a hand's, and by itself counted upwards
+  const auto read = [&](const std::string& launched, double incline_deg) {
+    std::ofstream toml(temp / "drops/experiment.toml");
+    toml << "format = 1\nname = \"drops\"\n";
+    for (const std::string name : {"long", "short"}) {
+      toml << fmt::format(
+          "[[clip]]\nname = \"{0}\"\ntrack = \"{0}.csv\"\nmass_kg = 0.1\nincline_deg = {1}\n"
+          "launched = \"{2}\"\n",
+          name, incline_deg, launched);
+    }
+    toml.close();
+    return core::tracks_of(core::read_experiment(temp / "drops"), 1).tracks;
+  };
+  for (const double incline_deg : {90.0, 30.0}) {
+    const auto released = read("released", incline_deg);
+    CHECK(released[0].x_m.back() > released[0].x_m.front());
+    CHECK(released[1].x_m.back() < released[1].x_m.front());  // reversed with the other
+  }
+  const auto down = read("down", 90.0), up = read("up", 90.0);
+  CHECK(down[0].x_m.back() > down[0].x_m.front());
+  CHECK(up[0].x_m.back() < up[0].x_m.front());
 }
 
 TEST_CASE("progress is told up to the end, and may stop the work") {

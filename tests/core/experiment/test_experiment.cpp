@@ -12,6 +12,7 @@
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
+using Catch::Matchers::Contains;
 using glidelab::tests::TempDir;
 namespace fs = std::filesystem;
 
@@ -125,10 +126,24 @@ TEST_CASE("a whole experiment.toml is read with its units converted and its file
   CHECK(experiment.groups[0].planes.size() == 1);
 }
 
+TEST_CASE("the uncertainty of gravity is that stated, otherwise that of its digits, and needs a gravity") {
+  const Folder folder;
+  const auto sd_of = [&](const std::string& lines) {
+    return folder.read(kHead + lines + kCamera + kCalibration + kMarker + kTrack + kClip).gravity_sd_m_s2;
+  };
+  CHECK(sd_of("gravity_m_s2 = 9.81\n") == 0.015);
+  CHECK(sd_of("gravity_m_s2 = 9.82\n") == Approx(0.01 / std::sqrt(12.0)).epsilon(1e-12));
+  CHECK(sd_of("gravity_m_s2 = 9.81\ngravity_sd_m_s2 = 0.0002\n") == 0.0002);
+  CHECK(sd_of("gravity_m_s2 = 9.81\ngravity_sd_m_s2 = 0\n") == 0.0);
+  CHECK_THROWS_WITH(sd_of("gravity_sd_m_s2 = 0.01\n"), Contains("gravity_sd_m_s2") && Contains("gravity_m_s2, whose"));
+  CHECK_THROWS_WITH(sd_of("gravity_m_s2 = 9.81\ngravity_sd_m_s2 = -0.01\n"), Contains("gravity_sd_m_s2"));
+}
+
 TEST_CASE("what may be left out has the contract's defaults") {
   const Folder folder;
   const core::Experiment experiment = folder.read(kWhole);
   CHECK(experiment.gravity_m_s2 == 9.80665);
+  CHECK(experiment.gravity_sd_m_s2 == 0.015);
   CHECK(experiment.camera->shutter == core::Shutter::global);
   CHECK(experiment.camera->bit_depth == 8);
   CHECK(experiment.camera->time == core::TimeSource::rate);

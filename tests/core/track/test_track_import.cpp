@@ -205,16 +205,23 @@ TEST_CASE("names behind a '#' and their units behind another, and units behind a
   CHECK_THROWS_WITH(Made("#Time\tPos\n#[s]\t[au]\n" + rows("0.{0}\t{1}\n")).read(), Contains("the unit \"au\""));
 }
 
-TEST_CASE("a height alone is x, counted along the motion where nobody states its sign") {
+TEST_CASE("a height alone is x as in its table, with a note, and counted downwards along the motion") {
+  const auto downwards = [](const std::string& text) {
+    core::TrackData track = core::read_track_csv(Made(text).file, std::nullopt);
+    CHECK(tests::note_of<core::HeightTaken>(track.notes) != nullptr);
+    core::count_downwards({&track});
+    return track;
+  };
   const std::string fall = "t (s)\ty (m)\n" + rows("0.{0}\t-{1}e-2\n");
-  const core::TrackData down = core::read_track_csv(Made(fall).file, std::nullopt);
+  const core::TrackData down = downwards(fall);
   check_motion(down);
   CHECK(tests::note_of<core::CountedAlongMotion>(down.notes) != nullptr);
+  CHECK(core::read_track_csv(Made(fall).file, std::nullopt).x_m[3] == Approx(-0.09));
   CHECK(core::read_track_csv(Made(fall).file, 1).x_m[3] == Approx(-0.09));
   // Thrown upwards and caught: it turns, and accelerates downwards.
   std::string text = "t,height\n";
   for (int i = 0; i <= 10; ++i) text += fmt::format("0.{},{}\n", i < 10 ? fmt::format("{}", i) : "95", i * (10 - i));
-  const core::TrackData thrown = core::read_track_csv(Made(text).file, std::nullopt);
+  const core::TrackData thrown = downwards(text);
   CHECK(thrown.x_m[5] == Approx(-25.0));
 }
 
@@ -367,7 +374,7 @@ TEST_CASE("formats that are no text are named, with what to do") {
 TEST_CASE("if no line is read, the message shows one and says what ails it") {
   CHECK_THROWS_WITH(Made("t,x,y\n0 .000,0,\"-1,70E+01\"\n").read(),
                     Contains(":2: ") && Contains("the first with digits is 0 .000,0,"));
-  CHECK_THROWS_WITH(Made("0,1;0.149\n0,2;0.151\n").read(), Contains("do not go together"));
+  CHECK_THROWS_WITH(Made("0,1 0.149\n0,2 0.151\n").read(), Contains("do not go together"));
   CHECK_THROWS_WITH(Made("0,1;01.jan\n0,2;jan.13\n").read(), Contains("into dates"));
   CHECK_THROWS_WITH(Made("no numbers here\n").read(), Contains("no line with two numbers, expected"));
 }
@@ -377,7 +384,8 @@ TEST_CASE("echoes after the landing do not turn a fall towards a sensor round") 
   std::string text = "t,height\n";
   for (int i = 0; i < 40; ++i) text += fmt::format("{},{}\n", 0.02 * i, 1.0 - 0.9 * i / 40.0);
   for (int i = 40; i < 46; ++i) text += fmt::format("{},{}\n", 0.02 * i, i % 2 == 0 ? 5.8 : 2.6);
-  const core::TrackData track = core::read_track_csv(Made(text).file, std::nullopt);
+  core::TrackData track = core::read_track_csv(Made(text).file, std::nullopt);
+  core::count_downwards({&track});
   CHECK(tests::note_of<core::CountedAlongMotion>(track.notes) != nullptr);
   CHECK(track.x_m[39] > track.x_m[0]);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "diagnose/effects/effect_library.h"
@@ -165,6 +166,15 @@ TEST_CASE("a height of a table needs the inclination before it is diagnosed") {
   out.close();
   CHECK_THROWS_WITH(diagnose::diagnose({temp / "cups.csv"}, diagnose::DiagnoseOptions{}),
                     Contains("--incline") && Contains("\"y (m)\", a height") && Contains("90 for a fall"));
+  // The file that has the height is named, and nothing is analysed first.
+  std::ofstream(temp / "cart.csv") << "t_s,x_m\n0,0\n0.1,0.1\n0.2,0.2\n0.3,0.3\n0.4,0.4\n0.5,0.5\n0.6,0.6\n0.7,0.7\n";
+  bool begun = false;
+  const auto both = [&] {
+    return diagnose::diagnose({temp / "cart.csv", temp / "cups.csv"}, diagnose::DiagnoseOptions{},
+                              [&](std::string_view, double) { begun = true; });
+  };
+  CHECK_THROWS_WITH(both(), Contains("cups.csv") && !Contains("cart.csv"));
+  CHECK_FALSE(begun);
   diagnose::DiagnoseOptions stated;
   stated.bare.incline_deg = 90.0;
   CHECK_NOTHROW(diagnose::diagnose({temp / "cups.csv"}, stated));

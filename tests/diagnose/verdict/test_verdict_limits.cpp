@@ -1,14 +1,20 @@
 #include "diagnose/verdict/verdict_details.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <fstream>
 #include <numbers>
+#include <variant>
 
 #include "base/errors.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/verdict/diagnose.h"
+#include "diagnose/verdict/settled_motions.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
+#include "tests/temp_dir.h"
 
 using namespace glidelab;
 
@@ -272,4 +278,31 @@ TEST_CASE("the sway of a camera is stated in pixels if they are known and of one
   CHECK(std::abs(derived[0].sd - 0.004) < 1e-12);
   images.clips.back().px_per_m = 500.0;
   CHECK(diagnose::derived_parameters(set, fit, sway, images, known).empty());
+}
+
+TEST_CASE("files of one name in two folders are two recordings, whose positions have one origin only by assumption") {
+  const tests::TempDir temp;
+  const tests::MadeExperiment made = tests::made_experiment(inclined_launches(), {}, 1, 3e-5, 60);
+  const auto write = [&](std::size_t clip, const std::string& folder) {
+    std::filesystem::create_directories(temp / folder);
+    std::ofstream out(temp / folder / "run1.csv");
+    out << "t_s,x_m\n";
+    for (const core::MotionPoint& point : made.results.clips[clip].motion) {
+      if (point.measured_m) out << fmt::format("{},{}\n", point.t_s, *point.measured_m);
+    }
+    return temp / folder / "run1.csv";
+  };
+  const auto notes_of = [](const std::vector<std::filesystem::path>& files) {
+    const diagnose::DiagnoseOptions how;
+    std::vector<core::ClipSetup> setups;
+    for (const auto& file : files) setups.push_back(core::read_tracks(file, how.bare).clips.front());
+    return diagnose::whole_motions(diagnose::analyze_for_diagnosis(files, how), setups).notes;
+  };
+  const auto is_told = [](const std::vector<diagnose::Note>& notes) {
+    return std::ranges::any_of(notes,
+                               [](const auto& note) { return std::holds_alternative<diagnose::OneOrigin>(note); });
+  };
+  const auto one = write(0, "a"), other = write(1, "b");
+  CHECK(is_told(notes_of({one, other})));
+  CHECK_FALSE(is_told(notes_of({one})));
 }

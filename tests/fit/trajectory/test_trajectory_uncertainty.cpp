@@ -17,18 +17,20 @@ namespace {
 
 const std::vector<double> kNoise{4.0, 1.5, 0.5};  // m² at lags of 0, 1 and 2 points
 
-/// Blocks of 24 to 24 + count - 1 points: x = common p + start s + noise, with random derivatives.
+/// Blocks of 24 points or so, each with one more than the one before: x = common p + start s + noise, with random
+/// derivatives.
 struct Made {
   int free;
   std::vector<core::FreeBlock> blocks;
   std::vector<fit::FitBlock> fits;
   std::vector<fit::Linearised> at;
 
-  Made(int count, int free_parameters, unsigned seed) : free(free_parameters), blocks(static_cast<std::size_t>(count)) {
+  Made(int count, int free_parameters, unsigned seed, Eigen::Index shortest = 24)
+      : free(free_parameters), blocks(static_cast<std::size_t>(count)) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     for (int b = 0; b < count; ++b) {
-      const Eigen::Index n = 24 + b;
+      const Eigen::Index n = shortest + b;
       core::FreeBlock& block = blocks[static_cast<std::size_t>(b)];
       fit::Linearised of{Eigen::VectorXd(n), Eigen::MatrixXd(n, 3), Eigen::MatrixXd(n, 2), {}};
       block.shared_m.resize(b == 1 ? 1 : 2);
@@ -176,13 +178,14 @@ struct Made {
     }
     return sum;
   }
+  /// How many independent residuals the fit leaves.
   double worth() const {
     double sum = 0.0;
     for (const fit::Linearised& of : at) {
       const double r1 = kNoise[1] / kNoise[0], r2 = kNoise[2] / kNoise[0];
       sum += static_cast<double>(of.residual.size()) / (1.0 + 2.0 * r1 * r1 + 2.0 * r2 * r2);
     }
-    return sum;
+    return sum * freedom() / static_cast<double>(points());
   }
 };
 
@@ -261,6 +264,8 @@ TEST_CASE("residuals beyond chance widen the covariance by the scores of pieces,
       const auto [wider, degrees] = made.of_misfit();
       check_same(fit.covariance, made.of_noise() + wider);
       CHECK(fit.degrees == degrees);
+      CHECK(fit.scatters);
+      CHECK_FALSE(fit.by_jackknife);
       CHECK(fit.scatter == Approx(std::sqrt(ratio)).epsilon(1e-9));
     }
   }
@@ -293,6 +298,8 @@ TEST_CASE("blocks that disagree widen the covariance to that of refits without o
     REQUIRE(made.chi2() / made.freedom() < core::chi2_ratio_limit(made.worth()));  // their size alone is no misfit
     const fit::TrajectoryFit fit = made.filled();
     CHECK(fit.degrees == blocks - 1.0);
+    CHECK(fit.by_jackknife);
+    CHECK_FALSE(fit.scatters);
     const Eigen::MatrixXd larger = made.of_refits();
     const Eigen::VectorXd factor = noise.diagonal().cwiseQuotient(larger.diagonal()).cwiseMax(1.0).cwiseSqrt();
     check_same(fit.covariance, factor.asDiagonal() * larger * factor.asDiagonal());
@@ -305,4 +312,46 @@ TEST_CASE("blocks that disagree widen the covariance to that of refits without o
   const auto [wider, degrees] = few.of_misfit();
   check_same(few.filled().covariance, few.of_noise() + wider);
   CHECK(few.filled().degrees == degrees);
+}
+
+TEST_CASE(
+    "of blocks that differ and move one way, what each leaves with its own parameters is judged by the right number") {
+  // Friction acts on a block that moves one way as the drive does, but for the sign: a block has x0, v0, the drag and
+  // one of these, four parameters, while the fit of all has both. One block alone moves the other way, and cannot be
+  // left out.
+  constexpr int kBlocks = 12;
+  const auto made_with = [](double own_ratio) {
+    Made made(kBlocks, 3, 6, 8);
+    std::mt19937_64 random(8);
+    std::normal_distribution<double> normal;
+    double chi2 = 0.0, freedom = 0.0;
+    std::vector<Eigen::VectorXd> own;
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      fit::Linearised& of = made.at[b];
+      made.fits[b].autocovariance_m2 = {kNoise[0] * (1.0 + 0.5 * static_cast<double>(b)), 0.0, 0.0};
+      of.common.col(2) = (b == 0 ? 1.0 : -1.0) * of.common.col(1);
+      Eigen::MatrixXd design(of.residual.size(), 4);
+      design << of.common.leftCols(2), of.start;
+      own.emplace_back(of.residual - design * design.colPivHouseholderQr().solve(of.residual));
+      chi2 += own.back().squaredNorm() / fit::variance_of(made.fits[b]);
+      freedom += static_cast<double>(of.residual.size() - 4);
+    }
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      made.at[b].residual = own[b] * std::sqrt(own_ratio * freedom / chi2) +
+                            made.at[b].common * Eigen::Vector3d(normal(random), 20.0 * normal(random), 0.0);
+    }
+    made.settle();
+    return made;
+  };
+  double freedom = 0.0;
+  for (int b = 0; b < kBlocks; ++b) freedom += 8 + b - 4;
+  const double limit = core::chi2_ratio_limit(freedom);
+  const Made within = made_with(0.999 * limit), beyond = made_with(1.001 * limit);
+  REQUIRE(within.chi2() / within.freedom() > core::chi2_ratio_limit(within.freedom()));  // the blocks do differ
+  const fit::TrajectoryFit fit = within.filled();
+  check_same(fit.covariance, within.of_noise());
+  CHECK(std::isinf(fit.degrees));
+  CHECK(fit.scatters);
+  CHECK_FALSE(fit.by_jackknife);
+  CHECK(std::isfinite(beyond.filled().degrees));
 }

@@ -120,7 +120,9 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "the acceleration gives an inclination of at most 4.712 ± 0.013°, but the plumb line says 10°: an angle"},
       {beyond, "12.3 m/s² without friction, is more than gravity_m_s2 = 9.80665; incline_deg says 4.30 ± 0.30°"},
       {core::RobustFit{4, 400}, "robust: 4 of 400 positions"},
-      {core::FitScatters{1.234, 17.0}, "scatter 1.23 times"}};
+      {core::FitScatters{1.234, 17.0, false}, "scatter 1.23 times"},
+      {core::FitScatters{1.03, 5.0, true},
+       "the motions fitted together differ from one another by more than their noise explains"}};
   std::vector<bool> seen(std::variant_size_v<core::AnyNote>, false);
   for (const auto& [note, part] : notes) {
     const std::string words = report::note_words(note);

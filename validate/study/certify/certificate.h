@@ -94,6 +94,9 @@ struct Images {
   std::string error;  ///< of the scenario
 };
 
+/// The pattern's calibration error: another folder has a scale, and all twins are measured by that.
+struct Pattern {};
+
 /// The scatter from clip to clip: filming leaves as much.
 struct ClipScatter {};
 
@@ -104,7 +107,8 @@ struct Noise {
 
 }  // namespace lacking
 
-using NotInTwins = std::variant<lacking::Inexpressible, lacking::Images, lacking::ClipScatter, lacking::Noise>;
+using NotInTwins =
+    std::variant<lacking::Inexpressible, lacking::Images, lacking::Pattern, lacking::ClipScatter, lacking::Noise>;
 
 struct Certificate {
   std::size_t runs = 0;

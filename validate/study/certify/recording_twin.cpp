@@ -152,6 +152,9 @@ RecordingTwin twin_of_recording(const core::AnalysisResults& results, const diag
       const auto checks = twin.by_scale ? render::ScenarioChecks::clips : render::ScenarioChecks::all;
       twin.scenario = render::read_scenario(diagnosis.twin, kName, checks);
       twin.filmed = true;
+      const bool has_pattern =
+          std::ranges::any_of(folders, [](const auto& folder) { return folder.calibration.has_value(); });
+      if (twin.by_scale && has_pattern) twin.without.emplace_back(lacking::Pattern{});
     } catch (const base::InputError& error) {  // the camera of a scenario cannot see it
       twin.without.emplace_back(lacking::Images{error.what()});
     }

@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -245,11 +247,43 @@ TEST_CASE("leaving out one at a time gives a mean the variance s²/n that a text
   CHECK(parts.var_a0 == Approx(1.0 / (n - 1.0)).epsilon(1e-12));
   CHECK(parts.cov == Approx(with_other / (n * (n - 1.0))).epsilon(1e-12));
   CHECK(parts.degrees == n - 2.0);
+  // A variance that the noise already makes larger stays, and the correlation is the jackknife's.
+  LineUncertainty half;
+  half.var_k = 1e-3;
+  half.var_a0 = 4.0;
+  REQUIRE(widen_by_jackknife(moved, half));
+  CHECK(half.var_a0 == 4.0);
+  CHECK(half.cov / std::sqrt(half.var_k * half.var_a0) ==
+        Approx(parts.cov / std::sqrt(parts.var_k * parts.var_a0)).epsilon(1e-12));
   // What noise explains within chance stays as it is.
   LineUncertainty wide;
   wide.var_k = wide.var_a0 = 1.0;
   CHECK_FALSE(widen_by_jackknife(moved, wide));
   CHECK(wide.var_k == 1.0);
+}
+
+TEST_CASE("a clips' scatter adds to the covariance with its own correlation, wherever it adds to a variance") {
+  const auto line_with = [](double var_k, double var_a0, double cov, const LineShift& shift) {
+    LineFit line;
+    line.parts.var_k = var_k;
+    line.parts.var_a0 = var_a0;
+    line.parts.cov = cov;
+    line.parts.degrees = std::numeric_limits<double>::infinity();
+    line.parts.clips = {shift, {-shift.k, -shift.a0}};
+    line.parts.clip_degrees = 1.0;
+    complete_line(line);
+    return line;
+  };
+  // Two clips apart by (2 k, 2 a0): variances 2 k² and 2 a0², of correlation 1. Without a value there is no other
+  // error.
+  const LineFit both = line_with(1.0, 4.0, 0.5, {3.0, 5.0});
+  CHECK(both.covariance == Approx(0.5 + std::sqrt(18.0 * 50.0) - 2.0).epsilon(1e-12));
+  const LineFit one = line_with(1.0, 4.0, 1.9, {3.0, 0.1});  // a0 scatters by less than its noise
+  CHECK(one.k_over_m_1_s.sd == Approx(std::sqrt(18.0)).epsilon(1e-12));
+  CHECK(one.a0_m_s2.sd == Approx(2.0).epsilon(1e-12));
+  CHECK(one.covariance == Approx(1.9 + std::sqrt(18.0 * 4.0) - 2.0).epsilon(1e-12));
+  CHECK(one.covariance < one.k_over_m_1_s.sd * one.a0_m_s2.sd);
+  CHECK(line_with(1.0, 4.0, 1.9, {0.1, 0.1}).covariance == Approx(1.9).epsilon(1e-12));
 }
 
 TEST_CASE("the scale's uncertainty is one of a0 and not of K/m, the mass's one of both where a force is known") {

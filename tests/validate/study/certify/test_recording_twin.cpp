@@ -285,6 +285,20 @@ TEST_CASE("a folder that states a scale has filmed twins, though a pattern would
   CHECK(twin.without.empty());
 }
 
+TEST_CASE("of a folder with a pattern beside one with a scale the twins are by scale, and say what they lack") {
+  Filmed filmed(tests::tiny_scenario());
+  filmed.results.clips.push_back(filmed.results.clips.front());
+  core::Experiment by_pattern = filmed.folder, by_scale = filmed.folder;
+  by_pattern.calibration.emplace();
+  by_scale.scale = core::ScaleSetup{180.0, 2.0};
+  const RecordingTwin twin = twin_of_recording(filmed.results, filmed.diagnosis, {by_pattern, by_scale});
+  CHECK(twin.filmed);
+  CHECK(twin.by_scale);
+  REQUIRE(twin.without.size() == 1);
+  CHECK(std::holds_alternative<lacking::Pattern>(twin.without.front()));
+  CHECK(twin_of_recording(filmed.results, filmed.diagnosis, {by_pattern, by_pattern}).without.empty());
+}
+
 TEST_CASE("a twin by a scale is filmed without a pattern, and its positions are the truth's times the scale's error") {
   RecordingTwin twin;
   twin.scenario = render::read_scenario(tests::tiny_scenario(), "tiny.toml", render::ScenarioChecks::values);
