@@ -17,8 +17,7 @@ namespace {
 
 constexpr double kCurveExplains = 0.8;  // of the variance across the path: a smaller share is scatter
 constexpr std::size_t kGroups = 16, kFewestOfGroup = 3;
-constexpr std::size_t kSlopes = 5;  // parts of the path whose directions are compared,
-constexpr double kLongPart = 0.05;  // where they are that long, over the length of the path
+constexpr double kLongPart = 0.125;  // of the length of the path: directions are those of parts as long
 
 /// Sagitta of the parabola through `across` over `along`, whose range is 1; 0 if it explains little of `across`.
 double parabola_sagitta(const Eigen::VectorXd& along, const Eigen::VectorXd& across) {
@@ -94,16 +93,6 @@ double scatter_of(const std::vector<double>& values) {
   return seconds.empty() ? 0.0 : kSdOverMedian * median_of(seconds) / std::sqrt(6.0);
 }
 
-/// In degrees.
-double slope_of(std::span<const double> along, std::span<const double> across) {
-  const auto n = static_cast<Eigen::Index>(along.size());
-  Eigen::ArrayXd a = Eigen::Map<const Eigen::ArrayXd>(along.data(), n),
-                 b = Eigen::Map<const Eigen::ArrayXd>(across.data(), n);
-  a -= a.mean();
-  b -= b.mean();
-  return std::atan2((a * b).sum(), a.square().sum()) * base::kDegreesPerRad;
-}
-
 }  // namespace
 
 PathBend bend_of(const PlanePath& path) {
@@ -114,21 +103,25 @@ PathBend bend_of(const PlanePath& path) {
   bend.length_m = range(line.along);
   bend.noise_m = scatter_of(line.across);
   const std::size_t groups = std::min(kGroups, n / kFewestOfGroup);
-  std::vector<double> smooth;
+  const auto medians = [&](const std::vector<double>& values) {
+    std::vector<double> of_groups;
+    for (std::size_t g = 0; g < groups; ++g) {
+      const auto from = values.begin() + static_cast<std::ptrdiff_t>(g * n / groups);
+      const auto to = values.begin() + static_cast<std::ptrdiff_t>((g + 1) * n / groups);
+      of_groups.push_back(median_of(std::vector<double>(from, to)));
+    }
+    return of_groups;
+  };
+  const std::vector<double> along = medians(line.along), across = medians(line.across);
+  bend.range_m = range(across);
+  std::vector<double> slopes_deg;
   for (std::size_t g = 0; g < groups; ++g) {
-    const auto from = line.across.begin() + static_cast<std::ptrdiff_t>(g * n / groups);
-    const auto to = line.across.begin() + static_cast<std::ptrdiff_t>((g + 1) * n / groups);
-    smooth.push_back(median_of(std::vector<double>(from, to)));
+    std::size_t to = g + 1;
+    while (to < groups && std::abs(along[to] - along[g]) < kLongPart * bend.length_m) ++to;
+    if (to == groups) continue;
+    slopes_deg.push_back(std::atan((across[to] - across[g]) / (along[to] - along[g])) * base::kDegreesPerRad);
   }
-  bend.range_m = range(smooth);
-  std::vector<double> slopes;
-  for (std::size_t k = 0; k < kSlopes; ++k) {
-    const std::size_t from = k * n / kSlopes, many = (k + 1) * n / kSlopes - from;
-    const std::span<const double> along = std::span(line.along).subspan(from, many);
-    if (many < 2 || range(along) < kLongPart * bend.length_m) continue;
-    slopes.push_back(slope_of(along, std::span(line.across).subspan(from, many)));
-  }
-  if (slopes.size() > 1) bend.slope_deg = range(slopes);
+  if (!slopes_deg.empty()) bend.slope_deg = range(slopes_deg);
   return bend;
 }
 

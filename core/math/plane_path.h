@@ -26,7 +26,7 @@ struct PathBend {
   double range_m = 0.0;  ///< of the smooth deviation
   double noise_m = 0.0;  ///< standard deviation of one position across, from second differences
   double length_m = 0.0;
-  double slope_deg = 0.0;  ///< by how much the direction of fifths of the path differs, largest against smallest
+  double slope_deg = 0.0;  ///< between the directions of parts of an eighth of the length, largest against smallest
 };
 PathBend bend_of(const PlanePath& path);
 

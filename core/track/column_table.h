@@ -8,7 +8,8 @@
 /// cm" or in a line of their own; runs as "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of
 /// different lengths; NaN for no value; the Unicode minus sign (U+2212); blanks between thousands. A decimal comma
 /// goes with a comma between fields if each number that has one is in quotes. The delimiter and the decimal sign are
-/// chosen so that most lines consist only of numbers.
+/// chosen so that most lines consist only of numbers, or have numbers in the same columns. Text in other columns, as
+/// labels and remarks are, is no value. Brackets around digits belong to the name: "cal[0]".
 #pragma once
 
 #include <cstddef>
@@ -17,6 +18,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include "base/errors.h"
 
 namespace glidelab::core {
 
@@ -25,8 +27,17 @@ struct TableColumn {
   std::string name;                           ///< without unit and run
   std::string unit;                           ///< empty if none is stated
   std::string run;                            ///< empty if none is stated
-  std::vector<std::optional<double>> values;  ///< one for each data line; empty if the field is empty or NaN
+  std::vector<std::optional<double>> values;  ///< one for each data line; empty if the field is empty, NaN or text
+  std::vector<base::Issue> texts = {};        ///< fields between the numbers that hold text, the first ten
 };
+
+/// Units of length and time as tables state them: symbols, and words in English, German, French, Spanish, Portuguese
+/// and Italian.
+///
+/// Metres for a unit of length ("mm", "Zentimeter", "inches"), seconds for a unit of time; empty for any other text.
+/// "um" and "µm" are the same.
+std::optional<double> metres_per(std::string_view unit);
+std::optional<double> seconds_per(std::string_view unit);
 
 /// "t", "time", "Zeit", …
 bool is_time_name(std::string_view name);
@@ -48,6 +59,9 @@ bool is_height_column(const TableColumn& column);
 /// but the names may be missing.
 std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);
 
+/// Whether all that is there of a header line are units: "[s]", "m", "m/s".
+bool holds_units(const std::vector<std::string>& line);
+
 struct ColumnTable {
   std::string file;
   bool has_header = false;
@@ -61,8 +75,8 @@ struct ColumnTable {
 ColumnTable table_of_text(std::string_view text, const std::string& name);
 
 /// A workbook of Excel (workbook.h), or text. The text may be UTF-8, UTF-16 or Latin-1 (text_encoding.h). InputError if
-/// the file does not have two columns of numbers, is no text (a spreadsheet's own format, JSON), or has text between
-/// the numbers (up to ten issues, with line and column).
+/// the file does not have two columns of numbers, or is no text (a spreadsheet's own format, JSON). Text between the
+/// numbers of a column is an issue for whoever uses that column.
 ColumnTable read_column_table(const std::filesystem::path& file);
 
 }  // namespace glidelab::core

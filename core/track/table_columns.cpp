@@ -171,9 +171,8 @@ void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const Pl
   }
   throw wrong_column(
       table,
-      fmt::format("a curved path: ({}, {}) strays over {:.2g} mm across the best straight line, {:.2g} % of its length",
-                  table.columns[x].name, table.columns[y].name, 1e3 * bend.range_m,
-                  100.0 * bend.range_m / bend.length_m),
+      fmt::format("a curved path: ({}, {}) strays over {:.2g} m across the best straight line, {:.2g} % of its length",
+                  table.columns[x].name, table.columns[y].name, bend.range_m, 100.0 * bend.range_m / bend.length_m),
       straight_motion(table.columns[y].name));
 }
 
@@ -223,10 +222,38 @@ bool is_rate_of(const TableColumn& rate, const TableColumn& place, const TableCo
   return std::sqrt((apart - apart.mean()).square().mean()) < kMostOff * range_of(places);
 }
 
+/// A choice without its time.
+ChosenColumns only(std::size_t place) {
+  ChosenColumns chosen;
+  chosen.place = place;
+  return chosen;
+}
+
+/// The times of a table without a header: the first column, unless it counts the rows and the second advances evenly.
+std::size_t unnamed_time(const ColumnTable& table) {
+  constexpr double kEven = 0.2;  // of the median step: times may be rounded
+  if (table.columns.size() < 3) return 0;
+  const auto steps_of = [](const TableColumn& column) {
+    std::vector<double> steps;
+    for (std::size_t row = 1; row < column.values.size(); ++row) {
+      if (column.values[row] && column.values[row - 1]) steps.push_back(*column.values[row] - *column.values[row - 1]);
+    }
+    return steps;
+  };
+  const std::vector<double> counts = steps_of(table.columns[0]), steps = steps_of(table.columns[1]);
+  if (counts.size() < kFewestOfPath || steps.size() != counts.size()) return 0;
+  const double middle = quantile(steps, 0.5);
+  const bool counted = std::ranges::all_of(counts, [](double step) { return step == 1.0; });
+  const bool even = middle > 0.0 && middle != 1.0 &&
+                    std::ranges::all_of(steps, [&](double step) { return std::abs(step - middle) < kEven * middle; });
+  return counted && even ? 1 : 0;
+}
+
 /// Three columns without a header whose first are times: t, x and perhaps y, as Tracker writes them. Empty if they are
 /// not, or if the third covers so much more than the second that the body moves along it.
 std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vector<Note>& notes) {
   if (table.has_header || table.columns.size() != 3) return {};
+  if (unnamed_time(table) == 1) return only(2);
   const TableColumn &times = table.columns[0], &second = table.columns[1], &third = table.columns[2];
   std::optional<double> last;
   for (const std::optional<double>& time : times.values) {
@@ -266,13 +293,6 @@ std::size_t asked_column(const ColumnTable& table, const std::string& asked) {
   if (found.size() == 1) return found.front();
   throw wrong_column(table, fmt::format("{} of the name or number \"{}\"", found.empty() ? "none" : "several", asked),
                      "one of the " + columns_text(table));
-}
-
-/// A choice without its time.
-ChosenColumns only(std::size_t place) {
-  ChosenColumns chosen;
-  chosen.place = place;
-  return chosen;
 }
 
 /// Whether all values increase, as times do.
@@ -324,7 +344,11 @@ bool is_frame_column(const TableColumn& column) {
 }
 
 std::size_t time_column(const ColumnTable& table, std::size_t place) {
-  if (!table.has_header && (place != 0 || table.columns.size() == 2)) return place == 0 ? 1 : 0;
+  if (!table.has_header && table.columns.size() == 2) return 1 - place;
+  if (!table.has_header) {
+    const std::size_t first = unnamed_time(table);
+    if (place != first || first != 0) return place != first ? first : 0;
+  }
   std::vector<std::size_t> times;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const bool same_run = table.columns[c].run == table.columns[place].run || table.columns[c].run.empty();
@@ -418,76 +442,6 @@ bool rises_mostly(const TableColumn& times) {
     last = value;
   }
   return 2 * up >= steps;
-}
-
-namespace {
-
-using Unit = std::pair<std::string_view, double>;
-constexpr std::array<Unit, 10> kLengths{{{"m", 1.0},
-                                         {"cm", 1e-2},
-                                         {"mm", 1e-3},
-                                         {"um", 1e-6},
-                                         {"\xC2\xB5m", 1e-6},
-                                         {"\xCE\xBCm", 1e-6},
-                                         {"dm", 0.1},
-                                         {"km", 1e3},
-                                         {"in", 0.0254},
-                                         {"ft", 0.3048}}};
-constexpr std::array<Unit, 7> kTimes{
-    {{"s", 1.0}, {"sec", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"\xC2\xB5s", 1e-6}, {"\xCE\xBCs", 1e-6}, {"min", 60.0}}};
-
-// English, German, French, Spanish and Portuguese, Italian; in lower case.
-using Words = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 9> kMetre{"meter",         "meters", "metre",  "metres", "m\xC3\xA8tre",
-                                                 "m\xC3\xA8tres", "metro",  "metros", "metri"};
-constexpr std::array<std::string_view, 10> kSecond{"second",   "seconds", "sekunde",  "sekunden", "seconde",
-                                                   "secondes", "segundo", "segundos", "secondo",  "secondi"};
-constexpr std::array<std::string_view, 6> kMinute{"minute", "minutes", "minuten", "minuto", "minutos", "minuti"};
-constexpr std::array<Unit, 22> kPrefixes{
-    {{"deci", 0.1},          {"dezi", 0.1},          {"d\xC3\xA9\x63i", 0.1}, {"dec\xC3\xAD", 0.1},
-     {"centi", 1e-2},        {"zenti", 1e-2},        {"cent\xC3\xAD", 1e-2},  {"milli", 1e-3},
-     {"mili", 1e-3},         {"mil\xC3\xAD", 1e-3},  {"micro", 1e-6},         {"mikro", 1e-6},
-     {"micr\xC3\xB3", 1e-6}, {"micr\xC3\xB4", 1e-6}, {"kilo", 1e3},           {"kil\xC3\xB3", 1e3},
-     {"quil\xC3\xB4", 1e3},  {"quil\xC3\xB3", 1e3},  {"quilo", 1e3},          {"chilo", 1e3},
-     {"milis", 1e-3},  // Portuguese: milissegundos
-     {"micros", 1e-6}}};
-constexpr std::array<Unit, 5> kOtherLengths{
-    {{"inch", 0.0254}, {"inches", 0.0254}, {"zoll", 0.0254}, {"foot", 0.3048}, {"feet", 0.3048}}};
-template <std::size_t N>
-std::optional<double> factor(const std::array<Unit, N>& units, std::string_view unit) {
-  const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& of) { return of.first == unit; });
-  if (found == units.end()) return {};
-  return found->second;
-}
-
-/// "metres" and "Zentimeter" by the words for a metre, "Millisekunden" by those for a second.
-std::optional<double> word_factor(Words words, std::string_view word) {
-  const auto is_whole = [&](std::string_view text) {
-    return std::find(words.begin(), words.end(), text) != words.end();
-  };
-  if (is_whole(word)) return 1.0;
-  for (const auto& [prefix, of_whole] : kPrefixes) {
-    if (word.starts_with(prefix) && is_whole(word.substr(prefix.size()))) return of_whole;
-  }
-  return {};
-}
-
-}  // namespace
-
-std::optional<double> metres_per(std::string_view unit) {
-  const std::optional<double> symbol = factor(kLengths, unit);
-  if (symbol) return symbol;
-  const std::string word = lower(unit);
-  const std::optional<double> metric = word_factor(kMetre, word);
-  return metric ? metric : factor(kOtherLengths, word);
-}
-
-std::optional<double> seconds_per(std::string_view unit) {
-  const std::optional<double> symbol = factor(kTimes, unit);
-  if (symbol) return symbol;
-  const std::string word = lower(unit);
-  if (std::find(kMinute.begin(), kMinute.end(), word) != kMinute.end()) return 60.0;
-  return word_factor(kSecond, word);
 }
 
 }  // namespace glidelab::core

@@ -231,6 +231,14 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
                                        fmt::format("{} cells with dates or times of day", table.dates),
                                        dates_expectation()});
   }
+  std::vector<base::Issue> texts = x.texts;
+  for (const TableColumn* const one : {&t, &y}) {
+    if (one != &x) texts.insert(texts.end(), one->texts.begin(), one->texts.end());
+  }
+  if (!texts.empty()) {
+    if (texts.size() > kMostRowIssues) texts.resize(kMostRowIssues);
+    throw base::InputError(std::move(texts));
+  }
   if (!rises_mostly(t)) {
     throw base::InputError(
         base::Issue{table.file, 0, fmt::format("column \"{}\"", t.text), "values that do not increase",
@@ -276,7 +284,6 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
   check_signs(track, downhill.value_or(1), table.file, fmt::format("column \"{}\"", x.text));
   if (missing > 0) track.notes.emplace_back(RowsIncomplete{missing});
   take_rows_as_frames(track);
-  if (chosen.is_height && !downhill) count_downwards({&track});
   return track;
 }
 

@@ -107,11 +107,11 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::PathBends& of) const {
     return fmt::format(
-        "the path in x and y is not straight: it leaves its line by {:.2g} mm, and its direction changes by {:.1f}°. "
+        "the path in x and y is not straight: it leaves its line by {:.2g} m, and its direction changes by {:.1f}°. "
         "On "
         "a bent track gravity along the motion changes, which looks like a drag or a friction that depends on the "
         "place",
-        1e3 * of.off_m, of.slope_deg);
+        of.off_m, of.slope_deg);
   }
   std::string operator()(const core::RoundedTimes& of) const {
     return fmt::format("the times are whole multiples of {:.2g} s and taken as even, {:.4g} s apart", of.tick_s,

@@ -38,15 +38,16 @@ TEST_CASE("a straight path has the angle of its line and no bend beyond its nois
   CHECK(bend.noise_m == Approx(1e-3).epsilon(0.25));  // a median of 158 magnitudes, which overlap: 10 %
   // Medians of ten have 0.37 of the noise, and sixteen of them a range of some 3.5 of that.
   CHECK(bend.range_m < 2.5e-3);
-  CHECK(bend.slope_deg < 3.0);  // fifths of 32 positions over 0.2 m: 0.9 degrees each
+  CHECK(bend.slope_deg < 1.0);  // 0.4 mm at either end of an eighth of a metre: 0.26 degrees, with a range of 3.5 of it
 }
 
 TEST_CASE("an arc has the range of its sagitta, and the direction of its ends as bend") {
-  // h (1 - (2 s - 1)²) has the sagitta h and the slopes ±4 h; fifths have their middles at 0.1 and 0.9, with ±3.2 h.
+  // h (1 - (2 s - 1)²) has the sagitta h and the slope 4 h (1 - 2 s); the outermost parts have their middles at 3/32
+  // and 29/32, with ±3.25 h.
   const core::PathBend bend = core::bend_of(path_with([](double s) { return 0.03 * 4.0 * s * (1.0 - s); }, 2e-4));
   // The middles of the first and the last of sixteen groups are a thirty-second from the ends: (1 - 1/16)² = 0.88.
   CHECK(bend.range_m == Approx(0.88 * 0.03).epsilon(0.05));
-  CHECK(bend.slope_deg == Approx(2.0 * std::atan(3.2 * 0.03) * 57.29577951308232).epsilon(0.1));
+  CHECK(bend.slope_deg == Approx(2.0 * std::atan(3.25 * 0.03) * 57.29577951308232).epsilon(0.1));
 }
 
 TEST_CASE("a wave is a bend although no arc describes it, and single wrong positions are none") {
