@@ -307,10 +307,9 @@ void check_bare_options(const core::TrackFileOptions& options, const std::vector
   if (options.column.empty() && !states && options.runs.empty() && !has_masses) return;
   for (const std::string& input : inputs) {
     if (core::is_bare_track(input)) continue;
-    throw base::InputError(
-        base::Issue{input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --runs, --masses",
-                    "not a file with a track",
-                    "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
+    throw base::InputError(base::Issue{
+        input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --runs, --masses", "not a file with a track",
+        "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
   }
 }
 

@@ -1,3 +1,5 @@
+#include "core/track/column_header.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <utility>
 
 #include "core/experiment/file_names.h"
-#include "core/track/column_table.h"
 
 namespace glidelab::core {
 namespace {

@@ -17,11 +17,11 @@
 #include "base/text/csv.h"
 #include "core/experiment/file_names.h"
 #include "core/experiment/local_gravity.h"
+#include "core/math/even_times.h"
 #include "core/math/signed_drop.h"
 #include "core/math/time_gap.h"
 #include "core/math/unseen_positions.h"
 #include "core/track/column_table.h"
-#include "core/track/even_times.h"
 #include "core/track/table_columns.h"
 #include "core/track/workbook.h"
 
