@@ -210,7 +210,10 @@ void add_analyze(CLI::App& app, Command& chosen) {
                      "Accepted for consistency; has no effect here");
   command->callback([options, bandwidth, &chosen] {
     options->bandwidth_given = bandwidth->count() > 0;
-    chosen = [options] { analyze(*options); };
+    chosen = [options] {
+      options->bare = with_masses(options->bare, options->experiments);
+      analyze(*options);
+    };
   });
 }
 

@@ -110,8 +110,12 @@ void add_certify(CLI::App& app, Command& chosen) {
   add_bare_options(*command, options->bare);
   add_common_options(*command, options->common, "glidelab-out/certify-<name of the first folder>",
                      "Seed of the twins' noise, clock and calibration, default 1");
-  command->callback(
-      [options, bandwidth, &chosen] { chosen = [options, bandwidth] { certify(*options, bandwidth->count() > 0); }; });
+  command->callback([options, bandwidth, &chosen] {
+    chosen = [options, bandwidth] {
+      options->bare = with_masses(options->bare, options->experiments);
+      certify(*options, bandwidth->count() > 0);
+    };
+  });
 }
 
 }  // namespace glidelab::app

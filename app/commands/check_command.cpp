@@ -66,7 +66,12 @@ void add_check(CLI::App& app, Command& chosen) {
   add_common_options(*command, options->common, "glidelab-out/check-<name of the folder or file>",
                      "Accepted for consistency; has no effect here");
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/reference/check.md).");
-  command->callback([options, &chosen] { chosen = [options] { check(*options); }; });
+  command->callback([options, &chosen] {
+    chosen = [options] {
+      options->bare = with_masses(options->bare, {options->input});
+      check(*options);
+    };
+  });
 }
 
 }  // namespace glidelab::app

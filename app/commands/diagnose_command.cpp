@@ -207,7 +207,12 @@ void add_diagnose(CLI::App& app, Command& chosen) {
       *command, options->common, "glidelab-out/diagnose-<name of the first folder>",
       "Seed of a plan's noise, default the scenario's, and of the noise shown with a twin on the page; a "
       "diagnosis draws no random numbers");
-  command->callback([options, &chosen] { chosen = [options] { diagnose(*options); }; });
+  command->callback([options, &chosen] {
+    chosen = [options] {
+      options->bare = with_masses(options->bare, options->experiments);
+      diagnose(*options);
+    };
+  });
 }
 
 }  // namespace glidelab::app

@@ -291,24 +291,29 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
                          "their numbers, such as 1,3");
   runs->type_name("all|N,N")->excludes(column);
   command
-      .add_option("--masses", options.masses_kg, "With --runs: the mass of each in kilograms, such as 0.0088,0.0079")
+      .add_option("--masses", options.masses_kg,
+                  "For several files: the mass of each in kilograms, such as 0.0088,0.0079; with --runs, of each run")
       ->type_name("KG,KG")
       ->delimiter(',')
       ->check(check_above_0)
-      ->needs(runs)
       ->excludes(mass);
   add_permissions(command, options.permitted);
 }
 
 void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs) {
   const bool states = options.mass_kg || options.incline_deg || options.gravity_m_s2;
-  if (options.column.empty() && !states && options.runs.empty()) return;
+  const bool has_masses = !options.masses_kg.empty() || !options.mass_of_file.empty();
+  if (options.column.empty() && !states && options.runs.empty() && !has_masses) return;
   for (const std::string& input : inputs) {
     if (core::is_bare_track(input)) continue;
-    throw base::InputError(
-        base::Issue{input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --runs", "not a file with a track",
-                    "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
+    throw base::InputError(base::Issue{
+        input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --runs, --masses", "not a file with a track",
+        "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
   }
+}
+
+core::TrackFileOptions with_masses(const core::TrackFileOptions& options, const std::vector<std::string>& inputs) {
+  return core::masses_of_files(options, {inputs.begin(), inputs.end()});
 }
 
 namespace {

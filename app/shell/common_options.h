@@ -122,8 +122,11 @@ std::string decimal_point_for(const std::string& text);
 void add_bare_options(CLI::App& command, core::TrackFileOptions& options);
 
 /// Options for files have no meaning for folders, whose experiment.toml states the same: InputError if an input is a
-/// folder and one of them is given, for --masses without --runs, and for --masses with --mass.
+/// folder and one of them is given, and for --masses with --mass.
 void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs);
+
+/// The options with the masses of several files (core/track/bare_track.h).
+core::TrackFileOptions with_masses(const core::TrackFileOptions& options, const std::vector<std::string>& inputs);
 
 /// Options of the commands that judge an outside estimator (fit/outside/outside_estimator.h).
 struct OutsideOptions {

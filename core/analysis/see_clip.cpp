@@ -10,12 +10,12 @@
 #include "base/errors.h"
 #include "base/long_work.h"
 #include "base/text/number_text.h"
+#include "core/math/even_times.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/second_look.h"
 #include "core/pictures/marker/sphere/still_background.h"
 #include "core/pictures/marker/template_look.h"
 #include "core/pictures/scene/scene_watch.h"
-#include "core/track/even_times.h"
 
 namespace glidelab::core {
 namespace {

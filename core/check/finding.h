@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/result/analysis_note.h"
+#include "core/result/results.h"
 
 namespace glidelab::core {
 
@@ -71,13 +72,6 @@ constexpr UnitName name_of(LengthUnit unit) {
 struct LengthSources {
   bool square = false, scale = false;  ///< square_m, [scale]
   bool tracks = false;                 ///< the unit of x in tracks
-};
-
-/// Positions that stay at one value far from those before: a tracker that has lost its object writes such rows.
-struct LostPositions {
-  double from_s = 0.0, x_m = 0.0;
-  double off_m = 0.0;  ///< from the position before
-  std::size_t count = 0;
 };
 
 namespace found {
@@ -342,6 +336,11 @@ struct SlowFrames {
   double apart_s = 0.0;
 };
 
+/// A fall that begins far below gravity.
+struct FallsSlowly {
+  SlowFall fall;
+};
+
 struct Gaps {
   double share = 0.0;  ///< of the time
   double longest_s = 0.0;
@@ -362,7 +361,7 @@ using AnyFound = std::variant<
     found::Jumps, found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart,
     found::MarkerSizeOff, found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit,
     found::ScaleInUnit, found::MassInGrams, found::TrackInUnit, found::InclineInRadians, found::WrongFrameRate,
-    found::MotionFault, found::LongRun, found::SlowFrames, LostPositions, found::Gaps, found::Smoothed>;
+    found::MotionFault, found::LongRun, found::SlowFrames, found::FallsSlowly, found::Gaps, found::Smoothed>;
 
 /// What was found; a Note if the analysis notes the same. What copies, moves and destroys it is compiled once
 /// (finding.cpp), as of Note.

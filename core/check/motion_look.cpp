@@ -32,11 +32,8 @@ constexpr double kSameGravity = 0.1;                      // of g
 constexpr double kMostBend = 0.08;                        // a wide lens bends a straight path by half of that
 constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0;  // on an incline of less than 60 degrees, and of more
 constexpr double kSlowFrames_s = 1.0;                     // from one to the next
-constexpr std::size_t kFewestLost = 4;                    // equal positions,
-constexpr double kLostOff = 0.2;                          // of the range of x, from the one before,
-constexpr double kLostOverStep = 10.0;  // and this many times as far as from any to the next, except for a tenth
-constexpr double kGapSteps = 3.0;       // median steps: a longer one is a gap
-constexpr double kMostUnseen = 0.2;     // of the time
+constexpr double kGapSteps = 3.0;                         // median steps: a longer one is a gap
+constexpr double kMostUnseen = 0.2;                       // of the time
 
 /// The median of |a| of parabolas through `size` points each, where it is above their noise.
 void find_acceleration(std::span<const double> t_s, std::span<const double> x_m, std::size_t size, double noise_m,
@@ -91,19 +88,6 @@ double harmonic_part(const std::vector<double>& x, const std::vector<double>& a)
   return xa < 0.0 && aa > 0.0 && xx > 0.0 ? xa * xa / (xx * aa) : 0.0;
 }
 
-std::optional<LostPositions> lost_in(std::span<const double> t_s, std::span<const double> x_m, double distance_m) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < x_m.size(); ++i) steps.push_back(std::abs(x_m[i] - x_m[i - 1]));
-  const double least = std::max(kLostOff * distance_m, kLostOverStep * quantile(steps, 0.9));
-  for (std::size_t i = 1; i < x_m.size(); ++i) {
-    if (!(steps[i - 1] > least)) continue;
-    std::size_t to = i;
-    while (to < x_m.size() && x_m[to] == x_m[i]) ++to;
-    if (to - i >= kFewestLost) return LostPositions{t_s[i], x_m[i], steps[i - 1], to - i};
-  }
-  return std::nullopt;
-}
-
 void look_for_gaps(std::span<const double> t_s, MotionLook& look) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < t_s.size(); ++i) steps.push_back(t_s[i] - t_s[i - 1]);
@@ -149,7 +133,6 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   look.distance_m = *most - *least;
   look.frame_s = (t_s.back() - t_s.front()) / static_cast<double>(t_s.size() - 1);
   look.bend = bend_of(sightings);
-  if (sightings.empty()) look.lost = lost_in(t_s, x_m, look.distance_m);
   look_for_gaps(t_s, look);
   const double noise_m = pilot_noise(t_s, x_m);
   look.smooth = noise_m < kSmoothPart * look.distance_m;
@@ -207,7 +190,6 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
     book.add(Severity::change, found::LongRun{look.distance_m}, Topic::length);
   }
   if (look.frame_s > kSlowFrames_s) book.add(Severity::change, found::SlowFrames{look.frame_s});
-  if (look.lost) book.add(Severity::change, *look.lost);
   if (look.unseen > kMostUnseen && look.frame_s <= kSlowFrames_s) {
     book.add(Severity::change, found::Gaps{look.unseen, look.longest_gap_s});
   }

@@ -45,9 +45,8 @@ struct MotionLook {
   double acceleration_sd_m_s2 = 0.0;        ///< of one of the parabolas that it is the median of
   std::size_t turns = 0;
   bool oscillates = false;
-  double bend = 0.0;    ///< of the path in the image: sagitta over length
-  bool smooth = false;  ///< smoother than any measurement
-  std::optional<LostPositions> lost;
+  double bend = 0.0;           ///< of the path in the image: sagitta over length
+  bool smooth = false;         ///< smoother than any measurement
   double unseen = 0.0;         ///< part of the time that lies in gaps between positions
   double longest_gap_s = 0.0;  ///< of these
 };

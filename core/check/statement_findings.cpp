@@ -125,6 +125,21 @@ void judge_incline(const Experiment& experiment, const RecordingCheck& check, st
   }
 }
 
+/// One finding for all falls, with the first of them.
+void judge_falls(const Experiment& experiment, const RecordingCheck& check, std::vector<Finding>& findings) {
+  std::vector<std::string> names;
+  std::optional<SlowFall> first;
+  for (const ConfigurationResult& configuration : check.configurations) {
+    const std::optional<SlowFall> fall = slow_fall(configuration, experiment.gravity_m_s2);
+    if (!fall) continue;
+    names.insert(names.end(), configuration.clips.begin(), configuration.clips.end());
+    if (!first) first = fall;
+  }
+  if (!first) return;
+  findings.push_back(
+      {Severity::change, {Subject::Part::clips, std::move(names)}, found::FallsSlowly{*first}, Topic::length});
+}
+
 /// A hand rests or pushes before it releases the glider; free motion turns.
 bool moves_against_launch(const ClipCheck& clip) {
   if (!clip.against_launch || clip.against_launch->share < kLeastShareAgainstLaunch) return false;
@@ -180,6 +195,7 @@ std::vector<Finding> statement_findings(const Experiment& experiment, const Reco
   judge_size(experiment, check.clips, findings);
   judge_distance(experiment, check.clips, findings);
   judge_incline(experiment, check, findings);
+  judge_falls(experiment, check, findings);
   judge_launch(experiment, check.clips, findings);
   return findings;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "core/math/parabola.h"
 #include "core/math/quantile.h"
@@ -13,6 +14,10 @@ namespace {
 constexpr double kHardlyTurns = 0.8;  // of the range of x: distance from the first position to the last
 constexpr double kParabola = 0.03;    // of the range of x: rms residual
 constexpr double kThrown = 0.7;       // of g
+// Stretches of a free flight, of which a body that bounces has several:
+constexpr std::size_t kFewestOfStretch = 7;
+constexpr double kFlightAccurate = 0.1;  // of g: standard deviation of the acceleration of a stretch
+constexpr double kMostInFlight = 1.3;    // of g: a bounce has more
 
 /// The positions without jumps to wrong echoes, or to where a tracker lost the object: no step is longer than a few
 /// times the long ones. Only the direction of the motion is read from them.
@@ -29,6 +34,30 @@ std::vector<double> without_jumps(const std::vector<double>& x_m) {
   return smooth;
 }
 
+/// The direction of the acceleration of nearly g that most stretches have, by the number of stretches; 0 if none has.
+/// A stretch with a bounce in it is no parabola, and its scatter leaves its acceleration uncertain.
+int direction_of_flights(const std::vector<double>& t_s, const std::vector<double>& x_m, double gravity_m_s2) {
+  int direction = 0;
+  for (const std::size_t parts : {3, 5, 10, 20, 40}) {
+    const std::size_t size = x_m.size() / parts;
+    if (size < kFewestOfStretch) break;
+    for (std::size_t from = 0; from + size <= x_m.size(); from += size / 2) {
+      const auto times = std::span(t_s).subspan(from, size), places = std::span(x_m).subspan(from, size);
+      const Parabola parabola = parabola_through(times, places);
+      double squares_m2 = 0.0;
+      for (std::size_t i = 0; i < size; ++i) squares_m2 += std::pow(places[i] - parabola.at(times[i]), 2);
+      // Variance of a by n even points over a time T: 720 s²/(n T⁴).
+      const auto n = static_cast<double>(size);
+      const double span_s = times.back() - times.front();
+      const double sd_m_s2 = std::sqrt(720.0 / n * squares_m2 / (n - 3.0)) / (span_s * span_s);
+      const double a = std::abs(parabola.a) / gravity_m_s2;
+      if (sd_m_s2 > kFlightAccurate * gravity_m_s2 || a < kThrown || a > kMostInFlight) continue;
+      direction += parabola.a > 0.0 ? 1 : -1;
+    }
+  }
+  return direction;
+}
+
 }  // namespace
 
 double signed_drop(const std::vector<double>& t_s, const std::vector<double>& x_m, double gravity_m_s2) {
@@ -41,6 +70,8 @@ double signed_drop(const std::vector<double>& t_s, const std::vector<double>& x_
   const bool follows = squares_m2 <= std::pow(kParabola * range_m, 2) * static_cast<double>(smooth_m.size());
   if (follows && std::abs(parabola.a) >= kThrown * gravity_m_s2) return std::copysign(range_m, parabola.a);
   if (std::abs(displacement_m) >= kHardlyTurns * range_m) return displacement_m;
+  const int flights = direction_of_flights(t_s, smooth_m, gravity_m_s2);
+  if (flights != 0) return flights > 0 ? range_m : -range_m;
   // From the positions at both ends and at the middle of the time: the direction of the acceleration.
   const double middle_s = 0.5 * (t_s.front() + t_s.back());
   const auto at = static_cast<std::size_t>(std::lower_bound(t_s.begin(), t_s.end(), middle_s) - t_s.begin());

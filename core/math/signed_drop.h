@@ -1,10 +1,12 @@
 /// Which way a body falls, where nobody states the sign of x.
 ///
 /// A fall is downwards, whether its sensor is above or below. The direction is that of the displacement if the body
-/// hardly turns, and otherwise that of the acceleration between both ends and the middle of the time. A body that is
-/// thrown upwards may land above its start, or not at all: if a parabola describes the positions (rms residual at most
-/// 3 % of their range) with an acceleration of 0.7 g or more, that acceleration points down. Drag makes it larger on
-/// the way up, and one of a fall towards its terminal velocity is below g.
+/// hardly turns, and otherwise that of the acceleration between both ends and the middle of the time. A body that
+/// bounces turns up at the floor: if stretches of its motion are parabolas with an acceleration of 0.7 g to 1.3 g, the
+/// direction of most of them is down. A body that is thrown upwards may land above its start, or not at all: if a
+/// parabola describes the positions (rms residual at most 3 % of their range) with an acceleration of 0.7 g or more,
+/// that acceleration points down. Drag makes it larger on the way up, and one of a fall towards its terminal velocity
+/// is below g.
 #pragma once
 
 #include <vector>

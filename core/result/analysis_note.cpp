@@ -8,4 +8,9 @@ Note& Note::operator=(const Note&) = default;
 Note& Note::operator=(Note&&) noexcept = default;
 Note::~Note() = default;
 
+bool is_of_reading(const Note& note) {
+  return std::holds_alternative<PositionsUnseen>(note) || std::holds_alternative<ColumnsGuessed>(note) ||
+         std::holds_alternative<PathBends>(note);
+}
+
 }  // namespace glidelab::core

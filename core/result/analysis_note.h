@@ -94,6 +94,24 @@ struct RowsIncomplete {
   std::size_t rows = 0;
 };
 
+/// Values that a sensor or a tracker wrote while it saw nothing, and that are left out.
+struct PositionsUnseen {
+  std::size_t positions = 0;
+  double value_m = 0.0, from_s = 0.0;  ///< of the first of them
+};
+
+/// Two columns without a header, both of which could be times.
+struct ColumnsGuessed {
+  std::string x, t;
+  bool either = false;  ///< both could be times; otherwise the second alone could, and is taken
+};
+
+/// A path in (x, y) that leaves its straight line.
+struct PathBends {
+  double off_m = 0.0;      ///< range of the smooth deviation across the line
+  double slope_deg = 0.0;  ///< by how much its direction changes
+};
+
 /// Rounded times of a table that are explained by evenly spaced frames.
 struct RoundedTimes {
   double tick_s = 0.0, step_s = 0.0;
@@ -344,17 +362,16 @@ struct FitScatters {
   bool motions_differ = false;
 };
 
-using AnyNote =
-    std::variant<FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps,
-                 SheetTaken, ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath,
-                 CountedAlongMotion, RowsIncomplete, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant,
-                 PositionsOutsideClip, PositionsFilledIn, AssumedStatements, MayBeAFall, AssumedMass, OutlyingView,
-                 NoPatternInSight, UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred,
-                 PlaneViewsDisagree, MarkerAtRest, MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize,
-                 MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine,
-                 ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters,
-                 NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams,
-                 InclineContradiction, MuFromIncline, GravityAssumed, RobustFit, FitScatters>;
+using AnyNote = std::variant<
+    FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps, SheetTaken,
+    ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath, CountedAlongMotion, RowsIncomplete,
+    PositionsUnseen, ColumnsGuessed, PathBends, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant,
+    PositionsOutsideClip, PositionsFilledIn, AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight,
+    UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
+    MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, DiscMarker,
+    NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut,
+    CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine,
+    AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline, GravityAssumed, RobustFit, FitScatters>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.
@@ -370,5 +387,8 @@ struct Note : AnyNote {
   Note& operator=(Note&&) noexcept;
   ~Note();
 };
+
+/// Whether a reader of the values must know it: data that were left out, columns that were guessed, a bent path.
+bool is_of_reading(const Note& note);
 
 }  // namespace glidelab::core

@@ -238,6 +238,19 @@ struct ConfigurationResult {
   std::vector<Note> notes;
 };
 
+/// A fall, at 80 degrees or more, whose line begins far below gravity.
+struct SlowFall {
+  Estimate a0_m_s2;  ///< of the line at v = 0, positive downwards
+  double gravity_m_s2 = 0.0;
+};
+
+/// The first line of a fall that begins, by three standard deviations, below a third of the gravity along it. A body
+/// released from rest accelerates by g less the weight of the fluid that it displaces, against its mass and the mass of
+/// the fluid that it moves. In air that keeps more than a third of g for all but balloons: of density r times the
+/// air's, a sphere begins with g (r - 1)/(r + 1/2). A drag that grows faster than proportionally to the speed makes the
+/// intercept larger, not smaller. Empty if gravity is not known (0).
+std::optional<SlowFall> slow_fall(const ConfigurationResult& configuration, double gravity_m_s2);
+
 struct CornerCell {
   double u_px = 0.0, v_px = 0.0;    ///< mean position of its corners
   double du_px = 0.0, dv_px = 0.0;  ///< mean residual

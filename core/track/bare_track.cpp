@@ -93,6 +93,24 @@ std::vector<ClipSetup> clips_of_runs(const std::filesystem::path& file, const Cl
 
 }  // namespace
 
+TrackFileOptions masses_of_files(TrackFileOptions options, const std::vector<std::filesystem::path>& files) {
+  if (options.masses_kg.empty() || !options.runs.empty()) return options;
+  if (options.masses_kg.size() != files.size()) {
+    throw base::InputError(
+        base::Issue{"", 0, "--masses", fmt::format("{} of them", options.masses_kg.size()),
+                    fmt::format("one for each of the {} file{}, or with --runs one for each run of a file",
+                                files.size(), files.size() == 1 ? "" : "s")});
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto [at, is_new] = options.mass_of_file.emplace(files[i], options.masses_kg[i]);
+    if (!is_new && at->second != options.masses_kg[i]) {
+      throw base::InputError(base::Issue{files[i].string(), 0, "--masses", "two masses of one file", "one of each"});
+    }
+  }
+  options.masses_kg.clear();
+  return options;
+}
+
 Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions& options) {
   const bool speeds = options.speeds == SpeedsAlone::taken;
   if (!is_bare_track(path)) {
@@ -112,8 +130,10 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   clip.track = path;
   clip.speeds_alone = speeds;
   clip.column = options.column;
-  clip.mass_kg = options.mass_kg.value_or(1.0);
-  clip.mass_assumed = !options.mass_kg && options.masses_kg.empty();
+  const auto own_mass = options.mass_of_file.find(path);
+  const bool has_own_mass = own_mass != options.mass_of_file.end();
+  clip.mass_kg = has_own_mass ? own_mass->second : options.mass_kg.value_or(1.0);
+  clip.mass_assumed = !has_own_mass && !options.mass_kg && options.masses_kg.empty();
   clip.incline_rad = options.incline_deg.value_or(0.0) * base::kRadPerDegree;
   clip.incline_assumed = !options.incline_deg;
   if (options.incline_sd_deg) clip.incline_sd_rad = *options.incline_sd_deg * base::kRadPerDegree;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,9 +25,14 @@ struct TrackFileOptions {
   /// Which of the runs (or masses) of the file become clips: "all", or their numbers from 1 on, "1,3". Empty: the file
   /// is one clip.
   std::string runs = {};
-  std::vector<double> masses_kg = {};         ///< of these runs, one each; empty: mass_kg for all
-  SpeedsAlone speeds = SpeedsAlone::refused;  ///< also of a folder
+  /// Of these runs, one each, or without `runs` of the files, one each (masses_of_files()); empty: mass_kg for all.
+  std::vector<double> masses_kg = {};
+  std::map<std::filesystem::path, double> mass_of_file = {};  ///< kg; of files that have their own
+  SpeedsAlone speeds = SpeedsAlone::refused;                  ///< also of a folder
 };
+
+/// Gives each file its own mass if masses are stated and no runs. InputError if their numbers differ.
+TrackFileOptions masses_of_files(TrackFileOptions options, const std::vector<std::filesystem::path>& files);
 
 /// A regular file that is not experiment.toml.
 bool is_bare_track(const std::filesystem::path& path);

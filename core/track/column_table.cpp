@@ -3,200 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <string_view>
 #include <utility>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
-#include "core/experiment/file_names.h"
 #include "core/track/number_field.h"
-#include "core/track/table_columns.h"
 #include "core/track/text_encoding.h"
 #include "core/track/workbook.h"
 
 namespace glidelab::core {
-namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const std::string_view blanks = " \t,:";
-  const auto first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-bool speaks_of_a_run(std::string_view field) {
-  static constexpr std::array<std::string_view, 7> kWords{"run", "set", "latest", "trial", "versuch", "lauf", "serie"};
-  const std::string text = lower(field);
-  return std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) { return text.starts_with(word); });
-}
-
-/// "[s]" in a line of units is "s".
-std::string_view without_brackets(std::string_view field) {
-  const bool bracketed = field.size() > 2 && (field.front() == '[' || field.front() == '(') &&
-                         (field.back() == ']' || field.back() == ')');
-  return bracketed ? trimmed(field.substr(1, field.size() - 2)) : field;
-}
-
-bool looks_like_a_unit(std::string_view field) {
-  if (without_brackets(field).size() < field.size()) return true;
-  if (metres_per(field) || seconds_per(field)) return true;
-  // m/s, m/s^2, m/s², N, 1, °: short and without the name of a quantity.
-  const auto slash = field.find('/');
-  if (slash != std::string_view::npos) return metres_per(field.substr(0, slash)).has_value() || field.size() <= 6;
-  return field == "N" || field == "kg" || field == "V" || field == "rad" || field == "deg" || field == "Hz";
-}
-
-template <typename Predicate>
-bool all_that_is_there(const std::vector<std::string>& fields, Predicate predicate) {
-  bool any = false;
-  for (const std::string& field : fields) {
-    if (field.empty()) continue;
-    if (!predicate(field)) return false;
-    any = true;
-  }
-  return any;
-}
-
-/// "Run 1: Time (s)", "Time (s) Run #1", "Position, Run #2 (m)", "x_cm".
-TableColumn column_of(const std::string& text) {
-  TableColumn column;
-  column.text = text;
-  std::string_view rest = text;
-  const auto open = rest.find_last_of("([");
-  const auto close = open == std::string_view::npos ? open : rest.find_first_of(")]", open);
-  std::string name(rest);
-  if (close != std::string_view::npos) {
-    column.unit = std::string(trimmed(rest.substr(open + 1, close - open - 1)));
-    column.run = std::string(trimmed(rest.substr(close + 1)));
-    name = std::string(trimmed(rest.substr(0, open)));
-  }
-  if (const auto colon = name.find(':'); colon != std::string::npos) {
-    column.run = std::string(trimmed(std::string_view(name).substr(0, colon)));
-    name = std::string(trimmed(std::string_view(name).substr(colon + 1)));
-  }
-  const std::string small = lower(name);
-  // The channel distinguishes several sensors: "Position, Ch 1 (m)".
-  if (const auto channel = small.find(", ch "); channel != std::string::npos && channel > 0) {
-    std::string_view rest_of = std::string_view(name).substr(channel + 2);
-    const auto run = lower(rest_of).find(", run");
-    column.run = std::string(trimmed(run == std::string::npos ? rest_of : rest_of.substr(run)));
-    name = std::string(trimmed(std::string_view(name).substr(0, channel)));
-    column.name = name;
-    return column;
-  }
-  for (const char* const mark : {", run", " run #", " run "}) {
-    const auto at = small.find(mark);
-    if (at == std::string::npos || at == 0) continue;
-    column.run = std::string(trimmed(std::string_view(name).substr(at)));
-    name = std::string(trimmed(std::string_view(name).substr(0, at)));
-    break;
-  }
-  const auto underscore = name.rfind('_');
-  if (column.unit.empty() && underscore != std::string::npos && underscore > 0) {
-    const std::string_view tail = std::string_view(name).substr(underscore + 1);
-    if (metres_per(tail) || seconds_per(tail)) {
-      column.unit = std::string(tail);
-      name.resize(underscore);
-    }
-  }
-  // "x / cm", "t in s", "x, cm".
-  for (const std::string_view between : {"/", " in ", ","}) {
-    const auto at = name.rfind(between);
-    if (!column.unit.empty() || at == std::string::npos || at == 0) continue;
-    const std::string_view tail = trimmed(std::string_view(name).substr(at + between.size()));
-    if (!metres_per(tail) && !seconds_per(tail)) continue;
-    column.unit = std::string(tail);
-    name = std::string(trimmed(std::string_view(name).substr(0, at)));
-  }
-  column.name = name;
-  return column;
-}
-
-}  // namespace
-
-bool is_time_name(std::string_view name) {
-  static constexpr std::array<std::string_view, 13> kNames{"t",       "time",  "zeit",     "temps", "tiempo",
-                                                           "tempo",   "tijd",  "czas",     "tid",   "elapsed time",
-                                                           "seconds", "times", "timestamp"};
-  return std::find(kNames.begin(), kNames.end(), lower(name)) != kNames.end();
-}
-
-bool is_time_column(const TableColumn& column) {
-  return column.unit.empty() ? is_time_name(column.name) : seconds_per(column.unit).has_value();
-}
-
-bool is_place_column(const TableColumn& column) {
-  static const std::vector<std::string> kPlaces{
-      "x", "position", "pos", "distance", "displacement", "position x", "x-position", "position (x)",
-      // German, Spanish, French, Italian, Portuguese
-      "weg", "ort", "abstand", "strecke", "entfernung", "posici\xC3\xB3n", "posici\xC3\x93n", "posicion", "distancia",
-      "desplazamiento", "d\xC3\xA9placement", "distance x", "x position", "pos x", "x pos", "pos_x", "x_pos",
-      "posizione", "spostamento", "distanza", "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento",
-      // Norwegian, Danish, Swedish, Dutch
-      "posisjon", "strekning", "avstand", "afstand", "str\xC3\xA6kning",
-      "str\xC3\xA4"
-      "cka",
-      "avst\xC3\xA5nd", "positie"};
-  return !is_time_column(column) && std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
-}
-
-bool is_height_column(const TableColumn& column) {
-  static const std::vector<std::string> kHeights{
-      "y",           "position y",        "y-position", "y position", "position (y)", "height",       "h",
-      "h\xC3\xB6he", "hauteur",           "altura",     "altezza",    "h\xC3\xB8yde", "h\xC3\xB8jde", "h\xC3\xB6jd",
-      "hoogte",      "vertical position", "z"};
-  return !is_time_column(column) && std::find(kHeights.begin(), kHeights.end(), lower(column.name)) != kHeights.end();
-}
-
-namespace {
-
-/// A line of names of bodies or runs above the column names, each spanning several columns: Tracker writes the mass
-/// above its t, x and y and pads the line.
-bool names_several_columns(const std::vector<std::string>& line, const std::vector<std::string>& below) {
-  const auto filled = [](const std::vector<std::string>& fields) {
-    return std::count_if(fields.begin(), fields.end(), [](const std::string& field) { return !field.empty(); });
-  };
-  const bool has_time = std::any_of(below.begin(), below.end(),
-                                    [](const std::string& field) { return is_time_name(column_of(field).name); });
-  return filled(line) > 0 && filled(line) < filled(below) && has_time &&
-         !std::any_of(line.begin(), line.end(),
-                      [](const std::string& field) { return is_time_name(column_of(field).name); });
-}
-
-}  // namespace
-
-std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
-  auto header = lines;
-  std::vector<std::string> runs, units;
-  if (header.size() > 1 &&
-      (all_that_is_there(header.front(), speaks_of_a_run) || names_several_columns(header.front(), header[1]))) {
-    runs = header.front();
-    header.erase(header.begin());
-  }
-  if (header.size() > 1 && all_that_is_there(header.back(), looks_like_a_unit)) {
-    units = header.back();
-    header.pop_back();
-  }
-  // A title with as many words as columns.
-  const auto names_time = [](const std::vector<std::string>& line) {
-    return std::any_of(line.begin(), line.end(),
-                       [](const std::string& field) { return is_time_column(column_of(field)); });
-  };
-  const auto names = std::find_if(header.begin(), header.end(), names_time);
-  if (names != header.end()) header.erase(header.begin(), names);
-  std::vector<TableColumn> columns;
-  std::string run;
-  for (std::size_t c = 0; c < width; ++c) {
-    const bool named = !header.empty() && c < header.front().size() && !header.front()[c].empty();
-    columns.push_back(column_of(named ? header.front()[c] : fmt::format("column {}", c + 1)));
-    if (c < runs.size() && !runs[c].empty()) run = runs[c];  // one word above several columns
-    if (columns.back().run.empty()) columns.back().run = run;
-    if (c < units.size() && columns.back().unit.empty()) columns.back().unit = without_brackets(units[c]);
-  }
-  return columns;
-}
-
 namespace {
 
 constexpr std::size_t kMostFieldIssues = 10;
@@ -219,15 +36,45 @@ Thousands thousands_of(const Format& format) {
   return format.delimiter == ',' ? Thousands::without_plain_blanks : Thousands::with_blanks;
 }
 
+using Fields = std::vector<std::string_view>;
+
+bool is_number(std::string_view field, const Format& format) {
+  return format.decimal == kOfColumn ? number_in(field, '.') || number_in(field, ',')
+                                     : number_in(field, format.decimal, thousands_of(format)).has_value();
+}
+
 /// Numbers or nothing in all fields, and two numbers or more.
-bool is_data(const std::vector<std::string_view>& fields, const Format& format) {
+bool is_data(const Fields& fields, const Format& format) {
   int numbers = 0;
   for (const std::string_view field : fields) {
     if (is_missing(field)) continue;
-    const bool is_number = format.decimal == kOfColumn
-                               ? number_in(field, '.') || number_in(field, ',')
-                               : number_in(field, format.decimal, thousands_of(format)).has_value();
-    if (!is_number) return false;
+    if (!is_number(field, format)) return false;
+    ++numbers;
+  }
+  return numbers >= 2;
+}
+
+/// Which columns hold numbers rather than text in the lines that have two numbers or more: not those of remarks.
+std::vector<bool> columns_of_numbers(const std::vector<Fields>& rows, const Format& format) {
+  std::vector<long> more_numbers;
+  for (const Fields& row : rows) {
+    std::vector<int> kinds;  // 1 a number, -1 text
+    for (const std::string_view field : row) kinds.push_back(is_missing(field) ? 0 : is_number(field, format) ? 1 : -1);
+    if (std::ranges::count(kinds, 1) < 2) continue;
+    more_numbers.resize(std::max(more_numbers.size(), kinds.size()), 0);
+    for (std::size_t c = 0; c < kinds.size(); ++c) more_numbers[c] += kinds[c];
+  }
+  std::vector<bool> of_numbers;
+  for (const long more : more_numbers) of_numbers.push_back(more > 0);
+  return of_numbers;
+}
+
+/// Two numbers or more, and no text, in the columns of numbers.
+bool is_data_among(const Fields& fields, const Format& format, const std::vector<bool>& of_numbers) {
+  int numbers = 0;
+  for (std::size_t c = 0; c < std::min(fields.size(), of_numbers.size()); ++c) {
+    if (!of_numbers[c] || is_missing(fields[c])) continue;
+    if (!is_number(fields[c], format)) return false;
     ++numbers;
   }
   return numbers >= 2;
@@ -276,7 +123,7 @@ std::vector<std::vector<std::string>> commented_header(const std::vector<Line>& 
     if (fields.size() != width || is_data(fields, format)) continue;
     lines.emplace_back(fields.begin(), fields.end());
   }
-  const std::size_t wanted = !lines.empty() && all_that_is_there(lines.back(), looks_like_a_unit) ? 2 : 1;
+  const std::size_t wanted = !lines.empty() && holds_units(lines.back()) ? 2 : 1;
   if (lines.size() > wanted) lines.erase(lines.begin(), lines.end() - static_cast<std::ptrdiff_t>(wanted));
   return lines;
 }
@@ -307,6 +154,52 @@ std::optional<Format> format_of(const std::vector<Line>& lines) {
     const auto differ = [](const DecimalSign& sign) { return sign.points && sign.commas; };
     if (count > most && (format.decimal != kOfColumn || std::ranges::none_of(signs_of(lines, format), differ))) {
       most = count;
+      best = format;
+    }
+  }
+  return best;
+}
+
+/// A label or a remark; no date and no number with another decimal sign.
+bool is_words(std::string_view field) {
+  return !number_in(field, '.') && !number_in(field, ',') && !is_month_and_number(field) &&
+         std::ranges::any_of(field, [](unsigned char c) { return std::isalpha(c) != 0 || c >= 0x80; });
+}
+
+/// Whether all fields outside the columns of numbers are words; between blanks, behind the last number only.
+bool has_words_besides(const Fields& fields, const Format& format, const std::vector<bool>& of_numbers) {
+  bool after_words = false;
+  for (std::size_t c = 0; c < fields.size(); ++c) {
+    const bool number_here = c < of_numbers.size() && of_numbers[c];
+    if (number_here && after_words && format.delimiter == kBlanks) return false;
+    if (number_here || is_missing(fields[c])) continue;
+    if (!is_words(fields[c])) return false;
+    after_words = true;
+  }
+  return true;
+}
+
+/// For a table with text in each line, as in a column of labels: most lines have numbers in the same columns, and words
+/// in the others. Of the formats with which that is so for the same number of lines, the one that reads most numbers.
+std::optional<Format> format_with_text(const std::vector<Line>& lines) {
+  constexpr std::size_t kFewest = 5;  // lines with numbers, which are most of all
+  std::optional<Format> best;
+  std::pair<std::size_t, std::size_t> most{std::max(kFewest, lines.size() / 2 + 1), 0};
+  for (const char delimiter : {'\t', ';', ',', kBlanks}) {
+    std::vector<Fields> rows;
+    for (const Line& line : lines) rows.push_back(split_fields(line.text, delimiter));
+    for (const char decimal : {'.', ','}) {
+      const Format format{delimiter, decimal};
+      const std::vector<bool> of_numbers = columns_of_numbers(rows, format);
+      std::pair<std::size_t, std::size_t> found{0, 0};
+      for (const Fields& row : rows) {
+        if (!is_data_among(row, format, of_numbers) || !has_words_besides(row, format, of_numbers)) continue;
+        ++found.first;
+        found.second += static_cast<std::size_t>(
+            std::ranges::count_if(row, [&](std::string_view field) { return is_number(field, format); }));
+      }
+      if (found <= most) continue;
+      most = found;
       best = format;
     }
   }
@@ -406,14 +299,17 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   table.file = name;
   const Lines read = lines_of(text);
   const std::vector<Line>& lines = read.all;
-  const auto format = format_of(lines);
+  auto format = format_of(lines);
+  if (!format) format = format_with_text(lines);
   if (!format) {
     throw base::InputError(no_numbers(table.file, lines));
   }
   std::vector<std::vector<std::string_view>> rows;
   for (const Line& line : lines) rows.push_back(split_fields(line.text, format->delimiter));
+  const std::vector<bool> of_numbers = columns_of_numbers(rows, *format);
   const auto first_data = static_cast<std::size_t>(
-      std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return is_data(row, *format); }) - rows.begin());
+      std::ranges::find_if(rows, [&](const Fields& row) { return is_data_among(row, *format, of_numbers); }) -
+      rows.begin());
   std::size_t width = 0, widest = first_data;
   for (std::size_t r = first_data; r < rows.size(); ++r) {
     if (rows[r].size() <= width) continue;
@@ -429,16 +325,19 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
 
   std::vector<std::vector<std::string>> header;
   for (std::size_t r = 0; r < first_data; ++r) {
-    if (rows[r].size() < 2) continue;                                       // a title
-    if (format->delimiter == kBlanks && rows[r].size() != width) continue;  // words of a title
+    if (rows[r].size() < 2) continue;  // a title
+    const bool as_wide = rows[r].size() == width || rows[r].size() == rows[first_data].size();
+    if (format->delimiter == kBlanks && !as_wide) continue;  // words of a title
     header.emplace_back(rows[r].begin(), rows[r].end());
   }
   if (header.empty()) header = commented_header(read.comments, lines[first_data].number, width, *format);
   table.has_header = !header.empty();
-  const auto ends_empty = [&](const auto& row) { return row.size() < width || is_missing(row[width - 1]); };
+  const auto ends_without = [&](const auto& row) {
+    return row.size() < width || is_missing(row[width - 1]) || !is_number(row[width - 1], *format);
+  };
   while (table.has_header && width > header.back().size() &&
-         std::all_of(rows.begin() + static_cast<long>(first_data), rows.end(), ends_empty)) {
-    --width;  // data rows that end in a delimiter
+         std::all_of(rows.begin() + static_cast<long>(first_data), rows.end(), ends_without)) {
+    --width;  // data rows that end in a delimiter or a remark
   }
   table.columns = columns_of_header(header, width);
 
@@ -459,16 +358,17 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
                       ambiguous ? "one for each name (a decimal comma needs another delimiter than the comma)"
                                 : "one for each name"});
   }
-  for (std::size_t r = first_data; r < rows.size() && issues.size() < kMostFieldIssues; ++r) {
+  for (std::size_t r = first_data; r < rows.size(); ++r) {
     table.line.push_back(lines[r].number);
-    for (std::size_t c = 0; c < width && issues.size() < kMostFieldIssues; ++c) {
+    for (std::size_t c = 0; c < width; ++c) {
       const std::string_view field = c < rows[r].size() ? rows[r][c] : std::string_view{};
       std::optional<double> value;
       if (!is_missing(field)) {
         value = number_in(field, decimals[c], thousands_of(*format));
-        if (!value) {
-          issues.push_back({table.file, lines[r].number, fmt::format("column {}", c + 1), fmt::format("\"{}\"", field),
-                            fmt::format("a number with a decimal {}", decimals[c] == ',' ? "comma" : "point")});
+        std::vector<base::Issue>& texts = table.columns[c].texts;
+        if (!value && texts.size() < kMostFieldIssues) {
+          texts.push_back({table.file, lines[r].number, fmt::format("column {}", c + 1), fmt::format("\"{}\"", field),
+                           fmt::format("a number with a decimal {}", decimals[c] == ',' ? "comma" : "point")});
         }
       }
       table.columns[c].values.push_back(value);

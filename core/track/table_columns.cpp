@@ -14,9 +14,10 @@
 #include <utility>
 #include "base/errors.h"
 #include "base/math/angles.h"
-#include "base/math/dense.h"
 #include "core/experiment/file_names.h"
+#include "core/math/plane_path.h"
 #include "core/math/quantile.h"
+#include "core/math/unseen_positions.h"
 
 namespace glidelab::core {
 
@@ -24,8 +25,8 @@ namespace {
 
 constexpr double kOtherAxis = 3.0;      // extent along y over that along x: above it the motion is along y
 constexpr double kStraightPath = 0.08;  // sagitta over length: a wide-angle lens bends a straight path by half of that
-constexpr double kCurveExplains = 0.8;  // of the variance across the path: a smaller share is scatter
-constexpr double kSlanted_deg = 5.0;    // x is then too short by 0.4 %
+constexpr double kBendOverNoise = 5.0, kLeastBend = 2e-3;  // of a notable bend, and over the length of the path
+constexpr double kSlanted_deg = 5.0;                       // x is then too short by 0.4 %
 constexpr std::size_t kFewestOfPath = 8;
 
 bool is_acceleration(const TableColumn& column) {
@@ -118,19 +119,22 @@ void refuse_without_positions(const ColumnTable& table) {
   }
 }
 
-/// The positions in a plane at which a body was seen, first to last.
-struct Path {
-  std::vector<double> x_m, y_m;
-};
-
-Path path_of(const TableColumn& x, const TableColumn& y) {
-  Path path;
+/// Without those that say that nothing was seen: a line to them is no path.
+PlanePath path_of(const TableColumn& x, const TableColumn& y) {
+  PlanePath path;
+  std::vector<double> rows;
   const double x_unit = metres_per(x.unit).value_or(1.0),
                y_unit = y.unit.empty() ? x_unit : metres_per(y.unit).value_or(1.0);
   for (std::size_t row = 0; row < x.values.size(); ++row) {
     if (!x.values[row] || !y.values[row]) continue;
     path.x_m.push_back(*x.values[row] * x_unit);
     path.y_m.push_back(*y.values[row] * y_unit);
+    rows.push_back(static_cast<double>(rows.size()));
+  }
+  for (const std::vector<double>* const places : {&path.x_m, &path.y_m}) {
+    const std::optional<UnseenPositions> unseen = unseen_positions(rows, *places);
+    if (!unseen) continue;
+    return {seen_of(path.x_m, *unseen), seen_of(path.y_m, *unseen)};
   }
   return path;
 }
@@ -139,61 +143,37 @@ double range_of(const std::vector<double>& values) {
   return quantile(values, 0.98) - quantile(values, 0.02);
 }
 
-/// Sagitta of the parabola through `across` over `along`, whose range is 1; 0 if it explains little of `across`.
-double parabola_sagitta(const Eigen::VectorXd& along, const Eigen::VectorXd& across) {
-  Eigen::MatrixXd design(along.size(), 3);
-  design << Eigen::VectorXd::Ones(along.size()), along, along.cwiseAbs2();
-  const Eigen::VectorXd fit = base::least_squares(design, across);
-  const Eigen::VectorXd left = across - base::product(design, fit);
-  const Eigen::VectorXd about_mean = across.array() - across.mean();
-  if (!(left.squaredNorm() < (1.0 - kCurveExplains) * about_mean.squaredNorm())) return 0.0;
-  return 0.25 * std::abs(fit[2]);
+std::string straight_motion(const std::string& y) {
+  return fmt::format(
+      "the motion of a body along a straight line, not a free flight, a swing, a turn or a wavy track; if {} is not a "
+      "position, say which column is x (--column)",
+      y);
 }
 
-/// Sagitta over length of a parabola through the path, across the line from its first position to the one farthest from
-/// it, over the place along that line or over the distance travelled (a flight that comes down again turns back along
-/// the line); 0 if neither parabola explains the deviation across the line.
-double sagitta_of(const Path& path) {
-  double along_x = 0.0, along_y = 0.0;
-  for (std::size_t i = 0; i < path.x_m.size(); ++i) {
-    const double dx = path.x_m[i] - path.x_m[0], dy = path.y_m[i] - path.y_m[0];
-    if (std::hypot(dx, dy) > std::hypot(along_x, along_y)) along_x = dx, along_y = dy;
-  }
-  const double length = std::hypot(along_x, along_y);
-  if (!(length > 0.0)) return 0.0;
-  Eigen::VectorXd place(static_cast<Eigen::Index>(path.x_m.size())), travelled(place.size()), across(place.size());
-  for (Eigen::Index i = 0; i < place.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double dx = path.x_m[k] - path.x_m[0], dy = path.y_m[k] - path.y_m[0];
-    place[i] = (dx * along_x + dy * along_y) / (length * length);
-    across[i] = (dy * along_x - dx * along_y) / (length * length);
-    travelled[i] =
-        i == 0 ? 0.0 : travelled[i - 1] + std::hypot(path.x_m[k] - path.x_m[k - 1], path.y_m[k] - path.y_m[k - 1]);
-  }
-  return std::max(parabola_sagitta(place, across),
-                  parabola_sagitta(travelled / travelled[travelled.size() - 1], across));
-}
-
-/// The angle from the x axis to the line that fits the path best, -90 to 90 degrees.
-double slant_deg(const Path& path) {
-  const auto n = static_cast<Eigen::Index>(path.x_m.size());
-  Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(path.x_m.data(), n),
-                 y = Eigen::Map<const Eigen::ArrayXd>(path.y_m.data(), n);
-  x -= x.mean();
-  y -= y.mean();
-  return 0.5 * std::atan2(2.0 * (x * y).sum(), (x.square() - y.square()).sum()) * base::kDegreesPerRad;
-}
-
-/// InputError if the path is curved.
-void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const Path& path) {
+/// InputError if the path is an arc.
+void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path) {
   const double bend = sagitta_of(path);
   if (!(bend > kStraightPath)) return;
   const std::string &of_x = table.columns[x].name, &of_y = table.columns[y].name;
   throw wrong_column(
       table, fmt::format("a curved path: the sagitta of ({}, {}) is {:.2g} % of its length", of_x, of_y, 100.0 * bend),
-      fmt::format("the motion of a body along a straight line, not a free flight, a swing or a turn; if {} is not a "
-                  "position, say which column is x (--column)",
-                  of_y));
+      straight_motion(of_y));
+}
+
+/// A bend of any shape: InputError if it is as large as that of an arc which is refused, a note if it is clear.
+void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path,
+                std::vector<Note>& notes) {
+  const PathBend bend = bend_of(path);
+  if (bend.range_m < kBendOverNoise * bend.noise_m || bend.range_m < kLeastBend * bend.length_m) return;
+  if (bend.range_m < kStraightPath * bend.length_m) {
+    notes.emplace_back(PathBends{bend.range_m, bend.slope_deg});
+    return;
+  }
+  throw wrong_column(
+      table,
+      fmt::format("a curved path: ({}, {}) strays over {:.2g} m across the best straight line, {:.2g} % of its length",
+                  table.columns[x].name, table.columns[y].name, bend.range_m, 100.0 * bend.range_m / bend.length_m),
+      straight_motion(table.columns[y].name));
 }
 
 /// The column, x or y, along which the body moves; both if its path makes an angle with the axes.
@@ -202,9 +182,10 @@ ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y,
   chosen.place = x;
   const TableColumn& other = table.columns[y];
   if (!other.unit.empty() && !metres_per(other.unit)) return chosen;  // in pixels, say: no length beside x
-  const Path path = path_of(table.columns[x], other);
+  const PlanePath path = path_of(table.columns[x], other);
   if (path.x_m.size() < kFewestOfPath) return chosen;
   refuse_curve(table, x, y, path);
+  judge_bend(table, x, y, path, notes);
   const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
   const bool upright = range_y > kOtherAxis * range_x;
   if (upright) {
@@ -241,10 +222,38 @@ bool is_rate_of(const TableColumn& rate, const TableColumn& place, const TableCo
   return std::sqrt((apart - apart.mean()).square().mean()) < kMostOff * range_of(places);
 }
 
+/// A choice without its time.
+ChosenColumns only(std::size_t place) {
+  ChosenColumns chosen;
+  chosen.place = place;
+  return chosen;
+}
+
+/// The times of a table without a header: the first column, unless it counts the rows and the second advances evenly.
+std::size_t unnamed_time(const ColumnTable& table) {
+  constexpr double kEven = 0.2;  // of the median step: times may be rounded
+  if (table.columns.size() < 3) return 0;
+  const auto steps_of = [](const TableColumn& column) {
+    std::vector<double> steps;
+    for (std::size_t row = 1; row < column.values.size(); ++row) {
+      if (column.values[row] && column.values[row - 1]) steps.push_back(*column.values[row] - *column.values[row - 1]);
+    }
+    return steps;
+  };
+  const std::vector<double> counts = steps_of(table.columns[0]), steps = steps_of(table.columns[1]);
+  if (counts.size() < kFewestOfPath || steps.size() != counts.size()) return 0;
+  const double middle = quantile(steps, 0.5);
+  const bool counted = std::ranges::all_of(counts, [](double step) { return step == 1.0; });
+  const bool even = middle > 0.0 && middle != 1.0 &&
+                    std::ranges::all_of(steps, [&](double step) { return std::abs(step - middle) < kEven * middle; });
+  return counted && even ? 1 : 0;
+}
+
 /// Three columns without a header whose first are times: t, x and perhaps y, as Tracker writes them. Empty if they are
 /// not, or if the third covers so much more than the second that the body moves along it.
 std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vector<Note>& notes) {
   if (table.has_header || table.columns.size() != 3) return {};
+  if (unnamed_time(table) == 1) return only(2);
   const TableColumn &times = table.columns[0], &second = table.columns[1], &third = table.columns[2];
   std::optional<double> last;
   for (const std::optional<double>& time : times.values) {
@@ -254,7 +263,7 @@ std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vect
   ChosenColumns chosen;
   chosen.place = 1;
   if (is_rate_of(third, second, times)) return chosen;
-  const Path path = path_of(second, third);
+  const PlanePath path = path_of(second, third);
   if (path.x_m.size() < kFewestOfPath || range_of(path.y_m) > kOtherAxis * range_of(path.x_m)) return {};
   refuse_curve(table, 1, 2, path);
   // Only if the third follows the second is it a place in the same plane.
@@ -286,15 +295,27 @@ std::size_t asked_column(const ColumnTable& table, const std::string& asked) {
                      "one of the " + columns_text(table));
 }
 
-/// A choice without its time.
-ChosenColumns only(std::size_t place) {
-  ChosenColumns chosen;
-  chosen.place = place;
-  return chosen;
+/// Whether all values increase, as times do.
+bool increases(const TableColumn& column) {
+  std::optional<double> last;
+  for (const std::optional<double>& value : column.values) {
+    if (!value) continue;
+    if (last && *value <= *last) return false;
+    last = value;
+  }
+  return last.has_value();
+}
+
+/// Two columns without a header: t and x, unless the second alone increases throughout.
+ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
+  const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
+  const std::size_t time = second && !first ? 1 : 0;
+  if (second) notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});
+  return only(1 - time);
 }
 
 ChosenColumns place_columns(const ColumnTable& table, std::vector<Note>& notes) {
-  if (!table.has_header && table.columns.size() == 2) return only(1);
+  if (!table.has_header && table.columns.size() == 2) return unnamed_pair(table, notes);
   if (const std::optional<ChosenColumns> unnamed = unnamed_columns(table, notes)) return *unnamed;
   const std::vector<std::size_t> found = columns_that(table, is_place_column),
                                  heights = columns_that(table, is_height_column);
@@ -323,7 +344,11 @@ bool is_frame_column(const TableColumn& column) {
 }
 
 std::size_t time_column(const ColumnTable& table, std::size_t place) {
-  if (!table.has_header && place != 0) return 0;
+  if (!table.has_header && table.columns.size() == 2) return 1 - place;
+  if (!table.has_header) {
+    const std::size_t first = unnamed_time(table);
+    if (place != first || first != 0) return place != first ? first : 0;
+  }
   std::vector<std::size_t> times;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const bool same_run = table.columns[c].run == table.columns[place].run || table.columns[c].run.empty();
@@ -417,76 +442,6 @@ bool rises_mostly(const TableColumn& times) {
     last = value;
   }
   return 2 * up >= steps;
-}
-
-namespace {
-
-using Unit = std::pair<std::string_view, double>;
-constexpr std::array<Unit, 10> kLengths{{{"m", 1.0},
-                                         {"cm", 1e-2},
-                                         {"mm", 1e-3},
-                                         {"um", 1e-6},
-                                         {"\xC2\xB5m", 1e-6},
-                                         {"\xCE\xBCm", 1e-6},
-                                         {"dm", 0.1},
-                                         {"km", 1e3},
-                                         {"in", 0.0254},
-                                         {"ft", 0.3048}}};
-constexpr std::array<Unit, 7> kTimes{
-    {{"s", 1.0}, {"sec", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"\xC2\xB5s", 1e-6}, {"\xCE\xBCs", 1e-6}, {"min", 60.0}}};
-
-// English, German, French, Spanish and Portuguese, Italian; in lower case.
-using Words = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 9> kMetre{"meter",         "meters", "metre",  "metres", "m\xC3\xA8tre",
-                                                 "m\xC3\xA8tres", "metro",  "metros", "metri"};
-constexpr std::array<std::string_view, 10> kSecond{"second",   "seconds", "sekunde",  "sekunden", "seconde",
-                                                   "secondes", "segundo", "segundos", "secondo",  "secondi"};
-constexpr std::array<std::string_view, 6> kMinute{"minute", "minutes", "minuten", "minuto", "minutos", "minuti"};
-constexpr std::array<Unit, 22> kPrefixes{
-    {{"deci", 0.1},          {"dezi", 0.1},          {"d\xC3\xA9\x63i", 0.1}, {"dec\xC3\xAD", 0.1},
-     {"centi", 1e-2},        {"zenti", 1e-2},        {"cent\xC3\xAD", 1e-2},  {"milli", 1e-3},
-     {"mili", 1e-3},         {"mil\xC3\xAD", 1e-3},  {"micro", 1e-6},         {"mikro", 1e-6},
-     {"micr\xC3\xB3", 1e-6}, {"micr\xC3\xB4", 1e-6}, {"kilo", 1e3},           {"kil\xC3\xB3", 1e3},
-     {"quil\xC3\xB4", 1e3},  {"quil\xC3\xB3", 1e3},  {"quilo", 1e3},          {"chilo", 1e3},
-     {"milis", 1e-3},  // Portuguese: milissegundos
-     {"micros", 1e-6}}};
-constexpr std::array<Unit, 5> kOtherLengths{
-    {{"inch", 0.0254}, {"inches", 0.0254}, {"zoll", 0.0254}, {"foot", 0.3048}, {"feet", 0.3048}}};
-template <std::size_t N>
-std::optional<double> factor(const std::array<Unit, N>& units, std::string_view unit) {
-  const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& of) { return of.first == unit; });
-  if (found == units.end()) return {};
-  return found->second;
-}
-
-/// "metres" and "Zentimeter" by the words for a metre, "Millisekunden" by those for a second.
-std::optional<double> word_factor(Words words, std::string_view word) {
-  const auto is_whole = [&](std::string_view text) {
-    return std::find(words.begin(), words.end(), text) != words.end();
-  };
-  if (is_whole(word)) return 1.0;
-  for (const auto& [prefix, of_whole] : kPrefixes) {
-    if (word.starts_with(prefix) && is_whole(word.substr(prefix.size()))) return of_whole;
-  }
-  return {};
-}
-
-}  // namespace
-
-std::optional<double> metres_per(std::string_view unit) {
-  const std::optional<double> symbol = factor(kLengths, unit);
-  if (symbol) return symbol;
-  const std::string word = lower(unit);
-  const std::optional<double> metric = word_factor(kMetre, word);
-  return metric ? metric : factor(kOtherLengths, word);
-}
-
-std::optional<double> seconds_per(std::string_view unit) {
-  const std::optional<double> symbol = factor(kTimes, unit);
-  if (symbol) return symbol;
-  const std::string word = lower(unit);
-  if (std::find(kMinute.begin(), kMinute.end(), word) != kMinute.end()) return 60.0;
-  return word_factor(kSecond, word);
 }
 
 }  // namespace glidelab::core

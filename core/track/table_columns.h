@@ -4,14 +4,17 @@
 /// position, distance or displacement (or the equivalent in other languages), if there is just one; if there is none,
 /// the one named y or height. If both x and y are present (Tracker writes both), x is the one along which the body
 /// moves: y if its extent is three times as large. If its straight path makes an angle of more than 5 degrees with that
-/// axis, positions are taken along the path, from both columns. A curved path of the two is not motion along a line,
-/// and is refused.
+/// axis, positions are taken along the path, from both columns. A curved path of the two, an arc or a wavy one, is not
+/// motion along a line, and is refused; a smaller bend that its noise does not explain is told
+/// (core/math/plane_path.h).
 ///
 /// Three columns without a header are t, x and a third: y, if it follows x along a line; a third that is neither this
 /// nor the speed dx/dt is not used, and one that makes a curve with x is refused.
 ///
 /// Its time is the nearest column to the left that is named t or time or has a unit of time, of the same run if runs
-/// are stated; otherwise the only one. In a file without a header the first column is the time.
+/// are stated; otherwise the only one. In a file without a header the first column is the time; of two columns the
+/// second, if it alone increases throughout, and whichever is not asked for as x. A note says so if both could be
+/// times.
 #pragma once
 
 #include <cstddef>
@@ -51,13 +54,5 @@ double seconds_of(const ColumnTable& table, const TableColumn& column, std::vect
 /// Whether at least half of the steps are positive. Otherwise these are not times at all, rather than times with an
 /// error among them.
 bool rises_mostly(const TableColumn& times);
-
-/// Units of length and time as tables state them: symbols, and words in English, German, French, Spanish, Portuguese
-/// and Italian.
-///
-/// Metres for a unit of length ("mm", "Zentimeter", "inches"), seconds for a unit of time; empty for any other text.
-/// "um" and "µm" are the same.
-std::optional<double> metres_per(std::string_view unit);
-std::optional<double> seconds_per(std::string_view unit);
 
 }  // namespace glidelab::core

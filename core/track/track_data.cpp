@@ -17,10 +17,11 @@
 #include "base/text/csv.h"
 #include "core/experiment/file_names.h"
 #include "core/experiment/local_gravity.h"
+#include "core/math/even_times.h"
 #include "core/math/signed_drop.h"
 #include "core/math/time_gap.h"
+#include "core/math/unseen_positions.h"
 #include "core/track/column_table.h"
-#include "core/track/even_times.h"
 #include "core/track/table_columns.h"
 #include "core/track/workbook.h"
 
@@ -46,7 +47,24 @@ void put_even(TrackData& track) {
 
 }  // namespace
 
+void leave_out_unseen(TrackData& track) {
+  if (track.x_m.empty()) return;  // speeds
+  const std::optional<UnseenPositions> unseen = unseen_positions(track.t_s, track.x_m);
+  if (!unseen) return;
+  track.notes.emplace_back(PositionsUnseen{unseen->count, unseen->value, unseen->from_s});
+  for (std::vector<double>* values : {&track.t_s, &track.x_m, &track.force_n}) {
+    if (!values->empty()) *values = seen_of(*values, *unseen);
+  }
+  if (track.frame.empty()) return;
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < track.frame.size(); ++i) {
+    if (!unseen->is_unseen[i]) frames.push_back(track.frame[i]);
+  }
+  track.frame = std::move(frames);
+}
+
 void take_rows_as_frames(TrackData& track) {
+  leave_out_unseen(track);
   put_even(track);
   track.frame.resize(track.t_s.size());
   std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});
@@ -212,6 +230,14 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
     throw base::InputError(base::Issue{table.file, 0, fmt::format("column \"{}\"", t.text),
                                        fmt::format("{} cells with dates or times of day", table.dates),
                                        dates_expectation()});
+  }
+  std::vector<base::Issue> texts = x.texts;
+  for (const TableColumn* const one : {&t, &y}) {
+    if (one != &x) texts.insert(texts.end(), one->texts.begin(), one->texts.end());
+  }
+  if (!texts.empty()) {
+    if (texts.size() > kMostRowIssues) texts.resize(kMostRowIssues);
+    throw base::InputError(std::move(texts));
   }
   if (!rises_mostly(t)) {
     throw base::InputError(

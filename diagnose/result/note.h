@@ -138,6 +138,12 @@ struct SuspectedFall {
   core::MayBeAFall found;
 };
 
+/// What a reader must know of how a clip was read (core::is_of_reading()).
+struct OfReading {
+  std::string clip;
+  core::Note note;
+};
+
 // Tables of lines.
 
 /// Lines whose mean intercept is larger than gravity.
@@ -156,11 +162,11 @@ struct TableOfLines {
   std::size_t lines = 0;
 };
 
-using AnyNote =
-    std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside, PiecesHeldOut,
-                 QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps, OppositeLaunch,
-                 NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity, MeanIncline, TableOfLines,
-                 OnlyFalls, FallsThroughAir, BuoyancyLooksAlike, FitsCutOff, NoMassStated, OneOrigin, SuspectedFall>;
+using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside,
+                             PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
+                             SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
+                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike,
+                             FitsCutOff, NoMassStated, OneOrigin, SuspectedFall, OfReading>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

@@ -400,6 +400,9 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
       any = true;
     }
     if (!any) set.notes.emplace_back(NoFreeMotion{clip.name, kFewestPoints});
+    for (const core::Note& note : clip.notes) {
+      if (core::is_of_reading(note)) set.notes.emplace_back(OfReading{clip.name, note});
+    }
   }
   if (set.motions.empty()) return set;
   measure_noise(set.motions);

@@ -214,6 +214,12 @@ std::string analysis_text(const core::AnalysisResults& results) {
       notes += fmt::format("{}: {}\n", printable(configuration_name(results, c)), printable(note_words(note)));
     }
   }
+  for (const core::ClipResult& clip : results.clips) {
+    for (const core::Note& note : clip.notes) {
+      if (core::is_of_reading(note))
+        notes += fmt::format("{}: {}\n", printable(clip.name), printable(note_words(note)));
+    }
+  }
   if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));
   if (!notes.empty()) text.append("\n").append(notes);
   for (const std::string& doubt : doubts)

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/text/number_text.h"
+#include "core/check/finding.h"
 #include "core/result/quantity.h"
+#include "report/analysis/note_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
@@ -19,6 +23,34 @@ constexpr double kAboveGravity = 1.05, kAboveSds = 3.0;  // a twentieth: lengths
 bool begins_above_gravity(const core::LineFit& line, double gravity_m_s2) {
   if (line.direction < 0 || !(gravity_m_s2 > 0.0)) return false;
   return line.a0_m_s2.value - kAboveSds * line.a0_m_s2.sd > kAboveGravity * gravity_m_s2;
+}
+
+constexpr double kLongestRun_m = 20.0, kUsualRun_m = 1.0;  // as in core/check: no track is that long
+
+/// Of the clips of the configuration whose positions come from a file.
+double longest_range_m(const core::AnalysisResults& results, const core::ConfigurationResult& configuration) {
+  double longest = 0.0;
+  for (const core::ClipResult& clip : results.clips) {
+    if (!clip.sightings.empty() || !std::ranges::count(configuration.clips, clip.name)) continue;
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (const core::MotionPoint& point : clip.motion) {
+      if (!point.measured_m) continue;
+      least = std::min(least, *point.measured_m);
+      most = std::max(most, *point.measured_m);
+    }
+    longest = std::max(longest, most - least);
+  }
+  return longest;
+}
+
+/// Whichever of centimetres and millimetres makes it closest to the usual distance.
+core::LengthUnit likely_unit(double range_m) {
+  const auto off = [&](core::LengthUnit unit) {
+    return std::abs(std::log(range_m / core::per_metre(unit) / kUsualRun_m));
+  };
+  using core::LengthUnit;
+  return off(LengthUnit::centimetres) < off(LengthUnit::millimetres) ? LengthUnit::centimetres
+                                                                     : LengthUnit::millimetres;
 }
 
 }  // namespace
@@ -44,10 +76,29 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
     doubt(core::Measurand::mu, "no friction can cause");
     for (const core::LineFit& line : c.lines) {
       if (!begins_above_gravity(line, results.gravity_m_s2)) continue;
-      doubts.push_back(
-          fmt::format("{}: the line's intercept at v = 0 is {} m/s², more than gravity: K/m is too large. Either the "
-                      "drag grows faster than proportionally to the speed, or the motion is not free at its start.",
-                      configuration_name(results, c), base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd)));
+      const std::string begins =
+          fmt::format("{}: the line's intercept at v = 0 is {} m/s², more than gravity", configuration_name(results, c),
+                      base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd));
+      const double range_m = longest_range_m(results, c);
+      if (range_m > kLongestRun_m) {
+        const core::LengthUnit unit = likely_unit(range_m);
+        doubts.push_back(fmt::format(
+            "{}, and x covers {:.4g}, which looks like {} ({:.3g} m). Give x in metres: divide the column by {:.0f}, "
+            "or "
+            "name its unit in the header.",
+            begins, range_m, core::name_of(unit).many, range_m / core::per_metre(unit), core::per_metre(unit)));
+      } else if (line.k_over_m_1_s.value > kLeastDoubtSds * line.k_over_m_1_s.sd) {
+        doubts.push_back(begins +
+                         ": K/m is too large. Either the drag grows faster than proportionally to the speed, "
+                         "or the motion is not free at its start.");
+      } else {
+        doubts.push_back(begins +
+                         ", and no drag explains that: check the units of x and of the times, and that the "
+                         "motion is free.");
+      }
+    }
+    if (const std::optional<core::SlowFall> fall = core::slow_fall(c, results.gravity_m_s2)) {
+      doubts.push_back(fmt::format("{}: {}.", configuration_name(results, c), slow_fall_words(*fall)));
     }
   }
   const core::ClipResult* farthest = nullptr;

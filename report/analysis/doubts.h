@@ -10,9 +10,9 @@
 
 namespace glidelab::report {
 
-/// Results that the assumed law cannot explain (drag or friction below zero, a line that begins above gravity, points
-/// far from their line, positions far from the fitted motion), and what to do next. One sentence each, plain text; none
-/// if the law fits.
+/// Results that the assumed law cannot explain (drag or friction below zero, a line that begins above gravity or, in
+/// a fall, far below it, points far from their line, positions far from the fitted motion), and what to do next. One
+/// sentence each, plain text; none if the law fits.
 std::vector<std::string> doubts_about(const core::AnalysisResults& results);
 
 inline constexpr double kLeastDoubtSds = 2.0;  ///< standard deviations: happens by chance in one of forty

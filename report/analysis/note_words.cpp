@@ -82,8 +82,9 @@ struct AnalysisSentence {
   std::string operator()(const core::SlantedPath& of) const {
     return fmt::format(
         "the path makes an angle of {0:.1f}° with the {1} axis; positions are taken along the path, from x and y, and "
-        "distances are {2:.3g} times those along {1}",
-        of.off_deg, of.along_y ? "y" : "x", of.stretch);
+        "distances are {2:.3g} times those along {1}. If the axes are level, this is the inclination (--incline "
+        "{3:.1f})",
+        of.off_deg, of.along_y ? "y" : "x", of.stretch, of.along_y ? 90.0 - of.off_deg : of.off_deg);
   }
   std::string operator()(const core::CountedAlongMotion&) const {
     return "x is counted along the motion, so its sign is reversed";
@@ -91,6 +92,26 @@ struct AnalysisSentence {
   std::string operator()(const core::RowsIncomplete& of) const {
     if (of.rows == 1) return "one row within the table lacks a time or x and is left out";
     return fmt::format("{} rows within the table lack a time or x and are left out", of.rows);
+  }
+  std::string operator()(const core::PositionsUnseen& of) const {
+    return fmt::format(
+        "{} positions that are all {:.6g} m, from {:.6g} s on, are left out: no motion leads there, and a sensor or a "
+        "tracker writes one value while it sees nothing",
+        of.positions, of.value_m + 0.0, of.from_s);  // no "-0"
+  }
+  std::string operator()(const core::ColumnsGuessed& of) const {
+    return fmt::format(
+        "the table has no header: \"{}\" is taken as the time{} and \"{}\" as x. Name the columns t and x in a first "
+        "line, or state which one is x (--column)",
+        of.t, of.either ? ", which the other could be as well," : ", because it alone increases throughout,", of.x);
+  }
+  std::string operator()(const core::PathBends& of) const {
+    return fmt::format(
+        "the path in x and y is not straight: it leaves its line by {:.2g} m, and its direction changes by {:.1f}°. "
+        "On "
+        "a bent track gravity along the motion changes, which looks like a drag or a friction that depends on the "
+        "place",
+        of.off_m, of.slope_deg);
   }
   std::string operator()(const core::RoundedTimes& of) const {
     return fmt::format("the times are whole multiples of {:.2g} s and taken as even, {:.4g} s apart", of.tick_s,
@@ -346,6 +367,20 @@ std::string contradiction_words(const core::InclineContradiction& of) {
   }
   const char* bound = of.bound == 0 ? "" : of.bound < 0 ? "at most " : "at least ";
   return fmt::format("the acceleration gives an inclination of {}{}, but {}", bound, with_sd(of.deg, of.sd_deg), says);
+}
+
+std::string slow_fall_words(const core::SlowFall& fall) {
+  const core::Estimate& a0 = fall.a0_m_s2;
+  const double ratio = fall.gravity_m_s2 / a0.value;
+  const bool known = a0.value > 3.0 * a0.sd;  // otherwise it is hardly above zero, and no factor follows
+  const auto times = [&](double factor) {
+    return known ? fmt::format(" ({} times)", base::number_text(factor, 2)) : std::string();
+  };
+  return fmt::format(
+      "the line of this fall begins with {} m/s² at v = 0, far below gravity. The times may be those of a slow-motion "
+      "playback{}, x may be in a larger unit than stated{}, the body may have reached its final speed before it was "
+      "seen, a hand may have held it, or a liquid may carry most of its weight",
+      base::value_and_sd_text(a0.value, a0.sd), times(std::sqrt(ratio)), times(ratio));
 }
 
 std::string lens_words(const core::LensTerms& lens) {

@@ -299,12 +299,8 @@ struct FindingSentence {
     return {fmt::format("its positions are {:.3g} s apart", of.apart_s),
             "check the unit of the times: they may be milliseconds, or frame numbers"};
   }
-  FindingWords operator()(const core::LostPositions& of) const {
-    return {fmt::format(
-                "from {:.6g} s on, {} positions are all {:.6g} m, {:.3g} m from the one before: the object was lost "
-                "there",
-                of.from_s, of.count, of.x_m + 0.0, of.off_m),  // no "-0"
-            "delete these rows from the file, or state end_s"};
+  FindingWords operator()(const found::FallsSlowly& of) const {
+    return {slow_fall_words(of.fall), "see which of these it is: what is called drag here is none otherwise"};
   }
   FindingWords operator()(const found::Gaps& of) const {
     return {fmt::format("{} of its time lies in gaps of up to {:.3g} s between positions", percent_text(of.share),
@@ -350,7 +346,7 @@ FindingWords finding_words(const core::Found& found) {
 std::string WordedFinding::headline() const {
   const std::size_t many = follow.size();
   if (many == 0) return found;
-  return fmt::format("{}: {} finding{} follow{}", found, many, many == 1 ? "" : "s", many == 1 ? "s" : "");
+  return fmt::format("{} (this explains {} other finding{})", found, many, many == 1 ? "" : "s");
 }
 
 std::vector<WordedFinding> worded(const std::vector<core::Finding>& findings) {

@@ -146,6 +146,9 @@ struct Sentence {
         "falls, state an inclination of 90° (--incline 90): nothing else here holds then.",
         of.found.positions, of.found.a_m_s2);
   }
+  std::string operator()(const diagnose::OfReading& of) const {
+    return fmt::format("{}: {}.", of.clip, note_words(of.note));
+  }
   std::string operator()(const diagnose::OneOrigin&) const {
     return "Positions of all folders are taken to count from one origin. If they do not, friction, cables and bumpers "
            "at a place cannot be found: diagnose the folders one by one.";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -205,6 +206,40 @@ TEST_CASE("analyze takes a file that another program exported, its column of x b
   const tests::ProcessResult folder = tests::glidelab({"analyze", (temp / "made").string(), "--column", "2"});
   CHECK(folder.status == 1);
   CHECK(folder.err.find("--column") != std::string::npos);
+}
+
+TEST_CASE(
+    "what a sensor wrote while it saw nothing is told by analyze, check and diagnose, and files have masses each") {
+  const tests::TempDir temp;
+  std::vector<std::string> files;
+  for (const double speed_m_s : {0.8, 0.9}) {
+    std::string text = "t (s),x (m)\n";
+    for (int i = 0; i < 120; ++i) {
+      const double t = 0.02 * i, noise = 2e-4 * std::sin(1.7 * i * i);
+      const double x = i >= 100 ? 0.0 : 0.5 + speed_m_s * (1.0 - std::exp(-0.5 * t)) / 0.5 + noise;
+      text += fmt::format("{:.3f},{:.6f}\n", t, x);
+    }
+    files.push_back((temp / fmt::format("{}.csv", speed_m_s)).string());
+    std::ofstream(files.back()) << text;
+  }
+  for (const char* command : {"analyze", "check", "diagnose"}) {
+    const tests::ProcessResult one =
+        tests::glidelab({command, files[0], "--incline", "0", "--mass", "0.3", "--out", (temp / command).string()});
+    INFO(command << one.err << one.out);
+    CHECK(one.status == 0);
+    std::string words = one.out;  // lines are wrapped
+    std::replace(words.begin(), words.end(), '\n', ' ');
+    CHECK(words.find("20 positions that are all 0 m, from 2 s on, are left out") != std::string::npos);
+  }
+  const tests::ProcessResult masses = tests::glidelab(
+      {"analyze", files[0], files[1], "--masses", "0.3,0.4", "--json", "--out", (temp / "masses").string()});
+  INFO(masses.err);
+  REQUIRE(masses.status == 0);
+  CHECK(json::parse(masses.out).at("configurations").size() == 2);
+  const tests::ProcessResult one_mass =
+      tests::glidelab({"diagnose", files[0], files[1], "--masses", "0.3", "--out", (temp / "masses").string()});
+  CHECK(one_mass.status == 1);
+  CHECK(one_mass.err.find("one for each of the 2 files") != std::string::npos);
 }
 
 TEST_CASE("analyze without --json prints a table, and the same files for any number of jobs") {

@@ -172,20 +172,6 @@ TEST_CASE("gravity in feet is told as feet") {
                 LengthUnit::feet, true));
 }
 
-TEST_CASE("positions that stand at one value far from the others are those of a lost object") {
-  Positions made = positions(run);
-  for (std::size_t i = 150; i < made.x_m.size(); ++i) made.x_m[i] = 0.0;
-  const auto found = findings(made);
-  const auto* const lost = tests::found_in<core::LostPositions>(found);
-  REQUIRE(lost != nullptr);
-  CHECK(lost->from_s == 1.5);
-  CHECK(lost->count == 50);
-  CHECK(lost->x_m == 0.0);
-  // A glider that comes to rest stands still as well, and where it was.
-  const auto rest = findings(positions([](double t) { return t < 1.0 ? run(t) : run(1.0); }, 0.0));
-  CHECK(tests::found_in<core::LostPositions>(rest) == nullptr);
-}
-
 TEST_CASE("gaps that hold much of the time are told") {
   Positions made = positions(run), clusters;
   for (std::size_t i = 0; i < made.t_s.size(); ++i) {

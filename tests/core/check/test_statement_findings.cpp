@@ -175,3 +175,27 @@ TEST_CASE("a marker of another size than stated is one finding for all clips, an
   smeared.blur_px = 12.0;  // its outline is the smear's
   CHECK(of_sizes({smeared})[0].severity == core::Severity::change);
 }
+
+TEST_CASE("a fall in slow motion is found by the acceleration with which it begins") {
+  // From rest with viscous drag, K/m = 2/s: x = v_t (t - (1 - exp(-2 t))/2), v_t = g/2. Times four times too long.
+  const tests::TempDir dir;
+  for (const double slower : {1.0, 4.0}) {
+    std::string csv = "t_s,x_m\n";
+    for (int i = 0; i < 100; ++i) {
+      const double t = 0.01 * i;
+      const double noise = 5e-5 * std::sin(3.7 * i * i);
+      csv += fmt::format("{:.6f},{:.7f}\n", slower * t,
+                         0.5 * tests::kGravity * (t - 0.5 * (1.0 - std::exp(-2.0 * t))) + noise);
+    }
+    core::Experiment experiment;
+    core::ClipSetup setup = tests::clip_setup(Launched::unknown, 90.0);
+    setup.track = dir / fmt::format("{}.csv", slower);
+    base::write_file(setup.track, csv);
+    experiment.clips = {setup};
+    const std::vector<core::Finding> findings = core::check_recording(experiment, 1).findings;
+    const auto* const slow = tests::found_in<core::found::FallsSlowly>(findings);
+    CAPTURE(slower);
+    REQUIRE((slow != nullptr) == (slower > 1.0));
+    if (slow != nullptr) CHECK(slow->fall.a0_m_s2.value == Approx(tests::kGravity / 16.0).epsilon(0.05));
+  }
+}

@@ -77,6 +77,22 @@ TEST_CASE("the point masses of a Tracker project become clips with a mass each")
   CHECK_THROWS_WITH(core::read_tracks(file, options), Contains("1: cup, 2: two cups"));
 }
 
+TEST_CASE("several files have a mass each, without runs") {
+  const TwoRuns one, other;
+  core::TrackFileOptions stated;
+  stated.column = "2";
+  stated.masses_kg = {0.0088, 0.0079};
+  const core::TrackFileOptions options = core::masses_of_files(stated, {one.file, other.file});
+  CHECK(core::read_tracks(one.file, options).clips.front().mass_kg == 0.0088);
+  CHECK(core::read_tracks(other.file, options).clips.front().mass_kg == 0.0079);
+  CHECK_FALSE(core::read_tracks(one.file, options).clips.front().mass_assumed);
+  CHECK_THROWS_WITH(core::masses_of_files(stated, {one.file}),
+                    Contains("--masses") && Contains("2 of them") && Contains("each of the 1 file,"));
+  CHECK_THROWS_WITH(core::masses_of_files(stated, {one.file, one.file}), Contains("two masses of one file"));
+  stated.runs = "all";  // then they are those of the runs
+  CHECK(core::masses_of_files(stated, {one.file}).masses_kg.size() == 2);
+}
+
 TEST_CASE("runs that the file does not have, and masses that do not fit, are refused with what there is") {
   const TwoRuns made;
   core::TrackFileOptions options;

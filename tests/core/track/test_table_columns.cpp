@@ -1,12 +1,22 @@
 #include "core/track/table_columns.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/files/file_io.h"
+#include "core/track/track_data.h"
 #include "tests/catch.h"
+#include "tests/core/notes.h"
+#include "tests/temp_dir.h"
 
 using namespace glidelab;
+using Catch::Matchers::Contains;
 
 namespace {
 
@@ -74,4 +84,112 @@ TEST_CASE("other words, bare prefixes and symbols in the wrong case are no units
     CHECK_FALSE(core::metres_per(word));
     CHECK_FALSE(core::seconds_per(word));
   }
+}
+
+namespace {
+
+core::TrackData read_text(const std::string& text, const std::string& column = {}) {
+  const tests::TempDir temp;
+  base::write_file(temp / "table.csv", text);
+  return core::read_track_csv(temp / "table.csv", 1, column);
+}
+
+/// Forty rows of two numbers.
+std::string pairs(const std::function<std::pair<double, double>(double)>& at) {
+  std::string text;
+  for (int i = 0; i < 40; ++i) {
+    const auto [one, other] = at(0.05 * i);
+    text += fmt::format("{:.6f},{:.6f}\n", one, other);
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("of two columns without a header the one that alone increases is the time") {
+  // x falls from 1 m, or goes up and down; t in the second column.
+  for (const auto& x : std::vector<std::function<double(double)>>{[](double t) { return 1.0 - 0.3 * t; },
+                                                                  [](double t) { return 0.8 * t - 0.4 * t * t; }}) {
+    const core::TrackData swapped = read_text(pairs([&](double t) { return std::pair(x(t), t); }));
+    CHECK(swapped.t_s[7] == Approx(0.35));
+    CHECK(swapped.x_m[7] == Approx(x(0.35)).margin(1e-6));
+    const auto* const note = tests::note_of<core::ColumnsGuessed>(swapped.notes);
+    REQUIRE(note != nullptr);
+    CHECK(note->t == "column 2");
+    CHECK_FALSE(note->either);
+    const core::TrackData plain = read_text(pairs([&](double t) { return std::pair(t, x(t)); }));
+    CHECK(plain.x_m[7] == Approx(x(0.35)).margin(1e-6));
+    CHECK(tests::note_of<core::ColumnsGuessed>(plain.notes) == nullptr);
+  }
+}
+
+TEST_CASE("of two columns without a header that both increase the first is the time, and a note says so") {
+  const std::string text = pairs([](double t) { return std::pair(t, 0.2 + 0.7 * t); });
+  const core::TrackData track = read_text(text);
+  CHECK(track.x_m[10] == Approx(0.55));
+  const auto* const note = tests::note_of<core::ColumnsGuessed>(track.notes);
+  REQUIRE(note != nullptr);
+  CHECK(note->t == "column 1");
+  CHECK(note->either);
+  // Whoever names x has named the time as well.
+  const core::TrackData first = read_text(text, "1");
+  CHECK(first.x_m[10] == Approx(0.5));
+  CHECK(first.t_s[10] == Approx(0.55));
+  CHECK(tests::note_of<core::ColumnsGuessed>(first.notes) == nullptr);
+  CHECK(read_text(text, "2").x_m[10] == Approx(0.55));
+}
+
+TEST_CASE("a first column without a name that counts the rows is no time where the second is") {
+  std::string counted, seconds;
+  for (int i = 0; i < 20; ++i) {
+    const double t = 0.05 * i;
+    counted += fmt::format("{}\t{:.3f}\t{:.5f}\tok\n", i + 1, t, 0.5 * t + 0.1 * t * t);
+    seconds += fmt::format("{}\t{:.5f}\t{:.5f}\n", i, 0.01 * i * i, 0.004 * i * i);  // t, x and y
+  }
+  const core::TrackData track = read_text(counted);
+  CHECK(track.t_s[8] == Approx(0.4));
+  CHECK(track.x_m[8] == Approx(0.216));
+  CHECK(read_text(seconds).t_s[8] == 8.0);
+  CHECK(read_text(counted, "2").t_s[8] == 9.0);  // as whoever names the times themselves gets it
+}
+
+namespace {
+
+/// A table of x and y, in metres, of a body that runs 1.4 m along x and strays by `y`.
+std::string plane(const std::function<double(double)>& y) {
+  std::string text = "t,x,y\n";
+  for (int i = 0; i < 60; ++i) {
+    const double x = 1.4 * i / 59.0, noise = 4e-4 * std::sin(2.4 * i * i);
+    text += fmt::format("{:.3f},{:.6f},{:.6f}\n", 0.02 * i, x, y(x) + noise);
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a wavy path is refused like an arc, a smaller bend is told, and a straight path is neither") {
+  const auto wave = [](double height_m) {
+    return [height_m](double x) { return height_m * std::sin(2.0 * std::numbers::pi * x / 0.9); };
+  };
+  CHECK_THROWS_WITH(read_text(plane(wave(0.065))), Contains("a curved path") && Contains("strays over"));
+  const core::TrackData bent = read_text(plane(wave(0.012)));
+  const auto* const note = tests::note_of<core::PathBends>(bent.notes);
+  REQUIRE(note != nullptr);
+  CHECK(note->off_m == Approx(0.024).epsilon(0.15));  // the line through one wave and a half leans towards it
+  CHECK(note->slope_deg > 5.0);  // the wave's slopes are ±0.084, 9.6 degrees in all; parts of 0.18 m average them
+  CHECK(tests::note_of<core::PathBends>(read_text(plane([](double) { return 0.3; })).notes) == nullptr);
+  CHECK(tests::note_of<core::PathBends>(read_text(plane([](double x) { return 0.5 * x; })).notes) == nullptr);
+}
+
+TEST_CASE("rows that say that nothing was seen are no part of a path") {
+  std::string text = "t,x,y\n";
+  for (int i = 0; i < 60; ++i) {
+    const double along = i < 50 ? 0.5 + 0.02 * i : 0.0;
+    text += fmt::format("{:.3f},{:.6f},{:.6f}\n", 0.02 * i, along, i < 50 ? 2.0 - 0.5 * along : 0.0);
+  }
+  const core::TrackData track = read_text(text);
+  CHECK(track.x_m.size() == 50);
+  const auto* const path = tests::note_of<core::SlantedPath>(track.notes);
+  REQUIRE(path != nullptr);
+  CHECK(path->off_deg == Approx(std::atan(0.5) * 57.29577951308232).epsilon(1e-6));
 }

@@ -128,3 +128,43 @@ TEST_CASE("speeds and forces are reversed with their track") {
   core::count_downwards({&speeds});
   CHECK(speeds.v_m_s.back() == Approx(1.9));
 }
+
+TEST_CASE("what a sensor writes while it sees nothing is left out, before the sign of a fall is judged") {
+  // A bead that sinks at 75 mm/s, which a sensor sees from 0.5 s to 3 s; else it writes 0. 60 mm at first.
+  const tests::TempDir temp;
+  std::string text = "t (s),y (mm)\n", own = "t_s,x_m\n";
+  for (int i = 0; i < 80; ++i) {
+    const double t = 0.05 * i, y = i < 10 || i > 60 ? 0.0 : 60.0 + 75.0 * (t - 0.5);
+    text += std::to_string(t) + "," + std::to_string(y) + "\n";
+    own += std::to_string(t) + "," + std::to_string(1e-3 * y) + "\n";
+  }
+  base::write_file(temp / "bead.csv", text);
+  base::write_file(temp / "own.csv", own);
+  const TrackData bead = core::read_track_csv(temp / "bead.csv", std::nullopt);
+  for (const TrackData& track : {bead, core::read_track_csv(temp / "own.csv", 1)}) {
+    REQUIRE(track.x_m.size() == 51);
+    CHECK(track.frame_t_s.size() == 51);
+    CHECK(track.t_s.front() == Approx(0.5));
+    CHECK(track.x_m.back() - track.x_m.front() == Approx(0.075 * 2.5));  // downwards
+    const auto* const note = tests::note_of<core::PositionsUnseen>(track.notes);
+    REQUIRE(note != nullptr);
+    CHECK(note->positions == 29);
+    CHECK(note->value_m == 0.0);
+    CHECK(note->from_s == 0.0);
+  }
+  CHECK(tests::note_of<core::CountedAlongMotion>(bead.notes) == nullptr);
+}
+
+TEST_CASE("a recorded force keeps its places when unseen positions are left out") {
+  std::vector<double> t_s, x_m, force_n;
+  for (int i = 0; i < 30; ++i) {
+    t_s.push_back(0.1 * i);
+    x_m.push_back(i >= 12 && i < 17 ? -5.0 : 0.05 * i);
+    force_n.push_back(i);
+  }
+  const TrackData track = core::track_of_numbers(t_s, x_m, force_n, "clip");
+  REQUIRE(track.x_m.size() == 25);
+  CHECK(track.force_n[11] == 11.0);
+  CHECK(track.force_n[12] == 17.0);
+  CHECK(track.t_s[12] == Approx(1.7));
+}

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/even_times.h"
 #include "core/motion/smoothing/noise.h"
-#include "core/track/even_times.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"

@@ -85,6 +85,37 @@ TEST_CASE("a downhill line that begins above gravity is doubted: no slope and no
   CHECK(quiet(19.6, 0.5, -1));   // uphill friction adds to the slope
 }
 
+TEST_CASE("a line above gravity with x in centimetres is said to be that, and one without a drag is no drag's") {
+  core::AnalysisResults results = one_clip();
+  results.gravity_m_s2 = 9.80665;
+  core::LineFit line;
+  line.direction = 1;
+  line.a0_m_s2 = core::estimate(50.1, 3.6, 10.0);
+  line.k_over_m_1_s = core::estimate(-0.004, 0.050, 10.0);
+  results.configurations[0].lines = {line};
+  CHECK(any_has(report::doubts_about(results), "no drag explains that: check the units"));
+  CHECK_FALSE(any_has(report::doubts_about(results), "K/m is too large"));
+  results.configurations[0].clips = {results.clips[0].name};
+  results.clips[0].sightings.clear();
+  results.clips[0].motion.resize(2);
+  results.clips[0].motion[0].measured_m = 1.0;
+  results.clips[0].motion[1].measured_m = 168.8;
+  CHECK(any_has(report::doubts_about(results), "x covers 167.8, which looks like centimetres (1.68 m)"));
+}
+
+TEST_CASE("a fall whose line begins far below gravity is doubted, with the factors that would explain it") {
+  core::AnalysisResults results = one_clip();
+  results.gravity_m_s2 = 9.8;
+  core::LineFit line;
+  line.direction = 1;
+  line.a0_m_s2 = core::estimate(0.6125, 0.010, 10.0);  // g/16: times that are four times too long
+  results.configurations[0].lines = {line};
+  CHECK(report::doubts_about(results).empty());  // on a slope of 4.3 degrees
+  results.configurations[0].incline_deg = 90.0;
+  CHECK(any_has(report::doubts_about(results), "slow-motion playback (4 times)"));
+  CHECK(any_has(report::doubts_about(results), "in a larger unit than stated (16 times)"));
+}
+
 TEST_CASE("points far off their line are told with the clip and the next step, on the page and in the terminal") {
   core::AnalysisResults results = one_clip();
   results.clips[0].segments[1].parts.degrees = 7.0;

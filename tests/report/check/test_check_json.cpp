@@ -35,7 +35,7 @@ TEST_CASE("findings that are notes are in words, those that read the same are on
                     note("late", core::MarkerOfOtherSize{1.40})};
   const auto findings = nlohmann::json::parse(report::check_json(check)).at("findings");
   REQUIRE(findings.size() == 3);
-  CHECK(findings[0]["found"] == "square_m = 40 looks like millimetres (0.04 m): 2 findings follow");
+  CHECK(findings[0]["found"] == "square_m = 40 looks like millimetres (0.04 m) (this explains 2 other findings)");
   CHECK(findings[0]["follow"] ==
         nlohmann::json({"up: the acceleration gives an inclination of 0.42 ± 0.13°, but incline_deg says 4.30 ± 0.30°",
                         "down: the glider runs 900 m, but length_m in [track] is 1.5 m"}));

@@ -44,6 +44,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::TableOfLines{12}, "The table of 12 lines"},
       {diagnose::OnlyFalls{}, "not determined"},
       {diagnose::SuspectedFall{{26, 5.61}}, "at 5.6 m/s²"},
+      {diagnose::OfReading{"bead", core::PositionsUnseen{11, 0.0, 0.048}}, "bead: 11 positions that are all 0 m"},
       {diagnose::OneOrigin{}, "one origin"},
       {diagnose::NoMassStated{}, "each kilogram of the true mass"},
       {diagnose::FallsThroughAir{}, "without any drag"},

@@ -1,4 +1,4 @@
-#include "core/track/even_times.h"
+#include "core/math/even_times.h"
 
 #include <cmath>
 #include <random>

@@ -1,0 +1,275 @@
+#include "core/track/column_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "core/experiment/file_names.h"
+
+namespace glidelab::core {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const std::string_view blanks = " \t,:";
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+bool speaks_of_a_run(std::string_view field) {
+  static constexpr std::array<std::string_view, 7> kWords{"run", "set", "latest", "trial", "versuch", "lauf", "serie"};
+  const std::string text = lower(field);
+  return std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) { return text.starts_with(word); });
+}
+
+/// "[s]" in a line of units is "s".
+std::string_view without_brackets(std::string_view field) {
+  const bool bracketed = field.size() > 2 && (field.front() == '[' || field.front() == '(') &&
+                         (field.back() == ']' || field.back() == ')');
+  return bracketed ? trimmed(field.substr(1, field.size() - 2)) : field;
+}
+
+bool looks_like_a_unit(std::string_view field) {
+  if (without_brackets(field).size() < field.size()) return true;
+  if (metres_per(field) || seconds_per(field)) return true;
+  // m/s, m/s^2, m/s², N, 1, °: short and without the name of a quantity.
+  const auto slash = field.find('/');
+  if (slash != std::string_view::npos) return metres_per(field.substr(0, slash)).has_value() || field.size() <= 6;
+  return field == "N" || field == "kg" || field == "V" || field == "rad" || field == "deg" || field == "Hz";
+}
+
+template <typename Predicate>
+bool all_that_is_there(const std::vector<std::string>& fields, Predicate predicate) {
+  bool any = false;
+  for (const std::string& field : fields) {
+    if (field.empty()) continue;
+    if (!predicate(field)) return false;
+    any = true;
+  }
+  return any;
+}
+
+/// "cal[0]" and "x (2)" are names with an index, not a quantity in units of 0.
+bool is_index(std::string_view bracketed) {
+  return bracketed.find_first_of("0123456789") != std::string_view::npos &&
+         bracketed.find_first_not_of("0123456789 ") == std::string_view::npos;
+}
+
+/// "Run 1: Time (s)", "Time (s) Run #1", "Position, Run #2 (m)", "x_cm".
+TableColumn column_of(const std::string& text) {
+  TableColumn column;
+  column.text = text;
+  std::string_view rest = text;
+  const auto open = rest.find_last_of("([");
+  const auto close = open == std::string_view::npos ? open : rest.find_first_of(")]", open);
+  std::string name(rest);
+  if (close != std::string_view::npos && !is_index(rest.substr(open + 1, close - open - 1))) {
+    column.unit = std::string(trimmed(rest.substr(open + 1, close - open - 1)));
+    column.run = std::string(trimmed(rest.substr(close + 1)));
+    name = std::string(trimmed(rest.substr(0, open)));
+  }
+  if (const auto colon = name.find(':'); colon != std::string::npos) {
+    column.run = std::string(trimmed(std::string_view(name).substr(0, colon)));
+    name = std::string(trimmed(std::string_view(name).substr(colon + 1)));
+  }
+  const std::string small = lower(name);
+  // The channel distinguishes several sensors: "Position, Ch 1 (m)".
+  if (const auto channel = small.find(", ch "); channel != std::string::npos && channel > 0) {
+    std::string_view rest_of = std::string_view(name).substr(channel + 2);
+    const auto run = lower(rest_of).find(", run");
+    column.run = std::string(trimmed(run == std::string::npos ? rest_of : rest_of.substr(run)));
+    name = std::string(trimmed(std::string_view(name).substr(0, channel)));
+    column.name = name;
+    return column;
+  }
+  for (const char* const mark : {", run", " run #", " run "}) {
+    const auto at = small.find(mark);
+    if (at == std::string::npos || at == 0) continue;
+    column.run = std::string(trimmed(std::string_view(name).substr(at)));
+    name = std::string(trimmed(std::string_view(name).substr(0, at)));
+    break;
+  }
+  const auto underscore = name.rfind('_');
+  if (column.unit.empty() && underscore != std::string::npos && underscore > 0) {
+    const std::string_view tail = std::string_view(name).substr(underscore + 1);
+    if (metres_per(tail) || seconds_per(tail)) {
+      column.unit = std::string(tail);
+      name.resize(underscore);
+    }
+  }
+  // "x / cm", "t in s", "x, cm".
+  for (const std::string_view between : {"/", " in ", ","}) {
+    const auto at = name.rfind(between);
+    if (!column.unit.empty() || at == std::string::npos || at == 0) continue;
+    const std::string_view tail = trimmed(std::string_view(name).substr(at + between.size()));
+    if (!metres_per(tail) && !seconds_per(tail)) continue;
+    column.unit = std::string(tail);
+    name = std::string(trimmed(std::string_view(name).substr(0, at)));
+  }
+  column.name = name;
+  return column;
+}
+
+}  // namespace
+
+bool is_time_name(std::string_view name) {
+  static constexpr std::array<std::string_view, 13> kNames{"t",       "time",  "zeit",     "temps", "tiempo",
+                                                           "tempo",   "tijd",  "czas",     "tid",   "elapsed time",
+                                                           "seconds", "times", "timestamp"};
+  return std::find(kNames.begin(), kNames.end(), lower(name)) != kNames.end();
+}
+
+bool is_time_column(const TableColumn& column) {
+  return column.unit.empty() ? is_time_name(column.name) : seconds_per(column.unit).has_value();
+}
+
+bool is_place_column(const TableColumn& column) {
+  static const std::vector<std::string> kPlaces{
+      "x", "position", "pos", "distance", "displacement", "position x", "x-position", "position (x)",
+      // German, Spanish, French, Italian, Portuguese
+      "weg", "ort", "abstand", "strecke", "entfernung", "posici\xC3\xB3n", "posici\xC3\x93n", "posicion", "distancia",
+      "desplazamiento", "d\xC3\xA9placement", "distance x", "x position", "pos x", "x pos", "pos_x", "x_pos",
+      "posizione", "spostamento", "distanza", "posi\xC3\xA7\xC3\xA3o", "dist\xC3\xA2ncia", "deslocamento",
+      // Norwegian, Danish, Swedish, Dutch
+      "posisjon", "strekning", "avstand", "afstand", "str\xC3\xA6kning",
+      "str\xC3\xA4"
+      "cka",
+      "avst\xC3\xA5nd", "positie"};
+  return !is_time_column(column) && std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
+}
+
+bool is_height_column(const TableColumn& column) {
+  static const std::vector<std::string> kHeights{
+      "y",           "position y",        "y-position", "y position", "position (y)", "height",       "h",
+      "h\xC3\xB6he", "hauteur",           "altura",     "altezza",    "h\xC3\xB8yde", "h\xC3\xB8jde", "h\xC3\xB6jd",
+      "hoogte",      "vertical position", "z"};
+  return !is_time_column(column) && std::find(kHeights.begin(), kHeights.end(), lower(column.name)) != kHeights.end();
+}
+
+namespace {
+
+/// A line of names of bodies or runs above the column names, each spanning several columns: Tracker writes the mass
+/// above its t, x and y and pads the line.
+bool names_several_columns(const std::vector<std::string>& line, const std::vector<std::string>& below) {
+  const auto filled = [](const std::vector<std::string>& fields) {
+    return std::count_if(fields.begin(), fields.end(), [](const std::string& field) { return !field.empty(); });
+  };
+  const bool has_time = std::any_of(below.begin(), below.end(),
+                                    [](const std::string& field) { return is_time_name(column_of(field).name); });
+  return filled(line) > 0 && filled(line) < filled(below) && has_time &&
+         !std::any_of(line.begin(), line.end(),
+                      [](const std::string& field) { return is_time_name(column_of(field).name); });
+}
+
+}  // namespace
+
+std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width) {
+  auto header = lines;
+  std::vector<std::string> runs, units;
+  if (header.size() > 1 &&
+      (all_that_is_there(header.front(), speaks_of_a_run) || names_several_columns(header.front(), header[1]))) {
+    runs = header.front();
+    header.erase(header.begin());
+  }
+  if (header.size() > 1 && all_that_is_there(header.back(), looks_like_a_unit)) {
+    units = header.back();
+    header.pop_back();
+  }
+  // A title with as many words as columns.
+  const auto names_time = [](const std::vector<std::string>& line) {
+    return std::any_of(line.begin(), line.end(),
+                       [](const std::string& field) { return is_time_column(column_of(field)); });
+  };
+  const auto names = std::find_if(header.begin(), header.end(), names_time);
+  if (names != header.end()) header.erase(header.begin(), names);
+  std::vector<TableColumn> columns;
+  std::string run;
+  for (std::size_t c = 0; c < width; ++c) {
+    const bool named = !header.empty() && c < header.front().size() && !header.front()[c].empty();
+    columns.push_back(column_of(named ? header.front()[c] : fmt::format("column {}", c + 1)));
+    if (c < runs.size() && !runs[c].empty()) run = runs[c];  // one word above several columns
+    if (columns.back().run.empty()) columns.back().run = run;
+    if (c < units.size() && columns.back().unit.empty()) columns.back().unit = without_brackets(units[c]);
+  }
+  return columns;
+}
+
+bool holds_units(const std::vector<std::string>& line) {
+  return all_that_is_there(line, looks_like_a_unit);
+}
+
+namespace {
+
+using Unit = std::pair<std::string_view, double>;
+constexpr std::array<Unit, 10> kLengths{{{"m", 1.0},
+                                         {"cm", 1e-2},
+                                         {"mm", 1e-3},
+                                         {"um", 1e-6},
+                                         {"\xC2\xB5m", 1e-6},
+                                         {"\xCE\xBCm", 1e-6},
+                                         {"dm", 0.1},
+                                         {"km", 1e3},
+                                         {"in", 0.0254},
+                                         {"ft", 0.3048}}};
+constexpr std::array<Unit, 7> kTimes{
+    {{"s", 1.0}, {"sec", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"\xC2\xB5s", 1e-6}, {"\xCE\xBCs", 1e-6}, {"min", 60.0}}};
+
+// English, German, French, Spanish and Portuguese, Italian; in lower case.
+using Words = std::span<const std::string_view>;
+constexpr std::array<std::string_view, 9> kMetre{"meter",         "meters", "metre",  "metres", "m\xC3\xA8tre",
+                                                 "m\xC3\xA8tres", "metro",  "metros", "metri"};
+constexpr std::array<std::string_view, 10> kSecond{"second",   "seconds", "sekunde",  "sekunden", "seconde",
+                                                   "secondes", "segundo", "segundos", "secondo",  "secondi"};
+constexpr std::array<std::string_view, 6> kMinute{"minute", "minutes", "minuten", "minuto", "minutos", "minuti"};
+constexpr std::array<Unit, 22> kPrefixes{
+    {{"deci", 0.1},          {"dezi", 0.1},          {"d\xC3\xA9\x63i", 0.1}, {"dec\xC3\xAD", 0.1},
+     {"centi", 1e-2},        {"zenti", 1e-2},        {"cent\xC3\xAD", 1e-2},  {"milli", 1e-3},
+     {"mili", 1e-3},         {"mil\xC3\xAD", 1e-3},  {"micro", 1e-6},         {"mikro", 1e-6},
+     {"micr\xC3\xB3", 1e-6}, {"micr\xC3\xB4", 1e-6}, {"kilo", 1e3},           {"kil\xC3\xB3", 1e3},
+     {"quil\xC3\xB4", 1e3},  {"quil\xC3\xB3", 1e3},  {"quilo", 1e3},          {"chilo", 1e3},
+     {"milis", 1e-3},  // Portuguese: milissegundos
+     {"micros", 1e-6}}};
+constexpr std::array<Unit, 5> kOtherLengths{
+    {{"inch", 0.0254}, {"inches", 0.0254}, {"zoll", 0.0254}, {"foot", 0.3048}, {"feet", 0.3048}}};
+template <std::size_t N>
+std::optional<double> factor(const std::array<Unit, N>& units, std::string_view unit) {
+  const auto found = std::find_if(units.begin(), units.end(), [&](const Unit& of) { return of.first == unit; });
+  if (found == units.end()) return {};
+  return found->second;
+}
+
+/// "metres" and "Zentimeter" by the words for a metre, "Millisekunden" by those for a second.
+std::optional<double> word_factor(Words words, std::string_view word) {
+  const auto is_whole = [&](std::string_view text) {
+    return std::find(words.begin(), words.end(), text) != words.end();
+  };
+  if (is_whole(word)) return 1.0;
+  for (const auto& [prefix, of_whole] : kPrefixes) {
+    if (word.starts_with(prefix) && is_whole(word.substr(prefix.size()))) return of_whole;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<double> metres_per(std::string_view unit) {
+  const std::optional<double> symbol = factor(kLengths, unit);
+  if (symbol) return symbol;
+  const std::string word = lower(unit);
+  const std::optional<double> metric = word_factor(kMetre, word);
+  return metric ? metric : factor(kOtherLengths, word);
+}
+
+std::optional<double> seconds_per(std::string_view unit) {
+  const std::optional<double> symbol = factor(kTimes, unit);
+  if (symbol) return symbol;
+  const std::string word = lower(unit);
+  if (std::find(kMinute.begin(), kMinute.end(), word) != kMinute.end()) return 60.0;
+  return word_factor(kSecond, word);
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,54 @@
+/// The columns of a table that another program exported, by its header lines: names, units and runs, in English,
+/// German, French, Spanish, Portuguese, Italian and, for names, the languages of the North.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+#include "base/errors.h"
+
+namespace glidelab::core {
+
+struct TableColumn {
+  std::string text;                           ///< the header as written; "column 2" if there is none
+  std::string name;                           ///< without unit and run
+  std::string unit;                           ///< empty if none is stated
+  std::string run;                            ///< empty if none is stated
+  std::vector<std::optional<double>> values;  ///< one for each data line; empty if the field is empty, NaN or text
+  std::vector<base::Issue> texts = {};        ///< fields between the numbers that hold text, the first ten
+};
+
+/// Units of length and time as tables state them: symbols, and words in English, German, French, Spanish, Portuguese
+/// and Italian.
+///
+/// Metres for a unit of length ("mm", "Zentimeter", "inches"), seconds for a unit of time; empty for any other text.
+/// "um" and "µm" are the same.
+std::optional<double> metres_per(std::string_view unit);
+std::optional<double> seconds_per(std::string_view unit);
+
+/// "t", "time", "Zeit", …
+bool is_time_name(std::string_view name);
+
+/// Whether it is a column of times, by its unit or, if it states none, by its name.
+bool is_time_column(const TableColumn& column);
+
+/// Whether the column is named x, position, distance or displacement (or the equivalent in German, French, Italian,
+/// Portuguese, Spanish) and is not a column of times.
+bool is_place_column(const TableColumn& column);
+
+/// Whether the column is named y, height (or the equivalent in other languages): the second coordinate of a body in a
+/// plane, or the only one of a fall.
+bool is_height_column(const TableColumn& column);
+
+/// The header lines of an exported table, split into name, unit and run of each of its `width` columns, which have no
+/// values yet. The lines, first to last: runs (if all fields mention a run, a set or "latest", or if there are fewer
+/// fields than names below, one of which is a time: "mass A" above t, x, y), names, short names (ignored), units. All
+/// but the names may be missing.
+std::vector<TableColumn> columns_of_header(const std::vector<std::vector<std::string>>& lines, std::size_t width);
+
+/// Whether all that is there of a header line are units: "[s]", "m", "m/s".
+bool holds_units(const std::vector<std::string>& line);
+
+}  // namespace glidelab::core
