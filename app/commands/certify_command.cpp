@@ -53,8 +53,10 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   how.before_filming = [&](const validate::FilmingSize& size) {
     display.clear();
     say(options.common,
-        fmt::format("{} twins will be filmed; judging by the first, they take about {} of processor time", size.twins,
-                    duration_text(size.processor_time_s)));
+        fmt::format(
+            "{} twins will be filmed, and {} more with one thing better; judging by the first, all take about {} "
+            "of processor time",
+            size.twins, size.of_changes, duration_text(size.processor_time_s)));
   };
   const validate::Certificate certificate = validate::certify(folders, how, display.callback());
   const std::string json = report::certificate_json(certificate);

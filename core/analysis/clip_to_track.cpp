@@ -40,6 +40,30 @@ std::vector<PlanePoint> restituted(const SeenClip& seen, const Restitution& rest
   return points;
 }
 
+/// Frames without the marker, if there are more than a few: neither before it enters nor after it leaves the image, nor
+/// where another note says why.
+std::optional<MarkerLost> frames_lost(const SeenClip& seen) {
+  constexpr std::size_t kFew = 3;
+  constexpr double kEdgeRadii = 3.0;  // closer to the edge of the image it comes from outside, or leaves
+  const std::vector<MarkerSighting>& sightings = seen.marker.sightings;
+  if (sightings.empty()) return std::nullopt;
+  const auto at_edge = [&](const MarkerSighting& at) {
+    return std::min({at.u_px, at.v_px, seen.size.width - 1.0 - at.u_px, seen.size.height - 1.0 - at.v_px}) <
+           kEdgeRadii * at.radius_px;
+  };
+  const MarkerSighting &first = sightings.front(), &last = sightings.back();
+  MarkerLost lost;
+  lost.frames = seen.frame_t_s.size();
+  if (!at_edge(first)) lost.before = first.frame;
+  if (!at_edge(last)) lost.after = lost.frames - 1 - last.frame;
+  lost.between = last.frame - first.frame + 1 - sightings.size();
+  for (const Note& note : seen.marker.notes) {
+    if (const auto* const hidden = std::get_if<MarkerConcealed>(&note))
+      lost.between -= std::min(lost.between, hidden->frames);
+  }
+  return lost.before + lost.between + lost.after > kFew ? std::optional(lost) : std::nullopt;
+}
+
 TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points, const MotionAxis& axis,
                      const CameraSettings& camera, const Restitution& restitution) {
   TrackData track;
@@ -47,6 +71,7 @@ TrackData track_from(const SeenClip& seen, const std::vector<PlanePoint>& points
   track.frame_t_s = seen.frame_t_s;
   track.notes = seen.notes;
   track.notes.insert(track.notes.end(), seen.marker.notes.begin(), seen.marker.notes.end());
+  if (const auto lost = frames_lost(seen)) track.notes.emplace_back(*lost);
   if (seen.dark_marker) track.notes.emplace_back(DarkMarker{});
   if (restitution.is_disc()) track.notes.emplace_back(DiscMarker{});
   track.images = seen.images;

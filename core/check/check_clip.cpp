@@ -13,10 +13,9 @@
 
 namespace glidelab::core {
 
-std::optional<MarkerSmear> marker_smear(const std::vector<MarkerSighting>& sightings,
-                                        const std::vector<MarkerFit>& fits, double frame_rate_hz) {
+std::optional<SmearSlope> smear_slope(const std::vector<MarkerSighting>& sightings, const std::vector<MarkerFit>& fits,
+                                      double frame_rate_hz) {
   constexpr std::size_t kFewest = 20;
-  constexpr double kClear = 5.0;  // standard deviations
   if (fits.size() != sightings.size()) return std::nullopt;
   std::vector<double> speed2, excess;  // px²/s², px²
   double step_u = 0.0, step_v = 0.0;   // of the fastest step: the glider runs along one line
@@ -48,9 +47,19 @@ std::optional<MarkerSmear> marker_smear(const std::vector<MarkerSighting>& sight
   if (!(xx > 0.0)) return std::nullopt;
   const double slope = xy / xx;
   const double sd = std::sqrt(std::max(0.0, yy - slope * xy) / (n - 2.0) / xx);
-  if (!(slope > 0.0) || slope < kClear * sd) return std::nullopt;
-  const double exposure_s = std::sqrt(12.0 * slope);
-  return MarkerSmear{exposure_s, 6.0 * sd / exposure_s};  // dT = 12 dslope / (2 T)
+  return SmearSlope{slope, sd};
+}
+
+std::optional<MarkerSmear> marker_smear(const std::optional<SmearSlope>& lengthening) {
+  constexpr double kClear = 5.0;  // standard deviations
+  if (!lengthening || !(lengthening->s2 > 0.0) || lengthening->s2 < kClear * lengthening->sd_s2) return std::nullopt;
+  const double exposure_s = std::sqrt(12.0 * lengthening->s2);
+  return MarkerSmear{exposure_s, 6.0 * lengthening->sd_s2 / exposure_s};  // dT = 12 dslope / (2 T)
+}
+
+std::optional<MarkerSmear> marker_smear(const std::vector<MarkerSighting>& sightings,
+                                        const std::vector<MarkerFit>& fits, double frame_rate_hz) {
+  return marker_smear(smear_slope(sightings, fits, frame_rate_hz));
 }
 
 namespace {
@@ -111,16 +120,32 @@ std::size_t stalls_of(const std::vector<MarkerSighting>& sightings, double noise
 }
 
 /// Closer to the edge of the image than a diameter and a half plus the smear: the marker may have come from outside.
-bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip) {
-  const double margin_px = kEdgeRadii * sighting.radius_px + clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
+bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip, double smear_px) {
+  const double margin_px = kEdgeRadii * sighting.radius_px + smear_px;
   return std::min({sighting.u_px, sighting.v_px, clip.width_px - 1.0 - sighting.u_px,
                    clip.height_px - 1.0 - sighting.v_px}) < margin_px;
 }
 
-/// The exposure from the lengthening of the marker with speed, if it exceeds what the stated exposure explains.
-void measure_smear(const CameraSettings& camera, const ClipAttempt& attempt, ClipCheck& clip) {
-  const auto smear = marker_smear(attempt.track.sightings, attempt.fits, camera.frame_rate_hz);
-  if (!smear) return;
+/// The lengthening of the marker with speed, without the frames in which the edge of the image cuts it.
+std::optional<SmearSlope> lengthening_of(const CameraSettings& camera, const ClipAttempt& attempt,
+                                         const ClipCheck& clip) {
+  const std::vector<MarkerSighting>& all = attempt.track.sightings;
+  if (attempt.fits.size() != all.size()) return std::nullopt;
+  std::vector<MarkerSighting> sightings;
+  std::vector<MarkerFit> fits;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (at_edge(all[i], clip, 0.0)) continue;
+    sightings.push_back(all[i]);
+    fits.push_back(attempt.fits[i]);
+  }
+  return smear_slope(sightings, fits, camera.frame_rate_hz);
+}
+
+/// The exposure from the lengthening of the marker, if it exceeds what the stated exposure explains. Nothing is exposed
+/// for longer than a frame.
+void measure_smear(const CameraSettings& camera, ClipCheck& clip) {
+  const auto smear = marker_smear(clip.lengthening);
+  if (!smear || smear->exposure_s > 1.0 / camera.frame_rate_hz) return;
   const double blur_px = clip.top_speed_px_s * smear->exposure_s;
   const bool longer = !camera.exposure_s || smear->exposure_s > kLeastOverExposure * *camera.exposure_s;
   if (!longer || blur_px <= kLeastOverDiameter * clip.marker_px) return;
@@ -184,9 +209,11 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
   clip.marker_expected_px = experiment.marker->diameter_m * px_per_m;
   const CameraSettings& camera = *experiment.camera;
   if (camera.exposure_s) clip.blur_px = clip.top_speed_px_s * *camera.exposure_s;
-  measure_smear(camera, attempt, clip);
-  clip.entered = at_edge(track.sightings.front(), clip);
-  clip.left = at_edge(track.sightings.back(), clip);
+  clip.lengthening = lengthening_of(camera, attempt, clip);
+  measure_smear(camera, clip);
+  const double smear_px = clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
+  clip.entered = at_edge(track.sightings.front(), clip, smear_px);
+  clip.left = at_edge(track.sightings.back(), clip, smear_px);
   clip.longest_blur_px = clip.top_speed_px_s / camera.frame_rate_hz;
   clip.stalls = stalls_of(track.sightings, std::max(clip.centre_sd_px, clip.position_noise_m.value_or(0.0) * px_per_m));
   const std::size_t every = track.sightings.size() / kPathPlaces + 1;
@@ -244,6 +271,23 @@ ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const
     check_images(experiment, attempt, watches.of(setup.file), speeds.px_per_m, clip);
   }
   return clip;
+}
+
+void drop_contradicted_exposures(std::vector<ClipCheck>& clips) {
+  constexpr double kHalfExposure = 0.25;  // of the slope; the disc of the moments cuts no more off a long smear
+  constexpr double kSure = 3.0;           // standard deviations
+  for (ClipCheck& clip : clips) {
+    if (!clip.measured_exposure_s) continue;
+    const SmearSlope own = *clip.lengthening;
+    const bool contradicted = std::any_of(clips.begin(), clips.end(), [&](const ClipCheck& other) {
+      if (!other.lengthening) return false;
+      const double sd_s2 = std::hypot(other.lengthening->sd_s2, kHalfExposure * own.sd_s2);
+      return other.lengthening->s2 + kSure * sd_s2 < kHalfExposure * own.s2;
+    });
+    if (!contradicted) continue;
+    clip.measured_exposure_s.reset();
+    clip.measured_blur_px.reset();
+  }
 }
 
 }  // namespace glidelab::core

@@ -28,6 +28,10 @@ struct MarkerSmear {
 std::optional<MarkerSmear> marker_smear(const std::vector<MarkerSighting>& sightings,
                                         const std::vector<MarkerFit>& fits, double frame_rate_hz);
 
+/// The slope alone, whatever its sign. Nothing with fewer than 20 such sightings.
+std::optional<SmearSlope> smear_slope(const std::vector<MarkerSighting>& sightings, const std::vector<MarkerFit>& fits,
+                                      double frame_rate_hz);
+
 /// One track with the fits behind it, or why there is none.
 struct ClipAttempt {
   TrackData track;
@@ -38,5 +42,9 @@ struct ClipAttempt {
 /// `watches` have seen the clip's images if it has any and they could be tracked.
 ClipCheck check_clip(const Experiment& experiment, const ClipSetup& setup, const ClipAttempt& attempt,
                      const ClipWatches& watches);
+
+/// The clips of one camera have one exposure: takes back a measured one that is more than twice what another clip
+/// shows, by three standard deviations.
+void drop_contradicted_exposures(std::vector<ClipCheck>& clips);
 
 }  // namespace glidelab::core

@@ -234,6 +234,7 @@ RecordingCheck check_recording(const Experiment& experiment, int jobs, const bas
   for (std::size_t i = 0; i < attempts.size(); ++i) {
     check.clips[i] = check_clip(experiment, experiment.clips[i], attempts[i], watches);
   }
+  drop_contradicted_exposures(check.clips);
   for (ClipCheck& clip : check.clips) {
     if (check.pattern) clip.inside_pattern = share_inside(*check.pattern, clip.path).value_or(clip.inside_pattern);
   }

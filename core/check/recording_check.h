@@ -59,6 +59,12 @@ struct MarkerLighting {
   double pull_change_px = 0.0;
 };
 
+/// The slope of the marker's lengthening (the difference of its second moments along and across its path) over the
+/// square of its speed, in s^2: a twelfth of the square of the exposure.
+struct SmearSlope {
+  double s2 = 0.0, sd_s2 = 0.0;
+};
+
 struct ClipCheck {
   std::string name;
   std::string failure;      ///< why nothing more is known; else empty
@@ -92,10 +98,11 @@ struct ClipCheck {
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, with the stated exposure
   /// From the lengthening of the marker with its speed (check_clip.h), with the corresponding smear at the top speed.
-  /// Only if the exposure is above twice the stated one (less may be the camera's tone curve) or none is stated, and
-  /// the smear is above half the marker's diameter (less may be perspective: in one clip speed and position go
-  /// together).
+  /// Only if the exposure is above twice the stated one (less may be the camera's tone curve) or none is stated, is
+  /// below the time between frames, is not contradicted by another clip, and the smear is above half the marker's
+  /// diameter (less may be perspective: in one clip speed and position go together).
   std::optional<double> measured_exposure_s, measured_blur_px;
+  std::optional<SmearSlope> lengthening;
   double longest_blur_px = 0.0;  ///< with an exposure as long as the frame time
   std::optional<double> position_noise_m;
   MotionLook motion;

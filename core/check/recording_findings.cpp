@@ -61,7 +61,6 @@ constexpr double kLeastPathInside = 0.95;    // of the marker's path
 constexpr double kSmallMarkerPx = 6.0, kUnusableMarkerPx = 3.0;
 constexpr double kLeastContrast = 0.15, kLeastSignalToNoise = 20.0, kUnusableSignalToNoise = 5.0;
 constexpr double kMostPullChange_px = 0.15;  // ten times the part due to a centroid's noise
-constexpr double kLargePull = 0.05;          // of the marker's diameter
 constexpr double kLeastContrastAlong = 0.5;  // of the largest along the path
 constexpr double kSaturatedLevel = 0.985, kLeastBrightLevel = 0.25, kMostSaturatedShare = 0.05;
 constexpr double kMostBlur = 0.5, kUnusableBlur = 2.0;                        // marker diameters
@@ -95,7 +94,9 @@ void judge_light(const ClipCheck& clip, FindingBook& book) {
     book.add(Severity::change, found::MarkerSaturated{});
   }
   if (clip.saturated > kMostSaturatedShare) book.add(Severity::change, found::PixelsSaturated{clip.saturated});
-  if (clip.bright_level < kLeastBrightLevel) book.add(Severity::change, found::Dark{clip.bright_level});
+  // A small marker covers less of the image than the quantile leaves out.
+  const double brightest = std::max(clip.bright_level, clip.marker_level.value_or(0.0));
+  if (brightest < kLeastBrightLevel) book.add(Severity::change, found::Dark{brightest});
   if (clip.contrast && *clip.contrast < kLeastContrast) {
     book.add(Severity::change, found::LittleContrast{*clip.contrast});
   }
@@ -111,7 +112,7 @@ void judge_lighting(const ClipCheck& clip, FindingBook& book) {
   found::LitFromOneSide side{clip.light->pull_px, clip.light->pull_change_px, {}, false};
   if (clip.top_speed_m_s > 0.0 && clip.top_speed_px_s > 0.0) side.px_per_m = clip.top_speed_px_s / clip.top_speed_m_s;
   side.changes = side.change_px > kMostPullChange_px;
-  if (side.changes || side.pull_px > kLargePull * clip.marker_px) {
+  if (side.changes || is_lit_from_one_side(clip)) {
     book.add(side.changes ? Severity::change : Severity::note, side);
   }
   if (clip.light->least_contrast < kLeastContrastAlong) {
@@ -182,7 +183,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
   }
   for (const Note& note : clip.notes) {
     const bool reported =
-        std::holds_alternative<RepeatedFrames>(note) ||
+        std::holds_alternative<RepeatedFrames>(note) || std::holds_alternative<MarkerLost>(note) ||
         (std::holds_alternative<MarkerOfOtherSize>(note) && size_disagrees(clip));  // above, with advice
     if (!reported) book.add(Severity::note, note);
   }

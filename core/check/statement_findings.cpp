@@ -18,7 +18,9 @@ constexpr double kMostSizeDifference = 0.15;      // of the logarithm
 constexpr double kUnusableSizeDifference = 0.26;  // 30 %
 constexpr double kMostSmearForSize = 0.5;  // marker diameters of smear, above which an outline is no measure of size
 constexpr double kLeastShareAgainstLaunch = 0.25;  // share of the points that move freely
-constexpr double kMostDistanceOverLength = 1.05;   // of length_m
+constexpr double kLargePull = 0.05;    // of the diameter: a centroid of its light so far off its outline's centre
+constexpr double kLeastLitPart = 0.5;  // of the diameter: half a ball, lit from the side
+constexpr double kMostDistanceOverLength = 1.05;  // of length_m
 
 double size_off(const ClipCheck& clip) {
   return clip.marker_expected_px > 0.0 && clip.marker_px > 0.0
@@ -180,8 +182,16 @@ void judge_launch(const Experiment& experiment, const std::vector<ClipCheck>& cl
 
 }  // namespace
 
+bool is_lit_from_one_side(const ClipCheck& clip) {
+  return clip.light && clip.light->pull_px > kLargePull * clip.marker_px;
+}
+
 bool size_disagrees(const ClipCheck& clip) {
-  return size_off(clip) > kMostSizeDifference;
+  if (size_off(clip) <= kMostSizeDifference) return false;
+  // What is seen of it is the lit part.
+  const bool lit_part = is_lit_from_one_side(clip) && clip.marker_px < clip.marker_expected_px &&
+                        clip.marker_px > kLeastLitPart * clip.marker_expected_px;
+  return !lit_part;
 }
 
 double likely_blur_px(const ClipCheck& clip) {

@@ -230,10 +230,16 @@ struct MarkerFittedAgain {
   std::size_t seen = 0, seen_before = 0;
 };
 
-/// Sightings that are not corrected for a mosaic or a tone curve: the windows around them take too much memory, or
-/// their fit with the pixel response does not converge.
+/// Sightings that cannot be corrected for a mosaic or a tone curve, so that none of the clip is: the windows around
+/// them take too much memory, or their fit with the pixel response does not converge.
 struct PixelsAnswerLeft {
   std::size_t kept = 0, sightings = 0;
+};
+
+/// Frames without the marker, where it is not at the edge of the image.
+struct MarkerLost {
+  std::size_t before = 0, between = 0, after = 0;  ///< the first sighting, sightings, the last one
+  std::size_t frames = 0;                          ///< of the clip
 };
 
 struct DarkMarker {};
@@ -368,8 +374,8 @@ using AnyNote = std::variant<
     PositionsUnseen, ColumnsGuessed, PathBends, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant,
     PositionsOutsideClip, PositionsFilledIn, AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight,
     UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
-    MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, DarkMarker, DiscMarker,
-    NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut,
+    MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, MarkerLost, DarkMarker,
+    DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut,
     CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine,
     AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline, GravityAssumed, RobustFit, FitScatters>;
 

@@ -60,7 +60,8 @@ std::optional<AnyReason> why_no_limit_velocity(const Estimate& k_over_m_1_s, unk
 
 namespace {
 
-constexpr double kLeastOff_deg = 0.5, kLeastOffSds = 3.0;
+constexpr double kLeastOff_deg = 0.5;  // of a reading without an uncertainty: how well a track is levelled
+constexpr double kLeastOffSds = 3.0;
 constexpr double kLeastGross_deg = 1.0, kLeastGrossShare = 0.25, kLeastGrossSds = 5.0;
 
 /// What the motion tells about the inclination: a value, or a bound if the motion is in one direction only.
@@ -108,7 +109,7 @@ std::optional<InclineContradiction> incline_contradiction(const ConfigurationRes
   if ((incline->bound < 0 && above_deg < 0.0) || (incline->bound > 0 && above_deg > 0.0)) return std::nullopt;
   const double off_deg = std::abs(above_deg);
   const double sd_deg = std::hypot(incline->sd_deg, stated.sd_deg.value_or(0.0));
-  if (off_deg < std::max(kLeastOff_deg, kLeastOffSds * sd_deg)) return std::nullopt;
+  if (off_deg < std::max(stated.sd_deg ? 0.0 : kLeastOff_deg, kLeastOffSds * sd_deg)) return std::nullopt;
   const bool gross =
       off_deg > std::max({kLeastGross_deg, kLeastGrossShare * std::abs(stated.deg), kLeastGrossSds * sd_deg});
   return InclineContradiction{stated, incline->deg, incline->sd_deg, incline->bound, {}, gravity_m_s2, off_deg, gross};
@@ -134,7 +135,7 @@ void note_statements(std::vector<ConfigurationResult>& results, double gravity_m
     }
     if (result.incline_assumed) continue;
     const auto contradiction = incline_contradiction(result, gravity_m_s2, stated_incline(result));
-    if (contradiction && contradiction->gross) result.notes.emplace_back(*contradiction);
+    if (contradiction && (contradiction->gross || result.incline_sd_deg)) result.notes.emplace_back(*contradiction);
   }
 }
 

@@ -66,8 +66,9 @@ std::optional<InclineContradiction> incline_contradiction(const ConfigurationRes
 /// As stated by incline_deg and incline_sd_deg of its clips.
 StatedIncline stated_incline(const ConfigurationResult& configuration);
 
-/// Adds notes about masses that look like grams, and about stated inclinations that the motion contradicts grossly, in
-/// place of those that it added before. A configuration whose inclination is not stated cannot be contradicted.
+/// Adds notes about masses that look like grams, and about stated inclinations that the motion contradicts (grossly,
+/// where no uncertainty is stated), in place of those that it added before. A configuration whose inclination is not
+/// stated cannot be contradicted.
 void note_statements(std::vector<ConfigurationResult>& results, double gravity_m_s2);
 
 }  // namespace glidelab::core

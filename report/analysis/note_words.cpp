@@ -235,9 +235,18 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::PixelsAnswerLeft& of) const {
     return fmt::format(
-        "in {} of {} frames the marker's position is not corrected for the response of the camera's pixels to an edge: "
+        "the marker's positions are not corrected for the response of the camera's pixels to an edge: in {} of {} "
+        "frames "
         "the clip is too long for so large a marker, or the fit with that response fails",
         of.kept, of.sightings);
+  }
+  std::string operator()(const core::MarkerLost& of) const {
+    std::vector<std::string> where;
+    if (of.before > 0) where.push_back(fmt::format("the first {}", of.before));
+    if (of.between > 0) where.push_back(fmt::format("{} between its sightings", of.between));
+    if (of.after > 0) where.push_back(fmt::format("the last {}", of.after));
+    return fmt::format("in {} of {} frames the marker is not found, though it is not at the edge of the image: {}",
+                       of.before + of.between + of.after, of.frames, fmt::join(where, ", "));
   }
   std::string operator()(const core::DarkMarker&) const {
     return "the marker is darker than its surroundings; set color = \"#101010\" in [marker] to look for a dark one";
@@ -325,7 +334,11 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::InclineContradiction& of) const {
     return contradiction_words(of) +
-           ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)";
+           (of.gross || !of.stated.sd_deg
+                ? ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)"
+                : ": an angle or its uncertainty, a length, the frame rate or gravity_m_s2 is wrong; a wrong length "
+                  "also "
+                  "makes the terminal velocity wrong, a wrong rate K/m too (glidelab check says more)");
   }
   std::string operator()(const core::MuFromIncline& of) const {
     return fmt::format("motion in one direction: µ rests on the stated inclination, {}", with_sd(of.deg, of.sd_deg));

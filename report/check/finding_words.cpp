@@ -230,9 +230,12 @@ struct FindingSentence {
             fmt::format("measure the track again, and check {}", lengths_text(of.lengths))};
   }
   FindingWords operator()(const found::InclineOff& of) const {
-    return {contradiction_words(of.contradiction),
-            fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}", of.contradiction.stated.by,
-                        lengths_text(of.lengths), of.filmed ? ", frame_rate_hz (its square enters)" : "")};
+    return {
+        contradiction_words(of.contradiction),
+        fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}; a wrong length also makes the "
+                    "terminal velocity wrong{}",
+                    of.contradiction.stated.by, lengths_text(of.lengths),
+                    of.filmed ? ", frame_rate_hz (its square enters)" : "", of.filmed ? ", a wrong rate K/m too" : "")};
   }
   FindingWords operator()(const found::AgainstStatedLaunch& of) const {
     const bool many = of.against > 1;

@@ -225,6 +225,8 @@ MarkerFit marker_of(const MarkerPixels& window, const MarkerGuess& guess, Marker
   marker.light_px = moments.first;
   marker.blur_px = std::exp(p[kLogBlur]);
   marker.rms = found.rms;
+  if constexpr (N == kShadedParameters)
+    marker.shade = cv::Vec3d(p[kShadeU], p[kShadeV], p[kShadeR]) * (1.0 / marker.amplitude);
   marker.bic = total_weight * std::log(std::max(found.rms * found.rms * (total_weight - N) / total_weight, 1e-12)) +
                N * std::log(total_weight);
   return marker;

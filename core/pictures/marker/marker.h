@@ -57,6 +57,7 @@ struct MarkerFit {
   double slope_u = 0.0, slope_v = 0.0;  ///< g, in units of the signal per px
   double blur_px = 0.0;                 ///< sigma
   double rms = 0.0;                     ///< root mean square of the residuals, in units of the signal
+  cv::Vec3d shade;                      ///< a and q over the amplitude; 0 for a uniform surface
   double bic = 0.0;                     ///< Bayesian information criterion, to compare surfaces on the same window
 };
 

@@ -164,15 +164,22 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
 namespace {
 
 constexpr double kLeastBicGainPerFrame = 10.0;  // average per frame: "very strong" on the usual scale
+constexpr double kLeastOverScatter = 2.0;       // of a shading from frame to frame, times its scatter
 constexpr double kSmallestShadedPx = 3.0;       // below, shading cannot be told from a shift
-constexpr double kMostDiscResidual = 0.1;       // relative to the amplitude; an object that is no disc leaves more
-constexpr double kLeastJitterRatio = 1.2;       // a centroid must be steadier by this factor to be preferred to a disc
+constexpr double kSameStart = 0.05;             // radii from the first start: the fit would fail again
+// A ball that is lit from the side: half a radius from its centre to the centroid of its lit part. The disc that fits
+// that part lies between the two and is smaller than the ball.
+constexpr double kLitPartOff = 0.3, kLitRadius = 0.85;  // radii: from the centroid to that disc's centre; its radius
+constexpr double kMostLitElongation = 1.5, kMostLitSizeOff = 0.3;  // of that disc; of the logarithm of its radius
+constexpr double kMostLitResidual = 0.15;                          // relative to the amplitude: a ball is no such disc
+constexpr double kMostDiscResidual = 0.1;  // relative to the amplitude; an object that is no disc leaves more
+constexpr double kLeastJitterRatio = 1.2;  // a centroid must be steadier by this factor to be preferred to a disc
 
 /// Starts each fit from what all windows share: the sharpness of the image and the size of the marker.
-void share_guesses(std::vector<MarkerSample>& samples, SignalKind kind) {
+void share_guesses(std::vector<MarkerSample>& samples, MarkerMethod method, SignalKind kind) {
   std::vector<double> blurs, sizes;
   for (const MarkerSample& sample : samples) {
-    const auto fit = measure_marker(sample.window, sample.guess, MarkerMethod::uniform, kind);
+    const auto fit = measure_marker(sample.window, sample.guess, method, kind);
     if (!fit) continue;
     blurs.push_back(fit->blur_px);
     sizes.push_back(fit->radius_px / sample.guess.radius_px);
@@ -239,6 +246,26 @@ Remeasured remeasure(const std::vector<MarkerSample>& samples, SignalKind kind) 
   return again;
 }
 
+/// Whether the shading is that of a lit surface: the same in direction and size from frame to frame, and larger than
+/// what the fits leave unexplained. Smear, a codec and a rounded edge also gain from a shaded surface, each frame in
+/// its own way.
+bool is_lit(const std::map<std::size_t, MarkerFit>& shaded) {
+  cv::Vec3d sum;
+  double squares = 0.0;
+  std::vector<double> residuals;
+  for (const auto& [frame, fit] : shaded) {
+    sum += fit.shade;
+    squares += fit.shade.dot(fit.shade);
+    residuals.push_back(fit.rms / fit.amplitude);
+  }
+  const auto n = static_cast<double>(shaded.size());
+  const cv::Vec3d mean = sum * (1.0 / n);
+  const double size = cv::norm(mean), scatter = std::sqrt(std::max(0.0, squares / n - size * size));
+  fprintf(stderr, "SHADE n %g mean %.4f %.4f %.4f size %.4f scatter %.4f res %.4f\n", n, mean[0], mean[1], mean[2],
+          size, scatter, median_of(residuals));
+  return size > kLeastOverScatter * scatter && size > median_of(std::move(residuals));
+}
+
 MarkerMethod best_of(const Remeasured& again, std::size_t samples, SignalKind kind) {
   const auto most = [&](MarkerMethod method) { return are_most(again.fits.at(method).size(), samples); };
   const auto jitter = [&](MarkerMethod method) {
@@ -247,8 +274,9 @@ MarkerMethod best_of(const Remeasured& again, std::size_t samples, SignalKind ki
     return jitter_of(places);
   };
   MarkerMethod chosen = MarkerMethod::uniform;
-  if (most(MarkerMethod::shaded) && again.both > 0 &&
-      again.bic_gain > kLeastBicGainPerFrame * static_cast<double>(again.both))
+  const bool gains = again.both > 0 && again.bic_gain > kLeastBicGainPerFrame * static_cast<double>(again.both);
+  if (most(MarkerMethod::shaded) &&
+      (!most(MarkerMethod::uniform) || (gains && is_lit(again.fits.at(MarkerMethod::shaded)))))
     chosen = MarkerMethod::shaded;
   if (may_have_any_shape(kind) && most(MarkerMethod::centroid)) {
     std::vector<double> residuals{0.0};
@@ -278,8 +306,39 @@ std::optional<MarkerFit> measure_marker(const Signal& signal, const MarkerGuess&
   return fit;
 }
 
+std::optional<Measured> measure_near(const Signal& signal, const MarkerGuess& guess, MarkerMethod method,
+                                     SignalKind kind) {
+  if (const auto fit = measure_marker(signal, guess, method, kind)) return Measured{guess, *fit};
+  if (method == MarkerMethod::centroid) return std::nullopt;
+  const std::optional<MarkerFit> spot = centroid_of_marker(signal, guess);
+  if (!spot || cv::norm(spot->centre - guess.centre) < kSameStart * guess.radius_px) return std::nullopt;
+  MarkerGuess nearer = guess;
+  nearer.centre = spot->centre;
+  const auto fit = measure_marker(signal, nearer, method, kind);
+  return fit ? std::optional(Measured{nearer, *fit}) : std::nullopt;
+}
+
+std::optional<Measured> measure_lit(const Signal& signal, const MarkerGuess& guess, SignalKind kind) {
+  if (may_have_any_shape(kind) || guess.radius_px < kSmallestShadedPx) return std::nullopt;
+  const std::optional<MarkerFit> spot = centroid_of_marker(signal, guess);
+  if (!spot) return std::nullopt;
+  MarkerGuess beside = guess;
+  beside.shape = cv::Vec3d(1.0, 0.0, 1.0) * (1.0 / (kLitRadius * guess.radius_px));
+  constexpr int kDirections = 8;
+  std::optional<Measured> best;
+  for (int direction = 0; direction < kDirections; ++direction) {
+    const double angle = 2.0 * std::numbers::pi * direction / kDirections;
+    beside.centre = spot->centre + kLitPartOff * guess.radius_px * cv::Point2d(std::cos(angle), std::sin(angle));
+    const auto fit = measure_marker(signal, beside, MarkerMethod::shaded, kind);
+    if (!fit || fit->rms > kMostLitResidual * fit->amplitude || fit->elongation > kMostLitElongation) continue;
+    if (std::abs(std::log(fit->radius_px / guess.radius_px)) > kMostLitSizeOff) continue;
+    if (!best || fit->rms < best->fit.rms) best = Measured{beside, *fit};
+  }
+  return best;
+}
+
 void choose_method(MarkerPath& path, SignalKind kind, const RadiusAt& radius_at) {
-  share_guesses(path.samples, kind);
+  share_guesses(path.samples, path.lit ? MarkerMethod::shaded : MarkerMethod::uniform, kind);
   const Remeasured measured = remeasure(path.samples, kind);
   path.method = best_of(measured, path.samples.size(), kind);
   const std::map<std::size_t, MarkerFit>& fits = measured.fits.at(path.method);

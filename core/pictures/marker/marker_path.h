@@ -49,8 +49,10 @@ struct MarkerPath {
   std::vector<MarkerSeen> seen;
   std::vector<MarkerSample> samples;
   MarkerMethod method = MarkerMethod::undecided;
+  bool lit = false;  ///< found as a shaded disc, since no uniform one fits; until a method is chosen
   bool ended = false;
-  bool asleep = false;  ///< at rest, and no longer followed
+  bool asleep = false;    ///< at rest, and no longer followed
+  cv::Point2d from_blob;  ///< from the blob of a lit part, by which it was found, to the centre (px)
   double radius_px = 0.0;
   double amplitude = 0.0;
   double travel_px = 0.0;  ///< largest distance from the first position

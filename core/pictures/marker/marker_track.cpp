@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kSearchPeriod = 10;           // frames between searches of the whole image
 constexpr std::size_t kLongestSearchPeriod = 80;    // the same while the marker is tracked
 constexpr double kLongestSearchPeriod_s = 0.4;      // limit in time: ten frames of a slow camera
-constexpr std::size_t kMostPastBytes = 1 << 27;     // of the frames kept between searches
+constexpr std::size_t kMostPastBytes = 1 << 27;     // of the frames that are kept to follow paths back,
+constexpr std::size_t kMostPast = 120;              // and their number
 constexpr std::size_t kSamplesToChooseMethod = 24;  // windows from which the method of a path is chosen
 constexpr std::size_t kMostRestingFollowed = 10;    // paths at rest that are followed all the same
 constexpr std::size_t kLostAfter = 25;              // frames without a sighting that end a path
@@ -22,6 +23,7 @@ constexpr std::size_t kRestFrames = 12;             // sightings after which a p
 constexpr std::size_t kMovingFrames = 10;           // sightings of a path that counts as moving after five radii
 constexpr std::size_t kFewestSightings = 5;         // a path with fewer is noise
 constexpr std::size_t kNoDisc = 2;                  // sightings by centroid in a row, after which no disc is fitted
+constexpr std::size_t kMostLit = 6;                 // blobs of the highest contrast that may be lit from one side
 constexpr double kSmallestRadiusPx = 1.2;
 constexpr std::size_t kFewestResponseWindows = 16;  // from which the response of the pixels is found,
 constexpr std::size_t kResponsePixels = 8000;       // and about the number of their pixels
@@ -34,7 +36,9 @@ bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, doubl
 /// How the object of a path is sought in the next frame. One that was no disc twice in a row is not fitted
 /// as one again: choose_method() does so once, in all samples.
 MarkerMethod next_method(const MarkerPath& path) {
-  if (path.method != MarkerMethod::undecided || path.seen.size() < kNoDisc) return path.method;
+  if (path.method != MarkerMethod::undecided) return path.method;
+  if (path.lit) return MarkerMethod::shaded;
+  if (path.seen.size() < kNoDisc) return path.method;
   const bool no_disc = std::all_of(path.seen.end() - kNoDisc, path.seen.end(),
                                    [](const MarkerSeen& seen) { return !(seen.fit.blur_px > 0.0); });
   return no_disc ? MarkerMethod::centroid : path.method;
@@ -59,8 +63,8 @@ MarkerTracker MarkerTracker::of_any_shape(std::filesystem::path clip, const Mark
 }
 
 /// The object of a path in the next frame: fitted at the expected position, or sought around it.
-std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
-                                                              const std::vector<cv::Point2d>& taken) const {
+std::optional<Measured> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                                  const std::vector<cv::Point2d>& taken) const {
   const cv::Point2d expected = path.predict(frame);
   const bool is_new = path.seen.size() < 2;
   const MarkerMethod method = next_method(path);
@@ -74,7 +78,7 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
   }
   if (!is_new && !is_near_any(taken, expected, 0.5 * path.radius_px)) {
     const auto fit = measure_marker(signal, guess, method, kind_);
-    if (fit && path.is_like(*fit)) return Found{guess, *fit};
+    if (fit && path.is_like(*fit)) return Measured{guess, *fit};
   }
   // Nothing is known of the speed of a new path. A known speed changes little from frame to frame, but the object may
   // bounce.
@@ -96,16 +100,16 @@ std::optional<MarkerTracker::Found> MarkerTracker::find_again(const Signal& sign
   });
   for (const Blob& blob : blobs) {
     if (is_near_any(taken, blob.centre, 0.7 * path.radius_px)) continue;
-    guess.centre = blob.centre;
-    const auto fit = measure_marker(signal, guess, method, kind_);
-    if (!fit || !path.is_like(*fit)) continue;
-    if (is_near_any(taken, fit->centre, 0.7 * path.radius_px)) continue;
-    return Found{guess, *fit};
+    guess.centre = blob.centre + path.from_blob;
+    const auto found = measure_near(signal, guess, method, kind_);
+    if (!found || !path.is_like(found->fit)) continue;
+    if (is_near_any(taken, found->fit.centre, 0.7 * path.radius_px)) continue;
+    return found;
   }
   return std::nullopt;
 }
 
-void MarkerTracker::keep(const Signal& signal, std::size_t frame, const Found& found) {
+void MarkerTracker::keep(const Signal& signal, std::size_t frame, const Measured& found) {
   const bool is_centroid = !(found.fit.blur_px > 0.0);
   if (is_centroid || kind_ == SignalKind::colored || kind_ == SignalKind::any_shape) return;
   const int reach = static_cast<int>(std::ceil(1.25 * found.guess.radius_px + 2.5)) + 1;
@@ -135,7 +139,8 @@ const MarkerWindow* MarkerTracker::window_of(const MarkerSighting& sighting) con
   return nearest != nullptr ? &nearest->window : nullptr;
 }
 
-/// Corrects the centres for a colour mosaic and a tone curve. Everything else stays as the codes gave it.
+/// Corrects the centres for a colour mosaic and a tone curve, in all frames or in none. Everything else stays as the
+/// codes gave it.
 void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
   if (tracked.method != MarkerMethod::uniform && tracked.method != MarkerMethod::shaded) return;
   const Surface surface = tracked.method == MarkerMethod::uniform ? Surface::uniform : Surface::shaded;
@@ -156,14 +161,16 @@ void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
   }
   const std::optional<EdgeResponse> response = marker_response(sampled, surface, kind_ == SignalKind::bright);
   if (!response) return;
-  std::size_t left = 0;
+  std::vector<std::optional<MarkerFit>> corrected;
+  for (const MarkerWindow* const window : windows)
+    corrected.push_back(window != nullptr ? fit_marker(*window, surface, *response) : std::nullopt);
+  const auto left = static_cast<std::size_t>(std::count(corrected.begin(), corrected.end(), std::nullopt));
+  if (left > 0) {  // corrected and uncorrected positions in one clip are worse than either
+    tracked.notes.emplace_back(PixelsAnswerLeft{left, windows.size()});
+    return;
+  }
   for (std::size_t i = 0; i < windows.size(); ++i) {
-    const std::optional<MarkerFit> found =
-        windows[i] != nullptr ? fit_marker(*windows[i], surface, *response) : std::nullopt;
-    if (!found) {
-      ++left;
-      continue;
-    }
+    const std::optional<MarkerFit>& found = corrected[i];
     const cv::Point2d centre = found->centre + cv::Point2d(windows[i]->corner);
     MarkerFit& fit = tracked.fits[i];
     fit.light_px += fit.centre - centre;
@@ -174,10 +181,9 @@ void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
     sighting.v_px = centre.y;
     sighting.sd_px = found->sd_px;
   }
-  if (left > 0) tracked.notes.emplace_back(PixelsAnswerLeft{left, windows.size()});
 }
 
-void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Found& found) {
+void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Measured& found) {
   path.push({frame, found.fit, radius_at_(found.fit.centre)});
   keep(signal, frame, found);
   if (path.method != MarkerMethod::undecided) return;
@@ -190,7 +196,7 @@ void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, 
   MarkerGuess guess = found.guess;
   guess.centre = found.fit.centre - cv::Point2d(box.x, box.y);
   path.samples.push_back({frame, Signal{signal.values(box).clone()}, box.tl(), guess});
-  if (path.samples.size() >= kSamplesToChooseMethod) choose_method(path, kind_, radius_at_);
+  if (path.samples.size() >= kSamplesToChooseMethod) decide(path);
 }
 
 std::vector<cv::Point2d> MarkerTracker::places_at(std::size_t frame) const {
@@ -233,11 +239,17 @@ void MarkerTracker::follow(const Signal& signal, std::size_t frame) {
   }
 }
 
-/// Follows a new path back through the frames since the last search.
-void MarkerTracker::follow_back(Path& path) {
-  Path back = path;
+/// Follows a path back through the frames that are kept, down to `from_frame`, until it is lost.
+void MarkerTracker::follow_back(Path& path, std::size_t from_frame) {
+  Path back;
+  back.method = path.method;
+  back.lit = path.lit;
+  back.from_blob = path.from_blob;
+  for (auto seen = path.seen.rbegin(); seen != path.seen.rend(); ++seen) back.push(*seen);
+  const std::size_t before = path.seen.front().frame;
   std::size_t missed = 0;
   for (auto past = past_.rbegin(); past != past_.rend() && missed < 3; ++past) {
+    if (past->frame >= before || past->frame < from_frame) continue;
     const auto found = find_again(past->signal, past->frame, back, places_at(past->frame));
     if (found) {
       back.push({past->frame, found->fit, radius_at_(found->fit.centre)});
@@ -247,10 +259,24 @@ void MarkerTracker::follow_back(Path& path) {
       ++missed;
     }
   }
-  std::reverse(back.seen.begin(), back.seen.end());
-  const std::vector<MarkerSeen> seen = back.seen;
   path.seen.clear();
-  for (const MarkerSeen& sighting : seen) path.push(sighting);
+  path.travel_px = 0.0;
+  for (auto seen = back.seen.rbegin(); seen != back.seen.rend(); ++seen) path.push(*seen);
+}
+
+/// Chooses the method of a path, and follows it back by that method.
+void MarkerTracker::decide(Path& path) {
+  const std::size_t sampled = path.samples.empty() ? path.seen.front().frame : path.samples.front().frame;
+  choose_method(path, kind_, radius_at_);
+  if (path.method != MarkerMethod::uniform && !past_.empty()) {
+    // What was measured as a uniform disc while following back is measured again, where its frame is still there.
+    std::vector<MarkerSeen> kept;
+    for (const MarkerSeen& seen : path.seen) {
+      if (seen.frame >= sampled || seen.frame < past_.front().frame) kept.push_back(seen);
+    }
+    if (kept.size() >= 2) path.seen = std::move(kept);
+  }
+  follow_back(path, 0);
 }
 
 /// The brightest path of the right size that is seen moving in this frame; null if there is none.
@@ -277,6 +303,7 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
   for (const Path& path : paths_) {
     if (path.asleep) sleeping.push_back(path.seen.back().fit.centre);
   }
+  std::size_t searched_for_lit = 0;
   for (const Blob& blob : find_blobs(signal, search)) {
     MarkerGuess guess;
     guess.centre = blob.centre;
@@ -285,24 +312,30 @@ void MarkerTracker::search_whole(const Signal& signal, std::size_t frame) {
         is_near_any(sleeping, blob.centre, 0.7 * guess.radius_px)) {
       continue;
     }
-    const auto fit = measure_marker(signal, guess, first_method_, kind_);
-    if (!fit || fit->elongation > kLargestElongation || is_near_any(known, fit->centre, 0.7 * guess.radius_px))
+    auto found = measure_near(signal, guess, first_method_, kind_);
+    const bool lit = !found && ++searched_for_lit <= kMostLit;
+    if (lit) found = measure_lit(signal, guess, kind_);
+    if (!found || found->fit.elongation > kLargestElongation ||
+        is_near_any(known, found->fit.centre, 0.7 * guess.radius_px))
       continue;
-    known.push_back(fit->centre);
+    const MarkerFit& fit = found->fit;
+    known.push_back(fit.centre);
     // A path that has just lost its object takes over a blob near the expected position.
     const auto loser = std::find_if(paths_.begin(), paths_.end(), [&](const Path& path) {
       return !path.ended && !path.asleep && path.seen.back().frame < frame && path.seen.size() >= kFewestSightings &&
-             path.is_like(*fit) &&
-             cv::norm(path.predict(frame) - fit->centre) < 4.0 * path.radius_px + 2.0 * cv::norm(path.velocity());
+             path.is_like(fit) &&
+             cv::norm(path.predict(frame) - fit.centre) < 4.0 * path.radius_px + 2.0 * cv::norm(path.velocity());
     });
     if (loser != paths_.end()) {
-      accept(*loser, signal, frame, {guess, *fit});
+      accept(*loser, signal, frame, *found);
       continue;
     }
     Path path;
     path.method = first_method_;
-    accept(path, signal, frame, {guess, *fit});
-    follow_back(path);
+    path.lit = lit;
+    if (lit) path.from_blob = fit.centre - blob.centre;
+    accept(path, signal, frame, *found);
+    follow_back(path, searched_);
     paths_.push_back(std::move(path));
   }
 }
@@ -350,9 +383,8 @@ bool MarkerTracker::is_time_to_search(const Signal& signal, const Frame& frame) 
 
 /// Searches for what came since the last search, if that was long ago.
 void MarkerTracker::search_rest() {
-  if (past_.size() < kSearchPeriod) return;
+  if (frames_ <= searched_ + kSearchPeriod) return;
   const Past last = past_.back();
-  past_.pop_back();
   search_whole(last.signal, last.frame);
 }
 
@@ -374,20 +406,21 @@ void MarkerTracker::add(const Frame& frame) {
     search_whole(*signal, frame.index);
     searched_ = frame.index;
     searched_s_ = frame.t_s;
-    past_.clear();
   }
   if (frame.index % kSearchPeriod == 0) {
     put_to_sleep(frame.index);
     tidy(frame.index);
   }
-  if (frame.index != searched_) past_.push_back({frame.index, *signal});
+  past_.push_back({frame.index, *signal});
+  const std::size_t bytes = std::max<std::size_t>(signal->values.total() * signal->values.elemSize(), 1);
+  if (past_.size() > std::clamp(kMostPastBytes / bytes, kSearchPeriod, kMostPast)) past_.pop_front();
   frames_ = frame.index + 1;
 }
 
 TrackedMarker MarkerTracker::finish() {
   search_rest();
   for (Path& path : paths_) {
-    if (path.method == MarkerMethod::undecided) choose_method(path, kind_, radius_at_);
+    if (path.method == MarkerMethod::undecided) decide(path);
   }
   TrackedMarker tracked =
       choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_, start_frame_}, marker_, clip_);

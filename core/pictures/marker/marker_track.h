@@ -2,8 +2,9 @@
 ///
 /// Frames are read once. Every blob of about the marker's size starts a path. A path is followed by a fit of the
 /// marker's model around the expected position (constant velocity) or, if that fails, by a search in a window. The
-/// whole image is searched in the first frame and in every tenth frame after it, and a path that starts there is
-/// followed back through the frames between. While something like the marker moves and nothing is lost, searches are
+/// whole image is searched in the first frame and in every tenth frame after it. A path that starts there is followed
+/// back through the frames since the last search and, once the way to measure it is known, through all frames that are
+/// kept (120, or 128 MiB), until it is lost. While something like the marker moves and nothing is lost, searches are
 /// rarer: up to eighty frames and at most 0.4 s apart. At the end, the marker is the path that moves and has the right
 /// size and brightness, not the brightest one; an object that is always at rest is part of the scene. Frames in which
 /// the marker is not seen have no sighting.
@@ -21,6 +22,7 @@
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_method.h"
 #include "core/pictures/marker/marker_path.h"
 #include "core/pictures/marker/marker_search.h"
 
@@ -37,8 +39,8 @@ class MarkerTracker {
   static MarkerTracker of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
                                     std::optional<double> start_s = {}, bool blurred = false);
 
-  /// Limits the memory of windows around sightings; the default is 128 MiB. Sightings without a window keep the shift
-  /// by a colour mosaic or a tone curve, and a note says how many there are.
+  /// Limits the memory of windows around sightings; the default is 128 MiB. If any sighting
+  /// has none, all keep the shift by a colour mosaic or a tone curve, and a note says how many have none.
   void limit_windows(std::size_t bytes) { most_window_bytes_ = bytes; }
 
   /// Takes the next frame. InputError if a hue is sought in a grey clip.
@@ -50,10 +52,6 @@ class MarkerTracker {
 
  private:
   using Path = MarkerPath;
-  struct Found {
-    MarkerGuess guess;
-    MarkerFit fit;
-  };
   struct Past {
     std::size_t frame;
     Signal signal;
@@ -66,15 +64,16 @@ class MarkerTracker {
     MarkerWindow window;
   };
 
-  void keep(const Signal& signal, std::size_t frame, const Found& found);
+  void keep(const Signal& signal, std::size_t frame, const Measured& found);
   const MarkerWindow* window_of(const MarkerSighting& sighting) const;
   void fit_without_response(TrackedMarker& tracked) const;
-  std::optional<Found> find_again(const Signal& signal, std::size_t frame, const Path& path,
-                                  const std::vector<cv::Point2d>& taken) const;
-  void accept(Path& path, const Signal& signal, std::size_t frame, const Found& found);
+  std::optional<Measured> find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                     const std::vector<cv::Point2d>& taken) const;
+  void accept(Path& path, const Signal& signal, std::size_t frame, const Measured& found);
   void follow(const Signal& signal, std::size_t frame);
   void search_whole(const Signal& signal, std::size_t frame);
-  void follow_back(Path& path);
+  void follow_back(Path& path, std::size_t from_frame);
+  void decide(Path& path);
   const Path* mover(std::size_t frame) const;
   void put_to_sleep(std::size_t frame);
   void tidy(std::size_t frame);
@@ -89,7 +88,7 @@ class MarkerTracker {
   RadiusAt radius_at_;
   double radius_px_ = 0.0;  ///< expected radius in the middle of the image
   std::vector<Path> paths_;
-  std::deque<Past> past_;  ///< frames since the last search of the whole image
+  std::deque<Past> past_;  ///< frames before this one, in which paths are followed back
   std::vector<Kept> kept_;
   std::size_t kept_bytes_ = 0, most_window_bytes_ = std::size_t{1} << 27;
   std::size_t searched_ = 0;

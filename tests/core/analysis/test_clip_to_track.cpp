@@ -74,6 +74,28 @@ TEST_CASE("a rolling shutter's rows have their own times where the experiment de
   CHECK(error_of(0.0) > 0.5 / kPixelsPerMetre);
 }
 
+TEST_CASE("frames without the marker are noted, unless it is at the edge of the image there") {
+  for (const bool from_edge : {false, true}) {
+    const tests::TempDir dir;
+    std::vector<cv::Mat> frames;
+    for (int k = 0; k < 50; ++k) {
+      cv::Mat image(kSize, CV_64F, cv::Scalar(60.0));
+      const double u = (from_edge ? -50.0 : 30.0) + 3.5 * k;
+      if (from_edge || k >= 12) tests::put_disc(image, {u, 100.0}, 6.0, 210.0);
+      frames.push_back(image);
+    }
+    tests::write_video(dir / "clip.mkv", frames, kRate, 1.0);
+    const auto results = core::tracks_of(experiment_of(dir / "clip.mkv", 0.0), 1);
+    const auto* const lost = tests::note_of<core::MarkerLost>(results.tracks.at(0).notes);
+    CHECK((lost == nullptr) == from_edge);
+    if (lost == nullptr) continue;
+    CHECK(lost->before == 12);
+    CHECK(lost->between == 0);
+    CHECK(lost->after == 0);
+    CHECK(lost->frames == 50);
+  }
+}
+
 namespace {
 
 /// A card of this brightness with discs on it (where they are on the card, and how bright) moves over a grey wall.

@@ -377,3 +377,45 @@ TEST_CASE("the smear of a marker is measured from its images, and counts where i
   CHECK_FALSE(sharp.measured_blur_px.has_value());
   CHECK_FALSE(sharp.entered);
 }
+
+TEST_CASE("an exposure longer than the time between frames, or than twice that of another clip, is none") {
+  const auto clip = [](double exposure_s, double sd_s2) {
+    core::ClipCheck check;
+    check.lengthening = core::SmearSlope{exposure_s * exposure_s / 12.0, sd_s2};
+    check.measured_exposure_s = exposure_s;
+    check.measured_blur_px = 9.0;
+    return check;
+  };
+  const auto kept = [](std::vector<core::ClipCheck> clips) {
+    core::drop_contradicted_exposures(clips);
+    return clips[0].measured_exposure_s.has_value();
+  };
+  CHECK(kept({clip(0.004, 1e-9)}));
+  CHECK(kept({clip(0.004, 1e-9), clip(0.003, 1e-9)}));
+  CHECK_FALSE(kept({clip(0.004, 1e-9), clip(0.0008, 1e-9)}));
+  CHECK(kept({clip(0.004, 1e-9), clip(0.0008, 1e-6)}));  // the other says nothing
+
+  // A bar that lengthens with its speed as with an exposure of two frame times.
+  const auto checked = [&](double frames_open) {
+    const tests::TempDir dir;
+    std::vector<cv::Mat> frames;
+    const auto place = [](double k) { return 40.0 + 1.2 * k + 0.09 * k * k; };
+    for (int k = 0; k < 45; ++k) {
+      cv::Mat mean(cv::Size(380, 200), CV_64F, cv::Scalar(0.0));
+      constexpr int kParts = 24;
+      for (int part = 0; part < kParts; ++part) {
+        cv::Mat image(mean.size(), CV_64F, cv::Scalar(kBackground));
+        tests::put_disc(image, {place(k + ((part + 0.5) / kParts - 0.5) * frames_open), 100.0}, 6.0, kMarker);
+        mean += image / kParts;
+      }
+      frames.push_back(mean);
+    }
+    tests::write_video(dir / "clip.mkv", frames, kRate, kNoise);
+    return core::check_recording(experiment_of({dir / "clip.mkv"}), 1).clips.at(0);
+  };
+  const core::ClipCheck within = checked(0.9), beyond = checked(2.0);
+  CHECK(within.measured_exposure_s.has_value());
+  REQUIRE(beyond.lengthening.has_value());
+  CHECK(std::sqrt(12.0 * beyond.lengthening->s2) > 1.0 / kRate);
+  CHECK_FALSE(beyond.measured_exposure_s.has_value());
+}

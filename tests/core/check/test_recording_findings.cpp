@@ -98,6 +98,19 @@ TEST_CASE("light is named where the marker's contrast or the place of its bright
   CHECK(found_as<core::found::ContrastFalls>(findings[0]).least == 0.3);
 }
 
+TEST_CASE("an image counts as dark only if its marker is dark too, however small") {
+  core::ClipCheck clip = fine_clip();
+  clip.bright_level = 0.16;  // a bright marker may cover less than a thousandth of the image
+  clip.marker_level = 0.8;
+  clip.contrast = 0.7;
+  CHECK(of_clip(clip).empty());
+  clip.marker_level = 0.2;
+  clip.contrast = 0.18;
+  const auto findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK(found_as<core::found::Dark>(findings[0]).brightest == 0.2);
+}
+
 TEST_CASE("a camera is judged by the views that it rests on, not by those in which the pattern was found") {
   CHECK(of_pattern(pattern_of(9, 8)).empty());
   const auto findings = of_pattern(pattern_of(9, 7));

@@ -147,6 +147,40 @@ TEST_CASE("a track off by less than a degree is advice, by less than half a degr
   CHECK(findings[0].severity == core::Severity::change);
 }
 
+TEST_CASE("an inclination stated with its uncertainty is contradicted by three standard deviations, however small") {
+  const auto at = [](double stated_deg, double sd_deg) {
+    Recorded recorded(kBoth, stated_deg);
+    for (core::ClipSetup& clip : recorded.experiment.clips) clip.incline_sd_rad = sd_deg * std::numbers::pi / 180.0;
+    return recorded.findings();
+  };
+  CHECK(at(4.5, 0.1).empty());  // 0.2 degrees off: two standard deviations
+  const auto findings = at(4.5, 0.02);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::change);
+  CHECK_FALSE(contradiction_of(findings[0]).gross);
+  core::ConfigurationResult result;  // as an analysis notes it
+  result.incline_deg = 5.0;
+  result.alpha_deg = core::determined(core::estimate(5.2, 0.004));
+  std::vector<core::ConfigurationResult> results{result};
+  core::note_statements(results, tests::kGravity);
+  CHECK(results[0].notes.empty());
+  results[0].incline_sd_deg = 0.02;
+  core::note_statements(results, tests::kGravity);
+  REQUIRE(results[0].notes.size() == 1);
+  CHECK(std::holds_alternative<core::InclineContradiction>(results[0].notes[0]));
+}
+
+TEST_CASE("light from one side explains a marker that looks too small, but not one that looks too large") {
+  const auto lit = [](double marker_px) {
+    core::ClipCheck clip = sized("a", marker_px, 19.0);
+    clip.light = core::MarkerLighting{0.9, 2.3, 0.1};
+    return of_sizes({clip});
+  };
+  CHECK(lit(13.2).empty());
+  CHECK(lit(26.0).size() == 1);
+  CHECK(lit(9.0).size() == 1);  // less than half of it is lit: from behind
+}
+
 TEST_CASE("a glider that runs farther than the track is long is a finding") {
   Recorded recorded(kBoth);
   recorded.experiment.track.length_m = 2.0;

@@ -13,6 +13,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
   using What = core::MarkerMeasuredBy::What;
   core::InclineContradiction one_way{{10.0, {}, "the plumb line"}, 4.712, 0.013};
   one_way.bound = -1;
+  const core::InclineContradiction small{{5.0, 0.02, "incline_deg"}, 5.2015, 0.0041};
   core::InclineContradiction beyond{{4.3, 0.3, "incline_deg"}};
   beyond.beyond_gravity = 12.34;
   beyond.gravity_m_s2 = 9.80665;
@@ -68,6 +69,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::AssumedStatements{{}, true},
        "an inclination of 0° is assumed, because neither the file nor an option states it (--incline)"},
       {core::MuFromIncline{20.0, 0.1}, "µ rests on the stated inclination, 20"},
+      {small, "incline_deg says 5.000 ± 0.020°: an angle or its uncertainty, a length"},
       {core::GravityAssumed{9.80665, 0.015}, "gravity of 9.80665 m/s²; their ± includes 0.015 m/s² (0.15 %)"},
       {core::AssumedMass{}, "1 kg is assumed"},
       {core::MayBeAFall{26, 5.61},
@@ -95,7 +97,12 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::MarkerOfOtherSize{0.75}, "25 % smaller"},
       {core::MarkerFittedAgain{true, false, 260, 200},
        "sphere that is lit from one side in front of what moves with it: it is found in 260 frames, in 200 before"},
-      {core::PixelsAnswerLeft{3, 50}, "in 3 of 50 frames the marker's position is not corrected"},
+      {core::PixelsAnswerLeft{3, 50},
+       "the marker's positions are not corrected for the response of the camera's pixels to an edge: in 3 of 50 "
+       "frames"},
+      {core::MarkerLost{21, 0, 0, 70},
+       "in 21 of 70 frames the marker is not found, though it is not at the edge of the image: the first 21"},
+      {core::MarkerLost{0, 2, 4, 70}, "2 between its sightings, the last 4"},
       {core::DarkMarker{}, "darker than its surroundings"},
       {core::DiscMarker{}, "as a disc in the plane of motion, not as a sphere"},
       {core::NotOfStatedSize{"no marker"}, "is not found: no marker"},

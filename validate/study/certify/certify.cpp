@@ -400,8 +400,8 @@ FilmingSize size_of_filming(const RecordingTwin& twin, const CertifyOptions& opt
   FilmingSize size;
   size.twins = options.runs;
   for (const WantedChange& wanted : options.changes ? wanted_changes(twin) : std::vector<WantedChange>{})
-    size.twins += (wanted.change.twice ? 2 : 1) * runs_of_change(twin, options);
-  size.processor_time_s = static_cast<double>(size.twins) * one_s;
+    size.of_changes += (wanted.change.twice ? 2 : 1) * runs_of_change(twin, options);
+  size.processor_time_s = static_cast<double>(size.twins + size.of_changes) * one_s;
   return size;
 }
 

@@ -25,7 +25,8 @@ inline constexpr std::size_t kFewestTwins = 20, kMostTwins = 200;
 
 /// What is about to be filmed.
 struct FilmingSize {
-  std::size_t twins = 0;        ///< of the recording, and of its changes
+  std::size_t twins = 0;        ///< of the recording
+  std::size_t of_changes = 0;   ///< further twins, each with a change
   double processor_time_s = 0;  ///< for all of them, from the first, which is filmed for this purpose
 };
 

@@ -423,6 +423,11 @@ TEST_CASE("sightings that are not corrected for the response of the pixels are c
   CHECK(note->sightings == MosaicClip::kCount);
   CHECK(note->kept >= MosaicClip::kCount - kWindows);
   CHECK(note->kept <= MosaicClip::kCount - kWindows * kSmallest / kLargest);
+  // A clip is corrected as a whole or not at all.
+  const core::TrackedMarker uncorrected = clip.tracked(0);
+  REQUIRE(limited.sightings.size() == uncorrected.sightings.size());
+  for (std::size_t i = 0; i < limited.sightings.size(); ++i)
+    CHECK(limited.sightings[i].u_px == uncorrected.sightings[i].u_px);
 }
 
 TEST_CASE("a colour mosaic and a tone curve do not move a small sharp marker") {
