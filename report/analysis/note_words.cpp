@@ -8,6 +8,7 @@
 #include <variant>
 #include "base/text/number_text.h"
 #include "core/result/results.h"
+#include "core/result/uphill.h"
 #include "core/result/why_unknown.h"
 
 namespace glidelab::report {
@@ -303,16 +304,16 @@ struct AnalysisSentence {
                        of.mass_kg, of.mass_kg / 1000.0);
   }
   std::string operator()(const core::InclineContradiction& of) const {
-    return contradiction_words(of) +
-           ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)";
+    return fmt::format("{}: {} (glidelab check says more)", contradiction_words(of), contradiction_causes(of));
   }
   std::string operator()(const core::MuFromIncline& of) const {
     return fmt::format("motion in one direction: µ rests on the stated inclination, {}", with_sd(of.deg, of.sd_deg));
   }
   std::string operator()(const core::GravityAssumed& of) const {
     return fmt::format(
-        "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %), because the place is not "
-        "known. A folder can state gravity_m_s2",
+        "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %), because gravity_m_s2, that "
+        "of "
+        "the place, is not stated",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
   }
   std::string operator()(const core::RobustFit& of) const {
@@ -340,6 +341,11 @@ std::string contradiction_words(const core::InclineContradiction& of) {
   }
   const char* bound = of.bound == 0 ? "" : of.bound < 0 ? "at most " : "at least ";
   return fmt::format("the acceleration gives an inclination of {}{}, but {}", bound, with_sd(of.deg, of.sd_deg), says);
+}
+
+std::string contradiction_causes(const core::InclineContradiction& of) {
+  if (core::seems_uphill(of)) return "x seems to be positive uphill: it has to rise downhill";
+  return "an angle, a length, the frame rate or gravity_m_s2 is wrong";
 }
 
 std::string lens_words(const core::LensTerms& lens) {

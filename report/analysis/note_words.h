@@ -14,6 +14,8 @@ std::vector<std::string> notes_words(const std::vector<core::Note>& notes);
 
 /// "the acceleration gives an inclination of 0.42 ± 0.13°, but incline_deg says 4.30 ± 0.30°"
 std::string contradiction_words(const core::InclineContradiction& contradiction);
+/// What may be wrong then: "x seems to be positive uphill: …", "an angle, a length, … is wrong".
+std::string contradiction_causes(const core::InclineContradiction& contradiction);
 
 /// "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.2 of 9; …)", "fisheye: k1, k2"
 std::string lens_words(const core::LensTerms& lens);
