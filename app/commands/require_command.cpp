@@ -30,8 +30,8 @@ struct RequireOptions {
 
 validate::Confirm confirm_of(const std::string& confirm, const validate::Sweep& sweep) {
   if (confirm == "none") return validate::Confirm::none;
-  const bool images = confirm.empty() ? sweep.level == validate::Level::clips : confirm == "clips";
-  return images ? validate::Confirm::clips : validate::Confirm::tracks;
+  if (confirm.empty()) return validate::usual_confirm(sweep);
+  return confirm == "clips" ? validate::Confirm::clips : validate::Confirm::tracks;
 }
 
 void require_command(const RequireOptions& options) {

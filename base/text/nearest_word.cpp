@@ -23,6 +23,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// The only one that begins with the word, of three letters or more; empty if there is none, or there are several.
+std::string completed(std::string_view word, const std::vector<std::string>& known) {
+  constexpr std::size_t kFewestLetters = 3;
+  const auto begins = [&](const std::string& candidate) { return candidate.starts_with(word); };
+  if (word.size() < kFewestLetters || std::ranges::count_if(known, begins) != 1) return {};
+  return *std::ranges::find_if(known, begins);
+}
+
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
@@ -36,7 +44,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
     nearest = &candidate;
     least = distance;
   }
-  return nearest == nullptr ? std::string() : *nearest;
+  return nearest == nullptr ? completed(word, known) : *nearest;
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {

@@ -50,7 +50,7 @@ void check(const std::vector<core::ClipSetup>& setups, const TrackSet& set) {
         {(setups[c].track.empty() ? setups[c].file : setups[c].track).string(), 0,
          fmt::format("clip \"{}\"", set.clips[c].name),
          of_clip[c] == 0 ? "nothing that moves freely" : fmt::format("{} positions of free motion", of_clip[c]),
-         fmt::format("at least {} in all clips together: the model has {} parameters", fewest, parameters)});
+         fmt::format("at least {} positions in all clips together: the model has {} parameters", fewest, parameters)});
   }
   throw base::InputError(std::move(issues));
 }

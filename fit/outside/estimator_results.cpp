@@ -13,6 +13,7 @@
 #include "base/errors.h"
 #include "base/math/angles.h"
 #include "base/text/json_text.h"
+#include "base/text/readable_text.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
 
@@ -45,6 +46,28 @@ std::string shown(const json& value) {
   constexpr std::size_t kMostShown = 40;
   const std::string text = base::replaced_json_text(value, base::kOnOneLine);
   return text.size() <= kMostShown ? text : value.type_name();
+}
+
+/// What stands where the text stops to be JSON, with its place; Python's json writes NaN and Infinity, which are none.
+void add_json_fault(std::string_view text, const json::exception& error, Findings& findings) {
+  const auto* const parse = dynamic_cast<const json::parse_error*>(&error);
+  if (parse == nullptr) return findings.add("", error.what(), "JSON");
+  constexpr std::string_view kEnds = " \t\r\n,:[]{}\"";
+  constexpr std::size_t kMostShown = 40;
+  const std::size_t at = std::min(parse->byte > 0 ? parse->byte - 1 : 0, text.size());
+  const std::string_view before = text.substr(0, at);
+  const std::size_t last_end = before.find_last_of(kEnds);
+  const std::size_t start = last_end == std::string_view::npos ? 0 : last_end + 1;
+  const std::size_t end = std::max(at + 1, std::min(text.find_first_of(kEnds, at), text.size()));
+  const std::string word = at == text.size()
+                               ? "the end of the text"
+                               : base::first_bytes(base::printable_text(text.substr(start, end - start)), kMostShown);
+  const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+  const bool no_number = word == "NaN" || word == "nan" || word == "Infinity" || word == "-Infinity";
+  findings.add("",
+               fmt::format("{} at line {}, column {}", word, 1 + std::ranges::count(before, '\n'),
+                           start < line_start ? 1 : start - line_start + 1),
+               no_number ? "a number, or null where nothing is determined: JSON has no NaN and no infinity" : "JSON");
 }
 
 /// The member; if there is none, null and a finding.
@@ -207,7 +230,7 @@ core::AnalysisResults read_estimator_results(std::string_view text, const std::f
   try {
     document = base::parsed_json(text);
   } catch (const json::exception& error) {
-    findings.add("", error.what(), "JSON");
+    add_json_fault(text, error, findings);
     findings.throw_if_any();
   }
   if (!document.is_object()) findings.add("", document.type_name(), "an object");

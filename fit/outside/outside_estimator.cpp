@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "base/text/readable_text.h"
 #include "core/experiment/experiment.h"
 #include "fit/estimators.h"
 #include "fit/outside/estimator_results.h"
@@ -65,16 +67,16 @@ std::string replaced(std::string text, std::string_view what, const std::string&
   return text;
 }
 
-/// The last non-empty line of the program's output, shortened.
+/// The last non-empty line of the program's output, shortened; UTF-8 whatever it wrote.
 std::string last_line(const fs::path& log) {
   constexpr std::size_t kMostShown = 200;
   const std::string text = fs::exists(log) ? base::read_file(log) : std::string();
   const std::size_t end = text.find_last_not_of(" \t\r\n");
   if (end == std::string::npos) return {};
   const std::size_t start = text.rfind('\n', end);
-  std::string line = text.substr(start == std::string::npos ? 0 : start + 1, end - (start + 1) + 1);
-  if (line.size() > kMostShown) line = line.substr(0, kMostShown) + "…";
-  return line;
+  const std::string line =
+      base::valid_utf8(text.substr(start == std::string::npos ? 0 : start + 1, end - (start + 1) + 1));
+  return line.size() > kMostShown ? base::first_bytes(line, kMostShown) + "…" : line;
 }
 
 OutsideRun run_of(const base::ProgramEnd& end, const OutsideEstimator& estimator, const fs::path& log) {
@@ -87,7 +89,9 @@ OutsideRun run_of(const base::ProgramEnd& end, const OutsideEstimator& estimator
   if (end.by == base::ProgramEndedBy::time) {
     failed(OutsideFailure::time_out, fmt::format("not done after {} s", estimator.limits.wall_s));
   } else if (WIFSIGNALED(end.status)) {
-    failed(OutsideFailure::signal, fmt::format("signal {}", WTERMSIG(end.status)));
+    const char* const name = ::sigabbrev_np(WTERMSIG(end.status));
+    failed(OutsideFailure::signal, name == nullptr ? fmt::format("signal {}", WTERMSIG(end.status))
+                                                   : fmt::format("signal {} (SIG{})", WTERMSIG(end.status), name));
   } else if (WEXITSTATUS(end.status) != 0) {
     failed(OutsideFailure::exit_status, fmt::format("exit status {}", WEXITSTATUS(end.status)));
   }
@@ -158,7 +162,7 @@ OutsideOutcome run_outside(const OutsideEstimator& estimator, const fs::path& fo
       return outcome;
     } catch (const base::InputError& error) {
       outcome.run.failure = OutsideFailure::bad_output;
-      outcome.run.what = error.what();
+      outcome.run.what = base::valid_utf8(error.what());
       outcome.json.clear();
     }
   }

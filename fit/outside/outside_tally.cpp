@@ -25,22 +25,23 @@ std::string_view key_of(OutsideFailure failure) {
   return "none";
 }
 
-std::string_view words_of(OutsideFailure failure) {
+std::string words_of(OutsideFailure failure, std::size_t runs) {
+  const char* const was = runs == 1 ? "was" : "were";
   switch (failure) {
     case OutsideFailure::exit_status:
-      return "an exit status other than 0";
+      return fmt::format("{} ended with an exit status other than 0", runs);
     case OutsideFailure::signal:
-      return "ended by a signal";
+      return fmt::format("{} {} ended by a signal", runs, was);
     case OutsideFailure::time_out:
-      return "not done in time";
+      return fmt::format("{} {} not done in time", runs, was);
     case OutsideFailure::no_output:
-      return "no results.json";
+      return fmt::format("{} left no results.json in {{out}}", runs);
     case OutsideFailure::bad_output:
-      return "an invalid results.json";
+      return fmt::format("{} left an invalid results.json", runs);
     case OutsideFailure::none:
       break;
   }
-  return "done";
+  return fmt::format("{} {} done", runs, was);
 }
 
 std::string why_begins(OutsideFailure failure) {

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/text/nearest_word.h"
+#include "base/text/number_text.h"
 #include "core/analysis/analyze.h"
 #include "core/analysis/preview.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
@@ -192,7 +194,8 @@ const fit::Estimator& estimator_named(const std::string& name) {
   const fit::Estimator* const estimator = fit::find_estimator(name);
   if (estimator == nullptr) {
     throw base::InputError(base::Issue{"", 0, "estimator", fmt::format("\"{}\"", name),
-                                       fmt::format("one of {}", fmt::join(fit::estimator_names(), ", "))});
+                                       fmt::format("one of {}{}", fmt::join(fit::estimator_names(), ", "),
+                                                   base::did_you_mean(name, fit::estimator_names()))});
   }
   return *estimator;
 }
@@ -209,6 +212,10 @@ void bind_analysis(py::module_& module) {
   module.def("bandwidth_choices", &core::bandwidth_choices);
   module.def("smoother_names", &core::smoother_names);
   module.def("estimator_names", &fit::estimator_names);
+  module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& known) {
+    return base::did_you_mean(word, known);
+  });
+  module.def("unit_of_key", [](const std::string& key) { return base::name_and_unit(key).unit; });
   module.def("quantities", [] {
     std::vector<std::pair<std::string, std::string>> keys_and_units;
     for (const core::QuantityName& one : core::kQuantities) keys_and_units.emplace_back(one.key, one.unit);

@@ -5,12 +5,14 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/errors.h"
+#include "base/text/nearest_word.h"
 #include "core/math/quantile.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/smoothing/local_polynomial.h"
@@ -43,7 +45,8 @@ core::Kernel kernel_of(const std::string& name) {
   }
   std::vector<std::string> names;
   for (const auto& [known, kernel] : kKernels) names.emplace_back(known);
-  refuse("kernel", fmt::format("\"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
+  refuse("kernel", fmt::format("\"{}\"", name),
+         fmt::format("one of {}{}", fmt::join(names, ", "), base::did_you_mean(name, names)));
 }
 
 /// Checks what the smoother asserts about the times and the values that belong to them.
@@ -181,17 +184,20 @@ py::tuple smooth_by(const std::string& name, const Vector& times, const Vector& 
   }
   const std::vector<std::optional<core::SmoothedState>>& states = at ? series.at : series.points;
   const std::size_t n = states.size();
+  if (std::ranges::none_of(states, [](const auto& state) { return state.has_value(); })) {
+    refuse("x_m", "positions in which the smoother finds neither motion nor noise", "a motion");
+  }
   py::array_t<double> values = rows(6, n);
   double* const out = values.mutable_data();
   for (std::size_t i = 0; i < n; ++i) {
-    const core::SmoothedState& of = states[i].value();
+    const core::SmoothedState of = states[i].value_or(core::SmoothedState{kNone, kNone, kNone, kNone, kNone, kNone});
     const std::array<double, 6> column{of.x_m, of.v_m_s, of.a_m_s2, of.sd_x_m, of.sd_v_m_s, of.sd_a_m_s2};
     for (std::size_t row = 0; row < column.size(); ++row) out[row * n + i] = column[row];
   }
   const core::SmoothingStrength& strength = series.strength;
   return py::make_tuple(std::move(values), strength.bandwidth_s, report::strength_words(strength.method),
                         strength.time_s, strength.noise_sd_m, vector_of(strength.breaks_s), strength.jump_sd_m_s2,
-                        strength.simultaneous_a.value());
+                        strength.simultaneous_a.value_or(kNone));
 }
 
 /// The rule's choice for one stretch of motion: (bandwidth, method, times and bandwidths of a local rule), or None if
@@ -203,9 +209,10 @@ py::object choose_bandwidth(const Vector& times, const Vector& positions, const 
   check_noise(noise_m);
   const core::BandwidthRule* rule = core::find_bandwidth_rule(name);
   if (rule == nullptr) {
-    std::vector<std::string_view> names;
-    for (const core::BandwidthRule& known : core::bandwidth_rules()) names.push_back(known.name);
-    refuse("rule", fmt::format("\"{}\"", name), fmt::format("one of {}", fmt::join(names, ", ")));
+    std::vector<std::string> names;
+    for (const core::BandwidthRule& known : core::bandwidth_rules()) names.emplace_back(known.name);
+    refuse("rule", fmt::format("\"{}\"", name),
+           fmt::format("one of {}{}", fmt::join(names, ", "), base::did_you_mean(name, names)));
   }
   if (t_s.size() < core::kFewestTrackPoints) {
     refuse("t_s", fmt::format("{} points", t_s.size()), fmt::format("at least {}", core::kFewestTrackPoints));

@@ -129,7 +129,8 @@ Outcome measure_coverage(const GivenScenario& given, std::optional<double> noise
           }};
 }
 
-validate::Confirm confirm_of(const std::string& word) {
+validate::Confirm confirm_of(const std::string& word, const validate::Sweep& sweep) {
+  if (word.empty()) return validate::usual_confirm(sweep);
   if (word == "none") return validate::Confirm::none;
   if (word == "tracks") return validate::Confirm::tracks;
   if (word == "clips") return validate::Confirm::clips;
@@ -142,12 +143,12 @@ Outcome find_requirement(const std::string& file, const std::vector<std::string>
   const auto requirement = watched.run([&](const base::Progress& progress) {
     validate::RequirementOptions how;
     for (const std::string& target : targets) how.targets.push_back(validate::parse_target(target));
-    how.confirm = confirm_of(confirm);
     how.runs = runs;
     how.track_runs = track_runs;
     how.jobs = jobs;
     how.watch = [&watched] { watched.throw_if_stopped(); };
     validate::Sweep sweep = validate::read_sweep(file);
+    how.confirm = confirm_of(confirm, sweep);
     if (seed) sweep.seed = *seed;
     return std::make_shared<const validate::Requirement>(validate::find_requirement(sweep, how, progress));
   });

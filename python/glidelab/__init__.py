@@ -4,14 +4,14 @@
 >>> glidelab.analyze(t, x, mass_kg=0.335)          # positions, as arrays # doctest: +SKIP
 >>> glidelab.diagnose("my-recording")              # an experiment folder # doctest: +SKIP
 
-Arguments and results are in SI units, with the unit in the name; angles are in degrees. Every result has ``to_dict()``
-(the JSON that the command of its name writes), ``write(folder)`` (its files and its page) and shows itself in a
-notebook. docs/guide/python.md is the tutorial.
+Arguments and results are in SI units, with the unit in the name; angles are in degrees. Every `Result` has ``to_dict()``
+(the JSON that the command of its name writes) and ``write(folder)`` (its files and its page). These, `Judgement` and
+`Smoothed` show themselves in a notebook, and `explain` puts them in words. docs/guide/python.md is the tutorial.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Union
 
 import numpy as _numpy
 
@@ -50,20 +50,20 @@ class Explanation(str):
         printer.text(str(self))
 
 
-def explain(result: Result) -> Explanation:
-    """What the command prints of a result: the answer in sentences, and its tables.
+def explain(result: Union[Result, Judgement, Smoothed, Bandwidth]) -> Explanation:
+    """A result in words: of a command what it prints, the answer in sentences and its tables.
 
     Parameters
     ----------
-    result : Result
-        Of any function that returns one: `analyze`, `diagnose`, `validate`, ...
+    result : Result, Judgement, Smoothed or Bandwidth
+        Of any function that returns one: `analyze`, `diagnose`, `validate`, `judge`, `smooth`, ...
 
     Returns
     -------
     Explanation
         A str. As the last line of a cell, or at the prompt, it shows itself as it reads; a script prints it.
     """
-    return Explanation(result)
+    return Explanation(str(result))
 
 
 __all__ = [

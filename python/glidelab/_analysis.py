@@ -5,14 +5,14 @@ from __future__ import annotations
 import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional, SupportsFloat, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, frozen
-from ._errors import input_error
+from ._checks import optional_real, switch, text, texts
 from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_tracks, job_count, refuse, refuse_of_arrays,
                       source_of, teller)
 from ._recovered import QUANTITIES, WithEffects, with_effects_of
@@ -296,22 +296,24 @@ def analysis_of(outcome: _glidelab.Outcome, motions: Sequence[Mapping[str, Any]]
                     with_effects_of(document.get("with")))
 
 
-def _choices(bandwidth: Union[float, str, None], estimator: str, robust: bool, jobs: Optional[int],
+def _choices(bandwidth: Union[SupportsFloat, str, None], estimator: str, robust: bool, jobs: Optional[int],
              smoother: str, with_effects: Sequence[str]) -> _glidelab.AnalysisChoices:
-    if isinstance(with_effects, str) or not all(isinstance(one, str) for one in with_effects):
-        raise input_error("with_effects", repr(with_effects), "a list of effects, such as [\"quadratic_drag\"]")
-    effects = list(with_effects)
-    if bandwidth is None or isinstance(bandwidth, str):
-        return _glidelab.AnalysisChoices(None, bandwidth or "", estimator, robust, job_count(jobs), smoother, effects)
-    if isinstance(bandwidth, bool) or not isinstance(bandwidth, (int, float, np.integer, np.floating)):
-        raise input_error("bandwidth", f"a {type(bandwidth).__name__}", "a number of seconds, or the name of a rule")
-    return _glidelab.AnalysisChoices(float(bandwidth), "", estimator, robust, job_count(jobs), smoother, effects)
+    effects = texts("with_effects", with_effects, "a list of effects, such as [\"quadratic_drag\"]")
+    text("estimator", estimator, f"one of {', '.join(_glidelab.estimator_names())}")
+    text("smoother", smoother, f"one of {', '.join(_glidelab.smoother_names())}")
+    switch("robust", robust)
+    rule, seconds = "", None
+    if isinstance(bandwidth, str):
+        rule = bandwidth
+    else:
+        seconds = optional_real("bandwidth", bandwidth, "a number of seconds, or the name of a rule")
+    return _glidelab.AnalysisChoices(seconds, rule, estimator, bool(robust), job_count(jobs), smoother, effects)
 
 
 def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
             x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
             force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
-            bandwidth: Union[float, str, None] = None, estimator: str = DEFAULT_ESTIMATOR, robust: bool = False,
+            bandwidth: Union[SupportsFloat, str, None] = None, estimator: str = DEFAULT_ESTIMATOR, robust: bool = False,
             gravity_m_s2: Optional[float] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             smoother: str = "local-polynomial", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
@@ -335,7 +337,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     name : str
         With arrays: what the experiment is called in results.
     bandwidth : float or str, optional
-        Standard deviation of the smoothing kernel in seconds, or the rule that chooses it (`bandwidth_rules`).
+        Standard deviation of the smoothing kernel in seconds, or the rule that chooses it: ``"lines"`` (the default), or
+        one of `bandwidth_rules`.
     estimator : {"phase-diagram", "phase-diagram-gls", "trajectory"}
         Lines in the phase diagram as in the paper, generalised lines, or the fit of the whole motion.
     robust : bool
@@ -395,14 +398,16 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     given = source_of(source, x_m, **stated)
     choices = _choices(bandwidth, estimator, robust, jobs, smoother, with_effects)
     if given.paths:
-        refuse({"force_n": force_n})
+        refuse({"force_n": force_n}, "a file's force is one of its columns")
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
         return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, files, teller(progress)))
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
-                                       "most_megapixels": most_megapixels},
+                                       "most_megapixels": most_megapixels}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
                       "force_n": force_n})
-    return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), (gravity_m_s2, gravity_sd_m_s2), name,
-                                                 choices, teller(progress)))
+    gravity = (optional_real("gravity_m_s2", gravity_m_s2, "m/s², above 0, or None"),
+               optional_real("gravity_sd_m_s2", gravity_sd_m_s2, "m/s², from 0 on, or None"))
+    return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), gravity, text("name", name), choices,
+                                                 teller(progress)))

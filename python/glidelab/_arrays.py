@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._checks import refuse_masked
 from ._errors import input_error
 
 Vector = NDArray[np.float64]
@@ -18,8 +19,9 @@ def vector(name: str, values: ArrayLike, of: str = "") -> Vector:
     Raises
     ------
     InputError
-        Not real numbers, or not one dimension.
+        Not real numbers, masked ones among them, or not one dimension.
     """
+    refuse_masked(name, values, of)
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":
         raise input_error(name, f"values of type {array.dtype}", "real numbers", of)

@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 from . import _glidelab
 from ._apart import interpreter
+from ._checks import file_name, switch, text
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
 from ._results import Made, Result, frame_of, html_table
 
@@ -163,9 +164,11 @@ def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = Fals
     Each case is diagnosed by an interpreter of its own, started with the name of the experiment folder and nothing else;
     the truth is written afterwards. docs/evidence/blind-tracks.md has what a large run says.
     """
-    made = Made(_glidelab.blind(interpreter(), os.fspath(folder), whole("cases", cases, 1, MOST_CASES),
-                                checked_seed(seed) or 0, only, bool(everyday), bool(pictures), bool(leave_out),
-                                job_count(jobs), teller(progress)))
+    where = file_name("folder", folder, "the name of a folder")
+    made = Made(_glidelab.blind(interpreter(), where, whole("cases", cases, 1, MOST_CASES), checked_seed(seed) or 0,
+                                text("only", only, "the id of an effect"), switch("everyday", everyday),
+                                switch("pictures", pictures), switch("leave_out", leave_out), job_count(jobs),
+                                teller(progress)))
     found = Result(made).to_dict()
     return Blind(made, found["seed"], found["failed"], tuple(_target(one) for one in found["targets"]),
                  found["expected_calibration_error"], tuple(

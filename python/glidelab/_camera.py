@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,11 +13,13 @@ from numpy.typing import NDArray
 
 from . import _glidelab
 from ._arrays import Vector, frozen
+from ._checks import above_0, pair, real, refuse_masked, shown, switch
 from ._errors import input_error
 from ._inputs import PathLike, Progress, is_path, job_count, teller
 
 
 def _grey(image: Any, name: str) -> NDArray[Any]:
+    refuse_masked(name, image)
     array = np.asarray(image)
     if array.ndim != 2 or array.dtype not in (np.uint8, np.uint16):
         raise input_error(name, f"an array of shape {array.shape} and type {array.dtype}",
@@ -99,9 +102,13 @@ def calibrate(images: Sequence[Any], inner_corners: tuple[int, int], square_m: f
     Zhang 2000; Brown 1966; Kannala and Brandt 2006 for a fisheye, which is taken where it explains the corners
     decisively better. Corners are fitted to a hundredth of a pixel.
     """
-    if len(inner_corners) != 2:
-        raise input_error("inner_corners", repr(inner_corners), "two numbers")
-    board = (int(inner_corners[0]), int(inner_corners[1]))
+    columns, rows = pair("inner_corners", inner_corners, "two numbers: columns and rows")
+    if columns != int(columns) or rows != int(rows):
+        raise input_error("inner_corners", shown(inner_corners), "two whole numbers")
+    board = (int(columns), int(rows))
+    square_m = real("square_m", square_m, "metres, above 0")
+    if isinstance(images, str) or not isinstance(images, (Sequence, np.ndarray)):
+        raise input_error("images", shown(images), "a list of images, or of names of files")
     found: dict[str, Any]
     if len(images) > 0 and all(is_path(image) for image in images):
         files = [os.fspath(image) for image in images]
@@ -173,13 +180,17 @@ def fit_marker(image: Any, centre_px: tuple[float, float], radius_px: float, *, 
     Raises
     ------
     InputError
-        `image` is not an image.
+        `image` is not an image, or has masked pixels; a number is none.
 
     Notes
     -----
     An opaque ellipse with a blurred edge in front of a sloping background, fitted to the pixels; a centroid above a
     threshold follows the background's slope, this does not.
     """
-    found = _glidelab.fit_marker(_grey(image, "image"), float(centre_px[0]), float(centre_px[1]), float(radius_px),
-                                 shaded, dark)
+    u_px, v_px = pair("centre_px", centre_px, "two numbers: right and down")
+    if not (math.isfinite(u_px) and math.isfinite(v_px)):
+        raise input_error("centre_px", shown(centre_px), "two finite numbers")
+    found = _glidelab.fit_marker(_grey(image, "image"), u_px, v_px,
+                                 above_0("radius_px", radius_px, "pixels, above 0"), switch("shaded", shaded),
+                                 switch("dark", dark))
     return None if found is None else Marker(*found)

@@ -9,6 +9,7 @@ from typing import Any, Optional, Union
 
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR
+from ._checks import above_0, text
 from ._errors import input_error
 from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller, whole
 from ._results import Made, Result, frame_of, html_table
@@ -207,16 +208,17 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
     -----
     docs/guide/trust.md describes the twins: a parametric bootstrap (Efron and Tibshirani 1993) of the whole analysis.
     """
-    names: list[PathLike] = [source] if isinstance(source, (str, os.PathLike)) else list(source)
+    names: list[PathLike] = [source] if isinstance(source, (str, os.PathLike)) else (
+        list(source) if isinstance(source, Sequence) else [])
     if not names or not all(is_path(one) for one in names):
         raise input_error("source", f"a {type(source).__name__}", "names of folders or files")
     paths = [os.fspath(one) for one in names]
     files = file_options(paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                          incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                          gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
-    if bandwidth_s is not None and not bandwidth_s > 0.0:
-        raise input_error("bandwidth_s", f"{bandwidth_s:g}", "seconds, above 0")
-    made = Made(_glidelab.certify(paths, whole("twins", twins, 20, 200), estimator, bandwidth_s, checked_seed(seed),
+    bandwidth = None if bandwidth_s is None else above_0("bandwidth_s", bandwidth_s, "seconds, above 0")
+    text("estimator", estimator, f"one of {', '.join(_glidelab.estimator_names())}")
+    made = Made(_glidelab.certify(paths, whole("twins", twins, 20, 200), estimator, bandwidth, checked_seed(seed),
                                   job_count(jobs), files, teller(progress)))
     found = Result(made).to_dict()
     return Certificate(made, found["answer"], found["holds"], found["twins"], found["estimator"], found["by"],

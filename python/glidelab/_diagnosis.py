@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, frozen
+from ._checks import optional_real, real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_scenario, given_tracks,
                       job_count, refuse, refuse_of_arrays, source_of, teller)
 from ._recovered import Recovered, recovered_of
-from ._results import Made, Result, frame_of, html_plot, html_table, new_axes
+from ._results import BY_ROW, Made, Result, frame_of, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
@@ -227,19 +228,22 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
     stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
                               "incline_sd_deg": incline_sd_deg, "force_n": force_n}
     given = source_of(source, x_m, **stated)
+    left_out = texts("without", without, "a list of effects, such as [\"quadratic_drag\"]")
     if given.paths:
-        refuse({"force_n": force_n})
+        refuse({"force_n": force_n}, "a file's force is one of its columns")
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
-        return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), list(without), job_count(jobs), files,
+        return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), left_out, job_count(jobs), files,
                                                       teller(progress)))
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
-                                       "most_megapixels": most_megapixels},
+                                       "most_megapixels": most_megapixels}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
                       "force_n": force_n})
-    return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), (gravity_m_s2, gravity_sd_m_s2), name,
-                                                   list(without), job_count(jobs), teller(progress)))
+    gravity = (optional_real("gravity_m_s2", gravity_m_s2, "m/s², above 0, or None"),
+               optional_real("gravity_sd_m_s2", gravity_sd_m_s2, "m/s², from 0 on, or None"))
+    return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), gravity, text("name", name), left_out,
+                                                   job_count(jobs), teller(progress)))
 
 
 @dataclass(frozen=True)
@@ -288,9 +292,13 @@ class Plan(Result):
     notes: tuple[str, ...]
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, one row per effect."""
-        return frame_of({name: [getattr(one, name) for one in self.effects]
-                         for name in ("id", "parameter", "seen", "seen_from", "alike")})
+        """A pandas.DataFrame, one row per effect; the column ``unit`` has that of ``seen_from``."""
+        columns = {name: [getattr(one, name) for one in self.effects]
+                   for name in ("id", "parameter", "seen", "seen_from", "alike")}
+        columns["unit"] = [_glidelab.unit_of_key(one.parameter) for one in self.effects]
+        frame = frame_of(columns)
+        frame.attrs["units"]["seen_from"] = BY_ROW
+        return frame
 
     def _repr_html_(self) -> str:
         rows = [[one.id, one.parameter, "" if one.seen_from is None else f"{one.seen_from:.3g}", ", ".join(one.alike)]
@@ -335,13 +343,15 @@ def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[f
         _only("noise_m", noise_m, "a scenario: recorded positions show their own noise")
         _only("seed", seed, "a scenario")
         given = source_of(tracks, None)
-        outcome = _glidelab.plan_arrays(given_tracks(given.tracks), (gravity_m_s2, None), name, job_count(jobs),
+        gravity = (optional_real("gravity_m_s2", gravity_m_s2, "m/s², above 0, or None"), None)
+        outcome = _glidelab.plan_arrays(given_tracks(given.tracks), gravity, text("name", name), job_count(jobs),
                                         teller(progress))
     else:
         if noise_m is None:
             raise input_error("noise_m", "nothing", "the position noise in metres, which a scenario does not state")
+        noise_m = real("noise_m", noise_m, "a number of metres from 1e-9 to 1")
         if not 1e-9 <= noise_m <= 1.0:
-            raise input_error("noise_m", repr(noise_m), "a number of metres from 1e-9 to 1")
+            raise input_error("noise_m", f"{noise_m:g}", "a number of metres from 1e-9 to 1")
         outcome = _glidelab.plan_scenario(given_scenario(source), noise_m, checked_seed(seed), job_count(jobs),  # type: ignore[arg-type]
                                           teller(progress))
     made = Made(outcome)
@@ -353,4 +363,4 @@ def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[f
 
 def _only(key: str, value: object, where: str) -> None:
     if value is not None:
-        raise input_error(key, repr(value), f"nothing: it is for {where}")
+        raise input_error(key, shown(value), f"nothing: it is for {where}")

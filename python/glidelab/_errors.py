@@ -31,6 +31,17 @@ class Issue:
     expected: str
 
 
+_ARGUMENTS = {"--target": "targets", "--mass": "mass_kg", "--masses": "masses_kg", "--incline": "incline_deg",
+              "--out": "folder"}  # the others are called as their options are
+
+
+def _argument(key: str) -> str:
+    """"estimator_command" for "--estimator-command"; several are separated by commas."""
+    if not key.startswith("--"):
+        return key
+    return ", ".join(_ARGUMENTS.get(one, one[2:].replace("-", "_")) for one in key.split(", "))
+
+
 class Error(Exception):
     """The base of all that follow."""
 
@@ -45,8 +56,12 @@ class InputError(Error, ValueError):
     """
 
     def __init__(self, message: str, issues: Sequence[tuple[str, int, str, str, str]]) -> None:
+        for key in {issue[2] for issue in issues}:
+            if key.startswith("--"):  # what a room calls by the command's option is an argument here
+                message = message.replace(f"{key}: found", f"{_argument(key)}: found")
         super().__init__(message)
-        self.issues: tuple[Issue, ...] = tuple(Issue(*issue) for issue in issues)
+        self.issues: tuple[Issue, ...] = tuple(
+            Issue(file, line, _argument(key), found, expected) for file, line, key, found, expected in issues)
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, list[tuple[str, int, str, str, str]]]]:
         issues = [(one.file, one.line, one.key, one.found, one.expected) for one in self.issues]
@@ -78,11 +93,26 @@ class InputError(Error, ValueError):
         return self.issues[0].expected
 
 
-def input_error(key: str, found: str, expected: str, file: str = "") -> InputError:
-    """An InputError with one issue, in the words that the C++ rooms use."""
+def _described(issue: tuple[str, int, str, str, str]) -> str:
+    file, _, key, found, expected = issue
     where = f"{file}: {key}" if file and key else file or key
-    message = f"{where}: found {found}, expected {expected}" if where else f"found {found}, expected {expected}"
-    return InputError(message, [(file, 0, key, found, expected)])
+    return f"{where}: found {found}, expected {expected}" if where else f"found {found}, expected {expected}"
+
+
+_MOST_LINES = 20  # of a message, as of the program's
+
+
+def input_errors(issues: Sequence[tuple[str, int, str, str, str]]) -> InputError:
+    """An InputError with these issues, in the words that the C++ rooms use."""
+    lines = [_described(issue) for issue in issues[:_MOST_LINES]]
+    if len(issues) > _MOST_LINES:
+        lines.append(f"and {len(issues) - _MOST_LINES} more")
+    return InputError("\n".join(lines), issues)
+
+
+def input_error(key: str, found: str, expected: str, file: str = "") -> InputError:
+    """The same with one issue."""
+    return input_errors([(file, 0, key, found, expected)])
 
 
 class NumericalError(Error, ArithmeticError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 import signal
 import threading
@@ -17,13 +18,14 @@ import numpy as np
 
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR, analyze
+from ._checks import real, shown
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._recovered import QUANTITIES
 from ._results import NORMAL95, Quantity, frame_of, html_table, rounded, words_of
 
-Found = Union[float, tuple[float, float], Quantity, None]
-Estimator = Callable[[Sequence[Track]], Mapping[str, Found]]
+Found = Union[float, Sequence[float], Mapping[str, Any], Quantity, None]
+Estimator = Callable[[list[Track]], Mapping[str, Found]]
 _Function = TypeVar("_Function", bound=Estimator)
 
 _registered: dict[str, Estimator] = {}
@@ -36,8 +38,9 @@ def estimator(function: _Function) -> _Function:
     ----------
     function : callable
         Called with the tracks of one configuration (one mass on one slope), a list of `Track`; returns a dict with any
-        of ``k_over_m_1_s``, ``mu``, ``alpha_deg``, ``v_lim_m_s``, each a number, a pair of number and standard deviation,
-        or a `Quantity`. What it cannot determine it leaves out, or gives as None.
+        of ``k_over_m_1_s``, ``mu``, ``alpha_deg``, ``v_lim_m_s``, each a number, a pair of number and standard deviation
+        (tuple, list or array), a dict ``{"value": ..., "sd": ..., "interval95": [..., ...]}`` as in results.json (the
+        last two may be left out), or a `Quantity`. What it cannot determine it leaves out, or gives as None or NaN.
 
     Returns
     -------
@@ -92,7 +95,7 @@ class Judged:
     covered: Optional[float]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Judgement:
     """How estimators did on the same motions.
 
@@ -113,6 +116,10 @@ class Judgement:
     seconds: Mapping[str, float]
     failures: Mapping[str, str]
 
+    def failed(self, estimator_name: str) -> int:
+        """Replicates in which an estimator failed."""
+        return max((row.failed for row in self.rows if row.estimator == estimator_name), default=0)
+
     def of(self, estimator_name: str, quantity: str) -> tuple[Judged, ...]:
         """The rows of one estimator and one quantity, one per configuration."""
         return tuple(row for row in self.rows if row.estimator == estimator_name and row.quantity == quantity)
@@ -127,19 +134,29 @@ class Judgement:
         def text(value: Optional[float]) -> str:
             return "" if value is None else f"{value:.3g}"
         return [[row.configuration, words_of(row.quantity), row.estimator, rounded(row.truth, None),
-                 f"{row.answered} of {self.replicates}", text(row.bias), text(row.rms),
+                 f"{row.answered} of {self.replicates}" + (f", {row.failed} failed" if row.failed else ""),
+                 text(row.bias), text(row.rms),
                  "" if row.covered is None else f"{100.0 * row.covered:.0f} %"] for row in self.rows]
 
     def __str__(self) -> str:
         rows = [list(_HEADER), *self._table()]
         widths = [max(len(row[i]) for row in rows) for i in range(len(_HEADER))]
-        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+        lines = self._failures()
+        lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
         lines += [f"{name}: {1e3 * seconds:.2f} ms an experiment" for name, seconds in self.seconds.items()]
-        lines += [f"{name} failed first with: {what}" for name, what in self.failures.items()]
         return "\n".join(lines) + "\n"
 
+    def __repr__(self) -> str:
+        return "<glidelab.Judgement>"
+
+    def _failures(self) -> list[str]:
+        """A line for each estimator that failed: what is below is not about these replicates."""
+        return [f"{name} failed in {self.failed(name)} of {self.replicates} replicates, first with: {what}"
+                for name, what in self.failures.items()]
+
     def _repr_html_(self) -> str:
-        return html_table(list(_HEADER), self._table())
+        failed = "".join(f"<p><b>{html.escape(line)}</b></p>" for line in self._failures())
+        return failed + html_table(list(_HEADER), self._table())
 
 
 _HEADER = ("configuration", "quantity", "estimator", "truth", "answers", "mean error", "rms error", "95 % hold")
@@ -189,6 +206,14 @@ def _sd(said: Any, key: str) -> float:
     return sd
 
 
+def _ends(stated: Any, key: str) -> tuple[float, float]:
+    try:
+        low, high = stated
+    except (TypeError, ValueError):
+        raise _Wrong(f"{key}: found the interval {stated!r:.60}, expected two numbers") from None
+    return _number(low, key), _number(high, key)
+
+
 def _quantity(found: Any, key: str) -> Quantity:
     """An estimator's answer, checked; _Wrong if it is not a valid answer."""
     if found is None or (isinstance(found, Quantity) and found.value is None):
@@ -198,7 +223,11 @@ def _quantity(found: Any, key: str) -> Quantity:
     stated: Any = None
     if isinstance(found, Quantity):
         value, sd, stated = found.value, found.sd, found.interval95
-    elif isinstance(found, (tuple, list)):
+    elif isinstance(found, Mapping):
+        if "value" not in found:
+            raise _Wrong(f"{key}: found {found!r:.60}, expected the key \"value\" in a dict")
+        value, sd, stated = found["value"], found.get("sd"), found.get("interval95")
+    elif isinstance(found, (tuple, list)) or (isinstance(found, np.ndarray) and found.shape == (2,)):
         if len(found) != 2:
             raise _Wrong(f"{key}: found {len(found)} numbers, expected a number, or a number and its standard deviation")
         value, sd = found
@@ -206,12 +235,14 @@ def _quantity(found: Any, key: str) -> Quantity:
         value, sd = found, None
     value = _number(value, key)
     answer = Quantity(value, None if sd is None else _sd(sd, key))
-    if not math.isfinite(value):
-        return Quantity(why="not finite")
+    if math.isinf(value):
+        raise _Wrong(f"{key}: found {value:g}, expected a finite number, or None where it is not determined")
+    if math.isnan(value):
+        return Quantity(why="not a number")
     if stated is not None:
-        low, high = (_number(end, key) for end in stated)
-        if not low <= high:
-            raise _Wrong(f"{key}: found an interval from {low:g} to {high:g}, expected one that rises")
+        low, high = _ends(stated, key)
+        if not low <= value <= high:
+            raise _Wrong(f"{key}: found an interval from {low:g} to {high:g}, expected one with the value in it")
         return replace(answer, interval95=(low, high))
     if answer.sd is None:
         return answer
@@ -365,16 +396,18 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
     for one in chosen:
         name = one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__)
         if isinstance(one, str) and one not in _glidelab.estimator_names():
-            raise input_error("estimators", f"\"{one}\"", f"a function, or one of {', '.join(_glidelab.estimator_names())}")
+            raise input_error("estimators", f"\"{one}\"", f"a function, or one of {', '.join(_glidelab.estimator_names())}"
+                              + _glidelab.did_you_mean(one, _glidelab.estimator_names()))
         if not callable(one) and not isinstance(one, str):
             raise input_error("estimators", repr(one), "a function, or the name of a built-in estimator")
         if name in named:
             raise input_error("estimators", f"\"{name}\" a second time", "each once, with a name of its own")
         named[name] = one
-    if isinstance(replicates, bool) or not isinstance(replicates, int) or replicates < 2:
-        raise input_error("replicates", repr(replicates), "a whole number of 2 or more")
+    if isinstance(replicates, bool) or not isinstance(replicates, (int, np.integer)) or replicates < 2:
+        raise input_error("replicates", shown(replicates), "a whole number of 2 or more")
+    replicates = int(replicates)
     _checked_seconds(seconds)
-    maker = _glidelab.TrackMaker(given_scenario(scenario), noise_m)
+    maker = _glidelab.TrackMaker(given_scenario(scenario), real("noise_m", noise_m, "a number of metres above 0"))
     first = checked_seed(seed)
     first = maker.seed if first is None else first
     threads, told = job_count(jobs), teller(progress)

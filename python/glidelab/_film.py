@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Optional, Union
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _glidelab
 from ._arrays import frozen
+from ._checks import file_name, switch
 from ._errors import input_error
 from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario, job_count, teller
 
@@ -151,8 +151,9 @@ def render_folder(scenario: Scenario, folder: PathLike, *, seed: Optional[int] =
     -----
     docs/reference/experiment-folder.md has the form of the folder.
     """
-    if not os.fspath(folder):
+    name = file_name("folder", folder, "the name of a folder")
+    if not name:
         raise input_error("folder", "nothing", "the name of a folder")
-    found: tuple[Any, ...] = _glidelab.render_folder(given_scenario(scenario), os.fspath(folder), checked_seed(seed),
-                                                     ideal, job_count(jobs), teller(progress))
+    found: tuple[Any, ...] = _glidelab.render_folder(given_scenario(scenario), name, checked_seed(seed),
+                                                     switch("ideal", ideal), job_count(jobs), teller(progress))
     return Rendered(*found)

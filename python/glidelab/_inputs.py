@@ -6,7 +6,7 @@ import importlib
 import math
 import os
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import vector
+from ._checks import above_0, file_name, optional_real, real, shown, switch, text
 from ._errors import input_error
 from ._toml import toml_text
 
@@ -51,12 +52,12 @@ class Track:
         Tracks of one group share one set-up of the track. Without it, those of one stated inclination do.
     """
 
-    t_s: ArrayLike
-    x_m: ArrayLike
+    t_s: Any  # array_like; an estimator is given arrays
+    x_m: Any
     mass_kg: Optional[float] = None
     incline_deg: float = 0.0
     name: str = ""
-    force_n: Optional[ArrayLike] = None
+    force_n: Any = None
     mass_sd_kg: float = 0.0
     incline_sd_deg: Optional[float] = None
     launched: str = "unknown"
@@ -67,13 +68,17 @@ def given_tracks(tracks: Sequence[Track]) -> list[_glidelab.GivenTrack]:
     """As the C++ side takes them."""
     given = []
     for number, track in enumerate(tracks, 1):
-        name = track.name or (f"track-{number}" if len(tracks) > 1 else "track")
+        name = text("name", track.name) or (f"track-{number}" if len(tracks) > 1 else "track")
         of = f'track "{name}"'
         force = np.empty(0) if track.force_n is None else vector("force_n", track.force_n, of)
         given.append(
             _glidelab.GivenTrack(name, vector("t_s", track.t_s, of), vector("x_m", track.x_m, of), force,
-                                 track.mass_kg, track.mass_sd_kg, track.incline_deg, track.incline_sd_deg,
-                                 track.launched, track.group))
+                                 optional_real("mass_kg", track.mass_kg, "kilograms, or None", of),
+                                 real("mass_sd_kg", track.mass_sd_kg, "kilograms", of),
+                                 real("incline_deg", track.incline_deg, "degrees", of),
+                                 optional_real("incline_sd_deg", track.incline_sd_deg, "degrees, or None", of),
+                                 text("launched", track.launched, "up, down, released or unknown", of),
+                                 text("group", track.group, "text", of)))
     return given
 
 
@@ -115,42 +120,42 @@ Runs = Union[str, Sequence[int], None]
 
 
 def _positive(key: str, value: float, unit: str = "kilograms") -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise input_error(key, f"a {type(value).__name__}", f"{unit}, above 0")
-    if not (math.isfinite(value) and value > 0.0):
-        raise input_error(key, f"{value:g}", f"{unit}, above 0")
-    return float(value)
+    return above_0(key, value, f"{unit}, above 0")
 
 
 def _runs_text(runs: Runs) -> str:
     if runs is None or isinstance(runs, str):
         return runs or ""
-    numbers = list(runs)
+    numbers = list(runs) if isinstance(runs, Iterable) else []
     if not numbers or not all(isinstance(one, (int, np.integer)) and not isinstance(one, bool) for one in numbers):
-        raise input_error("runs", repr(runs), 'numbers of runs, from 1 on, or "all"')
+        raise input_error("runs", shown(runs), 'numbers of runs, from 1 on, or "all"')
     return ",".join(str(one) for one in numbers)
 
 
-def refuse(options: Mapping[str, object]) -> None:
-    """Arguments that do not apply here."""
+def refuse(options: Mapping[str, object], why: str) -> None:
+    """Arguments that do not apply here, and why."""
     for key, value in options.items():
         if value is not None:
-            raise input_error(key, repr(value), "nothing: a Track or a file states its own, and column is for files")
+            raise input_error(key, shown(value), f"nothing: {why}")
 
 
-def refuse_of_arrays(of_numbers: bool, of_files: Mapping[str, object], of_motion: Mapping[str, object]) -> None:
-    """Arrays have no columns and runs; a Track states its own mass, inclination and force, (t, x) does not."""
-    refuse(of_files)
+def refuse_of_arrays(of_numbers: bool, of_files: Mapping[str, object], allow_outside: bool,
+                     of_motion: Mapping[str, object]) -> None:
+    """Arrays have no columns, runs and images; a Track states its own mass, inclination and force, (t, x) does not."""
+    refuse(of_files, "it is for files and folders, and these are arrays")
+    if switch("allow_outside", allow_outside):
+        refuse({"allow_outside": True}, "it is for folders, and these are arrays")
     if not of_numbers:
-        refuse(of_motion)
+        refuse(of_motion, "a Track states its own")
 
 
 def _megapixels(most: Optional[float]) -> Optional[float]:
     most_decoded = 1000.0  # OpenCV decodes no image of more than 2^30 pixels
-    if most is not None and (isinstance(most, bool) or not isinstance(most, (int, float, np.integer, np.floating))
-                             or not 0.0 < most <= most_decoded):
-        raise input_error("most_megapixels", repr(most), f"millions of pixels, above 0 and at most {most_decoded:g}")
-    return None if most is None else float(most)
+    expected = f"millions of pixels, above 0 and at most {most_decoded:g}"
+    number = optional_real("most_megapixels", most, expected)
+    if number is not None and not 0.0 < number <= most_decoded:
+        raise input_error("most_megapixels", f"{number:g}", expected)
+    return number
 
 
 def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Optional[float], *, column: str = "",
@@ -159,35 +164,40 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
                  gravity_sd_m_s2: Optional[float] = None, runs: Runs = None,
                  masses_kg: Optional[Sequence[float]] = None) -> _glidelab.FileOptions:
     """What is stated along with files with a track; a folder's experiment.toml says the same of its clips."""
+    text("column", column, "a column's header or its number, as text")
     steepest_deg = 90.0  # a fall
     given = {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg,
              "incline_sd_deg": incline_sd_deg, "gravity_m_s2": gravity_m_s2, "gravity_sd_m_s2": gravity_sd_m_s2,
              "runs": runs, "masses_kg": masses_kg}
     for key, value in given.items():
         if value is not None and any(os.path.isdir(path) for path in paths):
-            raise input_error(key, repr(value), "none for a folder: its experiment.toml states it")
+            raise input_error(key, shown(value), "none for a folder: its experiment.toml states it")
     if runs is not None and column:
         raise input_error("column", repr(column), "none with runs, each of which has a column of its own")
     if masses_kg is not None and runs is None:
         raise input_error("masses_kg", repr(masses_kg), "runs= as well: which of the file's runs they belong to")
     if masses_kg is not None and mass_kg is not None:
         raise input_error("mass_kg", repr(mass_kg), "none with masses_kg")
+    incline_deg = optional_real("incline_deg", incline_deg, "degrees, from -90 to 90")
     if incline_deg is not None and not abs(incline_deg) <= steepest_deg:  # NaN is not
         raise input_error("incline_deg", f"{incline_deg:g}", "degrees, from -90 to 90")
     if incline_sd_deg is not None and incline_deg is None:
         raise input_error("incline_sd_deg", repr(incline_sd_deg), "incline_deg, whose uncertainty it is, as well")
     if gravity_sd_m_s2 is not None and gravity_m_s2 is None:
         raise input_error("gravity_sd_m_s2", repr(gravity_sd_m_s2), "gravity_m_s2, whose uncertainty it is, as well")
+    gravity_sd_m_s2 = optional_real("gravity_sd_m_s2", gravity_sd_m_s2, "metres per second squared, from 0 on")
     if gravity_sd_m_s2 is not None and not (math.isfinite(gravity_sd_m_s2) and gravity_sd_m_s2 >= 0.0):
         raise input_error("gravity_sd_m_s2", f"{gravity_sd_m_s2:g}", "metres per second squared, from 0 on")
-    return _glidelab.FileOptions(column, None if mass_kg is None else _positive("mass_kg", mass_kg),
-                                 None if incline_deg is None else float(incline_deg),
+    masses = () if masses_kg is None else masses_kg
+    if isinstance(masses, str) or not isinstance(masses, Iterable):
+        raise input_error("masses_kg", shown(masses), "a list of kilograms")
+    return _glidelab.FileOptions(column, None if mass_kg is None else _positive("mass_kg", mass_kg), incline_deg,
                                  None if incline_sd_deg is None else _positive("incline_sd_deg", incline_sd_deg,
                                                                                "degrees"),
                                  None if gravity_m_s2 is None else _positive("gravity_m_s2", gravity_m_s2,
                                                                              "metres per second squared"),
-                                 None if gravity_sd_m_s2 is None else float(gravity_sd_m_s2), _runs_text(runs),
-                                 [_positive("masses_kg", one) for one in masses_kg or ()], allow_outside,
+                                 gravity_sd_m_s2, _runs_text(runs), [_positive("masses_kg", one) for one in masses],
+                                 switch("allow_outside", allow_outside),
                                  _megapixels(most_megapixels))
 
 
@@ -195,9 +205,7 @@ def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:
     """The file, or what a dict is called in messages and its text."""
     if isinstance(scenario, Mapping):
         return "scenario", toml_text(scenario)
-    if not is_path(scenario):
-        raise input_error("scenario", f"a {type(scenario).__name__}", "the name of a file, or a dict")
-    return os.fspath(scenario), None
+    return file_name("scenario", scenario, "the name of a file, or a dict"), None
 
 
 def load_scenario(file: PathLike) -> dict[str, Any]:
@@ -217,16 +225,17 @@ def load_scenario(file: PathLike) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The file is not TOML.
-    OSError
-        The file cannot be read.
+        There is no such file, it cannot be read, or is not TOML.
     """
-    path = Path(file)
-    with path.open("rb") as opened:
-        try:
-            scenario = tomllib.load(opened)
-        except tomllib.TOMLDecodeError as error:
-            raise input_error("", str(error), "a TOML file", str(path)) from None
+    path = Path(file_name("file", file))
+    try:
+        scenario = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise input_error("", (error.strerror or "nothing").lower(), "a scenario file that can be read", str(path)) from None
+    except UnicodeDecodeError:
+        raise input_error("", "bytes that are not UTF-8", "a TOML file", str(path)) from None
+    except tomllib.TOMLDecodeError as error:
+        raise input_error("", str(error), "a TOML file", str(path)) from None
     camera = scenario.get("camera_file")
     if isinstance(camera, str):
         scenario["camera_file"] = str((path.parent / camera).resolve())
@@ -235,9 +244,9 @@ def load_scenario(file: PathLike) -> dict[str, Any]:
 
 def whole(name: str, value: int, least: int, most: int) -> int:
     """A whole number within limits, InputError for another."""
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise input_error(name, repr(value), f"a whole number from {least} to {most}")
-    return value
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
+        raise input_error(name, shown(value), f"a whole number from {least} to {most}")
+    return int(value)
 
 
 def job_count(jobs: Optional[int]) -> int:
@@ -245,7 +254,7 @@ def job_count(jobs: Optional[int]) -> int:
     if jobs is None:
         return os.cpu_count() or 1
     if isinstance(jobs, bool) or not isinstance(jobs, (int, np.integer)) or not 1 <= jobs <= 1024:
-        raise input_error("jobs", repr(jobs), "a whole number from 1 to 1024")
+        raise input_error("jobs", shown(jobs), "a whole number from 1 to 1024")
     return int(jobs)
 
 
@@ -254,7 +263,7 @@ def checked_seed(seed: Optional[int]) -> Optional[int]:
     if seed is None:
         return None
     if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
-        raise input_error("seed", repr(seed), "a whole number from 0 to 18446744073709551615")
+        raise input_error("seed", shown(seed), "a whole number from 0 to 18446744073709551615")
     return int(seed)
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
+from ._checks import above_0, text
 from ._errors import input_error
 
 _MOST_MEGABYTES = 1e9  # as of the command's --estimator-megabytes: no computer has as much
@@ -59,15 +59,13 @@ def given_command(command: Optional[str], name: str, seconds: float,
                   megabytes: float) -> Optional[_glidelab.EstimatorCommand]:
     """As the C++ side takes it; None without a command."""
     for key, value in (("estimator_seconds", seconds), ("estimator_megabytes", megabytes)):
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
-            raise input_error(key, repr(value), "a number above 0")
+        above_0(key, value, "a number above 0")
+    text("estimator_name", name)
     if megabytes > _MOST_MEGABYTES:
         raise input_error("estimator_megabytes", repr(megabytes), f"at most {_MOST_MEGABYTES:g}")
     if command is None:
         if name:
             raise input_error("estimator_name", repr(name), "estimator_command= as well")
         return None
-    if not isinstance(command, str):
-        raise input_error("estimator_command", f"a {type(command).__name__}",
-                          "a string such as \"python3 mine.py {folder} {out}\"")
+    text("estimator_command", command, "a string such as \"python3 mine.py {folder} {out}\"")
     return _glidelab.EstimatorCommand(command, name, float(seconds), float(megabytes))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
+from ._checks import file_name
 from ._inputs import PathLike, Progress, Runs, file_options, job_count, teller
 from ._results import Made, Result, frame_of, html_table
 
@@ -90,7 +90,7 @@ def check(source: PathLike, *, allow_outside: bool = False, most_megapixels: Opt
     -----
     docs/reference/check.md lists what is looked at, with its limits.
     """
-    path = os.fspath(source)
+    path = file_name("source", source, "the name of a folder or a file")
     files = file_options([path], allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                          incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                          gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _glidelab
 from ._arrays import Vector, frozen
+from ._checks import optional_real
 from ._inputs import Progress, Scenario, Track, given_scenario, teller
 from ._results import Made, Result, frame_of, html_plot, html_table, new_axes
 
@@ -138,7 +139,8 @@ def simulate(scenario: Scenario, *, rate_hz: Optional[float] = None, progress: P
     -----
     CVODES (Hindmarsh and others 2005), from event to event. docs/reference/scenario.md has the force laws.
     """
-    outcome, states = _glidelab.simulate(given_scenario(scenario), rate_hz, teller(progress))
+    rate = optional_real("rate_hz", rate_hz, "states per second, or None")
+    outcome, states = _glidelab.simulate(given_scenario(scenario), rate, teller(progress))
     made = Made(outcome)
     clips = []
     for found, arrays in zip(Result(made).to_dict()["clips"], states):

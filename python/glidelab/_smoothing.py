@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, vector
-from ._errors import input_error
+from ._checks import optional_real, text
+from ._errors import input_error, input_errors
+from ._inputs import whole
 from ._results import NORMAL95, frame_of, html_plot, html_table, new_axes
 
 
@@ -42,7 +44,7 @@ class Strength:
     simultaneous_a: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Smoothed:
     """Position, velocity and acceleration; all arrays have one length, NaN where too few points lie within reach.
 
@@ -92,7 +94,15 @@ class Smoothed:
         ax.set_ylabel("a (m/s²)")
         return ax
 
-    def _repr_html_(self) -> str:
+    def __str__(self) -> str:
+        rows = self._rows()
+        width = max(len(row[0]) for row in rows)
+        return "\n".join(f"{name.ljust(width)}  {value}" for name, value in rows) + "\n"
+
+    def __repr__(self) -> str:
+        return "<glidelab.Smoothed>"
+
+    def _rows(self) -> list[list[str]]:
         rows = [["points", str(len(self.t_s))], ["bandwidth (s)", f"{self.bandwidth_s:.4g}"]]
         if self.strength is not None:
             rows += [["chosen by", self.strength.method], ["smoothing time (s)", f"{self.strength.time_s:.4g}"],
@@ -103,7 +113,10 @@ class Smoothed:
         for name, words in names.items():
             values, sd = getattr(self, name), getattr(self, f"sd_{name}")
             rows.append([words, _span(values) + ("" if sd is None else f", sd {_span(sd)}")])
-        return html_table(["", ""], rows) + html_plot(self.plot)
+        return rows
+
+    def _repr_html_(self) -> str:
+        return html_table(["", ""], self._rows()) + html_plot(self.plot)
 
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per time, with units in ``attrs["units"]``."""
@@ -118,7 +131,7 @@ def _span(values: Vector) -> str:
     return "none" if finite.size == 0 else f"{finite.min():.3g} to {finite.max():.3g}"
 
 
-def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, *, order: int = 3,
+def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[SupportsFloat] = None, *, order: int = 3,
            kernel: str = "gaussian", noise_m: Optional[float] = None, at_s: Optional[ArrayLike] = None,
            smoother: str = "local-polynomial", breaks_s: Optional[ArrayLike] = None) -> Smoothed:
     """Position, velocity and acceleration by a local polynomial, or by a smoother that finds its own strength.
@@ -129,7 +142,7 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
         Times in seconds, rising; of any spacing.
     x_m : array_like, shape (n,)
         Positions, or any other series over these times.
-    bandwidth_s : float
+    bandwidth_s : float, optional
         Of the local polynomial's kernel, in seconds; for the Gaussian its standard deviation. Not of the others.
     order : int
         1 to 5; 3 is the paper's local cubic.
@@ -138,7 +151,8 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
     noise_m : float, optional
         Standard deviation of one position (`position_noise`): with it, the results' standard deviations are given.
     at_s : array_like, shape (m,), optional
-        Other times at which to evaluate; a local polynomial then gives no standard deviations.
+        Other times at which to evaluate, in any order, within the motion; a local polynomial then gives no standard
+        deviations.
     smoother : {"local-polynomial", "kalman", "spline"}
         ``kalman``: an integrated Wiener or Ornstein-Uhlenbeck process of order 3 to 5, its order, rate and strength
         by marginal likelihood. ``spline``: the spline of the same process, its strength by generalised
@@ -163,6 +177,14 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
     Equations 10 to 12 of the paper; Fan and Gijbels 1996, section 3.2. The weights are exact for any times.
     """
     t, x = vector("t_s", t_s), vector("x_m", x_m)
+    text("smoother", smoother, f"one of {', '.join(_glidelab.smoother_names())}")
+    whole("order", order, 1, 5)
+    text("kernel", kernel)
+    noise_m = optional_real("noise_m", noise_m, "a number of metres, or None")
+    if isinstance(bandwidth_s, str):
+        raise input_error("bandwidth_s", repr(bandwidth_s),
+                          "a time in seconds above 0: choose_bandwidth(t_s, x_m, rule) gives that of a rule")
+    bandwidth_s = optional_real("bandwidth_s", bandwidth_s, "a time in seconds above 0")
     if smoother != "local-polynomial":
         return _smooth_by(smoother, t, x, bandwidth_s, order, kernel, noise_m, at_s, breaks_s)
     if breaks_s is not None:
@@ -171,14 +193,30 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[float] = None, 
         raise input_error("bandwidth_s", "None", "a time in seconds above 0")
     if at_s is None:
         rows = _glidelab.smooth(t, x, bandwidth_s, order, kernel, noise_m)
+        _refuse_nothing(rows[0], bandwidth_s)
         if noise_m is None:
             return Smoothed(t, rows[0], rows[1], rows[2], None, None, None, bandwidth_s)
         return Smoothed(t, rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], bandwidth_s)
     if noise_m is not None:
-        raise input_error("noise_m", repr(noise_m), "none with at_s: standard deviations are those at t_s")
-    at = vector("at_s", at_s)
+        raise input_error("noise_m", f"{noise_m:g}", "none with at_s: standard deviations are those at t_s")
+    at = _within("at_s", vector("at_s", at_s), t)
     rows = _glidelab.smooth_at(t, x, at, bandwidth_s, order, kernel)
+    _refuse_nothing(rows[0], bandwidth_s)
     return Smoothed(at, rows[0], rows[1], rows[2], None, None, None, bandwidth_s)
+
+
+def _refuse_nothing(x: Vector, bandwidth_s: float) -> None:
+    if x.size > 0 and np.isnan(x).all():
+        raise input_error("bandwidth_s", f"{bandwidth_s:g}", "a longer time: within reach of this one no time has points enough")
+
+
+def _within(key: str, times: Vector, t: Vector) -> Vector:
+    """The times, none of which lies outside the motion."""
+    outside = [] if t.size == 0 else np.flatnonzero((times < t[0]) | (times > t[-1])).tolist()
+    if outside:
+        raise input_errors([("", 0, f"{key}[{i}]", f"{times[i]:g}", "a time between the first and the last of t_s")
+                            for i in outside])
+    return times
 
 
 def _smooth_by(smoother: str, t: Vector, x: Vector, bandwidth_s: Optional[float], order: int, kernel: str,
@@ -188,9 +226,12 @@ def _smooth_by(smoother: str, t: Vector, x: Vector, bandwidth_s: Optional[float]
     if (order, kernel) != (3, "gaussian"):
         raise input_error("order" if order != 3 else "kernel", repr(order if order != 3 else kernel),
                           f'the default with "{smoother}": others are for the local polynomial')
-    at = None if at_s is None else vector("at_s", at_s)
+    at = None if at_s is None else _within("at_s", vector("at_s", at_s), t)
+    rising, place = (None, None) if at is None else np.unique(at, return_inverse=True)
     rows, like_s, method, time_s, noise, breaks, jump, factor = _glidelab.smooth_by(
-        smoother, t, x, at, vector("breaks_s", [] if breaks_s is None else breaks_s), noise_m)
+        smoother, t, x, rising, vector("breaks_s", [] if breaks_s is None else breaks_s), noise_m)
+    if place is not None:
+        rows = rows[:, place]
     strength = Strength(method, time_s, noise, breaks, jump, factor)
     return Smoothed(t if at is None else at, rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], like_s, strength)
 
@@ -219,7 +260,7 @@ def bandwidth_rules() -> tuple[BandwidthRule, ...]:
     return tuple(BandwidthRule(*rule) for rule in _glidelab.bandwidth_rules())
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Bandwidth:
     """A bandwidth that a rule chose.
 
@@ -240,6 +281,12 @@ class Bandwidth:
 
     def __float__(self) -> float:
         return self.bandwidth_s
+
+    def __str__(self) -> str:
+        return f"{self.bandwidth_s:.4g} s: {self.method}\n"
+
+    def __repr__(self) -> str:
+        return f"<glidelab.Bandwidth {self.bandwidth_s:.4g} s>"
 
 
 def choose_bandwidth(t_s: ArrayLike, x_m: ArrayLike, rule: str = "plug-in", *,
@@ -272,7 +319,8 @@ def choose_bandwidth(t_s: ArrayLike, x_m: ArrayLike, rule: str = "plug-in", *,
     ``cv-correlated``: De Brabanter and others 2011. docs/guide/bandwidth.md says what each assumes.
     """
     t, x = vector("t_s", t_s), vector("x_m", x_m)
-    pick = _glidelab.choose_bandwidth(t, x, rule, noise_m)
+    text("rule", rule, f"one of {', '.join(one.name for one in bandwidth_rules())}")
+    pick = _glidelab.choose_bandwidth(t, x, rule, optional_real("noise_m", noise_m, "a number of metres, or None"))
     if pick is None:
         raise input_error("t_s", f"{len(t)} points", f"a motion that is long enough for the rule {rule}")
     return Bandwidth(*pick)

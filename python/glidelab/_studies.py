@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
+from ._checks import above_0, optional_real, reals
 from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller, whole
 from ._outside import OutsideRuns, given_command, outside_runs
 from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, new_axes, words_of
@@ -283,9 +284,11 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
     docs/evidence/coverage.md. Intervals of a count are those of Clopper and Pearson (1934).
     """
     command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
-    made = Made(_glidelab.coverage(given_scenario(scenario), noise_m, whole("replicates", replicates, 1, 1000000),
-                                   [float(level) for level in levels], bandwidth_s, command, checked_seed(seed),
-                                   job_count(jobs), teller(progress)))
+    bandwidth = None if bandwidth_s is None else above_0("bandwidth_s", bandwidth_s, "seconds, above 0")
+    noise = optional_real("noise_m", noise_m, "a number of metres, or None")
+    made = Made(_glidelab.coverage(given_scenario(scenario), noise, whole("replicates", replicates, 1, 1000000),
+                                   reals("levels", levels, "a list of levels above 0 and below 1"), bandwidth,
+                                   command, checked_seed(seed), job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     rows = []
     for one in found["quantities"]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
+from ._checks import file_name, text, texts
 from ._errors import input_error
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
 from ._outside import OutsideRuns, given_command, outside_runs
@@ -66,15 +67,19 @@ class Requirement(Result):
         return next((one for one in self.candidates if one.reached), None)
 
     def to_frame(self) -> Any:
-        """A pandas.DataFrame, one row per candidate, with units in ``attrs["units"]``; of several targets the first target's
-        error and bound."""
+        """A pandas.DataFrame, one row per candidate, with units in ``attrs["units"]``; ``error`` and ``bound`` are those of
+        the first target, ``error_2`` and ``bound_2`` of the second, ...; ``attrs["targets"]`` names the targets."""
         columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in (
             "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")}
-        columns["error"] = [one.errors[0] if one.errors else None for one in self.candidates]
-        columns["bound"] = [one.bounds[0] if one.bounds else None for one in self.candidates]
+        units = {}
+        for number, target in enumerate(self.targets):
+            of = "" if number == 0 else f"_{number + 1}"
+            columns[f"error{of}"] = [one.errors[number] if number < len(one.errors) else None for one in self.candidates]
+            columns[f"bound{of}"] = [one.bounds[number] if number < len(one.bounds) else None for one in self.candidates]
+            units[f"error{of}"] = units[f"bound{of}"] = unit_of(target.split()[0])
         frame = frame_of(columns)
-        for column in ("error", "bound"):
-            frame.attrs["units"][column] = unit_of(self.targets[0].split()[0]) if self.targets else ""
+        frame.attrs["units"].update(units)
+        frame.attrs["targets"] = list(self.targets)
         return frame
 
     def _repr_html_(self) -> str:
@@ -119,8 +124,8 @@ def rounded_error(error: float, sd: Optional[float]) -> str:
     return f"{error:.2g}" if sd is None else f"{error:.2g} ± {sd:.1g}"
 
 
-def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks", runs: int = 12, track_runs: int = 200,
-            seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Requirement:
+def require(sweep: PathLike, targets: Sequence[str], *, confirm: Optional[str] = None, runs: int = 20,
+            track_runs: int = 200, seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Requirement:
     """Which cameras and settings of a sweep reach a target, the cheapest first, and what limits the others.
 
     Parameters
@@ -129,10 +134,12 @@ def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks",
         A sweep file over cameras or settings (docs/reference/sweep.md).
     targets : sequence of str
         ``"mu=0.0005"``, ``"k_over_m_1_s:error95=0.01"``, ``"mu:bias=0.0001"``.
-    confirm : {"tracks", "clips", "none"}
-        How candidates that the Cramér-Rao bound allows are confirmed.
+    confirm : {"tracks", "clips", "none"}, optional
+        How candidates that the Cramér-Rao bound allows are judged: by rendered clips, which takes minutes, by tracks
+        with the predicted noise (no lens, shutter, codec and calibration), or not at all. As the command: by clips if
+        the sweep says ``level = "clips"``, else by tracks.
     runs, track_runs : int
-        Rendered runs, with ``confirm="clips"``, and runs as tracks of each candidate.
+        The most rendered runs of a candidate, with clips, and runs as tracks of each.
     seed, jobs, progress
         As in `validate`.
 
@@ -150,11 +157,13 @@ def require(sweep: PathLike, targets: Sequence[str], *, confirm: str = "tracks",
     -----
     docs/evidence/requirements.md. What no camera can undercut is the Cramér-Rao bound (Rao 1945).
     """
-    if isinstance(targets, str):
-        targets = [targets]
-    if not targets:
+    wanted = [targets] if isinstance(targets, str) else texts("targets", targets, "texts such as \"mu=0.0005\"")
+    if not wanted:
         raise input_error("targets", "none", "one or more, such as \"mu=0.0005\"")
-    made = Made(_glidelab.require(os.fspath(sweep), list(targets), confirm, whole("runs", runs, 2, 100000),
+    how = "" if confirm is None else text("confirm", confirm, "none, tracks or clips")
+    if confirm is not None and not how:
+        raise input_error("confirm", "\"\"", "none, tracks or clips")
+    made = Made(_glidelab.require(file_name("sweep", sweep), wanted, how, whole("runs", runs, 2, 100000),
                                   whole("track_runs", track_runs, 2, 1000000), checked_seed(seed), job_count(jobs),
                                   teller(progress)))
     found = Result(made).to_dict()
@@ -290,7 +299,7 @@ def sweep(file: PathLike, folder: PathLike, *, estimator_command: Optional[str] 
     docs/reference/sweep.md. The least standard deviation is the Cramér-Rao bound (Rao 1945).
     """
     command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
-    made = Made(_glidelab.sweep(os.fspath(file), os.fspath(folder), command, checked_seed(seed), job_count(jobs),
+    made = Made(_glidelab.sweep(file_name("file", file), file_name("folder", folder, "the name of a folder"), command, checked_seed(seed), job_count(jobs),
                                 teller(progress)))
     found = Result(made).to_dict()
     return Sweep(made, found["name"], found["runs"], found["failed"], os.path.join(os.fspath(folder), "sweep.sqlite"),

@@ -8,6 +8,7 @@
 #include <variant>
 #include "base/text/number_text.h"
 #include "core/result/results.h"
+#include "core/result/uphill.h"
 #include "core/result/why_unknown.h"
 
 namespace glidelab::report {
@@ -333,12 +334,14 @@ struct AnalysisSentence {
                        of.mass_kg, of.mass_kg / 1000.0);
   }
   std::string operator()(const core::InclineContradiction& of) const {
+    if (core::seems_uphill(of)) {
+      return fmt::format("{}: {} (glidelab check says more)", contradiction_words(of), contradiction_causes(of));
+    }
     return contradiction_words(of) +
            (of.gross || !of.stated.sd_deg
                 ? ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)"
                 : ": an angle or its uncertainty, a length, the frame rate or gravity_m_s2 is wrong; a wrong length "
-                  "also "
-                  "makes the terminal velocity wrong, a wrong rate K/m too (glidelab check says more)");
+                  "also makes the terminal velocity wrong, a wrong rate K/m too (glidelab check says more)");
   }
   std::string operator()(const core::MuFromIncline& of) const {
     return fmt::format("motion in one direction: µ rests on the stated inclination, {}", with_sd(of.deg, of.sd_deg));
@@ -346,7 +349,7 @@ struct AnalysisSentence {
   std::string operator()(const core::GravityAssumed& of) const {
     return fmt::format(
         "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %), because the place is not "
-        "known. A folder can state gravity_m_s2, a file --gravity",
+        "known (gravity_m_s2, for files --gravity, states it)",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
   }
   std::string operator()(const core::RobustFit& of) const {
@@ -380,6 +383,11 @@ std::string contradiction_words(const core::InclineContradiction& of) {
   }
   const char* bound = of.bound == 0 ? "" : of.bound < 0 ? "at most " : "at least ";
   return fmt::format("the acceleration gives an inclination of {}{}, but {}", bound, with_sd(of.deg, of.sd_deg), says);
+}
+
+std::string contradiction_causes(const core::InclineContradiction& of) {
+  if (core::seems_uphill(of)) return "x seems to be positive uphill: it has to rise downhill";
+  return "an angle, a length, the frame rate or gravity_m_s2 is wrong";
 }
 
 std::string slow_fall_words(const core::SlowFall& fall) {

@@ -25,11 +25,16 @@ using validate::ChallengeScore;
 
 constexpr const char* kNoAnswer = "–";
 
-/// Sorted by rank; entrants with equal rank stay in the given order.
+/// Sorted by rank, those without an answer last; entrants with equal rank stay in the given order.
 std::vector<ChallengeRow> ranked(const ChallengeQuantity& of) {
   std::vector<ChallengeRow> rows = of.rows;
-  std::ranges::stable_sort(rows, {}, &ChallengeRow::rank);
+  std::ranges::stable_sort(rows, {}, [](const ChallengeRow& row) { return std::pair(row.answers == 0, row.rank); });
   return rows;
+}
+
+/// Too few cases may not tell an entrant that never answers from the others; it has no rank all the same.
+std::string rank_text(const ChallengeRow& row) {
+  return row.answers == 0 ? "no answer" : fmt::format("{}", row.rank);
 }
 
 std::string mean_text(const std::optional<validate::ScoredMean>& mean) {
@@ -62,7 +67,7 @@ std::vector<std::vector<std::string>> rows_of(const ChallengeScore& score) {
     for (const ChallengeRow& row : ranked(of)) {
       const bool timed = score.timed[row.entrant];
       rows.push_back(
-          {first ? heading_of(of.quantity) : "", fmt::format("{}", row.rank), score.entrants[row.entrant].name,
+          {first ? heading_of(of.quantity) : "", rank_text(row), score.entrants[row.entrant].name,
            part_text(row.answers, row.true_values, row.answered_low95, row.answered_high95), mean_text(row.rms_error),
            part_text(row.covered, row.answers, row.coverage_low95, row.coverage_high95), mean_text(row.interval_score),
            timed ? base::number_text(score.entrants[row.entrant].seconds, 2) : kNoAnswer});
@@ -107,6 +112,15 @@ std::vector<std::string> sentences_of(const ChallengeScore& score) {
   std::vector<std::string> sentences;
   for (const ChallengeQuantity& of : score.quantities) {
     std::size_t apart = 0;
+    const auto answering = static_cast<std::size_t>(
+        std::ranges::count_if(of.rows, [](const ChallengeRow& row) { return row.answers > 0; }));
+    std::vector<std::string> silent;
+    for (const ChallengeRow& row : of.rows) {
+      if (row.answers == 0 && answering > 0) silent.push_back(score.entrants[row.entrant].name);
+    }
+    if (!silent.empty()) {
+      sentences.push_back(fmt::format("{}: no answer from {}.", symbol_of(of.quantity), list_of(silent)));
+    }
     for (const ChallengeDuel& duel : of.duels) {
       if (!(duel.p < validate::kRankLevel)) continue;
       ++apart;
@@ -116,9 +130,10 @@ std::vector<std::string> sentences_of(const ChallengeScore& score) {
                                       score.entrants[one ? duel.other : duel.one].name,
                                       std::max(duel.wins, duel.losses), duel.wins + duel.losses, duel.p));
     }
-    if (apart == 0 && !of.duels.empty()) {
-      sentences.push_back(fmt::format("{}: {} cases do not tell any two of the {} entrants apart.",
-                                      symbol_of(of.quantity), score.challenge.cases, score.entrants.size()));
+    if (apart == 0 && answering > 1) {
+      sentences.push_back(fmt::format("{}: {} cases do not tell any two of the {} entrants{} apart.",
+                                      symbol_of(of.quantity), score.challenge.cases, answering,
+                                      silent.empty() ? "" : " that answer"));
     }
   }
   return sentences;
@@ -127,8 +142,9 @@ std::vector<std::string> sentences_of(const ChallengeScore& score) {
 constexpr const char* kHow =
     "Two entrants are compared case by case: more answers are better, then the lower interval score (width of the 95 % "
     "interval, plus 40 times the distance of the truth outside it). A rank counts the entrants that are better by the "
-    "sign test at 5 %, corrected for all pairs (Holm): entrants that cannot be told apart share a rank. 95 % intervals "
-    "are in brackets.";
+    "sign test at 5 %, corrected for all pairs (Holm): entrants that cannot be told apart share a rank; one without "
+    "any "
+    "answer has none. 95 % intervals are in brackets.";
 
 std::string title_of(const ChallengeScore& score) {
   return fmt::format("Challenge {}, version {}, {} cases", word(score.challenge.level), score.challenge.version,

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "core/result/results.h"
+#include "core/result/uphill.h"
 #include "core/result/why_unknown.h"
 #include "report/analysis/note_words.h"
 
@@ -230,6 +231,9 @@ struct FindingSentence {
             fmt::format("measure the track again, and check {}", lengths_text(of.lengths))};
   }
   FindingWords operator()(const found::InclineOff& of) const {
+    if (core::seems_uphill(of.contradiction)) {
+      return {contradiction_words(of.contradiction), contradiction_causes(of.contradiction)};
+    }
     return {
         contradiction_words(of.contradiction),
         fmt::format("one of these differs from the real set-up: {}, gravity_m_s2, {}{}; a wrong length also makes the "

@@ -170,8 +170,8 @@ std::string failures_html(const std::vector<validate::CoverageFailure>& failures
     const bool again = i > 0 && failures[i - 1].row.configuration == row.configuration &&
                        failures[i - 1].row.estimator == row.estimator && failures[i - 1].row.quantity == row.quantity;
     if (!again) {
-      text += fmt::format("{}<li>{} of {} by the {}: ", i == 0 ? "" : "</li>\n", escape(symbol_of(row.quantity)),
-                          escape(row.configuration), escape(estimator_name(row.estimator)));
+      text += fmt::format("{}<li>{} of {} {}: ", i == 0 ? "" : "</li>\n", escape(symbol_of(row.quantity)),
+                          escape(row.configuration), escape(by_estimator(row.estimator)));
     }
     text += fmt::format("{}{:.1f} % at {}", again ? ", " : "", 100.0 * failures[i].at.coverage,
                         level_text(failures[i].at.level));
@@ -204,7 +204,7 @@ std::string astray_list(const std::vector<validate::CoverageRow>& rows) {
                                          : "; ",
                         escape(symbol_of(row.quantity)), row.sd / row.stated_sd);
     if (i + 1 == rows.size() || !as_next(i + 1)) {
-      text += fmt::format(" of {} by the {}", escape(row.configuration), escape(estimator_name(row.estimator)));
+      text += fmt::format(" of {} {}", escape(row.configuration), escape(by_estimator(row.estimator)));
     }
   }
   return text;
@@ -222,6 +222,9 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
         "terminal velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
   std::string text;
+  if (coverage.outside && coverage.outside->failed() > 0) {
+    text += fmt::format("<p><b>{}</b></p>\n", escape(outside_failed(*coverage.outside)));
+  }
   if (narrow.empty()) {
     text +=
         "<p>The intervals of every estimator but the naive one contain the true value as often as stated, as far as "
@@ -300,16 +303,18 @@ std::string coverage_answer(const validate::Coverage& coverage) {
   for (const validate::CoverageRow& row : coverage.rows) {
     if (row.determined > 0 && row.estimator != validate::kNaiveLines) counted.push_back(&row);
   }
-  if (counted.empty()) return {};
+  const std::string failed = coverage.outside ? outside_failed(*coverage.outside) : std::string();
+  if (counted.empty()) return failed;
   const auto [least, most] = std::minmax_element(
       counted.begin(), counted.end(), [](const auto* a, const auto* b) { return a->coverage < b->coverage; });
   std::string text =
+      (failed.empty() ? failed : failed + " ") +
       fmt::format("The stated 95 % intervals contain the true value in {:.1f} to {:.1f} % of {} replicates, ",
                   100.0 * (*least)->coverage, 100.0 * (*most)->coverage, coverage.replicates);
   std::set<std::string> failing;
   for (const validate::CoverageFailure& one : validate::too_narrow(coverage)) {
-    failing.insert(fmt::format("{} of {} by the {}", symbol_of(one.row.quantity), one.row.configuration,
-                               estimator_name(one.row.estimator)));
+    failing.insert(fmt::format("{} of {} {}", symbol_of(one.row.quantity), one.row.configuration,
+                               by_estimator(one.row.estimator)));
   }
   if (failing.empty()) return text + "as often as stated, as far as this many replicates can tell.";
   return text + fmt::format("less often than stated for {} of {}: {}.", failing.size(), counted.size(),

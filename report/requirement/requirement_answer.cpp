@@ -132,7 +132,7 @@ std::string requirement_answer(const Requirement& requirement) {
   std::string text =
       fmt::format("{} {}. {} comes nearest: expect {}{} ({}).",
                   near->verdict == Verdict::undecided ? "Nothing here is certain to reach" : "Nothing here reaches",
-                  asked_words(requirement), near->name, near->judged_by == validate::Confirm::none ? "at least " : "",
+                  asked_words(requirement), near->name, near->judged_by == validate::Confirm::none ? "at best " : "",
                   expected_words(requirement, *near), judged_words(requirement, *near));
   if (!near->limits.empty() && near->limits.front().gain >= kLeastNamedGain) {
     text += fmt::format(" Its main limitation: {}.", limitation_words(near->limits.front().what));

@@ -155,7 +155,7 @@ std::string counts_text(const Requirement& requirement) {
 
 /// All of them, the cheapest first.
 std::string candidate_table(const Requirement& requirement) {
-  std::vector<std::string> header = {"no.", "camera", "cost", "verdict"};
+  std::vector<std::string> header = {"no.", "camera", "cost", "verdict", "judged by"};
   const std::size_t first_number = header.size();
   for (const Target& target : requirement.targets) {
     header.push_back(escape(target_name(target, scale_of(target).factor)));
@@ -169,14 +169,24 @@ std::string candidate_table(const Requirement& requirement) {
   for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
     const Candidate& candidate = requirement.candidates[i];
     const std::string verdict = escape(candidate_verdict(candidate));
-    std::vector<std::string> row = {std::to_string(i + 1), escape(candidate.name),
-                                    escape(cost_text(requirement, candidate)),
-                                    reached(candidate) ? "<b>" + verdict + "</b>" : verdict};
+    std::vector<std::string> row = {
+        std::to_string(i + 1), escape(candidate.name), escape(cost_text(requirement, candidate)),
+        reached(candidate) ? "<b>" + verdict + "</b>" : verdict, escape(judging_estimators(candidate))};
     for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
     row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
     table.row(row);
   }
   return table.str();
+}
+
+/// Runs in which an estimator gave no answer: they count as infinitely far off, and the other one judges then.
+std::string unanswered_list(const Requirement& requirement) {
+  std::string items;
+  for (const Candidate& candidate : requirement.candidates) {
+    const std::string words = unanswered_words(requirement, candidate);
+    if (!words.empty()) items += fmt::format("<li><b>{}</b>: {}</li>\n", escape(candidate.name), escape(words));
+  }
+  return items.empty() ? items : "<h3>Runs without an answer</h3>\n<ul>\n" + items + "</ul>\n";
 }
 
 /// What limits the candidates that do not reach the target: text, for which a table has no room.
@@ -230,7 +240,11 @@ std::string how_judged(const Requirement& requirement) {
              "<p>95 % of the runs stay within the 95 % error (of fewer than 20 runs: 1.96 times their rms error). A "
              "target is reached where the error's upper limit (“at most”) is within it, and missed "
              "where the lower limit is beyond it: with {} runs or more the limits are two of their errors, with fewer "
-             "they assume normal errors, and few runs decide only what is far from the target. ± is one standard "
+             "they assume normal errors, and few runs decide only what is far from the target; if one of fewer is "
+             "beyond the target, “at most” is not below that error, and the target is not reached. “Judged by” names "
+             "the estimator with the smaller error; one without an answer in a run is infinitely far off there. ± is "
+             "one "
+             "standard "
              "deviation, from {} bootstrap resamples of the runs (of fewer than 20: that of normal errors; bias: that "
              "of the errors over the root of their number). “Runs beyond the target” are those, of all that were made, "
              "whose error is larger: a few that are far off come from frames lost without a trace, not from "
@@ -248,24 +262,28 @@ Page requirement_report(const Requirement& requirement) {
   const std::string next = next_step(requirement);
   if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
   body += figures({requirement_plot(requirement)});
-  body += candidate_table(requirement) + limits_list(requirement);
+  body += candidate_table(requirement) + unanswered_list(requirement) + limits_list(requirement);
   body += folded("How this was judged", how_judged(requirement));
   return page(question, body);
 }
 
 std::string requirement_text(const Requirement& requirement) {
-  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "frames/s", "noise (µm)"}};
+  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "judged by", "frames/s", "noise (µm)"}};
   for (const Target& target : requirement.targets) {
     rows.front().push_back(target_name(target, scale_of(target).factor));
     rows.front().push_back("at most");
     rows.front().push_back("bound" + same_unit(target));
     rows.front().push_back("runs beyond");
   }
-  std::string below;
+  std::string below, unanswered;
   for (const Candidate& candidate : requirement.candidates) {
     rows.push_back({candidate.name, cost_text(requirement, candidate), candidate_verdict(candidate),
-                    base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
+                    judging_estimators(candidate), base::number_text(candidate.frame_rate_hz, 4),
+                    noise_cell(candidate)});
     for (std::string& cell : result_cells(requirement, candidate)) rows.back().push_back(std::move(cell));
+    if (const std::string words = unanswered_words(requirement, candidate); !words.empty()) {
+      unanswered += fmt::format("{}: {}\n", candidate.name, words);
+    }
     if (reached(candidate)) continue;
     const std::string limits = candidate.why.empty() ? limit_text(candidate) : candidate.why;
     if (!limits.empty()) below += fmt::format("{}: {}\n", candidate.name, limits);
@@ -274,7 +292,8 @@ std::string requirement_text(const Requirement& requirement) {
   if (const std::string enough = enough_words(requirement); !enough.empty()) text += enough + "\n";
   text += fmt::format("\n{} on the worst configuration; {} first. {}\n\n", targets_text(requirement),
                       order_text(requirement), counts_text(requirement)) +
-          text_table(rows, 3);
+          text_table(rows, 4);
+  if (!unanswered.empty()) text += "\n" + unanswered;
   if (!below.empty()) text += "\nWhat limits the others (how many times smaller the bound is without it)\n" + below;
   const std::string next = next_step(requirement);
   if (!next.empty()) text += "\n" + next + "\n";

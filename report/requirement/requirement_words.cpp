@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
+#include "report/text/display_text.h"
+
 namespace glidelab::report {
 
 std::string candidate_verdict(const validate::Candidate& candidate) {
@@ -24,6 +29,27 @@ std::string candidate_verdict(const validate::Candidate& candidate) {
       return "refused";
   }
   return {};
+}
+
+std::string judging_estimators(const validate::Candidate& candidate) {
+  std::vector<std::string> names;
+  for (const validate::TargetResult& result : candidate.results) {
+    const std::string name = estimator_name(result.estimator);
+    if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  return names.empty() ? "–" : list_of(names, ", ");
+}
+
+std::string unanswered_words(const validate::Requirement& requirement, const validate::Candidate& candidate) {
+  std::string text;
+  for (std::size_t t = 0; t < candidate.results.size(); ++t) {
+    for (const validate::Unanswered& one : candidate.results[t].unanswered) {
+      text += fmt::format("{}{}: no answer {} in {} of {} runs", text.empty() ? "" : "; ",
+                          symbol_of(requirement.targets[t].quantity), by_estimator(one.estimator), one.runs,
+                          candidate.results[t].runs);
+    }
+  }
+  return text;
 }
 
 std::string limitation_words(validate::Limitation limitation) {

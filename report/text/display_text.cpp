@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "core/result/why_unknown.h"
 #include "diagnose/effects/effect_library.h"
 #include "fit/estimators.h"
@@ -41,6 +42,11 @@ std::string estimator_name(std::string_view estimator) {
   if (const fit::Estimator* known = fit::find_estimator(estimator)) return std::string(known->title);
   if (estimator == validate::kNaiveLines) return "naive lines (for contrast)";
   return std::string(estimator);
+}
+
+std::string by_estimator(std::string_view estimator) {
+  const std::string name = estimator_name(estimator);
+  return name == estimator ? fmt::format("by “{}”", name) : fmt::format("by the {}", name);
 }
 
 std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::ConfigurationResult& configuration) {
@@ -186,10 +192,8 @@ std::string list_of(const std::vector<std::string>& words, const std::string& la
   return text;
 }
 
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return text;
+std::string printable(const std::string& text) {
+  return base::printable_text(text);
 }
 
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number) {

@@ -37,6 +37,8 @@ std::string unit_suffix(std::string_view unit);
 
 /// "fit of the whole motion" for "trajectory"; any other name stays as it is.
 std::string estimator_name(std::string_view estimator);
+/// "by the fit of the whole motion"; "by “mine”" for an outside estimator.
+std::string by_estimator(std::string_view estimator);
 
 /// A recovered quantity with its names.
 struct NamedQuantity {
@@ -98,8 +100,8 @@ std::string shrink_text(const diagnose::GapSizes& gap);
 /// "a, b and c", or with another last word: "a, b, or c".
 std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ");
 
-/// The text with "?" for each control character: a clip's name must not steer the terminal.
-std::string printable(std::string text);
+/// base::printable_text(): a clip's name must not steer the terminal.
+std::string printable(const std::string& text);
 
 /// Columns aligned below their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
 /// characters, not bytes. printable() is applied to every cell.

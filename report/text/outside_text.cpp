@@ -40,8 +40,8 @@ Json outside_json(const fit::OutsideTally& tally) {
 std::string outside_text(const fit::OutsideTally& tally) {
   std::string kinds;
   for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
-    kinds += fmt::format("{}{} {}, first: {}", kinds.empty() ? "" : "; ", kind.count, fit::words_of(failure),
-                         printable(kind.first));
+    kinds += (kinds.empty() ? "" : "; ") + fit::words_of(failure, kind.count);
+    if (failure != fit::OutsideFailure::no_output) kinds += fmt::format(", the first: {}", printable(kind.first));
   });
   const std::string failed =
       tally.failed() == 0
@@ -52,6 +52,16 @@ std::string outside_text(const fit::OutsideTally& tally) {
                                               base::number_text(tally.longest_s, 2))
                                 : std::string();
   return fmt::format("{}: {}{}", printable(tally.name), failed, times);
+}
+
+std::string outside_failed(const fit::OutsideTally& tally) {
+  if (tally.failed() == 0) return {};
+  std::string kinds;
+  for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
+    kinds += (kinds.empty() ? "" : "; ") + fit::words_of(failure, kind.count);
+  });
+  return fmt::format("“{}” failed in {} of {} {}: {}.", printable(tally.name), tally.failed(), tally.runs,
+                     tally.runs == 1 ? "run" : "runs", kinds);
 }
 
 }  // namespace glidelab::report

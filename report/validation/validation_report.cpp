@@ -214,13 +214,15 @@ std::string agreement_of(const validate::Comparison& comparison) {
     worst = in_sd;
     farthest = &q;
   }
-  if (compared == 0) return "No recovered value could be compared with a true one.";
-  std::string text =
+  const std::string failed = comparison.outside ? outside_failed(*comparison.outside) : std::string();
+  std::string text = failed.empty() ? failed : failed + " ";
+  if (compared == 0) return text + "No recovered value could be compared with a true one.";
+  text +=
       fmt::format("{} of {} recovered values lie within two of their standard deviations of the truth", near, compared);
   if (farthest != nullptr) {
-    text += fmt::format("; the largest error is that of {} of {} by the {}: {} standard deviations",
-                        symbol_of(farthest->quantity), farthest->configuration, estimator_name(farthest->estimator),
-                        base::digits_text(worst, 2));
+    text +=
+        fmt::format("; the largest error is that of {} of {} {}: {} standard deviations", symbol_of(farthest->quantity),
+                    farthest->configuration, by_estimator(farthest->estimator), base::digits_text(worst, 2));
   }
   return text + ".";
 }

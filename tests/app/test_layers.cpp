@@ -39,6 +39,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "core/result/results.h",
       "core/result/quantity.h",
       "core/result/analysis_note.h",
+      "core/result/uphill.h",
       "core/result/why_unknown.h",
       "fit/estimators.h",
       "fit/outside/outside_tally.h",

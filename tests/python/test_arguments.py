@@ -54,6 +54,98 @@ class WrongInput(InFolder):
         self.refused(lambda: glidelab.analyze([]), key="source")
         self.refused(lambda: glidelab.plan(SCENARIO), key="noise_m", found="nothing")
 
+    def test_a_single_value_of_a_wrong_type_is_refused_in_words(self):
+        t, x = damped()
+        analyze, track = glidelab.analyze, glidelab.Track
+        for key, found, call in (
+                ("mass_kg", "'0.335'", lambda: analyze(t, x, mass_kg="0.335")),
+                ("mass_kg", "True", lambda: analyze(t, x, mass_kg=True)),
+                ("mass_sd_kg", "'0'", lambda: analyze(track(t, x, mass_sd_kg="0"))),
+                ("incline_deg", "'4'", lambda: analyze(t, x, incline_deg="4")),
+                ("gravity_m_s2", "'9.81'", lambda: analyze(t, x, gravity_m_s2="9.81")),
+                ("gravity_m_s2", "None", lambda: glidelab.diagnose(t, x, gravity_m_s2=None)),
+                ("name", "3", lambda: analyze(t, x, name=3)),
+                ("group", "3", lambda: analyze(track(t, x, group=3))),
+                ("launched", "1", lambda: analyze(track(t, x, launched=1))),
+                ("estimator", "a function", lambda: analyze(t, x, estimator=lambda tracks: {})),
+                ("robust", "'no'", lambda: analyze(t, x, robust="no")),
+                ("with_effects", "'quadratic_drag'", lambda: analyze(t, x, with_effects="quadratic_drag")),
+                ("bandwidth_s", "'gcv'", lambda: glidelab.smooth(t, x, "gcv")),
+                ("order", "2.5", lambda: glidelab.smooth(t, x, 0.05, order=2.5)),
+                ("noise_m", f"an array of shape ({len(t)},)", lambda: glidelab.smooth(t, x, 0.05, noise_m=t)),
+                ("rule", "0.05", lambda: glidelab.choose_bandwidth(t, x, 0.05)),
+                ("noise_m", "'a'", lambda: glidelab.coverage(SCENARIO, noise_m="a")),
+                ("bandwidth_s", "'gcv'", lambda: glidelab.coverage(SCENARIO, bandwidth_s="gcv")),
+                ("bandwidth_s", "-1", lambda: glidelab.coverage(SCENARIO, noise_m=2e-5, bandwidth_s=-1)),
+                ("bandwidth_s", "0", lambda: glidelab.coverage(SCENARIO, noise_m=2e-5, bandwidth_s=0.0)),
+                ("bandwidth_s", "nan", lambda: glidelab.coverage(SCENARIO, noise_m=2e-5, bandwidth_s=math.nan)),
+                ("levels", "0.95", lambda: glidelab.coverage(SCENARIO, levels=0.95)),
+                ("noise_m", "'2e-5'", lambda: glidelab.judge(SCENARIO, noise_m="2e-5")),
+                ("noise_m", "'a'", lambda: glidelab.plan(SCENARIO, noise_m="a")),
+                ("rate_hz", "'a'", lambda: glidelab.simulate(SCENARIO, rate_hz="a")),
+                ("targets", "0.1", lambda: glidelab.require("none.toml", ("mu", 0.1))),
+                ("confirm", "1", lambda: glidelab.require("none.toml", ["mu=1"], confirm=1)),
+                ("file", "3", lambda: glidelab.sweep(3, self.folder)),
+                ("source", "3", lambda: glidelab.check(3)),
+                ("only", "3", lambda: glidelab.blind(1, self.folder, only=3)),
+                ("inner_corners", "9", lambda: glidelab.calibrate([], 9, 0.04)),
+                ("images", "3", lambda: glidelab.calibrate(3, (9, 6), 0.04)),
+                ("centre_px", "(nan, 1.0)", lambda: glidelab.fit_marker(np.zeros((9, 9), np.uint8), (math.nan, 1.0), 3)),
+                ("radius_px", "0", lambda: glidelab.fit_marker(np.zeros((9, 9), np.uint8), (4, 4), 0))):
+            with self.subTest(key=key, found=found):
+                error = self.refused(call, key=key, found=found)
+                self.assertLess(len(str(error)), 300)
+
+    def test_masked_values_are_refused_where_nan_is(self):
+        t, x = damped()
+        masked = np.ma.masked_array(x, mask=np.arange(len(x)) % 100 == 7)
+        self.assertTrue(masked.mask.sum() > 1)
+        for call in (lambda: glidelab.analyze(t, masked), lambda: glidelab.diagnose(t, masked),
+                     lambda: glidelab.analyze(glidelab.Track(t, masked)), lambda: glidelab.smooth(t, masked, 0.02),
+                     lambda: glidelab.choose_bandwidth(t, masked), lambda: glidelab.position_noise(t, masked)):
+            error = self.refused(call, key="x_m[7]", found="a masked value")
+            self.assertEqual(len(error.issues), masked.mask.sum())
+        self.refused(lambda: glidelab.smooth(t, x, 0.02, at_s=np.ma.masked_array(t, t > 1.0)), found="a masked value")
+        self.assertEqual(glidelab.analyze(t, np.ma.masked_array(x)).to_json(), glidelab.analyze(t, x).to_json())
+        image = np.ma.masked_array(np.zeros((9, 9), np.uint8), mask=np.eye(9, dtype=bool))
+        self.refused(lambda: glidelab.fit_marker(image, (4, 4), 2), key="image[0, 0]", found="a masked value")
+        self.refused(lambda: glidelab.calibrate([image] * 3, (9, 6), 0.04), key="images[0][0, 0]")
+
+    def test_an_argument_that_does_not_apply_says_why(self):
+        t, x = damped()
+        for options in ({"runs": "all"}, {"column": "x"}, {"most_megapixels": 3}, {"allow_outside": True}):
+            self.refused(lambda said=options: glidelab.analyze(t, x, **said), key=next(iter(options)),
+                         expected="nothing: it is for f" + ("olders, and these are arrays" if "allow_outside" in options
+                                                            else "iles and folders, and these are arrays"))
+        self.refused(lambda: glidelab.diagnose(glidelab.Track(t, x), mass_kg=0.3), expected="nothing: a Track states its own")
+
+    def test_the_key_is_the_argument_and_a_misspelt_word_finds_its_neighbour(self):
+        t, x = damped()
+        (self.folder / "two.toml").write_text(
+            f'format = 1\nname = "two"\nscenario = "{SCENARIO}"\nlevel = "tracks"\n'
+            '[[vary]]\nkey = "tracks.noise_m"\nvalues = [1e-5]\n')
+        for key, word, call in (
+                ("targets", "alpha_deg", lambda: glidelab.require(self.folder / "two.toml", ["alpha=0.01"])),
+                ("bandwidth", "gcv", lambda: glidelab.analyze(t, x, bandwidth="gvc")),
+                ("rule", "gcv", lambda: glidelab.choose_bandwidth(t, x, "gvc")),
+                ("kernel", "gaussian", lambda: glidelab.smooth(t, x, 0.05, kernel="gausian")),
+                ("estimator", "trajectory", lambda: glidelab.analyze(t, x, estimator="trajectry")),
+                ("estimators", "trajectory", lambda: glidelab.judge(SCENARIO, "trajectry", noise_m=2e-5))):
+            with self.subTest(word):
+                error = self.refused(call, key=key)
+                self.assertIn(f'did you mean "{word}"?', error.expected)
+                self.assertNotIn("--", str(error))
+        self.refused(lambda: glidelab.coverage(SCENARIO, noise_m=2e-5, estimator_command="sh {folder}"),
+                     key="estimator_command")
+
+    def test_a_scenario_that_cannot_be_read(self):
+        (self.folder / "picture.png").write_bytes(bytes(range(256)))
+        (self.folder / "broken.toml").write_text("format = \n")
+        for name in ("missing.toml", "", "picture.png", "broken.toml"):
+            error = self.refused(lambda said=name: glidelab.load_scenario(self.folder / said), file=str(self.folder / name))
+            self.assertTrue(error.found)
+        self.refused(lambda: glidelab.load_scenario(3), key="file")
+
     def test_what_a_file_does_not_say(self):
         t, x = damped()
         file = self.folder / "track.csv"
@@ -71,7 +163,7 @@ class WrongInput(InFolder):
         self.refused(lambda: glidelab.analyze(file, incline_deg=4.0, incline_sd_deg=0.0), key="incline_sd_deg")
         self.refused(lambda: glidelab.analyze(file, masses_kg=[0.3]), key="masses_kg")
         self.refused(lambda: glidelab.analyze(file, runs=[], masses_kg=[0.3]), key="runs")
-        self.refused(lambda: glidelab.analyze(file, runs=[7]), key="--runs", found='"7"')
+        self.refused(lambda: glidelab.analyze(file, runs=[7]), key="runs", found='"7"')
         self.refused(lambda: glidelab.analyze(file, runs=[1], mass_kg=0.3, masses_kg=[0.3]), key="mass_kg")
         self.refused(lambda: glidelab.analyze(file, runs=[1], column="2"), key="column")
         self.refused(lambda: glidelab.analyze(t, x, runs="all"), key="runs")

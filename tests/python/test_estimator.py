@@ -86,7 +86,9 @@ class Judging(unittest.TestCase):
         self.assertRegex(judged.failures["singular"], r"^LinAlgError: Singular matrix \(\w+\.py, line \d+\)$")
         self.assertIn("AttributeError", judged.failures["misspelt"])
         self.assertRegex(judged.failures["own"], r"^Own: of my own \(test_estimator\.py, line \d+\)$")
-        self.assertIn("own failed first with: Own: of my own", str(judged))
+        self.assertIn("own failed in 2 of 2 replicates, first with: Own: of my own", str(judged).splitlines()[2])
+        self.assertIn("0 of 2, 2 failed", str(judged))
+        self.assertIn("own failed in 2 of 2 replicates", judged._repr_html_())
 
     def test_who_wants_to_stop_is_not_held(self):
         for wanted in (KeyboardInterrupt, SystemExit):
@@ -109,7 +111,10 @@ class Judging(unittest.TestCase):
                              ({"mu": (nan, -1.0)}, "mu: found the standard deviation -1"),
                              ({"mu": (0.01, float("inf"))}, "mu: found the standard deviation inf"),
                              ({"mu": glidelab.Quantity(0.01, -0.1)}, "mu: found the standard deviation -0.1"),
-                             ({"mu": glidelab.Quantity(0.01, 0.1, (0.2, 0.0))}, "an interval from 0.2 to 0")):
+                             ({"mu": glidelab.Quantity(0.01, 0.1, (0.2, 0.0))}, "an interval from 0.2 to 0"),
+                             ({"mu": glidelab.Quantity(0.01, 0.1, (0.2, 0.3))}, "an interval from 0.2 to 0.3"),
+                             ({"mu": {"value": 0.01, "interval95": 3.0}}, "mu: found the interval 3.0"),
+                             ({"mu": {"sd": 0.01}}, 'the key "value"'), ({"mu": float("inf")}, "mu: found inf")):
             with self.subTest(answer):
                 judged = glidelab.judge(SCENARIO, lambda tracks, said=answer: said, noise_m=2e-5, replicates=2)
                 self.assertEqual({(row.answered, row.failed, row.stated) for row in judged.rows}, {(0, 2, 0)})
@@ -152,6 +157,10 @@ class Judging(unittest.TestCase):
         self.assertEqual(holds(glidelab.Quantity(1.0, near / 1.97)), {(2, 0.0)})
         self.assertEqual(holds(glidelab.Quantity(1.0, 9.0, (0.9, 1.1))), {(2, 0.0)})
         self.assertEqual(holds(np.float64(1.0)), {(0, None)})
+        self.assertEqual(holds(np.array([1.0, far / 1.95])), {(2, 1.0)})
+        self.assertEqual(holds({"value": 1.0, "sd": near / 1.97}), {(2, 0.0)})
+        self.assertEqual(holds({"value": 1.0, "sd": 0.1, "interval95": [0.0, 1.0]}), {(2, 1.0)})
+        self.assertEqual(holds({"value": 1.0}), {(0, None)})
 
     def test_the_positions_of_the_others_cannot_be_spoilt(self):
         def spoiling(tracks):

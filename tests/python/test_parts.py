@@ -65,6 +65,30 @@ class Smoothing(InFolder):
             at = glidelab.smooth(t, x, smoother=smoother, breaks_s=[0.72], at_s=[0.3025])
             self.assertAlmostEqual(at.a_m_s2[0], 1.2, delta=6.0 * at.sd_a_m_s2[0])
 
+    def test_a_glider_that_stands_is_smoothed_or_refused_by_every_smoother(self):
+        t = np.arange(0.0, 1.0, 0.01)
+        for x in (0.0 * t, 0.0 * t + 0.25):
+            self.assertLess(abs(glidelab.smooth(t, x, 0.05).v_m_s).max(), 1e-12)
+            for smoother in ("kalman", "spline"):
+                try:
+                    self.assertTrue(np.isfinite(glidelab.smooth(t, x, smoother=smoother).v_m_s).all())
+                except glidelab.InputError as error:
+                    self.assertEqual(error.key, "x_m")
+
+    def test_other_times_are_taken_in_any_order_and_within_the_motion_by_every_smoother(self):
+        t, x = damped()
+        for options in ({"bandwidth_s": 0.05}, {"smoother": "kalman", "breaks_s": [0.6]}):
+            rising = glidelab.smooth(t, x, at_s=[0.1, 0.3, 0.5], **options)
+            mixed = glidelab.smooth(t, x, at_s=[0.5, 0.1, 0.3, 0.1], **options)
+            self.assertEqual(mixed.x_m.tolist(), rising.x_m[[2, 0, 1, 0]].tolist())
+            self.assertEqual(mixed.t_s.tolist(), [0.5, 0.1, 0.3, 0.1])
+            with self.assertRaises(glidelab.InputError) as caught:
+                glidelab.smooth(t, x, at_s=[0.1, 9.0], **options)
+            self.assertEqual(caught.exception.key, "at_s[1]")
+        with self.assertRaises(glidelab.InputError) as caught:
+            glidelab.smooth(t, x, 1e-9)
+        self.assertEqual(caught.exception.key, "bandwidth_s")
+
     def test_wrong_input_is_refused(self):
         t, x = damped()
         for call in (lambda: glidelab.smooth(t, x, 0.0), lambda: glidelab.smooth(t, x, math.inf),

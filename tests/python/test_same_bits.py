@@ -1,5 +1,7 @@
 """The module gives the same bits as the command: the JSON is compared as text."""
 
+import inspect
+
 import glidelab
 from tests.python.support import SOURCE, InFolder, damped, read_json, run
 
@@ -142,6 +144,28 @@ class SameBits(InFolder):
                    "-q", "--json", "-o", self.folder / "out")
         self.assertEqual(glidelab.require(self.folder / "two.toml", ["mu=0.001"], track_runs=20, seed=5).to_json(),
                          said)
+
+    def test_require_by_its_defaults_judges_as_the_command_does(self):
+        # A target that the bound forbids renders nothing, and the text says how the others would be judged.
+        for level in ("clips", "tracks"):
+            (self.folder / "sweep.toml").write_text(
+                f'format = 1\nname = "sweep"\nscenario = "{SCENARIO}"\nlevel = "{level}"\n'
+                f'[[vary]]\nkey = "{"camera.exposure_s" if level == "clips" else "tracks.noise_m"}"\nvalues = [1e-3]\n')
+            said = run("require", self.folder / "sweep.toml", "--target", "mu=1e-9", "-q", "-o", self.folder / "out",
+                       status=4)
+            self.assertEqual(str(glidelab.require(self.folder / "sweep.toml", ["mu=1e-9"])), said)
+            self.assertEqual("Judged by" in said, level == "tracks")
+        usual = inspect.signature(glidelab.require).parameters
+        self.assertEqual((usual["confirm"].default, usual["runs"].default, usual["track_runs"].default), (None, 20, 200))
+        self.assertRegex(run("require", "--help"), r"--runs N:INT in \[2 - \d+\]=20\n")
+
+    def test_an_estimator_s_program_that_prints_other_bytes_loses_no_run(self):
+        (self.folder / "mine.sh").write_bytes(b"printf 'ung\\374ltig\\n' >&2; exit 2\n")
+        judged = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, seed=1,
+                                   estimator_command=f"sh {self.folder}/mine.sh {{folder}} {{out}}")
+        self.assertEqual(judged.outside.failures["exit_status"].count, 2)
+        self.assertEqual(judged.outside.failures["exit_status"].first, "exit status 2: ung\ufffdltig")
+        self.assertTrue(str(judged).startswith("“mine” failed in 2 of 2 runs: "))
 
     def test_certify(self):
         folder = self.write_experiment(made_tracks())

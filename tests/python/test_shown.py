@@ -43,6 +43,29 @@ class Shown(InFolder):
             self.assertIn(f"{100.0 * row.interval95[0]:.1f} to {100.0 * row.interval95[1]:.1f} %", said)
         self.assertEqual(said.count("<tr>"), len(self.coverage.rows) + 1)
 
+    def test_a_prompt_shows_one_line_and_explain_the_words(self):
+        judged = glidelab.judge(SCENARIO, noise_m=2e-5, replicates=2)
+        bandwidth = glidelab.choose_bandwidth(*damped(duration_s=0.5))
+        for result in (self.coverage, self.smooth, self.local, judged, bandwidth):
+            self.assertRegex(repr(result), r"^<glidelab\.\w+[^\n]*>$")
+            self.assertEqual(glidelab.explain(result), str(result))
+        self.assertIn("smoothing time (s)", glidelab.explain(self.smooth))
+        self.assertIn(f"{float(bandwidth):.4g} s", glidelab.explain(bandwidth))
+
+    @needs("pandas")
+    def test_every_target_and_every_size_has_its_column_and_unit(self):
+        (self.folder / "two.toml").write_text(
+            f'format = 1\nname = "two"\nscenario = "{SCENARIO}"\nlevel = "tracks"\n'
+            '[[vary]]\nkey = "tracks.noise_m"\nvalues = [1e-5, 4e-5]\n')
+        answer = glidelab.require(self.folder / "two.toml", ["mu=0.001", "alpha_deg=0.1"], track_runs=20)
+        frame = answer.to_frame()
+        self.assertEqual(frame["error_2"].tolist(), [one.errors[1] for one in answer.candidates])
+        self.assertEqual((frame.attrs["units"]["error"], frame.attrs["units"]["bound_2"]), ("", "°"))
+        self.assertEqual(frame.attrs["targets"], list(answer.targets))
+        plan = glidelab.plan(SCENARIO, noise_m=2e-5).to_frame().set_index("id")
+        self.assertEqual(plan.attrs["units"]["seen_from"], BY_ROW)
+        self.assertEqual((plan["unit"]["quadratic_drag"], plan["unit"]["load_independent_friction"]), ("kg/m", "N"))
+
     def test_sweep(self):
         sweep = made_sweep(self.folder)
         said = self.shown(sweep)

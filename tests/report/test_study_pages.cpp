@@ -162,6 +162,28 @@ TEST_CASE("the first line of coverage is the answer: how often the intervals hol
         "2: µ of m1 by the fit of the whole motion.");
 }
 
+TEST_CASE("the first line of coverage says how often an outside estimator failed, and names it as such") {
+  validate::Coverage coverage;
+  coverage.replicates = 200;
+  coverage.levels = {0.95};
+  coverage.outside = fit::tally_of("mine", "mine {folder} {out}",
+                                   {{fit::OutsideFailure::signal, "signal 11 (SIGSEGV)", 1.0},
+                                    {fit::OutsideFailure::no_output, "no results.json in {out}", 1.0},
+                                    {fit::OutsideFailure::none, "", 1.0}});
+  const std::string failed = "“mine” failed in 2 of 3 runs: 1 was ended by a signal; 1 left no results.json in {out}.";
+  CHECK(report::coverage_answer(coverage) == failed);  // nothing else to say
+  coverage.rows = {row("phase-diagram", "mu", 0.0028, 0.0028), row("mine", "mu", 0.001, 0.001)};
+  for (validate::CoverageRow& one : coverage.rows) one.levels = {{0.95, 190, 0.95, 0.91, 0.98, 1.0}};
+  coverage.rows[1].levels = {{0.95, 120, 0.6, 0.53, 0.67, 1e-40}};
+  const std::string text = report::coverage_text(coverage);
+  CHECK(text.starts_with(failed + " The stated 95 % intervals"));
+  CHECK(has(text.substr(0, text.find('\n')), "less often than stated for 1 of 2: µ of m1 by “mine”."));
+  CHECK(has(text,
+            "mine: 2 of 3 runs failed (1 was ended by a signal, the first: signal 11 (SIGSEGV); 1 left no "
+            "results.json in {out})"));
+  CHECK(has(report::coverage_page("x", coverage).html, failed));
+}
+
 TEST_CASE("coverage names what scatters farther than it states, and the naive lines are not asked") {
   validate::Coverage coverage;
   coverage.replicates = 200;

@@ -197,8 +197,8 @@ struct Sentence {
                        of.stated_up ? "up" : "down");
   }
   std::string operator()(const diagnose::ContradictedReading& of) const {
-    return fmt::format("With {:.6g} kg {}: an angle, a length, the frame rate or gravity_m_s2 is wrong.", of.mass_kg,
-                       contradiction_words(of.contradiction));
+    return fmt::format("With {:.6g} kg {}: {}.", of.mass_kg, contradiction_words(of.contradiction),
+                       contradiction_causes(of.contradiction));
   }
   std::string operator()(const diagnose::NegativeLoss& of) const {
     const bool drag = of.of == diagnose::NegativeLoss::Of::drag;

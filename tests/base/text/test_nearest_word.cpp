@@ -29,3 +29,9 @@ TEST_CASE(
   CHECK(nearest_word("exposure_second", {"exposure", "exposure_s"}) ==
         "exposure_s");  // 15 letters: five changes at most
 }
+
+TEST_CASE("The beginning of a single known word suggests it, and that of several does not") {
+  CHECK(nearest_word("alpha", {"mu", "alpha_deg", "k_over_m_1_s"}) == "alpha_deg");
+  CHECK(nearest_word("estimator", {"estimator_seconds", "estimator_command"}).empty());
+  CHECK(nearest_word("k_", {"k_over_m_1_s"}).empty());
+}

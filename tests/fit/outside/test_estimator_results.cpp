@@ -191,3 +191,20 @@ for file in sys.argv[2:]:
   REQUIRE(base::run_program(kPython, arguments, temp / "log") == 0);
   CHECK(base::read_file(temp / "log") == expected);
 }
+
+TEST_CASE("NaN in results.json, which Python's json writes, is told in words with its place") {
+  const auto told = [](const std::string& text) {
+    try {
+      read(text);
+    } catch (const base::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const std::string null = "a number, or null where nothing is determined: JSON has no NaN and no infinity";
+  CHECK(told("{\"format\": 1,\n \"mu\": {\"value\": NaN}}") ==
+        "results.json: found NaN at line 2, column 18, expected " + null);
+  CHECK(told("{\"value\": -Infinity}") == "results.json: found -Infinity at line 1, column 11, expected " + null);
+  CHECK(told("{\"value\": 0,5}") == "results.json: found 5 at line 1, column 13, expected JSON");
+  CHECK(told("{\"value\": ") == "results.json: found the end of the text at line 1, column 11, expected JSON");
+}

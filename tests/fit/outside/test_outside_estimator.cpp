@@ -78,7 +78,7 @@ TEST_CASE("each way in which an estimator's program fails is told apart, with wh
   };
   for (const Way& way : {Way{"echo first; echo last words >&2; exit 3", fit::OutsideFailure::exit_status,
                              "exit status 3: last words", 60.0},
-                         Way{"kill -9 $$", fit::OutsideFailure::signal, "signal 9", 60.0},
+                         Way{"kill -9 $$", fit::OutsideFailure::signal, "signal 9 (SIGKILL)", 60.0},
                          Way{"sleep 60", fit::OutsideFailure::time_out, "not done after 0.1 s", 0.1},
                          Way{"true", fit::OutsideFailure::no_output, "no results.json", 60.0},
                          Way{"mkdir $2/results.json", fit::OutsideFailure::no_output, "no results.json", 60.0},
@@ -96,6 +96,18 @@ TEST_CASE("each way in which an estimator's program fails is told apart, with wh
     CHECK(told->text == fit::why_of(outcome.run));
     CHECK(fit::why_of(outcome.run).starts_with(fit::why_begins(way.failure)));
   }
+}
+
+TEST_CASE("what an estimator's program prints is UTF-8 in what is told of it, whatever bytes it wrote") {
+  const tests::TempDir temp;
+  // Latin-1, and 199 letters before a character of two bytes: the 200th byte is its first.
+  const fit::OutsideOutcome latin = outcome_of(temp, "printf 'ung\\374ltig\\n' >&2; exit 2");
+  CHECK(latin.run.what == "exit status 2: ung\uFFFDltig");
+  const fit::OutsideOutcome cut = outcome_of(temp, "printf '" + std::string(199, 'a') + "\\303\\274bc\\n' >&2; exit 2");
+  CHECK(cut.run.what == "exit status 2: " + std::string(199, 'a') + "…");
+  const fit::OutsideOutcome json = outcome_of(temp, "printf '{\"format\": \\374}' > $2/results.json");
+  CHECK(json.run.failure == fit::OutsideFailure::bad_output);
+  CHECK(json.run.what.find('\xFC') == std::string::npos);
 }
 
 TEST_CASE("runs of an outside estimator are counted by how they failed, with what the first one said") {

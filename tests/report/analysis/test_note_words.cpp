@@ -70,7 +70,8 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "an inclination of 0° is assumed, because neither the file nor an option states it (--incline)"},
       {core::MuFromIncline{20.0, 0.1}, "µ rests on the stated inclination, 20"},
       {small, "incline_deg says 5.000 ± 0.020°: an angle or its uncertainty, a length"},
-      {core::GravityAssumed{9.80665, 0.015}, "gravity of 9.80665 m/s²; their ± includes 0.015 m/s² (0.15 %)"},
+      {core::GravityAssumed{9.80665, 0.015},
+       "gravity of 9.80665 m/s²; their ± includes 0.015 m/s² (0.15 %), because the place is not known"},
       {core::AssumedMass{}, "1 kg is assumed"},
       {core::MayBeAFall{26, 5.61},
        "26 positions are taken for those in a hand; in them the body accelerates at 5.6 m/s²"},
@@ -189,4 +190,13 @@ TEST_CASE("every way to choose a bandwidth or a strength has words, with its num
     INFO("kind " << kind);
     CHECK(seen[kind]);
   }
+}
+
+TEST_CASE("an inclination of the other sign is told as x that is positive uphill, and no angle is blamed") {
+  core::InclineContradiction turned{{4.0, {}, "incline_deg"}, -4.308, 0.004};
+  turned.gravity_m_s2 = 9.80665;
+  turned.gross = true;
+  CHECK(report::note_words(core::Note{turned}) ==
+        "the acceleration gives an inclination of -4.308 ± 0.004°, but incline_deg says 4°: x seems to be positive "
+        "uphill: it has to rise downhill (glidelab check says more)");
 }

@@ -59,3 +59,16 @@ TEST_CASE("the page of a challenge's score begins with the same answer, and fold
   CHECK(html.find("Which estimator is best?") < answer);
   CHECK(html.find("<details class=\"part\"><summary>Who is better than whom") != std::string::npos);
 }
+
+TEST_CASE("an entrant that never answers has no rank, even if too few cases tell it from the others") {
+  validate::ChallengeScore score = score_of({quantity_of("mu", {1, 1, 1}, 8)});
+  score.quantities[0].rows[0].answers = 0;
+  score.quantities[0].duels = {{0, 1, 0, 6, 0, 0.1}};
+  const std::string text = report::challenge_text(score);
+  INFO(text);
+  CHECK(first_line(score) == "In µ 8 cases do not tell lines and spline apart, the best of 3.");
+  CHECK(text.find("no answer  mine") != std::string::npos);
+  CHECK(text.find("mine") > text.find("1          lines"));
+  CHECK(text.find("µ: no answer from mine.") != std::string::npos);
+  CHECK(text.find("8 cases do not tell any two of the 2 entrants that answer apart.") != std::string::npos);
+}

@@ -91,3 +91,28 @@ TEST_CASE("where nothing reaches the target the nearest is named, with what limi
   requirement.candidates[2].verdict = validate::Verdict::reached;
   CHECK_THAT(report::requirement_report(requirement).html, !Contains("<li><b>phone</b>"));
 }
+
+TEST_CASE("each row of require names the estimator that judges it, and the runs in which another gave no answer") {
+  validate::Requirement requirement = cameras();
+  requirement.candidates[0].results[0].runs = 8;
+  requirement.candidates[0].results[0].estimator = "phase-diagram";
+  requirement.candidates[0].results[0].unanswered = {{"trajectory", 1}};
+  const std::string text = report::requirement_text(requirement);
+  CHECK_THAT(text, Contains("missed, by clips   lines of the phase diagram"));
+  CHECK_THAT(text, Contains("reached, by clips  fit of the whole motion"));
+  const std::string told = "µ: no answer by the fit of the whole motion in 1 of 8 runs";
+  CHECK_THAT(text, Contains("webcam, 640x480 at 30 fps: " + told));
+  const std::string html = report::requirement_report(requirement).html;
+  CHECK_THAT(html, Contains("<td>lines of the phase diagram</td>"));
+  CHECK_THAT(html, Contains(told));
+}
+
+TEST_CASE("what the bound alone says is what is expected at best") {
+  validate::Requirement requirement = cameras();
+  requirement.candidates.resize(1);
+  requirement.candidates[0].judged_by = validate::Confirm::none;
+  requirement.candidates[0].verdict = validate::Verdict::impossible;
+  requirement.candidates[0].results = {{4.2e-4, {}, 0.0, 0, 0, ""}};
+  CHECK_THAT(report::requirement_answer(requirement),
+             Contains("comes nearest: expect at best µ within 0.00042 (judged by the bound alone; nothing was run)."));
+}

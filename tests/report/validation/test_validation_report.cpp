@@ -52,6 +52,16 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
 }
 
+TEST_CASE("a comparison begins with an outside estimator's failure, and calls it by its name") {
+  validate::Comparison comparison = made_comparison();
+  comparison.quantities.push_back(quantity("m1", "mine", "mu", 0.0071, 0.0171, 0.0001));
+  CHECK(report::comparison_text(comparison).find("that of µ of m1 by “mine”: 100 standard deviations") !=
+        std::string::npos);
+  comparison.outside = fit::tally_of("mine", "", {{fit::OutsideFailure::exit_status, "exit status 7", 1.0}});
+  CHECK(report::comparison_text(comparison)
+            .starts_with("“mine” failed in 1 of 1 run: 1 ended with an exit status other than 0. 3 of 5 recovered"));
+}
+
 TEST_CASE("a quantity that these motions do not have has no row, and one that was not recovered keeps its row") {
   validate::Comparison comparison = made_comparison();
   comparison.quantities.push_back(quantity("m1", "trajectory", "v_lim_m_s", std::nullopt, std::nullopt, 0.0));

@@ -48,17 +48,24 @@ struct RequirementOptions {
   std::function<void()> watch = [] {};
 };
 
+/// Runs in which an estimator found no value of a target's quantity.
+struct Unanswered {
+  std::string estimator;
+  std::size_t runs = 0;
+};
+
 /// One target at one point; in the target's unit and measure.
 struct TargetResult {
-  std::optional<double> bound;  ///< empty if the motion does not determine the quantity
-  std::optional<double> found;  ///< by runs
-  double found_sd = 0.0;        ///< its standard deviation
-  std::size_t runs = 0;         ///< number of runs with these errors
-  std::size_t beyond = 0;       ///< of these, with an error larger than the target's value
-  std::string estimator;
+  std::optional<double> bound;   ///< empty if the motion does not determine the quantity
+  std::optional<double> found;   ///< by runs
+  double found_sd = 0.0;         ///< its standard deviation
+  std::size_t runs = 0;          ///< number of runs with these errors
+  std::size_t beyond = 0;        ///< of these, with an error larger than the target's value
+  std::string estimator;         ///< whose errors these are: the better one's
   double low = 0.0, high = 0.0;  ///< limits of `found` (target.h)
   /// The same from tracks, if rendered runs judge: from many more runs, but with errors of the clock alone.
   std::optional<double> by_tracks = {};
+  std::vector<Unanswered> unanswered = {};  ///< of each estimator without a value in some of the runs
 };
 
 /// What would suffice instead of a camera that is much better than needed: the errors of its runs as tracks, with one

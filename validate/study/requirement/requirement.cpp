@@ -387,6 +387,10 @@ const Candidate* Requirement::first_reached() const {
   return first == candidates.end() ? nullptr : &*first;
 }
 
+Confirm usual_confirm(const Sweep& sweep) {
+  return sweep.level == Level::clips ? Confirm::clips : Confirm::tracks;
+}
+
 Requirement find_requirement(const Sweep& sweep, const RequirementOptions& options, const base::Progress& progress) {
   Requirement requirement;
   requirement.name = sweep.name;

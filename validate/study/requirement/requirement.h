@@ -45,6 +45,9 @@ struct Requirement {
   const Candidate* first_reached() const;
 };
 
+/// How a sweep is judged if nothing is said: by clips if it has images, else by tracks.
+Confirm usual_confirm(const Sweep& sweep);
+
 /// Judges every point. InputError if the sweep has more than 100,000; an error of a single point becomes its verdict.
 Requirement find_requirement(const Sweep& sweep, const RequirementOptions& options,
                              const base::Progress& progress = base::no_progress);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 
 #include "base/errors.h"
@@ -108,13 +109,19 @@ void add_errors(const std::vector<QuantityComparison>& quantities, std::vector<E
 
 /// The better estimator's measure, each judged by its worst configuration.
 void judge_errors(const std::vector<Errors>& all, const Target& target, double confidence, TargetResult& result) {
+  result.unanswered.clear();
   for (const fit::Estimator& estimator : fit::judged_estimators()) {
     std::optional<ErrorMeasure> worst;
+    std::set<std::size_t> without;  // numbers of runs
     for (const Errors& errors : all) {
       if (errors.estimator != estimator.name || errors.quantity != target.quantity) continue;
+      for (std::size_t run = 0; run < errors.errors.size(); ++run) {
+        if (!std::isfinite(errors.errors[run])) without.insert(run);
+      }
       const ErrorMeasure measure = measure_errors(errors.errors, target, confidence);
       if (!worst || measure.value > worst->value) worst = measure;
     }
+    if (!without.empty()) result.unanswered.push_back({std::string(estimator.name), without.size()});
     if (!worst || (result.found && *result.found <= worst->value)) continue;
     result.found = worst->value;
     result.found_sd = worst->sd;

@@ -78,6 +78,11 @@ void set_limits(const std::vector<double>& sizes, Measure of, double confidence,
     const double low = std::isfinite(normal) ? normal : measure.value;
     measure.low = std::min(measure.value, low * std::sqrt(n / base::chi2_quantile(n, confidence)));
     measure.high = std::max(measure.value, normal * std::sqrt(n / base::chi2_quantile(n, 1.0 - confidence)));
+    // So few errors do not exclude that more than 5 % of all are as large as the largest (0.95^n > 1 - confidence): if
+    // that is beyond the target, no normal distribution speaks against what was seen.
+    if (of == Measure::error95 && measure.beyond > 0) {
+      measure.high = std::max(measure.high, *std::max_element(sizes.begin(), sizes.end()));
+    }
     return;
   }
   const double wider = base::normal_quantile(confidence) / base::normal_quantile(kConfidence);
@@ -101,14 +106,24 @@ double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
 
 }  // namespace
 
+namespace {
+
+std::string without_blanks(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(" \t") + 1 - first);
+}
+
+}  // namespace
+
 Target parse_target(const std::string& text) {
   Target target;
   const std::size_t equals = text.find('='), colon = text.find(':');
-  target.quantity = text.substr(0, std::min(colon, equals));
-  const std::string measure =
-      colon < equals && equals != std::string::npos ? text.substr(colon + 1, equals - colon - 1) : "error95";
+  target.quantity = without_blanks(text.substr(0, std::min(colon, equals)));
+  const std::string measure = colon < equals && equals != std::string::npos
+                                  ? without_blanks(text.substr(colon + 1, equals - colon - 1))
+                                  : "error95";
   const std::vector<std::string> quantities = core::quantity_keys();
-  std::istringstream number(equals == std::string::npos ? "" : text.substr(equals + 1));
+  std::istringstream number(equals == std::string::npos ? "" : without_blanks(text.substr(equals + 1)));
   const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
   const bool known = std::find(quantities.begin(), quantities.end(), target.quantity) != quantities.end();
   const std::vector<std::string> measures = {"sd", "error95", "bias"};

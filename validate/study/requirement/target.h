@@ -16,7 +16,9 @@
 ///                                  59 is the least number whose largest error is such an upper limit (of 95 %)
 ///     error95 and sd, fewer        rms sqrt(n / chi²), times 1.96 for error95, chi² the 95 % and the 5 % quantile of n
 ///                                  degrees of freedom: a tolerance interval of normal errors (too wide where these
-///                                  have a bias)
+///                                  have a bias). If any error95 is beyond the target, the upper limit is at least the
+///                                  largest error: by the binomial distribution fewer than 59 errors do not exclude
+///                                  that more than 5 % are as large
 ///     sd, 59 errors or more        value ∓ 1.645 of its standard deviation
 ///     bias                         value ∓ Student's t of its standard deviation
 #pragma once

@@ -151,6 +151,11 @@ TEST_CASE("Targets are read with their measure, and anything else is refused") {
   CHECK(validate::parse_target("mu:sd=0.0005").measure == validate::Target::Measure::sd);
   CHECK(validate::parse_target("alpha_deg:error95=0.1").measure == validate::Target::Measure::error95);
   CHECK(validate::parse_target("v_lim_m_s:bias=1e-3").value == 1e-3);
+  const validate::Target spaced = validate::parse_target(" alpha_deg : sd = 0.01 ");
+  CHECK(spaced.quantity == "alpha_deg");
+  CHECK(spaced.measure == validate::Target::Measure::sd);
+  CHECK(spaced.value == 0.01);
+  CHECK_THROWS_WITH(validate::parse_target("alpha=0.01"), Catch::Matchers::EndsWith("did you mean \"alpha_deg\"?"));
   for (const char* wrong : {"mu", "mu=", "mu=x", "mu=0", "mu=-1", "mass=1", "mu:mean=1", "mu=1 m", ""}) {
     CHECK_THROWS_AS(validate::parse_target(wrong), base::InputError);
   }

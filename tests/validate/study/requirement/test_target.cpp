@@ -150,3 +150,24 @@ TEST_CASE("a run without an answer is beyond any target") {
   CHECK(std::isfinite(within.sd));  // 11 of them in a resample: never seen
   CHECK(within.beyond == 1);
 }
+
+TEST_CASE("of few errors one beyond the target keeps it open, however small the others are, and none changes nothing") {
+  std::vector<double> errors = normal(19, 0.0, 1e-5, 11);
+  errors.push_back(6e-4);
+  // 19 of 20 within: by the binomial distribution up to 21.6 % of all may lie beyond (0.784^20 + 20 0.216 0.784^19 =
+  // 5 %), and the limit of normal errors, 1.96 rms sqrt(20 / 10.85) = 0.00036, is below an error that was seen.
+  for (const double confidence : {validate::kConfidence, validate::confidence_of_look(20)}) {
+    const validate::ErrorMeasure found =
+        validate::measure_errors(errors, {"mu", Target::Measure::error95, 5e-4}, confidence);
+    CHECK(found.beyond == 1);
+    CHECK(found.high >= 6e-4);
+    CHECK(found.low <= found.value);
+    CHECK(found.value < 5e-4);
+  }
+  const double rms = std::sqrt((19 * 1e-10 + 36e-8) / 20.0);  // within 3 %: 36e-8 is 190 times the rest
+  const validate::ErrorMeasure within = measured(errors, Target::Measure::error95, 7e-4);
+  CHECK(within.beyond == 0);
+  CHECK(within.high == Approx(1.959964 * rms * std::sqrt(20.0 / 10.851)).epsilon(0.03));  // chi² of 20 at 5 %: tables
+  errors.back() = std::numeric_limits<double>::infinity();
+  CHECK(std::isinf(measured(errors, Target::Measure::error95, 7e-4).high));
+}

@@ -1,0 +1,111 @@
+"""What single values are checked for before the C++ side sees them: one place, and one exception for all functions."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Sequence
+from typing import Any, Optional
+
+import numpy as np
+
+from ._errors import input_error, input_errors
+
+_LONGEST = 60  # characters of a value in a message
+
+
+def shown(value: object) -> str:
+    """A value in a message: itself where it is short, else what it is."""
+    if isinstance(value, np.ma.MaskedArray) and value.ndim == 0:
+        return "a masked value"
+    if isinstance(value, np.ndarray) and value.ndim > 0:
+        return f"an array of shape {value.shape}"
+    if value is None or isinstance(value, (str, bytes, bool, int, float, complex, np.generic, list, tuple)):
+        text = repr(value.item() if isinstance(value, np.generic) else value)
+        if len(text) <= _LONGEST:
+            return text
+    return f"a {type(value).__name__}"
+
+
+def real(key: str, value: Any, expected: str = "a number", file: str = "") -> float:
+    """A real number: no text, no switch, no array. NaN and infinity pass: what is allowed depends on the quantity."""
+    is_number = (hasattr(type(value), "__float__") and getattr(value, "ndim", 0) == 0
+                 and not isinstance(value, (bool, np.bool_, str, bytes, np.ma.MaskedArray)))
+    try:
+        if is_number:
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise input_error(key, shown(value), expected, file)
+
+
+def optional_real(key: str, value: Any, expected: str = "a number, or None", file: str = "") -> Optional[float]:
+    """The same, or None."""
+    return None if value is None else real(key, value, expected, file)
+
+
+def above_0(key: str, value: Any, expected: str) -> float:
+    """A finite number above 0."""
+    number = real(key, value, expected)
+    if not 0.0 < number < math.inf:
+        raise input_error(key, f"{number:g}", expected)
+    return number
+
+
+def reals(key: str, values: Any, expected: str = "a list of numbers") -> list[float]:
+    """Real numbers, one after the other."""
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise input_error(key, shown(values), expected)
+    return [real(f"{key}[{i}]", value) for i, value in enumerate(values)]
+
+
+def pair(key: str, values: Any, expected: str = "two numbers") -> tuple[float, float]:
+    """Two real numbers."""
+    numbers = reals(key, values, expected)
+    if len(numbers) != 2:
+        raise input_error(key, shown(values), expected)
+    return numbers[0], numbers[1]
+
+
+def text(key: str, value: Any, expected: str = "text", file: str = "") -> str:
+    """A str."""
+    if not isinstance(value, str):
+        raise input_error(key, shown(value), expected, file)
+    return value
+
+
+def texts(key: str, values: Any, expected: str) -> list[str]:
+    """A list of texts; one text alone is none."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise input_error(key, shown(values), expected)
+    return [text(key, value, expected) for value in values]
+
+
+def switch(key: str, value: Any) -> bool:
+    """True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise input_error(key, shown(value), "True or False")
+    return bool(value)
+
+
+def file_name(key: str, value: Any, expected: str = "the name of a file") -> str:
+    """The name of a file or a folder, as text."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise input_error(key, shown(value), expected)
+    return str(os.fspath(value))
+
+
+def refuse_masked(name: str, values: Any, of: str = "") -> None:
+    """A masked value was not measured; its place still has a number, which would enter as data.
+
+    Raises
+    ------
+    InputError
+        With the index of each.
+    """
+    masks: Any = np.ma
+    if not masks.is_masked(values):
+        return
+    places: Sequence[Any] = np.argwhere(masks.getmaskarray(masks.asarray(values))).tolist()
+    raise input_errors([(of, 0, f"{name}[{', '.join(map(str, place))}]", "a masked value",
+                         "a number: leave out what was not measured") for place in places])
