@@ -386,7 +386,7 @@ std::string contradiction_words(const core::InclineContradiction& of) {
 }
 
 std::string contradiction_causes(const core::InclineContradiction& of) {
-  if (core::seems_uphill(of)) return "x seems to be positive uphill: it has to rise downhill";
+  if (core::seems_uphill(of)) return "x seems to be positive uphill, and has to rise downhill";
   return "an angle, a length, the frame rate or gravity_m_s2 is wrong";
 }
 

@@ -197,6 +197,6 @@ TEST_CASE("an inclination of the other sign is told as x that is positive uphill
   turned.gravity_m_s2 = 9.80665;
   turned.gross = true;
   CHECK(report::note_words(core::Note{turned}) ==
-        "the acceleration gives an inclination of -4.308 ± 0.004°, but incline_deg says 4°: x seems to be positive "
-        "uphill: it has to rise downhill (glidelab check says more)");
+        "the acceleration gives an inclination of -4.3080 ± 0.0040°, but incline_deg says 4°: x seems to be positive "
+        "uphill, and has to rise downhill (glidelab check says more)");
 }
