@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/result/estimate.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
