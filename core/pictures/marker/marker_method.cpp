@@ -261,8 +261,6 @@ bool is_lit(const std::map<std::size_t, MarkerFit>& shaded) {
   const auto n = static_cast<double>(shaded.size());
   const cv::Vec3d mean = sum * (1.0 / n);
   const double size = cv::norm(mean), scatter = std::sqrt(std::max(0.0, squares / n - size * size));
-  fprintf(stderr, "SHADE n %g mean %.4f %.4f %.4f size %.4f scatter %.4f res %.4f\n", n, mean[0], mean[1], mean[2],
-          size, scatter, median_of(residuals));
   return size > kLeastOverScatter * scatter && size > median_of(std::move(residuals));
 }
 

@@ -160,7 +160,7 @@ TEST_CASE("an inclination stated with its uncertainty is contradicted by three s
   CHECK_FALSE(contradiction_of(findings[0]).gross);
   core::ConfigurationResult result;  // as an analysis notes it
   result.incline_deg = 5.0;
-  result.alpha_deg = core::determined(core::estimate(5.2, 0.004));
+  result.alpha_deg = core::determined({5.2, 0.004, 5.192, 5.208});
   std::vector<core::ConfigurationResult> results{result};
   core::note_statements(results, tests::kGravity);
   CHECK(results[0].notes.empty());
