@@ -304,33 +304,33 @@ std::optional<MarkerFit> measure_marker(const Signal& signal, const MarkerGuess&
   return fit;
 }
 
-std::optional<Measured> measure_near(const Signal& signal, const MarkerGuess& guess, MarkerMethod method,
-                                     SignalKind kind) {
-  if (const auto fit = measure_marker(signal, guess, method, kind)) return Measured{guess, *fit};
+std::optional<MeasuredMarker> measure_near(const Signal& signal, const MarkerGuess& guess, MarkerMethod method,
+                                           SignalKind kind) {
+  if (const auto fit = measure_marker(signal, guess, method, kind)) return MeasuredMarker{guess, *fit};
   if (method == MarkerMethod::centroid) return std::nullopt;
   const std::optional<MarkerFit> spot = centroid_of_marker(signal, guess);
   if (!spot || cv::norm(spot->centre - guess.centre) < kSameStart * guess.radius_px) return std::nullopt;
   MarkerGuess nearer = guess;
   nearer.centre = spot->centre;
   const auto fit = measure_marker(signal, nearer, method, kind);
-  return fit ? std::optional(Measured{nearer, *fit}) : std::nullopt;
+  return fit ? std::optional(MeasuredMarker{nearer, *fit}) : std::nullopt;
 }
 
-std::optional<Measured> measure_lit(const Signal& signal, const MarkerGuess& guess, SignalKind kind) {
+std::optional<MeasuredMarker> measure_lit(const Signal& signal, const MarkerGuess& guess, SignalKind kind) {
   if (may_have_any_shape(kind) || guess.radius_px < kSmallestShadedPx) return std::nullopt;
   const std::optional<MarkerFit> spot = centroid_of_marker(signal, guess);
   if (!spot) return std::nullopt;
   MarkerGuess beside = guess;
   beside.shape = cv::Vec3d(1.0, 0.0, 1.0) * (1.0 / (kLitRadius * guess.radius_px));
   constexpr int kDirections = 8;
-  std::optional<Measured> best;
+  std::optional<MeasuredMarker> best;
   for (int direction = 0; direction < kDirections; ++direction) {
     const double angle = 2.0 * std::numbers::pi * direction / kDirections;
     beside.centre = spot->centre + kLitPartOff * guess.radius_px * cv::Point2d(std::cos(angle), std::sin(angle));
     const auto fit = measure_marker(signal, beside, MarkerMethod::shaded, kind);
     if (!fit || fit->rms > kMostLitResidual * fit->amplitude || fit->elongation > kMostLitElongation) continue;
     if (std::abs(std::log(fit->radius_px / guess.radius_px)) > kMostLitSizeOff) continue;
-    if (!best || fit->rms < best->fit.rms) best = Measured{beside, *fit};
+    if (!best || fit->rms < best->fit.rms) best = MeasuredMarker{beside, *fit};
   }
   return best;
 }

@@ -24,7 +24,7 @@ std::optional<MarkerFit> measure_marker(const Signal& signal, const MarkerGuess&
                                         SignalKind kind);
 
 /// A measurement, and what it started from.
-struct Measured {
+struct MeasuredMarker {
   MarkerGuess guess;
   MarkerFit fit;
 };
@@ -32,12 +32,12 @@ struct Measured {
 /// The object near `guess`, whose centre is only known to about a third of the radius (a blob): from there or, if that
 /// fails, from the centroid of what stands out there. A fit settles only from within some three pixels of the centre,
 /// and light from one side, or something bright nearby, draws a blob farther away.
-std::optional<Measured> measure_near(const Signal& signal, const MarkerGuess& guess, MarkerMethod method,
-                                     SignalKind kind);
+std::optional<MeasuredMarker> measure_near(const Signal& signal, const MarkerGuess& guess, MarkerMethod method,
+                                           SignalKind kind);
 
 /// A disc of about the stated size that is lit from one side, where no uniform disc fits: the blob is that of its lit
 /// part, so that fits start on all sides of its centroid. Empty for one too small to tell shading from a shift.
-std::optional<Measured> measure_lit(const Signal& signal, const MarkerGuess& guess, SignalKind kind);
+std::optional<MeasuredMarker> measure_lit(const Signal& signal, const MarkerGuess& guess, SignalKind kind);
 
 /// Chooses the method of a path by the residuals of its samples and, for an object that may have any shape, by which
 /// method is steadier. Replaces the sightings so far by those of that method.

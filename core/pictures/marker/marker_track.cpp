@@ -63,8 +63,8 @@ MarkerTracker MarkerTracker::of_any_shape(std::filesystem::path clip, const Mark
 }
 
 /// The object of a path in the next frame: fitted at the expected position, or sought around it.
-std::optional<Measured> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
-                                                  const std::vector<cv::Point2d>& taken) const {
+std::optional<MeasuredMarker> MarkerTracker::find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                                        const std::vector<cv::Point2d>& taken) const {
   const cv::Point2d expected = path.predict(frame);
   const bool is_new = path.seen.size() < 2;
   const MarkerMethod method = next_method(path);
@@ -78,7 +78,7 @@ std::optional<Measured> MarkerTracker::find_again(const Signal& signal, std::siz
   }
   if (!is_new && !is_near_any(taken, expected, 0.5 * path.radius_px)) {
     const auto fit = measure_marker(signal, guess, method, kind_);
-    if (fit && path.is_like(*fit)) return Measured{guess, *fit};
+    if (fit && path.is_like(*fit)) return MeasuredMarker{guess, *fit};
   }
   // Nothing is known of the speed of a new path. A known speed changes little from frame to frame, but the object may
   // bounce.
@@ -109,7 +109,7 @@ std::optional<Measured> MarkerTracker::find_again(const Signal& signal, std::siz
   return std::nullopt;
 }
 
-void MarkerTracker::keep(const Signal& signal, std::size_t frame, const Measured& found) {
+void MarkerTracker::keep(const Signal& signal, std::size_t frame, const MeasuredMarker& found) {
   const bool is_centroid = !(found.fit.blur_px > 0.0);
   if (is_centroid || kind_ == SignalKind::colored || kind_ == SignalKind::any_shape) return;
   const int reach = static_cast<int>(std::ceil(1.25 * found.guess.radius_px + 2.5)) + 1;
@@ -183,7 +183,7 @@ void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
   }
 }
 
-void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const Measured& found) {
+void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const MeasuredMarker& found) {
   path.push({frame, found.fit, radius_at_(found.fit.centre)});
   keep(signal, frame, found);
   if (path.method != MarkerMethod::undecided) return;

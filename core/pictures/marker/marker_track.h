@@ -64,12 +64,12 @@ class MarkerTracker {
     MarkerWindow window;
   };
 
-  void keep(const Signal& signal, std::size_t frame, const Measured& found);
+  void keep(const Signal& signal, std::size_t frame, const MeasuredMarker& found);
   const MarkerWindow* window_of(const MarkerSighting& sighting) const;
   void fit_without_response(TrackedMarker& tracked) const;
-  std::optional<Measured> find_again(const Signal& signal, std::size_t frame, const Path& path,
-                                     const std::vector<cv::Point2d>& taken) const;
-  void accept(Path& path, const Signal& signal, std::size_t frame, const Measured& found);
+  std::optional<MeasuredMarker> find_again(const Signal& signal, std::size_t frame, const Path& path,
+                                           const std::vector<cv::Point2d>& taken) const;
+  void accept(Path& path, const Signal& signal, std::size_t frame, const MeasuredMarker& found);
   void follow(const Signal& signal, std::size_t frame);
   void search_whole(const Signal& signal, std::size_t frame);
   void follow_back(Path& path, std::size_t from_frame);

@@ -159,6 +159,7 @@ TEST_CASE("an inclination stated with its uncertainty is contradicted by three s
   CHECK(findings[0].severity == core::Severity::change);
   CHECK_FALSE(contradiction_of(findings[0]).gross);
   core::ConfigurationResult result;  // as an analysis notes it
+  result.mass_kg = 0.3;
   result.incline_deg = 5.0;
   result.alpha_deg = core::determined({5.2, 0.004, 5.192, 5.208});
   std::vector<core::ConfigurationResult> results{result};
