@@ -190,12 +190,11 @@ core::Quantity mixed(const Recovered& own, double probability, const std::vector
 
 std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const Explanations& explanations) {
   const LikelyFit& reported = explanations.front();
-  // Values from a fit on its way may be off by any number of their standard deviations.
-  const bool at_minimum = reported.fit->converged || reported.fit->effects.empty();
   std::vector<std::vector<RecoveredSet>> under;
   for (const LikelyFit& one : explanations) under.push_back(recovered_under(set, *one.fit, one.sizes));
   const auto mixture = [&](std::size_t c, Recovered RecoveredSet::*quantity, double unit, double unknown_sd) {
-    if (!at_minimum) return core::undetermined(core::unknown::NoMinimum{});
+    // Values from a fit on its way may be off by any number of their standard deviations.
+    if (!reported.at_minimum) return core::undetermined(core::unknown::NoMinimum{});
     std::vector<std::pair<Recovered, double>> others;
     for (std::size_t h = 1; h < under.size(); ++h) {
       others.emplace_back(under[h][c].*quantity, explanations[h].probability);

@@ -29,6 +29,7 @@ struct LikelyFit {
   RemainderSizes sizes;
   double probability = 1.0;
   std::vector<std::size_t> effects = {};  ///< of the explanation
+  bool at_minimum = true;                 ///< false: the explanation's own fit stopped before it reached one
 };
 
 /// The reported explanation first.

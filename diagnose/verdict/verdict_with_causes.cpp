@@ -405,7 +405,10 @@ void VerdictWithCauses::add_recovered(const Reported& reported, Diagnosis& diagn
                explanations);
     explanations.front().probability = std::max(explanations.front().probability, kLikely);
   }
-  if (with_names) explanations.front().effects = best_.effects;
+  if (with_names) {
+    explanations.front().effects = best_.effects;
+    explanations.front().at_minimum = best_.converged || !names_;
+  }
   if (!weighed_) add_others(first_, before_, explanations);
   diagnosis.recovered = recovered_of(set_, explanations);
   diagnosis.likely_twins = likely_twins(set_, explanations, diagnosis.effects);

@@ -38,6 +38,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::NotAnswered{}, "no such configuration"},
       {unknown::NoLineOfMotion{}, "does not move"},
       {unknown::NotToldApart{}, "do not separate it"},
+      {unknown::NoMinimum{}, "stopped before it reached a minimum"},
       {unknown::ExplanationsDiffer{}, "differ too much"},
       {unknown::FreeFall{}, "no normal force"},
       {unknown::NoBalance{}, "not balance at any downhill speed"},

@@ -164,15 +164,16 @@ TEST_CASE(
                                 diagnose::ids::friction_drift, 0.1));
 }
 
-TEST_CASE("nothing is recovered from a fit that stopped before its minimum") {
+TEST_CASE("nothing is recovered from an explanation whose fit stopped before its minimum") {
   const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.1 * v * std::abs(v); }};
   const diagnose::TrackSet set = set_of(7, drag);
   const diagnose::MotionFit nominal = diagnose::linearise_again(set, diagnose::fit_nominal(set));
-  diagnose::MotionFit quadratic = with_effect_of(set, nominal, diagnose::ids::quadratic_drag, 0.05);
-  REQUIRE(diagnose::recovered_of(set, {{&quadratic, {}, 1.0}}).at(0).mu.estimate);
-  quadratic.converged = false;
-  for (const core::Quantity& quantity : {diagnose::recovered_of(set, {{&quadratic, {}, 1.0}}).at(0).mu,
-                                         diagnose::recovered_of(set, {{&quadratic, {}, 1.0}}).at(0).alpha_deg}) {
+  const diagnose::MotionFit quadratic = with_effect_of(set, nominal, diagnose::ids::quadratic_drag, 0.05);
+  diagnose::LikelyFit one{&quadratic, {}, 1.0};
+  REQUIRE(diagnose::recovered_of(set, {one}).at(0).mu.estimate);
+  one.at_minimum = false;
+  const diagnose::RecoveredConfiguration found = diagnose::recovered_of(set, {one}).at(0);
+  for (const core::Quantity& quantity : {found.k_over_m_1_s, found.mu, found.alpha_deg, found.v_lim_m_s}) {
     CHECK_FALSE(quantity.estimate);
     REQUIRE(quantity.why);
     CHECK(std::holds_alternative<core::unknown::NoMinimum>(quantity.why->reason));

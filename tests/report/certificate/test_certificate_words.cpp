@@ -201,6 +201,10 @@ TEST_CASE("everything that twins may lack has words and a reason, an error of se
   const std::vector<std::pair<validate::NotInTwins, std::string>> lacks = {
       {lacking::Inexpressible{"quadratic_drag", "no law"}, "quadratic drag (no law)"},
       {lacking::Images{"twin: no view\nof the track"}, "images and calibration (twin: no view of the track)"},
+      {lacking::Pattern{},
+       "the calibration by a pattern (one folder has a pattern and another a scale: all twins are measured by the "
+       "scale, "
+       "with its error)"},
       {lacking::ClipScatter{}, "what differs from clip to clip (filming leaves as much)"},
       {lacking::Noise{5e-4, 1.23456e-5},
        "noise as in the recording (its positions scatter by 0.0005 m, the twin's by 1.23e-05 m: something other than "
