@@ -63,7 +63,7 @@ class WrongInput(InFolder):
                 ("mass_sd_kg", "'0'", lambda: analyze(track(t, x, mass_sd_kg="0"))),
                 ("incline_deg", "'4'", lambda: analyze(t, x, incline_deg="4")),
                 ("gravity_m_s2", "'9.81'", lambda: analyze(t, x, gravity_m_s2="9.81")),
-                ("gravity_m_s2", "None", lambda: glidelab.diagnose(t, x, gravity_m_s2=None)),
+                ("gravity_m_s2", "'9.81'", lambda: glidelab.diagnose(t, x, gravity_m_s2="9.81")),
                 ("name", "3", lambda: analyze(t, x, name=3)),
                 ("group", "3", lambda: analyze(track(t, x, group=3))),
                 ("launched", "1", lambda: analyze(track(t, x, launched=1))),
