@@ -399,7 +399,7 @@ std::string table_of_speeds(unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("the option --gravity is for files, and alpha contains the uncertainty that its digits or --gravity-sd leave") {
+TEST_CASE("gravity of a file is stated by --gravity, and alpha contains what its digits or --gravity-sd leave open") {
   const tests::TempDir temp;
   const fs::path file = temp / "encoder.csv";
   base::write_file(file, table_of_speeds(7));
