@@ -277,8 +277,8 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
       ->needs(incline);
   CLI::Option* gravity = command
                              .add_option("--gravity", options.gravity_m_s2,
-                                         "For a file: gravity at its place in m/s²; without it alpha and mu "
-                                         "contain 0.015 m/s² of it, and with it its last digit")
+                                         "For a file: gravity at its place in m/s², known to its last digit; "
+                                         "without it 9.80665, known to 0.015")
                              ->type_name("M_S2")
                              ->check(check_above_0);
   command.add_option("--gravity-sd", options.gravity_sd_m_s2, "With --gravity: its standard deviation in m/s²")
@@ -306,9 +306,10 @@ void check_bare_options(const core::TrackFileOptions& options, const std::vector
   if (options.column.empty() && !states && options.runs.empty() && !has_masses) return;
   for (const std::string& input : inputs) {
     if (core::is_bare_track(input)) continue;
-    throw base::InputError(base::Issue{
-        input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --runs, --masses", "not a file with a track",
-        "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
+    throw base::InputError(
+        base::Issue{input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --gravity-sd, --runs, --masses",
+                    "not a file with a track",
+                    "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
   }
 }
 

@@ -10,23 +10,18 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "base/text/trimmed.h"
 
 namespace glidelab::base {
 namespace {
 
 constexpr std::size_t kMaxIssues = 10;  // a file of the wrong kind is wrong on every line
 
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> fields;
   for (std::size_t from = 0;;) {
     const auto comma = line.find(',', from);
-    fields.push_back(trim(line.substr(from, comma - from)));
+    fields.push_back(trimmed(line.substr(from, comma - from)));
     if (comma == std::string_view::npos) return fields;
     from = comma + 1;
   }
@@ -76,7 +71,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<std::stri
   bool header_read = false;
   for (int line_number = 1; !rest.empty() && issues.size() < kMaxIssues; ++line_number) {
     const auto newline = rest.find('\n');
-    const std::string_view line = trim(rest.substr(0, newline));
+    const std::string_view line = trimmed(rest.substr(0, newline));
     rest.remove_prefix(newline == std::string_view::npos ? rest.size() : newline + 1);
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string_view> fields = split(line);

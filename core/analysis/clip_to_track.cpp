@@ -44,18 +44,22 @@ std::vector<PlanePoint> restituted(const SeenClip& seen, const Restitution& rest
 /// where another note says why.
 std::optional<MarkerLost> frames_lost(const SeenClip& seen) {
   constexpr std::size_t kFew = 3;
-  constexpr double kEdgeRadii = 3.0;  // closer to the edge of the image it comes from outside, or leaves
+  constexpr double kEdgeRadii =
+      3.0;  // and a step of its motion: this close to the edge it comes from outside, or leaves
   const std::vector<MarkerSighting>& sightings = seen.marker.sightings;
   if (sightings.empty()) return std::nullopt;
-  const auto at_edge = [&](const MarkerSighting& at) {
+  const auto at_edge = [&](const MarkerSighting& at, const MarkerSighting& next) {
+    const double frames = std::max(1.0, std::abs(static_cast<double>(next.frame) - static_cast<double>(at.frame)));
+    const double step_px = std::hypot(next.u_px - at.u_px, next.v_px - at.v_px) / frames;
     return std::min({at.u_px, at.v_px, seen.size.width - 1.0 - at.u_px, seen.size.height - 1.0 - at.v_px}) <
-           kEdgeRadii * at.radius_px;
+           kEdgeRadii * at.radius_px + step_px;
   };
   const MarkerSighting &first = sightings.front(), &last = sightings.back();
+  const std::size_t beside = sightings.size() > 1 ? 1 : 0;
   MarkerLost lost;
   lost.frames = seen.frame_t_s.size();
-  if (!at_edge(first)) lost.before = first.frame;
-  if (!at_edge(last)) lost.after = lost.frames - 1 - last.frame;
+  if (!at_edge(first, sightings[beside])) lost.before = first.frame;
+  if (!at_edge(last, sightings[sightings.size() - 1 - beside])) lost.after = lost.frames - 1 - last.frame;
   lost.between = last.frame - first.frame + 1 - sightings.size();
   for (const Note& note : seen.marker.notes) {
     if (const auto* const hidden = std::get_if<MarkerConcealed>(&note))
@@ -291,10 +295,10 @@ void count_downwards_by_set_up(const Experiment& experiment, std::vector<TrackDa
   }
   for (const auto& [group, of] : set_ups) {
     if (of.has_sign) continue;
-    if (of.is_launched) {
+    if (of.heights_launched != 0.0) {
       if (of.heights_launched < 0.0) reverse(of.heights);
     } else {
-      count_downwards(of.only_falls ? of.all : of.heights);
+      count_downwards(of.only_falls && !of.is_launched ? of.all : of.heights);
     }
   }
 }

@@ -142,14 +142,17 @@ std::optional<SmearSlope> lengthening_of(const CameraSettings& camera, const Cli
 }
 
 /// The exposure from the lengthening of the marker, if it exceeds what the stated exposure explains. Nothing is exposed
-/// for longer than a frame.
+/// for longer than a frame: by more than its uncertainty, it comes from something else.
 void measure_smear(const CameraSettings& camera, ClipCheck& clip) {
   const auto smear = marker_smear(clip.lengthening);
-  if (!smear || smear->exposure_s > 1.0 / camera.frame_rate_hz) return;
-  const double blur_px = clip.top_speed_px_s * smear->exposure_s;
-  const bool longer = !camera.exposure_s || smear->exposure_s > kLeastOverExposure * *camera.exposure_s;
+  const double frame_s = 1.0 / camera.frame_rate_hz;
+  constexpr double kClearlyLonger_sd = 3.0;
+  if (!smear || smear->exposure_s - kClearlyLonger_sd * smear->sd_s > frame_s) return;
+  const double exposure_s = std::min(smear->exposure_s, frame_s);
+  const double blur_px = clip.top_speed_px_s * exposure_s;
+  const bool longer = !camera.exposure_s || exposure_s > kLeastOverExposure * *camera.exposure_s;
   if (!longer || blur_px <= kLeastOverDiameter * clip.marker_px) return;
-  clip.measured_exposure_s = smear->exposure_s;
+  clip.measured_exposure_s = exposure_s;
   clip.measured_blur_px = blur_px;
 }
 

@@ -2,6 +2,7 @@
 /// report/check/finding_words.h puts it into words.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -51,6 +52,16 @@ constexpr double per_metre(LengthUnit unit) {
   }
   return 1.0;
 }
+
+/// Whichever of centimetres and millimetres brings a value closest to the usual one.
+inline LengthUnit likely_unit(double value, double usual_m) {
+  const auto off = [&](LengthUnit unit) { return std::abs(std::log(value / per_metre(unit) / usual_m)); };
+  return off(LengthUnit::centimetres) < off(LengthUnit::millimetres) ? LengthUnit::centimetres
+                                                                     : LengthUnit::millimetres;
+}
+
+/// Metres that a body covers: no track is longer, and what is usual.
+inline constexpr double kLongestRun_m = 20.0, kUsualRun_m = 1.0;
 
 struct UnitName {
   const char *many, *one;

@@ -233,16 +233,8 @@ constexpr double kLargestSquare_m = 0.5, kUsualSquare_m = 0.03;
 constexpr double kLargestMarker_m = 0.5, kUsualMarker_m = 0.02;
 constexpr double kLongestTrack_m = 20.0, kUsualTrack_m = 1.5;
 constexpr double kLeastScale_px_m = 20.0, kUsualScale_px_m = 500.0;
-constexpr double kLongestRun_m = 20.0, kUsualRun_m = 1.0;
 constexpr double kMostOverGravity = 1.05;
 constexpr double kSameAngle_deg = 0.5, kSameAngleShare = 0.15;
-
-/// Whichever of centimetres and millimetres brings the value closest to the usual one.
-LengthUnit likely_unit(double value, double usual_m) {
-  const auto off = [&](LengthUnit unit) { return std::abs(std::log(value / per_metre(unit) / usual_m)); };
-  return off(LengthUnit::centimetres) < off(LengthUnit::millimetres) ? LengthUnit::centimetres
-                                                                     : LengthUnit::millimetres;
-}
 
 /// One root cause and what it explains.
 struct Root {

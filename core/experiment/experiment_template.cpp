@@ -11,7 +11,7 @@ constexpr std::string_view kToml =
     R"(# Lengths are in metres, times in seconds, angles in degrees, masses in kilograms.
 # A line "#key = value" is a key that you may use: take the # away. A misspelt key is an error, not ignored.
 
-#gravity_m_s2 = 9.80665            # at your place: 9.78 (equator) to 9.83 (poles); this is the default
+#gravity_m_s2 = 9.8123             # at your place: 9.78 (equator) to 9.83 (poles); without it 9.80665 ± 0.015
 #gravity_sd_m_s2 = 0.0001          # its standard deviation; by default that of the last digit
 
 # ---- The camera: what it was told to do, or what its data sheet says.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -93,15 +95,41 @@ double scatter_of(const std::vector<double>& values) {
   return seconds.empty() ? 0.0 : kSdOverMedian * median_of(seconds) / std::sqrt(6.0);
 }
 
+/// The smallest difference between two of the values that differ; 0 if none do.
+double step_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[i - 1]) least = std::min(least, values[i] - values[i - 1]);
+  }
+  return std::isfinite(least) ? least : 0.0;
+}
+
+/// By their places along the line.
+AlongAndAcross sorted(const AlongAndAcross& line) {
+  std::vector<std::size_t> order(line.along.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return line.along[i]; });
+  AlongAndAcross result;
+  for (const std::size_t i : order) {
+    result.along.push_back(line.along[i]);
+    result.across.push_back(line.across[i]);
+  }
+  return result;
+}
+
 }  // namespace
 
 PathBend bend_of(const PlanePath& path) {
   const std::size_t n = path.x_m.size();
   if (n < kFewestOfGroup * 2) return {};
-  const AlongAndAcross line = turned(path);
+  AlongAndAcross line = turned(path);
   PathBend bend;
   bend.length_m = range(line.along);
+  if (!(bend.length_m > 0.0)) return {};  // at rest
   bend.noise_m = scatter_of(line.across);
+  bend.step_m = std::max(step_of(path.x_m), step_of(path.y_m));
+  line = sorted(line);
   const std::size_t groups = std::min(kGroups, n / kFewestOfGroup);
   const auto medians = [&](const std::vector<double>& values) {
     std::vector<double> of_groups;

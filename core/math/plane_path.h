@@ -19,12 +19,13 @@ double slant_deg(const PlanePath& path);
 double sagitta_of(const PlanePath& path);
 
 /// A bend of any shape, as the deviation across the line that fits the path best. Its smooth part are the medians of
-/// sixteen groups of neighbouring positions (of at least three each), so that single wrong positions do not count;
-/// waves shorter than an eighth of the path are lost in it. The smooth part of an arc has nearly the range of its
-/// sagitta.
+/// sixteen groups of positions that are neighbours along the line (of at least three each), so that single wrong
+/// positions do not count, and a body that comes back beside its way there is on one path; waves shorter than an eighth
+/// of the path are lost in it. The smooth part of an arc has nearly the range of its sagitta.
 struct PathBend {
   double range_m = 0.0;  ///< of the smooth deviation
   double noise_m = 0.0;  ///< standard deviation of one position across, from second differences
+  double step_m = 0.0;   ///< smallest difference between two values of a coordinate: that of rounded ones
   double length_m = 0.0;
   double slope_deg = 0.0;  ///< between the directions of parts of an eighth of the length, largest against smallest
 };

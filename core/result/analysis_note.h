@@ -100,10 +100,10 @@ struct PositionsUnseen {
   double value_m = 0.0, from_s = 0.0;  ///< of the first of them
 };
 
-/// Two columns without a header, both of which could be times.
+/// Columns without a header, more than one of which could be times.
 struct ColumnsGuessed {
   std::string x, t;
-  bool either = false;  ///< both could be times; otherwise the second alone could, and is taken
+  bool either = false;  ///< another could be times as well; otherwise one alone could, and is taken
 };
 
 /// A path in (x, y) that leaves its straight line.

@@ -28,7 +28,8 @@ struct KnownVariance {
 /// Student's t belongs to the first.
 Estimate estimate(double value, const KnownVariance& random, double known);
 
-/// The sum of two independent ones (Welch 1947 and Satterthwaite 1946: the degrees that give it the right variance).
+/// The sum of two parts that count as independent (Welch 1947 and Satterthwaite 1946: the degrees that give it the
+/// right variance).
 KnownVariance sum_of(const KnownVariance& one, const KnownVariance& other);
 
 /// chi^2 per degree of freedom that is exceeded by chance with a probability of 0.00135, as a normal number exceeds

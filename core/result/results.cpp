@@ -4,14 +4,16 @@
 #include <cmath>
 
 #include "base/math/angles.h"
+#include "core/experiment/clip_setup.h"
 
 namespace glidelab::core {
 
 std::optional<SlowFall> slow_fall(const ConfigurationResult& configuration, double gravity_m_s2) {
-  constexpr double kFall_deg = 80.0, kRounding_deg = 1e-7, kOfGravity = 1.0 / 3.0, kClear = 3.0;  // standard deviations
-  const double sine = std::sin(configuration.incline_deg * base::kRadPerDegree);
-  if (std::abs(configuration.incline_deg) < kFall_deg - kRounding_deg || !(gravity_m_s2 > 0.0)) return {};
+  constexpr double kOfGravity = 1.0 / 3.0, kClear = 3.0;  // standard deviations
+  const double incline_rad = configuration.incline_deg * base::kRadPerDegree, sine = std::sin(incline_rad);
+  if (!is_fall(incline_rad) || !(gravity_m_s2 > 0.0)) return {};
   for (const LineFit& line : configuration.lines) {
+    if (!(line.direction * sine > 0.0)) continue;  // upwards
     Estimate a0 = line.a0_m_s2;
     if (sine < 0.0) a0.value = -a0.value;
     if (a0.value + kClear * a0.sd < kOfGravity * gravity_m_s2 * std::abs(sine)) return SlowFall{a0, gravity_m_s2};

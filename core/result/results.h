@@ -244,11 +244,12 @@ struct SlowFall {
   double gravity_m_s2 = 0.0;
 };
 
-/// The first line of a fall that begins, by three standard deviations, below a third of the gravity along it. A body
-/// released from rest accelerates by g less the weight of the fluid that it displaces, against its mass and the mass of
-/// the fluid that it moves. In air that keeps more than a third of g for all but balloons: of density r times the
-/// air's, a sphere begins with g (r - 1)/(r + 1/2). A drag that grows faster than proportionally to the speed makes the
-/// intercept larger, not smaller. Empty if gravity is not known (0).
+/// The line of the motion downwards in a fall, if it begins, by three standard deviations, below a third of the gravity
+/// along it. A body released from rest accelerates by g less the weight of the fluid that it displaces, against its
+/// mass and the mass of the fluid that it moves. In air that keeps more than a third of g for all but balloons: of
+/// density r times the air's, a sphere begins with g (r - 1)/(r + 1/2). A drag that grows faster than proportionally to
+/// the speed makes the intercept of this line larger, not smaller (that of a motion upwards smaller). Empty if gravity
+/// is not known (0).
 std::optional<SlowFall> slow_fall(const ConfigurationResult& configuration, double gravity_m_s2);
 
 struct CornerCell {

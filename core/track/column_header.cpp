@@ -8,16 +8,14 @@
 #include <string_view>
 #include <utility>
 
+#include "base/text/trimmed.h"
 #include "core/experiment/file_names.h"
 
 namespace glidelab::core {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
-  const std::string_view blanks = " \t,:";
-  const auto first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  return base::trimmed(text, " \t,:");
 }
 
 bool speaks_of_a_run(std::string_view field) {

@@ -9,6 +9,8 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "base/text/readable_text.h"
+#include "base/text/trimmed.h"
 #include "core/track/number_field.h"
 #include "core/track/text_encoding.h"
 #include "core/track/workbook.h"
@@ -19,10 +21,9 @@ namespace {
 constexpr std::size_t kMostFieldIssues = 10;
 constexpr std::size_t kMostFields = 100'000'000;  // 1.6 GB; a file of 1 GiB holds about 60 million of t and x
 
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \r") - first + 1);
+/// Of a line: tabs may separate its columns.
+std::string_view trimmed_line(std::string_view text) {
+  return base::trimmed(text, " \r");
 }
 
 constexpr char kOfColumn = '?';  // as a decimal sign: each column has its own
@@ -100,11 +101,11 @@ Lines lines_of(std::string_view text) {
   Lines lines;
   for (int at = 1; !text.empty(); ++at) {
     const auto newline = text.find('\n');
-    const std::string_view line = without_line_quotes(trim(text.substr(0, newline)));
+    const std::string_view line = without_line_quotes(trimmed_line(text.substr(0, newline)));
     text.remove_prefix(newline == std::string_view::npos ? text.size() : newline + 1);
     if (line.find_first_not_of("\t;, ") == std::string_view::npos) continue;
     if (line.front() == '#') {
-      lines.comments.push_back({at, trim(line.substr(1))});
+      lines.comments.push_back({at, trimmed_line(line.substr(1))});
     } else {
       lines.all.push_back({at, line});
     }
@@ -232,12 +233,10 @@ base::Issue no_numbers(const std::string& file, const std::vector<Line>& lines) 
     both_signs |= numbers_of(line, '.') > 0 && numbers_of(line, ',') > 0;
   }
   if (shown == nullptr) return issue;
-  std::size_t most_shown = 60;
-  const auto continues = [&](std::size_t at) { return (static_cast<unsigned char>(shown->text[at]) & 0xC0) == 0x80; };
-  while (most_shown < shown->text.size() && continues(most_shown)) --most_shown;  // no character is cut in two
+  constexpr std::size_t kMostShown = 60;
   issue.line = shown->number;
   issue.found = fmt::format("no line with two numbers; the first with digits is {}{}",
-                            shown->text.substr(0, most_shown), shown->text.size() > most_shown ? "…" : "");
+                            base::first_bytes(shown->text, kMostShown), shown->text.size() > kMostShown ? "…" : "");
   if (dates) {
     issue.expected +=
         "; a spreadsheet has turned some of these numbers into dates: export them again from the program "

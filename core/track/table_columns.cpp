@@ -25,6 +25,7 @@ namespace {
 
 constexpr double kOtherAxis = 3.0;      // extent along y over that along x: above it the motion is along y
 constexpr double kStraightPath = 0.08;  // sagitta over length: a wide-angle lens bends a straight path by half of that
+constexpr double kLeastSteps = 2.0;     // of rounded coordinates: less is a staircase, and no bend
 constexpr double kBendOverNoise = 5.0, kLeastBend = 2e-3;  // of a notable bend, and over the length of the path
 constexpr double kSlanted_deg = 5.0;                       // x is then too short by 0.4 %
 constexpr std::size_t kFewestOfPath = 8;
@@ -129,7 +130,7 @@ PlanePath path_of(const TableColumn& x, const TableColumn& y) {
     if (!x.values[row] || !y.values[row]) continue;
     path.x_m.push_back(*x.values[row] * x_unit);
     path.y_m.push_back(*y.values[row] * y_unit);
-    rows.push_back(static_cast<double>(rows.size()));
+    rows.push_back(static_cast<double>(row));
   }
   for (const std::vector<double>* const places : {&path.x_m, &path.y_m}) {
     const std::optional<UnseenPositions> unseen = unseen_positions(rows, *places);
@@ -164,6 +165,7 @@ void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const 
 void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path,
                 std::vector<Note>& notes) {
   const PathBend bend = bend_of(path);
+  if (!(bend.length_m > 0.0) || bend.range_m <= kLeastSteps * bend.step_m) return;  // at rest, or rounded
   if (bend.range_m < kBendOverNoise * bend.noise_m || bend.range_m < kLeastBend * bend.length_m) return;
   if (bend.range_m < kStraightPath * bend.length_m) {
     notes.emplace_back(PathBends{bend.range_m, bend.slope_deg});
@@ -253,7 +255,10 @@ std::size_t unnamed_time(const ColumnTable& table) {
 /// not, or if the third covers so much more than the second that the body moves along it.
 std::optional<ChosenColumns> unnamed_columns(const ColumnTable& table, std::vector<Note>& notes) {
   if (table.has_header || table.columns.size() != 3) return {};
-  if (unnamed_time(table) == 1) return only(2);
+  if (unnamed_time(table) == 1) {
+    notes.emplace_back(ColumnsGuessed{table.columns[2].text, table.columns[1].text, true});
+    return only(2);
+  }
   const TableColumn &times = table.columns[0], &second = table.columns[1], &third = table.columns[2];
   std::optional<double> last;
   for (const std::optional<double>& time : times.values) {
@@ -306,11 +311,29 @@ bool increases(const TableColumn& column) {
   return last.has_value();
 }
 
-/// Two columns without a header: t and x, unless the second alone increases throughout.
+/// Whether few of the steps go back: times, one or the other of which is wrong or repeated.
+bool goes_back_seldom(const TableColumn& column) {
+  constexpr std::size_t kOneIn = 10;
+  std::size_t back = 0, steps = 0;
+  std::optional<double> last;
+  for (const std::optional<double>& value : column.values) {
+    if (!value) continue;
+    if (last) {
+      ++steps;
+      back += *value < *last ? 1 : 0;
+    }
+    last = value;
+  }
+  return kOneIn * back <= steps;
+}
+
+/// Two columns without a header: t and x, unless the second increases throughout and the first often goes back.
+/// (Times with a wrong one among them keep their place, and the error names its line.)
 ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
   const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
-  const std::size_t time = second && !first ? 1 : 0;
-  if (second) notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});
+  const std::size_t time = second && !goes_back_seldom(table.columns[0]) ? 1 : 0;
+  if (second && (first || time == 1))
+    notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});
   return only(1 - time);
 }
 

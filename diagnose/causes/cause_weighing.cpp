@@ -206,11 +206,11 @@ std::vector<std::size_t> likeliest_fits(const Comparison& first) {
   return fits;
 }
 
-/// Laws that are fitted together with clip scatter.
+/// A law that is fitted together with clip scatter.
 struct LawWithScatter {
   Hypothesis law;
   MotionFit both;
-  double chi2_without = 0.0;  ///< of the one of the two that is the simpler, by the noise alone
+  double chi2_without = 0.0;  ///< by the noise alone, of the fit to which the other of the two was added
 };
 
 /// One weighing: what its steps share, and the steps in the order in which run() takes them.

@@ -261,7 +261,7 @@ double log_amplitude_evidence(double z_hat, double z_most, bool both_signs) {
 
 SpreadEvidence log_spread_evidence(const Eigen::MatrixXd& products, const Eigen::VectorXd& scores) {
   SpreadEvidence result;
-  if (!products.allFinite() || !scores.allFinite()) return result;  // no motion has such a size
+  if (!products.allFinite() || !scores.allFinite()) return result;
   const Eigen::Index n = scores.size();
   const base::SymmetricEigen eigen = base::symmetric_eigen(products);
   const double largest = eigen.values[n - 1];

@@ -125,7 +125,7 @@ class ScoreSpace {
 double log_amplitude_evidence(double z_hat, double z_most, bool both_signs);
 
 /// The same for many sizes at once, each N(0, tau²), with a prior uniform in log tau; `products` are <c_i, c_j>,
-/// `scores` <c_i, r>.
+/// `scores` <c_i, r>. Products or scores that are not finite (a motion that runs off) say nothing: there is no mean.
 struct SpreadEvidence {
   double log_evidence = 0.0;
   double gain = 0.0;           ///< log likelihood gained at the best tau

@@ -73,18 +73,18 @@ bool is_table_of_lines(const std::filesystem::path& file) {
 
 core::Experiment read_recording(const std::filesystem::path& path, const core::TrackFileOptions& bare) {
   if (!core::is_bare_track(path) || !is_table_of_lines(path)) return core::read_tracks(path, bare);
-  if (!bare.column.empty() || bare.mass_kg || bare.incline_deg || !bare.runs.empty()) {
-    throw base::InputError(base::Issue{path.string(), 0, "--column, --mass, --incline, --runs", "a table of lines",
-                                       "none of them: the table has its masses and inclinations"});
+  if (!bare.column.empty() || bare.mass_kg || bare.incline_deg || !bare.runs.empty() || !bare.masses_kg.empty() ||
+      !bare.mass_of_file.empty() || bare.gravity_sd_m_s2) {
+    throw base::InputError(
+        base::Issue{path.string(), 0, "--column, --mass, --masses, --incline, --runs, --gravity-sd", "a table of lines",
+                    "none of them: the table has its masses and inclinations, and gravity is exact"});
   }
   core::Experiment experiment;
   experiment.folder = path.parent_path();
   experiment.file = path;
   experiment.name = path.stem().string();
   experiment.lines = path;
-  const core::Gravity gravity = core::stated_gravity(bare.gravity_m_s2, bare.gravity_sd_m_s2);
-  experiment.gravity_m_s2 = gravity.m_s2;
-  experiment.gravity_sd_m_s2 = gravity.sd_m_s2;
+  experiment.gravity_m_s2 = bare.gravity_m_s2.value_or(experiment.gravity_m_s2);
   return experiment;
 }
 

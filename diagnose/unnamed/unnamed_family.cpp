@@ -133,7 +133,7 @@ void draw_curve(const Grid& grid, const Eigen::VectorXd& sizes, const Eigen::Mat
 UnnamedFamily solve(const ScoreSpace& space, const std::vector<ScoreColumn>& columns, UnnamedFamily family,
                     SpreadEvidence& evidence) {
   const Normal normal = normal_of(space, columns);
-  evidence = normal.products.allFinite() ? log_spread_evidence(normal.products, normal.scores) : SpreadEvidence{};
+  evidence = log_spread_evidence(normal.products, normal.scores);
   if (const double left = left_of(space, evidence.gain); left > 1.0 && evidence.mean.size() > 0) {
     const SpreadEvidence sized = log_spread_evidence(normal.products / left, normal.scores / left);
     evidence.mean = sized.mean;

@@ -63,7 +63,8 @@ core::ClipSetup setup_of(const GivenTrack& track, std::vector<base::Issue>& issu
     setup.launched = launched;
     known = true;
   }
-  setup.incline_assumed = setup.launched == core::Launched::unknown && setup.incline_rad == 0.0;
+  setup.incline_assumed =
+      setup.launched == core::Launched::unknown && setup.incline_rad == 0.0 && !track.incline_sd_deg;
   require(known, track, "launched", fmt::format("\"{}\"", track.launched), "up, down, released or unknown", issues);
   return setup;
 }

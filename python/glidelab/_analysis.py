@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from . import _glidelab
 from ._arrays import Vector, frozen
 from ._checks import optional_real, switch, text, texts
-from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_tracks, job_count, refuse, refuse_of_arrays,
-                      source_of, teller)
+from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_gravity, given_tracks, job_count, refuse,
+                      refuse_of_arrays, source_of, stated_incline, teller)
 from ._recovered import QUANTITIES, WithEffects, with_effects_of
 from ._results import Made, Quantity, Result, frame_of, html_plot, html_table, new_axes, quantity_of
 
@@ -393,12 +393,13 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
     >>> x = -0.25 * t + 0.45 * (1.0 - np.exp(-t)) # doctest: +SKIP
     >>> glidelab.analyze(t, x, mass_kg=0.335) # doctest: +SKIP
     """
-    stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
+    stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": stated_incline(incline_deg, incline_sd_deg),
                               "incline_sd_deg": incline_sd_deg, "force_n": force_n}
     given = source_of(source, x_m, **stated)
     choices = _choices(bandwidth, estimator, robust, jobs, smoother, with_effects)
     if given.paths:
         refuse({"force_n": force_n}, "a file's force is one of its columns")
+        refuse({"name": name or None}, "a file's name is that of its results")
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
@@ -407,7 +408,6 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
                                        "most_megapixels": most_megapixels}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
                       "force_n": force_n})
-    gravity = (optional_real("gravity_m_s2", gravity_m_s2, "m/s², above 0, or None"),
-               optional_real("gravity_sd_m_s2", gravity_sd_m_s2, "m/s², from 0 on, or None"))
+    gravity = given_gravity(gravity_m_s2, gravity_sd_m_s2)
     return analysis_of(*_glidelab.analyze_arrays(given_tracks(given.tracks), gravity, text("name", name), choices,
                                                  teller(progress)))

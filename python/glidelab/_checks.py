@@ -30,7 +30,7 @@ def shown(value: object) -> str:
 def real(key: str, value: Any, expected: str = "a number", file: str = "") -> float:
     """A real number: no text, no switch, no array. NaN and infinity pass: what is allowed depends on the quantity."""
     is_number = (hasattr(type(value), "__float__") and getattr(value, "ndim", 0) == 0
-                 and not isinstance(value, (bool, np.bool_, str, bytes, np.ma.MaskedArray)))
+                 and not isinstance(value, (bool, np.bool_, complex, np.complexfloating, str, bytes, np.ma.MaskedArray)))
     try:
         if is_number:
             return float(value)

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, frozen
-from ._checks import optional_real, real, shown, text, texts
+from ._checks import real, shown, text, texts
 from ._errors import input_error
-from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_scenario, given_tracks,
-                      job_count, refuse, refuse_of_arrays, source_of, teller)
+from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
+                      given_scenario, given_tracks, job_count, refuse, refuse_of_arrays, source_of, stated_incline,
+                      teller)
 from ._recovered import Recovered, recovered_of
 from ._results import BY_ROW, Made, Result, frame_of, html_plot, html_table, new_axes
 
@@ -225,12 +226,13 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
     -----
     docs/guide/diagnosis.md says how far to trust the verdict, docs/reference/weighing.md how explanations are weighed.
     """
-    stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": 0.0 if incline_deg is None else incline_deg,
+    stated: dict[str, Any] = {"mass_kg": mass_kg, "incline_deg": stated_incline(incline_deg, incline_sd_deg),
                               "incline_sd_deg": incline_sd_deg, "force_n": force_n}
     given = source_of(source, x_m, **stated)
     left_out = texts("without", without, "a list of effects, such as [\"quadratic_drag\"]")
     if given.paths:
         refuse({"force_n": force_n}, "a file's force is one of its columns")
+        refuse({"name": name or None}, "a file's name is that of its results")
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
@@ -240,8 +242,7 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
                                        "most_megapixels": most_megapixels}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
                       "force_n": force_n})
-    gravity = (optional_real("gravity_m_s2", gravity_m_s2, "m/s², above 0, or None"),
-               optional_real("gravity_sd_m_s2", gravity_sd_m_s2, "m/s², from 0 on, or None"))
+    gravity = given_gravity(gravity_m_s2, gravity_sd_m_s2)
     return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), gravity, text("name", name), left_out,
                                                    job_count(jobs), teller(progress)))
 
@@ -343,10 +344,12 @@ def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[f
         _only("noise_m", noise_m, "a scenario: recorded positions show their own noise")
         _only("seed", seed, "a scenario")
         given = source_of(tracks, None)
-        gravity = (optional_real("gravity_m_s2", gravity_m_s2, "m/s², above 0, or None"), None)
+        gravity = given_gravity(gravity_m_s2, None)
         outcome = _glidelab.plan_arrays(given_tracks(given.tracks), gravity, text("name", name), job_count(jobs),
                                         teller(progress))
     else:
+        _only("gravity_m_s2", gravity_m_s2, "recorded positions: a scenario states its own")
+        _only("name", name or None, "recorded positions: a scenario states its own")
         if noise_m is None:
             raise input_error("noise_m", "nothing", "the position noise in metres, which a scenario does not state")
         noise_m = real("noise_m", noise_m, "a number of metres from 1e-9 to 1")

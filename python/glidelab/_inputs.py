@@ -132,6 +132,20 @@ def _runs_text(runs: Runs) -> str:
     return ",".join(str(one) for one in numbers)
 
 
+def given_gravity(gravity_m_s2: Optional[float],
+                  gravity_sd_m_s2: Optional[float]) -> tuple[Optional[float], Optional[float]]:
+    """Gravity of arrays and its standard deviation; what is not stated stays None."""
+    return (optional_real("gravity_m_s2", gravity_m_s2, "m/s², above 0, or None"),
+            optional_real("gravity_sd_m_s2", gravity_sd_m_s2, "m/s², from 0 on, or None"))
+
+
+def stated_incline(incline_deg: Optional[float], incline_sd_deg: Optional[float]) -> float:
+    """The inclination of arrays; level if it is not stated. Its uncertainty is that of a stated one."""
+    if incline_sd_deg is not None and incline_deg is None:
+        raise input_error("incline_sd_deg", shown(incline_sd_deg), "incline_deg, whose uncertainty it is, as well")
+    return 0.0 if incline_deg is None else incline_deg
+
+
 def refuse(options: Mapping[str, object], why: str) -> None:
     """Arguments that do not apply here, and why."""
     for key, value in options.items():
@@ -181,8 +195,7 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
     incline_deg = optional_real("incline_deg", incline_deg, "degrees, from -90 to 90")
     if incline_deg is not None and not abs(incline_deg) <= steepest_deg:  # NaN is not
         raise input_error("incline_deg", f"{incline_deg:g}", "degrees, from -90 to 90")
-    if incline_sd_deg is not None and incline_deg is None:
-        raise input_error("incline_sd_deg", repr(incline_sd_deg), "incline_deg, whose uncertainty it is, as well")
+    stated_incline(incline_deg, incline_sd_deg)
     if gravity_sd_m_s2 is not None and gravity_m_s2 is None:
         raise input_error("gravity_sd_m_s2", repr(gravity_sd_m_s2), "gravity_m_s2, whose uncertainty it is, as well")
     gravity_sd_m_s2 = optional_real("gravity_sd_m_s2", gravity_sd_m_s2, "metres per second squared, from 0 on")

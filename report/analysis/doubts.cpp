@@ -25,8 +25,6 @@ bool begins_above_gravity(const core::LineFit& line, double gravity_m_s2) {
   return line.a0_m_s2.value - kAboveSds * line.a0_m_s2.sd > kAboveGravity * gravity_m_s2;
 }
 
-constexpr double kLongestRun_m = 20.0, kUsualRun_m = 1.0;  // as in core/check: no track is that long
-
 /// Of the clips of the configuration whose positions come from a file.
 double longest_range_m(const core::AnalysisResults& results, const core::ConfigurationResult& configuration) {
   double longest = 0.0;
@@ -41,16 +39,6 @@ double longest_range_m(const core::AnalysisResults& results, const core::Configu
     longest = std::max(longest, most - least);
   }
   return longest;
-}
-
-/// Whichever of centimetres and millimetres makes it closest to the usual distance.
-core::LengthUnit likely_unit(double range_m) {
-  const auto off = [&](core::LengthUnit unit) {
-    return std::abs(std::log(range_m / core::per_metre(unit) / kUsualRun_m));
-  };
-  using core::LengthUnit;
-  return off(LengthUnit::centimetres) < off(LengthUnit::millimetres) ? LengthUnit::centimetres
-                                                                     : LengthUnit::millimetres;
 }
 
 }  // namespace
@@ -80,8 +68,8 @@ std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
           fmt::format("{}: the line's intercept at v = 0 is {} m/s², more than gravity", configuration_name(results, c),
                       base::value_and_sd_text(line.a0_m_s2.value, line.a0_m_s2.sd));
       const double range_m = longest_range_m(results, c);
-      if (range_m > kLongestRun_m) {
-        const core::LengthUnit unit = likely_unit(range_m);
+      if (range_m > core::kLongestRun_m) {
+        const core::LengthUnit unit = core::likely_unit(range_m, core::kUsualRun_m);
         doubts.push_back(fmt::format(
             "{}, and x covers {:.4g}, which looks like {} ({:.3g} m). Give x in metres: divide the column by {:.0f}, "
             "or "

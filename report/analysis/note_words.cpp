@@ -104,7 +104,8 @@ struct AnalysisSentence {
     return fmt::format(
         "the table has no header: \"{}\" is taken as the time{} and \"{}\" as x. Name the columns t and x in a first "
         "line, or state which one is x (--column)",
-        of.t, of.either ? ", which the other could be as well," : ", because it alone increases throughout,", of.x);
+        of.t, of.either ? ", which another column could be as well," : ", because it alone increases throughout,",
+        of.x);
   }
   std::string operator()(const core::PathBends& of) const {
     return fmt::format(
@@ -237,8 +238,7 @@ struct AnalysisSentence {
   std::string operator()(const core::PixelsAnswerLeft& of) const {
     return fmt::format(
         "the marker's positions are not corrected for the response of the camera's pixels to an edge: in {} of {} "
-        "frames "
-        "the clip is too long for so large a marker, or the fit with that response fails",
+        "frames the clip is too long for so large a marker, or the fit with that response fails",
         of.kept, of.sightings);
   }
   std::string operator()(const core::MarkerLost& of) const {
@@ -334,22 +334,15 @@ struct AnalysisSentence {
                        of.mass_kg, of.mass_kg / 1000.0);
   }
   std::string operator()(const core::InclineContradiction& of) const {
-    if (core::seems_uphill(of)) {
-      return fmt::format("{}: {} (glidelab check says more)", contradiction_words(of), contradiction_causes(of));
-    }
-    return contradiction_words(of) +
-           (of.gross || !of.stated.sd_deg
-                ? ": an angle, a length, the frame rate or gravity_m_s2 is wrong (glidelab check says more)"
-                : ": an angle or its uncertainty, a length, the frame rate or gravity_m_s2 is wrong; a wrong length "
-                  "also makes the terminal velocity wrong, a wrong rate K/m too (glidelab check says more)");
+    return fmt::format("{}: {} (glidelab check says more)", contradiction_words(of), contradiction_causes(of));
   }
   std::string operator()(const core::MuFromIncline& of) const {
     return fmt::format("motion in one direction: µ rests on the stated inclination, {}", with_sd(of.deg, of.sd_deg));
   }
   std::string operator()(const core::GravityAssumed& of) const {
     return fmt::format(
-        "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %), because the place is not "
-        "known (gravity_m_s2, for files --gravity, states it)",
+        "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %). State it as it is at "
+        "your place, with more digits or its uncertainty (gravity_m_s2, for files --gravity)",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
   }
   std::string operator()(const core::RobustFit& of) const {
@@ -387,7 +380,10 @@ std::string contradiction_words(const core::InclineContradiction& of) {
 
 std::string contradiction_causes(const core::InclineContradiction& of) {
   if (core::seems_uphill(of)) return "x seems to be positive uphill, and has to rise downhill";
-  return "an angle, a length, the frame rate or gravity_m_s2 is wrong";
+  if (of.gross || !of.stated.sd_deg) return "an angle, a length, the frame rate or gravity_m_s2 is wrong";
+  return "an angle or its uncertainty, a length, the frame rate or gravity_m_s2 is wrong; a wrong length also makes "
+         "the "
+         "terminal velocity wrong, a wrong rate K/m too";
 }
 
 std::string slow_fall_words(const core::SlowFall& fall) {

@@ -157,7 +157,7 @@ Json mean_json(const validate::ScoredMean& mean) {
 
 Json row_json(const ChallengeScore& score, const ChallengeRow& row) {
   Json object{{"entrant", score.entrants[row.entrant].name},
-              {"rank", row.rank},
+              {"rank", row.answers == 0 ? Json(nullptr) : Json(row.rank)},
               {"true_values", row.true_values},
               {"answers", row.answers},
               {"answered_interval95", {row.answered_low95, row.answered_high95}},
@@ -166,6 +166,7 @@ Json row_json(const ChallengeScore& score, const ChallengeRow& row) {
   object["rms_error"] = row.rms_error ? mean_json(*row.rms_error) : Json(nullptr);
   object["interval_score"] = row.interval_score ? mean_json(*row.interval_score) : Json(nullptr);
   if (!row.rms_error) object["why"] = {{"rms_error", "no answer"}, {"interval_score", "no answer"}};
+  if (row.answers == 0) object["why"]["rank"] = "no answer";
   return object;
 }
 

@@ -307,7 +307,7 @@ struct FindingSentence {
             "check the unit of the times: they may be milliseconds, or frame numbers"};
   }
   FindingWords operator()(const found::FallsSlowly& of) const {
-    return {slow_fall_words(of.fall), "see which of these it is: what is called drag here is none otherwise"};
+    return {slow_fall_words(of.fall), "find out which of these it is; until then K/m is no drag"};
   }
   FindingWords operator()(const found::Gaps& of) const {
     return {fmt::format("{} of its time lies in gaps of up to {:.3g} s between positions", percent_text(of.share),

@@ -215,15 +215,16 @@ std::string coverage_meaning(const validate::Coverage& coverage) {
   const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
     return row.determined > 0 && row.estimator != validate::kNaiveLines;
   });
-  if (!any) {
-    return meaning_section(
-        "<p>There is nothing to count: no estimator found a value whose truth is known. K/m and µ have a true value "
-        "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the "
-        "terminal velocity where the forces balance, and these motions do not determine them.</p>\n");
-  }
   std::string text;
   if (coverage.outside && coverage.outside->failed() > 0) {
     text += fmt::format("<p><b>{}</b></p>\n", escape(outside_failed(*coverage.outside)));
+  }
+  if (!any) {
+    return meaning_section(
+        text +
+        "<p>There is nothing to count: no estimator found a value whose truth is known. K/m and µ have a true value "
+        "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the "
+        "terminal velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
   if (narrow.empty()) {
     text +=

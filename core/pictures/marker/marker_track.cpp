@@ -268,15 +268,24 @@ void MarkerTracker::follow_back(Path& path, std::size_t from_frame) {
 void MarkerTracker::decide(Path& path) {
   const std::size_t sampled = path.samples.empty() ? path.seen.front().frame : path.samples.front().frame;
   choose_method(path, kind_, radius_at_);
-  if (path.method != MarkerMethod::uniform && !past_.empty()) {
-    // What was measured as a uniform disc while following back is measured again, where its frame is still there.
-    std::vector<MarkerSeen> kept;
-    for (const MarkerSeen& seen : path.seen) {
-      if (seen.frame >= sampled || seen.frame < past_.front().frame) kept.push_back(seen);
-    }
-    if (kept.size() >= 2) path.seen = std::move(kept);
+  // What was measured as a uniform disc while following back is measured again, if all of its frames are still there.
+  std::vector<MarkerSeen> before;
+  const bool again = path.method != MarkerMethod::uniform && !past_.empty() &&
+                     path.seen.front().frame >= past_.front().frame && path.seen.size() >= 2 &&
+                     path.seen[path.seen.size() - 2].frame >= sampled;
+  if (again) {
+    const auto first = std::ranges::find_if(path.seen, [&](const MarkerSeen& seen) { return seen.frame >= sampled; });
+    before.assign(path.seen.begin(), first);
+    path.seen.erase(path.seen.begin(), first);
   }
   follow_back(path, 0);
+  // Where the new method finds nothing any more, the first measurement stays.
+  std::erase_if(before, [&](const MarkerSeen& seen) { return seen.frame >= path.seen.front().frame; });
+  if (before.empty()) return;
+  before.insert(before.end(), path.seen.begin(), path.seen.end());
+  path.seen.clear();
+  path.travel_px = 0.0;
+  for (const MarkerSeen& seen : before) path.push(seen);
 }
 
 /// The brightest path of the right size that is seen moving in this frame; null if there is none.

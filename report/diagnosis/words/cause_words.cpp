@@ -136,11 +136,13 @@ std::string share_text(double share, const std::optional<diagnose::GapInterval>&
   const bool near_end = share < kNearEnd || share > 1.0 - kNearEnd;
   const bool is_end = std::abs(share) < kNothing || std::abs(share - 1.0) < kNothing;
   const int decimals = near_end && (interval || !is_end) ? 1 : 0;
-  const double shown = std::abs(share) < kNothing && decimals == 0 ? 0.0 : share;  // and not "-0 %"
-  std::string text = fmt::format("{:.{}f} %", kPercent * shown, decimals);
+  const auto percent = [&](double of) {  // rounded, and 0 rather than -0
+    const double steps = std::pow(10.0, decimals);
+    return std::round(kPercent * of * steps) / steps + 0.0;
+  };
+  std::string text = fmt::format("{:.{}f} %", percent(share), decimals);
   if (interval) {
-    text +=
-        fmt::format(" ({:.{}f} to {:.{}f} %)", kPercent * interval->low, decimals, kPercent * interval->high, decimals);
+    text += fmt::format(" ({:.{}f} to {:.{}f} %)", percent(interval->low), decimals, percent(interval->high), decimals);
   }
   return text;
 }

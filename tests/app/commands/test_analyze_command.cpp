@@ -399,7 +399,7 @@ std::string table_of_speeds(unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("gravity of a file is stated by --gravity, and alpha contains what its digits or --gravity-sd leave open") {
+TEST_CASE("gravity of a file is stated by --gravity, and a note follows what its digits or --gravity-sd leave open") {
   const tests::TempDir temp;
   const fs::path file = temp / "encoder.csv";
   base::write_file(file, table_of_speeds(7));
@@ -408,7 +408,7 @@ TEST_CASE("gravity of a file is stated by --gravity, and alpha contains what its
     const tests::ProcessResult result = tests::glidelab(more);
     INFO(result.err);
     REQUIRE(result.status == 0);
-    return result.out.find("because the place is not known") != std::string::npos;
+    return result.out.find("State it as it is at your place") != std::string::npos;
   };
   CHECK(told({}));
   CHECK(told({"--gravity", "9.8"}));

@@ -58,3 +58,33 @@ TEST_CASE("a wave is a bend although no arc describes it, and single wrong posit
   for (const std::size_t i : {20, 80, 140}) wrong.y_m[i] += 0.3;
   CHECK(core::bend_of(wrong).range_m < 0.01);  // the line through all turns a little
 }
+
+TEST_CASE("a staircase of rounded coordinates is told by its step") {
+  core::PlanePath path = path_with([](double) { return 0.0; });
+  for (double& y : path.y_m) y = 1e-3 * std::round(0.02 / 1e-3 * y);  // 0.4 degrees, in millimetres
+  const core::PathBend bend = core::bend_of(path);
+  CHECK(bend.step_m == Approx(1e-3).epsilon(1e-9));
+  CHECK(bend.range_m < 2.0 * bend.step_m);
+}
+
+TEST_CASE("a bounce that drifts sideways is no bend of a track") {
+  // From 1 m, three times to 0.9 m after 0.9 s each, with a drift of 6 cm/s across.
+  core::PlanePath path;
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.0135 * i, of_arc = std::fmod(t, 0.9) - 0.45;
+    path.x_m.push_back(0.06 * t);
+    path.y_m.push_back(0.9 - 0.5 * 9.81 * of_arc * of_arc);
+  }
+  const core::PathBend bend = core::bend_of(path);
+  CHECK(bend.range_m < 0.08 * bend.length_m);  // in the order of time it is 0.1 of it
+}
+
+TEST_CASE("a body at rest has no path") {
+  core::PlanePath path;
+  path.x_m.assign(20, 0.3);
+  path.y_m.assign(20, 0.1);
+  const core::PathBend bend = core::bend_of(path);
+  CHECK(bend.length_m == 0.0);
+  CHECK(bend.range_m == 0.0);
+  CHECK(bend.slope_deg == 0.0);
+}

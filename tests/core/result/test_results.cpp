@@ -33,6 +33,11 @@ TEST_CASE("a fall that begins below a third of gravity, by three standard deviat
   CHECK(is_slow(80.0, 0.04, 0.01));
   CHECK_FALSE(is_slow(79.0, 0.04, 0.01));  // no fall
   CHECK_FALSE(is_slow(4.0, 0.68, 0.01));
+  // A shuttlecock on its way up: a = g (1 + v²/vt²) over 0 to 15 m/s, vt = 7 m/s. Its line begins near g (1 -
+  // 15²/6/7²).
+  core::ConfigurationResult thrown = falling(90.0, kG * (1.0 - 225.0 / 6.0 / 49.0), 0.01);
+  thrown.lines[0].direction = -1;
+  CHECK_FALSE(core::slow_fall(thrown, kG).has_value());
   CHECK_FALSE(is_slow(90.0, 1.0, 0.8));  // uncertain: g/3 = 3.3 is within three of them
   // An inflated ball of three times the density of the air: g (3 - 1)/(3 + 1/2) = 0.57 g.
   CHECK_FALSE(is_slow(90.0, kG * 2.0 / 3.5, 0.01));

@@ -123,6 +123,12 @@ TEST_CASE("of two columns without a header the one that alone increases is the t
   }
 }
 
+TEST_CASE("times without a header of which one is repeated are times all the same, and its line is named") {
+  std::string text;
+  for (int i = 0; i < 40; ++i) text += fmt::format("{:.2f},{:.4f}\n", 0.01 * (i == 7 ? 6 : i), 0.1 + 0.011 * i);
+  CHECK_THROWS_WITH(read_text(text), Contains("line 7") && Contains("0.06"));
+}
+
 TEST_CASE("of two columns without a header that both increase the first is the time, and a note says so") {
   const std::string text = pairs([](double t) { return std::pair(t, 0.2 + 0.7 * t); });
   const core::TrackData track = read_text(text);

@@ -68,6 +68,7 @@ TEST_CASE("an entrant that never answers has no rank, even if too few cases tell
   INFO(text);
   CHECK(first_line(score) == "In µ 8 cases do not tell lines and spline apart, the best of 3.");
   CHECK(text.find("no answer  mine") != std::string::npos);
+  CHECK(report::challenge_json(score).find("\"rank\": null") != std::string::npos);
   CHECK(text.find("mine") > text.find("1          lines"));
   CHECK(text.find("µ: no answer from mine.") != std::string::npos);
   CHECK(text.find("8 cases do not tell any two of the 2 entrants that answer apart.") != std::string::npos);

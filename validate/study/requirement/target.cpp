@@ -9,11 +9,13 @@
 #include <limits>
 #include <random>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "base/errors.h"
 #include "base/math/distributions.h"
 #include "base/text/nearest_word.h"
+#include "base/text/trimmed.h"
 #include "core/math/quantile.h"
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
@@ -106,24 +108,17 @@ double bootstrap_sd(const std::vector<double>& sizes, Measure measure) {
 
 }  // namespace
 
-namespace {
-
-std::string without_blanks(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(" \t") + 1 - first);
-}
-
-}  // namespace
-
 Target parse_target(const std::string& text) {
   Target target;
   const std::size_t equals = text.find('='), colon = text.find(':');
-  target.quantity = without_blanks(text.substr(0, std::min(colon, equals)));
-  const std::string measure = colon < equals && equals != std::string::npos
-                                  ? without_blanks(text.substr(colon + 1, equals - colon - 1))
-                                  : "error95";
+  const std::string_view all = text;
+  target.quantity = base::trimmed(all.substr(0, std::min(colon, equals)));
+  const std::string measure(colon < equals && equals != std::string::npos
+                                ? base::trimmed(all.substr(colon + 1, equals - colon - 1))
+                                : "error95");
   const std::vector<std::string> quantities = core::quantity_keys();
-  std::istringstream number(equals == std::string::npos ? "" : without_blanks(text.substr(equals + 1)));
+  std::istringstream number(
+      std::string(equals == std::string::npos ? std::string_view() : base::trimmed(all.substr(equals + 1))));
   const bool read = (number >> target.value) && number.peek() == std::istringstream::traits_type::eof();
   const bool known = std::find(quantities.begin(), quantities.end(), target.quantity) != quantities.end();
   const std::vector<std::string> measures = {"sd", "error95", "bias"};

@@ -23,6 +23,7 @@ TEST_CASE("a share has whole percents, tenths near its ends, and its interval") 
   CHECK(report::share_text(-0.02) == "-2.0 %");
   CHECK(report::share_text(0.0) == "0 %");
   CHECK(report::share_text(-2e-4) == "0 %");
+  CHECK(report::share_text(-2e-4, diagnose::GapInterval{-0.02, 0.02}) == "0.0 % (-2.0 to 2.0 %)");
   CHECK(report::share_text(1.0) == "100 %");
   CHECK(report::share_text(0.99996, diagnose::GapInterval{0.9998, 1.0001}) == "over 99.9 %");
   CHECK(report::share_text(0.99996, diagnose::GapInterval{0.998, 1.002}) == "100.0 % (99.8 to 100.2 %)");
