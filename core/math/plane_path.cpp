@@ -95,14 +95,20 @@ double scatter_of(const std::vector<double>& values) {
   return seconds.empty() ? 0.0 : kSdOverMedian * median_of(seconds) / std::sqrt(6.0);
 }
 
-/// The smallest difference between two of the values that differ; 0 if none do.
+/// The smallest difference between two of the values that differ, where rounding makes half of them or more repeat;
+/// otherwise 0.
 double step_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   double least = std::numeric_limits<double>::infinity();
+  std::size_t repeated = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i] > values[i - 1]) least = std::min(least, values[i] - values[i - 1]);
+    if (values[i] > values[i - 1]) {
+      least = std::min(least, values[i] - values[i - 1]);
+    } else {
+      ++repeated;
+    }
   }
-  return std::isfinite(least) ? least : 0.0;
+  return std::isfinite(least) && 2 * repeated >= values.size() ? least : 0.0;
 }
 
 /// By their places along the line.

@@ -25,7 +25,7 @@ double sagitta_of(const PlanePath& path);
 struct PathBend {
   double range_m = 0.0;  ///< of the smooth deviation
   double noise_m = 0.0;  ///< standard deviation of one position across, from second differences
-  double step_m = 0.0;   ///< smallest difference between two values of a coordinate: that of rounded ones
+  double step_m = 0.0;   ///< of a coordinate whose values repeat because they are rounded; 0 if neither does
   double length_m = 0.0;
   double slope_deg = 0.0;  ///< between the directions of parts of an eighth of the length, largest against smallest
 };
