@@ -182,11 +182,13 @@ class EffectTwin {
 
 /// What bounds a parameter in given data, besides `low` and `high` (range_of() in fit_model.h).
 enum class Reach {
-  stated,      ///< nothing
-  with_mass,   ///< `high` holds up to 1 kg and grows in proportion to a larger mass
-  places,      ///< the range of the positions
-  waves,       ///< the frequencies that the clips can show
-  release,     ///< times at the start of the clips
+  stated,     ///< nothing
+  with_mass,  ///< `high` holds up to 1 kg and grows in proportion to a larger mass
+  places,     ///< the range of the positions
+  bulge,    ///< `low` and `high`, or a shift of the ends of the range of positions by a quarter of their distance from
+            ///< its middle
+  waves,    ///< the frequencies that the clips can show
+  release,  ///< times at the start of the clips
   held_speed,  ///< speeds above the one at which a codec may hold the marker in place
 };
 

@@ -20,6 +20,9 @@ constexpr double kFarthest_m = 1e9;    // no track is longer
 constexpr double kOfOneGram = 1000.0;  // what falls may weigh a gram, where 1 kg is assumed
 // A Maxwell wheel, a ring of radius R on an axle of radius r, has (R/r)² times its mass: 65 mm and 3 mm.
 constexpr double kMostWheel = 500.0;
+// The shift at the ends of the range, relative to their distance from its middle: a wide-angle lens; at a third the
+// image folds over.
+constexpr double kMostBulge = 0.25;
 constexpr double kFewestTurns = 2.0;    // periods in the longest motion: anything slower is a drift, which has other
                                         // causes too
 constexpr double kFastest = 0.48;       // as a fraction of the frame rate
@@ -68,6 +71,11 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter, c
       range.low = kShortestPush * frame;
       range.high = std::max(range.low, std::min(parameter.high, kLatestRelease * longest));
     }
+  }
+  if (parameter.reach == Reach::bulge) {
+    const ParameterRange places = range_of_places(set);
+    const double half_m = 0.5 * (places.high - places.low), most_1_m2 = kMostBulge / (half_m * half_m);
+    range = {std::min(range.low, -most_1_m2), std::max(range.high, most_1_m2)};
   }
   if (parameter.reach == Reach::held_speed) range.low = std::max(range.low, set.held_m_s);
   double heaviest_kg = 0.0;

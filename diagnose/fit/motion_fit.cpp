@@ -10,6 +10,7 @@
 #include "base/math/levenberg_marquardt.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/fit_step.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -27,31 +28,9 @@ constexpr double kSteepest_rad = 1.5, kBeyondStated_rad = 0.2;  // steepest incl
 constexpr double kSmallSteps = 1.0;  // initial damping: half the Newton step in directions that are well separated
 using Global = ParameterLayout::Global;
 
-/// Whether a parameter has limits that no misfit moves: effects, and of a fall gravity, the inclination and a K that is
-/// held.
-bool has_range(const Global& global) {
-  using Kind = Global::Kind;
-  return global.kind == Kind::effect || global.kind == Kind::k || global.kind == Kind::alpha ||
-         global.kind == Kind::gravity;
-}
-
-/// The largest speed at which a motion can have begun: a few times the largest mean speed between two positions, noise
-/// included. Where a drag is strong and frames are few, a far faster start that is braked within a frame would only
-/// move the first position.
-double fastest_start(const TrackedMotion& motion) {
-  constexpr double kFaster = 3.0, kNoise = 5.0;
-  double fastest = 0.0;
-  for (std::size_t p = 1; p < motion.t_s.size(); ++p) {
-    const double distance =
-        std::abs(motion.x_m[p] - motion.x_m[p - 1]) + kNoise * (motion.sd_of(p - 1) + motion.sd_of(p));
-    fastest = std::max(fastest, distance / (motion.t_s[p] - motion.t_s[p - 1]));
-  }
-  return kFaster * fastest;
-}
-
 bool inside(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at) {
   for (std::size_t i = 0; i < at.own.size(); ++i) {
-    if (!(std::abs(at.own[i][1]) <= fastest_start(set.motions[i]))) return false;
+    if (!(std::abs(at.own[i][kStartSpeed]) <= fastest_start(set.motions[i]))) return false;
   }
   for (std::size_t g = 0; g < layout.globals().size(); ++g) {
     const Global& global = layout.globals()[g];
@@ -158,93 +137,6 @@ base::FitOptions descent_options() {
   return options;
 }
 
-/// The minimum of y'Ay/2 - b'y with the effects' parameters within their ranges: a parameter that would leave its range
-/// stops at the edge, and the others minimise what remains. `scale` times y is the change of the parameters.
-Eigen::VectorXd step_within(const MotionFit& fit, Eigen::MatrixXd a, Eigen::VectorXd b, const Eigen::VectorXd& scale) {
-  const auto& globals = fit.layout->globals();
-  std::vector<bool> held(globals.size(), false);
-  Eigen::VectorXd y = base::solve_positive(a, b);
-  for (bool stopped = true; stopped;) {
-    stopped = false;
-    for (Eigen::Index g = 0; g < y.size(); ++g) {
-      const Global& global = globals[static_cast<std::size_t>(g)];
-      if (!has_range(global) || held[static_cast<std::size_t>(g)]) continue;
-      const double at = fit.at.global[g], next = at + scale[g] * y[g];
-      if (!(next < global.range.low || next > global.range.high)) continue;
-      const double to_edge = ((next < global.range.low ? global.range.low : global.range.high) - at) / scale[g];
-      b -= to_edge * a.col(g);
-      a.col(g).setZero();
-      a.row(g).setZero();
-      a(g, g) = 1.0;
-      b[g] = to_edge;
-      held[static_cast<std::size_t>(g)] = stopped = true;
-    }
-    if (stopped) y = base::solve_positive(a, b);
-  }
-  return y;
-}
-
-/// A parameter that stopped at an edge differs from it only by rounding; this sets it to the edge.
-void round_to_edges(const ParameterLayout& layout, Eigen::VectorXd& global) {
-  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
-    const Global& of = layout.globals()[g];
-    double& value = global[static_cast<Eigen::Index>(g)];
-    if (has_range(of)) value = std::clamp(value, of.range.low, of.range.high);
-  }
-}
-
-/// The parameters after one Gauss-Newton step with Levenberg-Marquardt damping.
-///
-/// With J and r a motion's derivatives and residuals divided by the noise, O the own part of J, G its common part, and
-/// damping l,
-///
-///     (N + l I) y = g,   N = sum of G'G - G'O (O'O (1 + l))^-1 O'G + statements,   g alike with r,
-///
-/// scaled to a unit diagonal of G'G and the statements. `fit` must have residuals and derivatives at its parameters.
-FitPoint step_from(const MotionFit& fit, double damping) {
-  const auto globals = fit.at.global.size();
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(globals, globals);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(globals), diagonal = right;
-  std::vector<Eigen::MatrixXd> own_inverse, cross;
-  std::vector<Eigen::VectorXd> own_right;
-  for (const FitMotion& motion : fit.motions) {
-    Eigen::MatrixXd own = base::transposed_product(motion.own, motion.own);
-    for (Eigen::Index o = 0; o < own.rows(); ++o) own(o, o) = own(o, o) * (1.0 + damping) + 1e-12;
-    const Eigen::MatrixXd inverse = base::inverse_positive(own);
-    const Eigen::MatrixXd x = base::transposed_product(motion.global, motion.own);
-    const Eigen::VectorXd r = base::transposed_product(motion.own, motion.residual);
-    const Eigen::MatrixXd a = base::transposed_product(motion.global, motion.global);
-    const Eigen::MatrixXd gain = base::product(x, inverse);
-    diagonal += a.diagonal();
-    normal += a - base::product(gain, x.transpose());
-    right += base::transposed_product(motion.global, motion.residual);
-    right -= base::product(gain, r);
-    own_inverse.push_back(inverse);
-    cross.push_back(x);
-    own_right.push_back(r);
-  }
-  for (const FitStatement& s : fit.statements) {
-    const auto g = static_cast<Eigen::Index>(s.global);
-    const double weight = 1.0 / (s.sd * s.sd);
-    normal(g, g) += weight;
-    diagonal[g] += weight;
-    right[g] += weight * (s.value - fit.at.global[g]);
-  }
-  // Scaled, so that parameters that the data hardly determine do not harm the others.
-  const Eigen::VectorXd scale = (diagonal.array() + 1e-30).sqrt().inverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  scaled.diagonal().array() += damping + 1e-13;
-  const Eigen::VectorXd change = scale.cwiseProduct(step_within(fit, scaled, scale.cwiseProduct(right), scale));
-  FitPoint next = fit.at;
-  next.global += change;
-  round_to_edges(*fit.layout, next.global);
-  for (std::size_t i = 0; i < fit.motions.size(); ++i) {
-    const Eigen::VectorXd rest = own_right[i] - base::transposed_product(cross[i], change);
-    next.own[i] += base::product(own_inverse[i], rest);
-  }
-  return next;
-}
-
 /// Holds a parameter of an effect where it starts: by a ten-millionth of its range.
 FitStatement held_at(std::size_t global, double value, const ParameterRange& range) {
   return {global, value, 1e-7 * (range.high - range.low), {}, false};
@@ -273,7 +165,7 @@ MotionFit descended(const TrackSet& set, const std::vector<std::size_t>& effects
   layout.widen_to(start.global);
   fit.layout = std::make_shared<const ParameterLayout>(std::move(layout));
   fit.at = start;
-  round_to_edges(*fit.layout, fit.at.global);  // K may come from a fit in which it was free
+  keep_within(set, *fit.layout, fit.at);  // K may come from a fit in which it was free
   fit.late = late;
   fit.statements = statements_of(set, *fit.layout);
   for (const std::size_t g : held) {
@@ -290,13 +182,13 @@ MotionFit descended(const TrackSet& set, const std::vector<std::size_t>& effects
     if (!here.has_derivatives) derive_all(set, here.fit, Derivatives::forward);
     here.has_derivatives = true;
     const double cost = here.fit.cost;
-    MotionFit next = moved_to(set, here.fit, step_from(here.fit, damping));
+    MotionFit next = moved_to(set, here.fit, step_from(set, here.fit, damping));
     // At the minimum a step changes the cost by rounding alone, of either sign: that is no refusal.
     if (next.cost > cost && next.cost - cost <= kRounding * cost) next.cost = cost;
     if (!(next.cost <= cost) && vain_returns < kMostVainReturns) {
       for (int back = 0; back < kMostStepsBack && std::isfinite(next.cost) && !(next.cost <= cost); ++back) {
         derive_all(set, next, Derivatives::forward);
-        next = moved_to(set, next, step_from(next, 0.0));
+        next = moved_to(set, next, step_from(set, next, 0.0));
       }
       vain_returns += next.cost <= cost ? -1 : 1;
     }

@@ -321,6 +321,25 @@ std::string for_images(const std::vector<std::string>& ids) {
   return {};
 }
 
+constexpr double kIdleShare = 0.05;  // of the gap: a named effect that takes less of it than this changes little
+constexpr double kMainShare = 0.5;   // where another takes this much or more
+
+/// The named effects that take next to nothing of a gap that others explain: a flicker that shows in the images alone.
+std::set<std::string> idle_effects(const Diagnosis& diagnosis) {
+  std::set<std::string> idle;
+  if (std::none_of(diagnosis.explained.begin(), diagnosis.explained.end(),
+                   [](const ExplainedCause& cause) { return cause.share >= kMainShare; })) {
+    return idle;
+  }
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    if (std::none_of(diagnosis.explained.begin(), diagnosis.explained.end(),
+                     [&](const ExplainedCause& cause) { return cause.id == effect.id && cause.share >= kIdleShare; })) {
+      idle.insert(effect.id);
+    }
+  }
+  return idle;
+}
+
 }  // namespace
 
 NextStep next_experiment(const TrackSet& set, const Comparison& comparison, const Diagnosis& diagnosis) {
@@ -331,7 +350,11 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
   const Hypothesis* first = leading(set, comparison, diagnosis);
   if (first == nullptr) return Routine::repeat_each_kind;
   std::vector<Contest> contests;
+  const std::set<std::string> idle = idle_effects(diagnosis);
   for (const Rival& rival : rivals_of(comparison, diagnosis, *first)) {
+    const bool only_idle = rival.adds.empty() && std::all_of(rival.lacks.begin(), rival.lacks.end(),
+                                                             [&](const std::string& id) { return idle.contains(id); });
+    if (only_idle) continue;
     const Contest contest(*first, rival);
     std::string images = for_images(contest.doubt.one.effects);
     if (images.empty()) images = for_images(contest.doubt.other.effects);
@@ -348,7 +371,9 @@ NextStep next_experiment(const TrackSet& set, const Comparison& comparison, cons
     undecided = std::move(step.doubt);
   }
   std::vector<std::string> named;
-  for (const DiagnosedEffect& effect : diagnosis.effects) named.push_back(effect.id);
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    if (!idle.contains(effect.id)) named.push_back(effect.id);
+  }
   if (std::string images = for_images(named); !images.empty()) return RecordForEffect{std::move(images), {}};
   if (diagnosis.verdict == Verdict::effect && diagnosis.unknown >= kStillLikely && !diagnosis.regions.empty()) {
     return next_for_unnamed(set, comparison.fits.front(), diagnosis);

@@ -86,6 +86,11 @@ struct OnlyFalls {};
 struct FallsThroughAir {
   /// Log evidence by which the positions alone prefer the quadratic drag to a viscous one; none if it was not measured.
   std::optional<double> over_viscous = {};
+  /// Gaps of held-out clips with a viscous drag alone, and with what the verdict names; none if that leaves no gap.
+  struct Gaps {
+    double viscous = 1.0, named = 1.0;
+  };
+  std::optional<Gaps> gaps = {};
 };
 
 /// A fall with a wrong scale or a wrong frame rate, which slow it: a buoyancy would do the same.

@@ -11,7 +11,6 @@
 #include "diagnose/frames/missing_frames.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
-#include "diagnose/next/next_experiment.h"
 #include "diagnose/result/diagnosis.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
@@ -341,7 +340,6 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
   diagnosis.twin = std::move(twin.toml);
   diagnosis.twin_lacks = std::move(twin.lacks);
   diagnosis.twin_from_m = twin.from_m;
-  diagnosis.next = next_experiment(set, comparison, diagnosis);
   diagnosis.images = std::move(images.findings);
   diagnosis.image_curves = std::move(images.curves);
   diagnosis.gap->domains = gap_domains(*diagnosis.gap, diagnosis.images, diagnosis.effects);

@@ -17,6 +17,8 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/nominal_fit.h"
+#include "diagnose/gap/held_out.h"
+#include "diagnose/next/next_experiment.h"
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/verdict/likely_explanations.h"
@@ -167,10 +169,13 @@ class VerdictWithCauses {
     choose_measure_of_gap();
     put_causes_in_order();
     size_causes();
+    const bool beside_remainder = settle_probabilities();
     Diagnosis diagnosis =
-        settle_probabilities() ? verdict_beside_remainder(std::move(images)) : verdict_by_noise(std::move(images));
+        beside_remainder ? verdict_beside_remainder(std::move(images)) : verdict_by_noise(std::move(images));
     const Reported reported = reported_by(diagnosis);
     add_shares(reported, diagnosis);
+    diagnosis.next =
+        beside_remainder ? next_experiment(with(), by(), diagnosis) : next_experiment(set_, first_, diagnosis);
     add_notes(diagnosis);
     add_recovered(reported, diagnosis);
     if (set_.clips.size() < 2) cap_probabilities(kMostOfOneClip, diagnosis);
@@ -388,7 +393,11 @@ void VerdictWithCauses::add_shares(const Reported& reported, Diagnosis& diagnosi
 }
 
 void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
-  if (by_air_) diagnosis.notes.emplace_back(FallsThroughAir{over_viscous_});
+  if (by_air_) {
+    FallsThroughAir note{over_viscous_};
+    if (diagnosis.remainder) note.gaps = {held_out_gap(set_, nominal()).value, diagnosis.remainder->gap};
+    diagnosis.notes.emplace_back(note);
+  }
   constexpr double kLeastRatio = 0.01;  // air has 0.001 of the density of what falls through it, or less
   if (const std::optional<double> ratio = only_falls(set_) ? ratio_of_densities(diagnosis) : std::nullopt;
       ratio && *ratio > kLeastRatio) {

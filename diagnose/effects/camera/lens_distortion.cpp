@@ -25,7 +25,7 @@ EffectInfo lens_distortion() {
       .both_signs = true,
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
-      .parameters = {{.key = "k_1_m2", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-7},
+      .parameters = {{.key = "k_1_m2", .absent = 0.0, .low = -0.5, .high = 0.5, .step = 1e-7, .reach = Reach::bulge},
                      {.key = "x_c_m", .absent = 0.0, .low = -1e3, .high = 1e3, .step = 1e-5, .reach = Reach::places}},
       .law = {.seen_m = lens_seen, .seen_by = SeenBy::lens},
       .shapes = lens_places,

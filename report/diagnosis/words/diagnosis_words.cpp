@@ -163,16 +163,25 @@ struct Sentence {
   }
   std::string operator()(const diagnose::FallsThroughAir& of) const {
     constexpr double kClearly = 2.3;  // log evidence: ten to one
+    constexpr double kLess = 0.9;     // of a gap
     std::string words =
         "In air, a body that falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
         "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, exclude this "
         "drag (--without quadratic_drag).";
-    if (!of.over_viscous) return words;
-    if (*of.over_viscous > kClearly) return words + " The positions alone also prefer it to a viscous drag.";
-    return words + (*of.over_viscous < -kClearly
-                        ? " The positions alone prefer a viscous drag: the name rests on how air brakes."
-                        : " The positions alone do not tell it from a viscous drag: the name rests on how air "
-                          "brakes.");
+    if (of.over_viscous && *of.over_viscous > kClearly) {
+      words += " The positions alone also prefer it to a viscous drag.";
+    } else if (of.over_viscous) {
+      words += *of.over_viscous < -kClearly
+                   ? " The positions alone prefer a viscous drag: the name rests on how air brakes."
+                   : " The positions alone do not tell it from a viscous drag: the name rests on how air brakes.";
+    }
+    if (!of.gaps) return words;
+    words += fmt::format(" A viscous drag alone would leave a gap of {:.3g} in place of {:.3g}", of.gaps->viscous,
+                         of.gaps->named);
+    return words +
+           (of.gaps->viscous < kLess * of.gaps->named
+                ? ": since air cannot brake like that, the scale, the clock or the first positions may be wrong."
+                : ".");
   }
   std::string operator()(const diagnose::BuoyancyLooksAlike& of) const {
     return fmt::format(

@@ -51,6 +51,34 @@ TEST_CASE("a lens that is fitted to a pattern off its plane has its axis at the 
   }
 }
 
+TEST_CASE("a wide-angle lens near the track is within reach of the fit") {
+  constexpr double k = -0.8;  // 1/m²: the ends of a range of 0.9 m shift by 0.16 of their distance from the middle
+  const diagnose::TrackSet set = set_with({.seen = [](double x, double) { return x * (1.0 + k * x * x); }}, 4);
+  const std::size_t lens = diagnose::effect_index("lens_distortion");
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const diagnose::EffectScan scan = diagnose::scan_effect(diagnose::ScoreSpace(set, nominal), lens);
+  const diagnose::MotionFit fit =
+      diagnose::fit_motions(set, {lens}, diagnose::with_effect(set, nominal, lens, scan.values, {}));
+  const auto at = static_cast<Eigen::Index>(fit.layout->first_of(lens));
+  CHECK(fit.converged);
+  // 600 positions of 0.02 mm in a shift of 60 mm know k to well below 1 %.
+  CHECK(fit.at.global[at] == Approx(k).epsilon(0.01));
+}
+
+TEST_CASE("a lens' size reaches to a shift of a quarter at the ends of the positions, and to 0.5 1/m² at least") {
+  diagnose::TrackSet set = set_with({}, 1);
+  const auto& size = diagnose::effect_list()[diagnose::effect_index("lens_distortion")].parameters[0];
+  const diagnose::ParameterRange x = diagnose::range_of_places(set);
+  const double half_m = 0.5 * (x.high - x.low);
+  REQUIRE(half_m < std::sqrt(0.5));
+  CHECK(diagnose::range_of(set, size).high * half_m * half_m == Approx(0.25).epsilon(1e-12));
+  CHECK(diagnose::range_of(set, size).low == -diagnose::range_of(set, size).high);
+  for (diagnose::TrackedMotion& motion : set.motions) {
+    for (double& place : motion.x_m) place *= 10.0;
+  }
+  CHECK(diagnose::range_of(set, size).high == 0.5);
+}
+
 TEST_CASE("a release is after four frames and within two fifths and half a second, a lens' axis among the positions") {
   const diagnose::TrackSet set = set_with({}, 1);
   const auto range = [&](const char* id, std::size_t parameter) {

@@ -364,6 +364,33 @@ TEST_CASE(
   CHECK(settle.doubt.front().other.effects == std::vector<std::string>{"lens_distortion"});
 }
 
+TEST_CASE("what to record next does not follow a named effect that takes nothing of the gap") {
+  const diagnose::TrackSet set = inclined();
+  diagnose::Comparison comparison;
+  comparison.fits = {diagnose::fit_nominal(set)};
+  const diagnose::MotionFit& nominal = comparison.fits.front();
+  comparison.fits.push_back(with(set, nominal, "quadratic_drag", 0.1, nominal.at.global[0], nominal.at.global[2]));
+  const std::size_t drag = diagnose::effect_index("quadratic_drag"), flicker = diagnose::effect_index("light_flicker");
+  diagnose::Hypothesis both, drag_alone;
+  both.effects = {drag, flicker};
+  both.probability = 0.9;
+  both.fit = drag_alone.fit = 1;
+  drag_alone.effects = {drag};
+  drag_alone.probability = 0.1;
+  comparison.all = {both, drag_alone};
+  diagnose::Diagnosis diagnosis;
+  diagnosis.verdict = diagnose::Verdict::effect;
+  diagnosis.effects.resize(2);
+  diagnosis.effects[0].id = "quadratic_drag";
+  diagnosis.effects[1].id = "light_flicker";
+  diagnosis.explained = {{.id = "quadratic_drag", .share = 0.99}};
+  const auto step = std::get<diagnose::SharpenParameter>(diagnose::next_experiment(set, comparison, diagnosis));
+  CHECK(step.effect == "quadratic_drag");
+  // A flicker that takes a third of the gap is worth a recording of its own.
+  diagnosis.explained = {{.id = "quadratic_drag", .share = 0.6}, {.id = "light_flicker", .share = 0.3}};
+  CHECK(std::holds_alternative<diagnose::RecordForEffect>(diagnose::next_experiment(set, comparison, diagnosis)));
+}
+
 TEST_CASE("a fall's friction on a track that it does not touch is never the parameter to sharpen") {
   const auto made = tests::made_experiment({{0.3, 90.0, 0.0, 0.2}, {0.3, 90.0, 0.0, 0.3}}, {}, 5, 1e-4, 40, 60.0);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
