@@ -34,6 +34,33 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
   });
 }
 
+const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+  const auto probability = [&](std::size_t effect) {
+    const auto alike = [&](std::size_t other) { return are_alike(comparison, other, effect, set.images); };
+    if (std::count_if(best.effects.begin(), best.effects.end(), alike) > 1) {
+      return comparison.effect_probability[effect];
+    }
+    std::vector<std::size_t> any = not_told_apart(comparison, best, effect, set.images);
+    for (std::size_t e = 0; e < effect_list().size(); ++e) {
+      if (e == effect || alike(e)) any.push_back(e);
+    }
+    return probability_of_any(comparison, any);
+  };
+  std::set<std::size_t> likely;
+  std::size_t likeliest = best.effects.front();
+  double most = 0.0;
+  for (const std::size_t e : best.effects) {
+    const double of_this = probability(e);
+    if (of_this >= kLikelierThanNot) likely.insert(e);
+    if (of_this > most) likeliest = e;
+    most = std::max(most, of_this);
+  }
+  likely.insert(likeliest);
+  if (likely.size() == best.effects.size()) return nullptr;
+  const Hypothesis* part = find(comparison, likely);
+  return part != nullptr && part->fit > 0 ? part : nullptr;
+}
+
 bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {
   const SizeUncertainty uncertainty(set, fit);
   const auto& globals = fit.layout->globals();
@@ -53,15 +80,52 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
   });
 }
 
-const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
-  const MotionFit& fit = comparison.fits[static_cast<std::size_t>(best.fit)];
-  std::set<std::size_t> certain;
-  for (const std::size_t e : best.effects) {
-    if (has_certain_size(set, fit, {e})) certain.insert(e);
+namespace {
+
+/// The likeliest explanation in which another effect, one that the data cannot tell from it, has a certain size in
+/// place of an effect without one; null if there is none.
+const Hypothesis* with_size_by_another_name(const TrackSet& set, const Comparison& comparison, const Hypothesis& best,
+                                            std::size_t without_size) {
+  const Hypothesis* likeliest = nullptr;
+  for (const std::size_t other : not_told_apart(comparison, best, without_size, set.images)) {
+    std::set<std::size_t> effects(best.effects.begin(), best.effects.end());
+    effects.erase(without_size);
+    effects.insert(other);
+    const Hypothesis* renamed = find(comparison, effects);
+    if (renamed == nullptr || renamed->fit <= 0) continue;
+    if (!has_certain_size(set, comparison.fits[static_cast<std::size_t>(renamed->fit)], {other})) continue;
+    if (likeliest == nullptr || renamed->probability > likeliest->probability) likeliest = renamed;
   }
-  if (certain.empty() || certain.size() == best.effects.size()) return nullptr;
+  return likeliest;
+}
+
+}  // namespace
+
+const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+  const auto without_size = [&](const Hypothesis& of) {
+    std::vector<std::size_t> effects;
+    for (const std::size_t e : of.effects) {
+      if (!has_certain_size(set, comparison.fits[static_cast<std::size_t>(of.fit)], {e})) effects.push_back(e);
+    }
+    return effects;
+  };
+  const Hypothesis* renamed = nullptr;
+  std::vector<std::size_t> uncertain = without_size(best);
+  for (std::size_t left = best.effects.size(); left > 0 && !uncertain.empty(); --left) {
+    const Hypothesis* next = nullptr;
+    for (const std::size_t e : uncertain) {
+      if (next == nullptr) next = with_size_by_another_name(set, comparison, renamed != nullptr ? *renamed : best, e);
+    }
+    if (next == nullptr) break;
+    renamed = next;
+    uncertain = without_size(*renamed);
+  }
+  const Hypothesis& named = renamed != nullptr ? *renamed : best;
+  if (uncertain.empty() || uncertain.size() == named.effects.size()) return renamed;
+  std::set<std::size_t> certain(named.effects.begin(), named.effects.end());
+  for (const std::size_t e : uncertain) certain.erase(e);
   const Hypothesis* others = find(comparison, certain);
-  return others != nullptr && others->fit > 0 ? others : nullptr;
+  return others != nullptr && others->fit > 0 ? others : renamed;
 }
 
 const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,

@@ -16,12 +16,20 @@ bool shows_in_images(const Hypothesis& explanation);
 /// than not. A name that is less likely is no answer.
 bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
 
+/// The fitted explanation by those causes of `best` that are likelier than not, or by the likeliest of them: the rest
+/// of the median probability model (best_named()). A cause counts together with those that the data cannot tell from it
+/// beside the others, except where `best` has two that are alike: each is then as likely as its own name. Null if these
+/// are all causes of `best`, or if no fit has them alone.
+const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
+
 /// Whether the size of one of these effects of a fit is larger than its standard deviation. Only sizes that all clips
 /// have in common are looked at: others count as certain.
 bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects);
 
-/// If some effects of an explanation have no certain size and others have, the explanation of the others alone: a drag
-/// of size 0 beside a wrong frame rate is no cause. Null if there is no such fit.
+/// If some effects of an explanation have no certain size: the explanation in which others that the data cannot tell
+/// from them have one in their place (a cable for a bumper that was barely touched). If none has, the explanation of
+/// those with a size alone, since a drag of size 0 beside a wrong frame rate is no cause. Null if all have a size, or
+/// if there is no such fit.
 const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
 
 /// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the

@@ -224,25 +224,4 @@ const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) 
   return best;
 }
 
-const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
-  const std::map<std::size_t, double> of_cause = probabilities_of_causes(comparison, set.images);
-  const Causes named = causes_of(comparison, best, set.images);
-  const auto probability = [&](std::size_t effect) {
-    // Of two that are like each other, a second one is as likely as itself.
-    if (named.count(alike_of(comparison, effect, set.images)) > 1) return comparison.effect_probability[effect];
-    const auto of = of_cause.find(alike_of(comparison, effect, set.images));
-    return of != of_cause.end() ? of->second : 0.0;
-  };
-  std::set<std::size_t> likely;
-  std::size_t likeliest = best.effects.front();
-  for (const std::size_t e : best.effects) {
-    if (probability(e) >= kLikelierThanNot) likely.insert(e);
-    if (probability(e) > probability(likeliest)) likeliest = e;
-  }
-  likely.insert(likeliest);
-  if (likely.size() == best.effects.size()) return nullptr;
-  const Hypothesis* part = find(comparison, likely);
-  return part != nullptr && part->fit > 0 ? part : nullptr;
-}
-
 }  // namespace glidelab::diagnose

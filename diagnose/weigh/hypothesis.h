@@ -132,10 +132,4 @@ const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison);
 
 inline constexpr double kLikelierThanNot = 0.5;  ///< the probability from which a cause is rather there than not
 
-/// The fitted explanation by those causes of `best` that are likelier than not, or by the likeliest of them: the rest
-/// of the median probability model, above. What cannot be told apart counts together there too, except where `best` has
-/// two such causes: each is then as likely as its own name. Null if these are all causes of `best`, or if no fit has
-/// them alone.
-const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
-
 }  // namespace glidelab::diagnose

@@ -107,7 +107,34 @@ std::string traces_words(const diagnose::Diagnosis& diagnosis) {
   return fmt::format("Also detected, with no effect on K/m, µ or α: {}.", list_of(names));
 }
 
+/// The likeliest explanations that would take half of the gap or more, though none is likely enough to be named; empty
+/// if there are none.
+std::string likeliest_words(const diagnose::Diagnosis& diagnosis) {
+  constexpr double kWorthTelling = 0.05;  // probability
+  constexpr double kHalf = 0.5;
+  constexpr std::size_t kMostTold = 3;
+  if (!diagnosis.remainder) return {};
+  const double gap = diagnosis.remainder->gap, excess = gap * gap - 1.0;
+  std::vector<std::string> told;
+  for (const diagnose::RankedExplanation& one : diagnosis.ranking) {
+    if (told.size() == kMostTold || one.probability < kWorthTelling) break;
+    if (one.explanation.unnamed || one.explanation.effects.empty() || !one.gap_after) continue;
+    const double left = *one.gap_after * *one.gap_after - 1.0;
+    if (!(left <= kHalf * excess)) continue;
+    told.push_back(
+        fmt::format("{} ({}), with which the gap would be {}{}", list_of(effect_names(one.explanation.effects)),
+                    percent(one.probability), base::number_text(*one.gap_after, 3),
+                    told.empty() ? fmt::format(" in place of {} times the noise", base::number_text(gap, 3)) : ""));
+  }
+  return fmt::format("{}", fmt::join(told, "; "));
+}
+
 std::string unknown_sequence_words(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.explained.empty()) {
+    if (const std::string likeliest = likeliest_words(diagnosis); !likeliest.empty()) {
+      return "Something is missing, and no known effect is likely enough to be named. Likeliest: " + likeliest + ".";
+    }
+  }
   const std::string text = "Something is missing, and no known effect is likely to explain half of the held-out gap";
   if (!diagnosis.explained.empty()) return text + ": " + causes_words(diagnosis, true);
   return text + ". None reduces it by more than its uncertainty" +

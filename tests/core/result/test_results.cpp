@@ -14,7 +14,7 @@ core::ConfigurationResult falling(double incline_deg, double a0_m_s2, double sd_
   core::ConfigurationResult one;
   one.incline_deg = incline_deg;
   core::LineFit line;
-  line.direction = 1;
+  line.direction = incline_deg < 0.0 ? -1 : 1;  // downhill
   line.a0_m_s2 = core::estimate(a0_m_s2, sd_m_s2, 20.0);
   one.lines = {line};
   return one;

@@ -49,7 +49,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::ColumnsGuessed{"column 1", "column 2", false},
        "\"column 2\" is taken as the time, because it alone increases throughout, and \"column 1\" as x"},
       {core::ColumnsGuessed{"column 2", "column 1", true},
-       "\"column 1\" is taken as the time, which the other could be as well, and \"column 2\" as x"},
+       "\"column 1\" is taken as the time, which another column could be as well, and \"column 2\" as x"},
       {core::PathBends{0.024, 5.04}, "leaves its line by 0.024 m, and its direction changes by 5.0°"},
       {core::RoundedTimes{0.01, 1.0 / 30.0}, "multiples of 0.01 s and taken as even, 0.03333 s apart"},
       {core::NoLengthUnit{}, "no unit of length"},

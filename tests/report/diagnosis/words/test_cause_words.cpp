@@ -139,10 +139,36 @@ TEST_CASE("where no cause takes half, the answer says so, what helps, and where 
   of.explained.clear();
   of.remainder->share = 1.0;
   of.remainder->gap = 5.3;
+  of.ranking.clear();
   CHECK(says(report::verdict_words(of),
              "None reduces it by more than its uncertainty: it is 5.3 times the noise. What is left is clearest"));
   of.remainder->regions.front().lacking = 1e-5;  // far less than the size that was found
   CHECK(says(report::verdict_words(of), "force. Its size cannot be determined from these data."));
+}
+
+TEST_CASE("where nothing is likely enough to be named, the likeliest that would take half of the gap are told") {
+  diagnose::Diagnosis of = tests::no_half();
+  of.explained.clear();
+  of.remainder->share = 1.0;
+  of.remainder->gap = 5.3;
+  const auto one = [](std::vector<std::string> effects, double probability, double gap_after) {
+    diagnose::RankedExplanation ranked;
+    ranked.explanation.effects = std::move(effects);
+    ranked.probability = probability;
+    ranked.gap_after = gap_after;
+    return ranked;
+  };
+  // Half of the excess is left at a gap of 3.81: g² = 1 + 0.5 (5.3² - 1).
+  of.ranking = {one({"clip_scatter"}, 0.26, 1.27), one({"tether"}, 0.2, 3.9),
+                one({"friction_drift", "place_friction"}, 0.1, 2.74), one({"end_stop"}, 0.04, 1.1)};
+  CHECK(report::verdict_words(of).starts_with(
+      "Something is missing, and no known effect is likely enough to be named. Likeliest: scatter from clip to clip "
+      "(26 "
+      "%), with which the gap would be 1.27 in place of 5.3 times the noise; drifting friction and friction that "
+      "varies "
+      "along x (10 %), with which the gap would be 2.74. What is left is clearest"));
+  of.ranking = {one({"tether"}, 0.4, 3.9)};
+  CHECK(says(report::verdict_words(of), "None reduces it by more than its uncertainty"));
 }
 
 TEST_CASE("a law that holds within each configuration and not across them is told first, with what differs") {
