@@ -72,6 +72,9 @@ struct ReasonWords {
   std::string operator()(const unknown::NotToldApart&) const {
     return "these motions do not separate it from the other quantities";
   }
+  std::string operator()(const unknown::AtItsLimit&) const {
+    return "the fit ends at the limit of what is allowed for it: the model or a statement is wrong";
+  }
   std::string operator()(const unknown::ExplanationsDiffer&) const {
     return "the likely explanations give values that differ too much";
   }

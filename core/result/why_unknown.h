@@ -87,6 +87,9 @@ struct NotToldApart {};
 /// The fit with the named causes stopped before it reached a minimum.
 struct NoMinimum {};
 
+/// The fit stopped at the largest or smallest value that is allowed, so that nothing is known of its uncertainty.
+struct AtItsLimit {};
+
 /// The likely explanations give values that differ too much.
 struct ExplanationsDiffer {};
 
@@ -104,13 +107,13 @@ struct KernelNotStated {};
 
 }  // namespace unknown
 
-using AnyReason =
-    std::variant<unknown::Told, unknown::NoLine, unknown::NoDownhillLine, unknown::SpeedHardlyChanges,
-                 unknown::NotBothLines, unknown::MeanBeyondGravity, unknown::RateNotPositive,
-                 unknown::InterceptNotPositive, unknown::NoFreeMotion, unknown::NoFit, unknown::OneDirection,
-                 unknown::NoDownhillMotion, unknown::DriveBeyondGravity, unknown::NotTold, unknown::NotAnswered,
-                 unknown::NoLineOfMotion, unknown::NotToldApart, unknown::NoMinimum, unknown::ExplanationsDiffer,
-                 unknown::FreeFall, unknown::NoBalance, unknown::DragNotViscous, unknown::KernelNotStated>;
+using AnyReason = std::variant<unknown::Told, unknown::NoLine, unknown::NoDownhillLine, unknown::SpeedHardlyChanges,
+                               unknown::NotBothLines, unknown::MeanBeyondGravity, unknown::RateNotPositive,
+                               unknown::InterceptNotPositive, unknown::NoFreeMotion, unknown::NoFit,
+                               unknown::OneDirection, unknown::NoDownhillMotion, unknown::DriveBeyondGravity,
+                               unknown::NotTold, unknown::NotAnswered, unknown::NoLineOfMotion, unknown::NotToldApart,
+                               unknown::NoMinimum, unknown::AtItsLimit, unknown::ExplanationsDiffer, unknown::FreeFall,
+                               unknown::NoBalance, unknown::DragNotViscous, unknown::KernelNotStated>;
 
 /// A clip whose motion in a direction without a line is attributed to the hand.
 struct ClipAgainstLaunch {

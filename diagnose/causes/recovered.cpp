@@ -86,6 +86,14 @@ std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_motions(const T
   return configurations;
 }
 
+/// Whether a common parameter stopped at the edge of its range.
+bool is_at_limit(const MotionFit& fit, ParameterLayout::Global::Kind kind, std::size_t index) {
+  return std::any_of(fit.statements.begin(), fit.statements.end(), [&](const FitStatement& s) {
+    const ParameterLayout::Global& of = fit.layout->globals()[s.global];
+    return s.held && of.kind == kind && of.index == index;
+  });
+}
+
 std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {
   const RemainderSpace space(set, fit);
   const RemainderSpace::Solution solution = space.solve(sizes);
@@ -153,6 +161,10 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     }
     one.alpha_rad = found(alpha(at), gradient(alpha), 1.0);
     one.alpha_rad.known &= one.alpha_rad.sd < kUnknownAngle_rad;
+    if (is_at_limit(fit, ParameterLayout::Global::Kind::alpha, of.first)) {
+      one.alpha_rad.known = false;
+      one.alpha_rad.why = core::unknown::AtItsLimit{};
+    }
     if (const std::optional<double> v = terminal_velocity(model_at(at))) {
       // A small change da of the acceleration shifts v_lim by dv = -da/a'(v).
       const double apart = 1e-3 * *v;

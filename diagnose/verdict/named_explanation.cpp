@@ -12,6 +12,9 @@
 namespace glidelab::diagnose {
 namespace {
 
+// Probability from which a cause counts together with others that do the same in these data alone: one of three at
+// most. A name that is spread over more of them says little, and of made experiments' ones hardly any is true.
+constexpr double kLikelyAmongEquals = 1.0 / 3.0;
 constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
 
 /// The probability of an effect of an explanation or of one that the data cannot tell from it.
@@ -40,7 +43,10 @@ const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison,
     if (std::count_if(best.effects.begin(), best.effects.end(), alike) > 1) {
       return comparison.effect_probability[effect];
     }
-    std::vector<std::size_t> any = not_told_apart(comparison, best, effect, set.images);
+    std::vector<std::size_t> any;
+    if (probability_of_any(comparison, {effect}) >= kLikelyAmongEquals) {
+      any = not_told_apart(comparison, best, effect, set.images);
+    }
     for (std::size_t e = 0; e < effect_list().size(); ++e) {
       if (e == effect || alike(e)) any.push_back(e);
     }

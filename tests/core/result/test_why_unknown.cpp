@@ -39,6 +39,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::NoLineOfMotion{}, "does not move"},
       {unknown::NotToldApart{}, "do not separate it"},
       {unknown::NoMinimum{}, "stopped before it reached a minimum"},
+      {unknown::AtItsLimit{}, "at the limit of what is allowed"},
       {unknown::ExplanationsDiffer{}, "differ too much"},
       {unknown::FreeFall{}, "no normal force"},
       {unknown::NoBalance{}, "not balance at any downhill speed"},

@@ -164,6 +164,20 @@ TEST_CASE(
                                 diagnose::ids::friction_drift, 0.1));
 }
 
+TEST_CASE("an inclination at the limit of its statement is not given as if it were known to a ten-thousandth") {
+  // A fall that is said to be vertical and accelerates with 0.9 of gravity: no angle within 3 degrees does that.
+  std::vector<tests::MadeLaunch> falls(3, tests::MadeLaunch{0.3, 90.0, 0.0, 0.2});
+  const tests::MadeGlider free{.k_n_s_m = 0.0, .mu = 0.0};
+  const tests::MadeEffect slow = {[](double m, double, double, double) { return -0.1 * m * 9.80665; }};
+  const tests::MadeExperiment made = tests::made_experiment(falls, slow, 3, 1e-4, 30, 60.0, 1.0, 0.0, free);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  const diagnose::RecoveredConfiguration found = diagnose::recovered_of(set, {{&fit, {}, 1.0}}).at(0);
+  CHECK_FALSE(found.alpha_deg.estimate);
+  REQUIRE(found.alpha_deg.why);
+  CHECK(std::holds_alternative<core::unknown::AtItsLimit>(found.alpha_deg.why->reason));
+}
+
 TEST_CASE("nothing is recovered from an explanation whose fit stopped before its minimum") {
   const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.1 * v * std::abs(v); }};
   const diagnose::TrackSet set = set_of(7, drag);

@@ -92,11 +92,19 @@ TEST_CASE("of an explanation the causes that are likelier than not keep their na
   comparison.effect_probability[table] = 0.6;
   CHECK(part(tracks, {of({"camera_motion", "base_vibration"}, 0.6), of({"camera_motion"}, 0.3)}).empty());
   // A bumper and a cable that do the same beside the shaking are one cause together, and not if one of them does less.
-  std::vector<diagnose::Hypothesis> ends = {of({"camera_motion", "end_stop"}, 0.3),
-                                            of({"camera_motion", "tether"}, 0.3), of({"camera_motion"}, 0.4)};
+  std::vector<diagnose::Hypothesis> ends = {of({"camera_motion", "end_stop"}, 0.4),
+                                            of({"camera_motion", "tether"}, 0.3), of({"camera_motion"}, 0.3)};
   ends[0].gain = ends[1].gain = 40.0;
   ends[0].log_evidence = ends[1].log_evidence = 30.0;
   CHECK(part(tracks, ends).empty());
+  ends[0].probability = 0.35;  // a third of all
+  ends[1].probability = 0.25;
+  CHECK(part(tracks, ends).empty());
+  ends[0].probability = 0.31;
+  ends[1].probability = 0.29;
+  CHECK(part(tracks, ends) == only("camera_motion"));
+  ends[0].probability = 0.4;
+  ends[1].probability = 0.3;
   ends[1].gain = 30.0;
   CHECK(part(tracks, ends) == only("camera_motion"));
   // A single cause has no part, and a part without a fit cannot be reported.
