@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -45,8 +45,15 @@ class Frame:
     true_v_m_s: float
 
 
-@dataclass(frozen=True)
-class FilmedClip:
+class _Source:  # pylint: disable=too-few-public-methods
+    """Where a clip's frames come from: in none of its fields."""
+
+    _film: _glidelab.Film
+    _number: int
+
+
+@dataclass(frozen=True, eq=False)
+class FilmedClip(_Source):
     """One clip of a film; iterate over it for its frames. Only one frame is in memory at a time.
 
     Attributes
@@ -60,8 +67,12 @@ class FilmedClip:
     name: str
     configuration: str
     frames: int
-    _film: _glidelab.Film
-    _number: int
+    film: InitVar[_glidelab.Film]
+    number: InitVar[int]
+
+    def __post_init__(self, film: _glidelab.Film, number: int) -> None:
+        object.__setattr__(self, "_film", film)
+        object.__setattr__(self, "_number", number)
 
     def __len__(self) -> int:
         return self.frames

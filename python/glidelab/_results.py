@@ -12,7 +12,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from typing import Any, Optional
 
 from ._glidelab import Outcome
@@ -34,11 +34,20 @@ class Made:
         return {"json": self.json, "text": self.text, "outcome": None}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Result:
-    """What every result can do."""
+class _Holder:  # pylint: disable=too-few-public-methods
+    """Where a result keeps what it was made of: in no field, so that `dataclasses.asdict` gives its data alone."""
 
     _made: Made
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(_Holder):
+    """What every result can do."""
+
+    made: InitVar[Made]
+
+    def __post_init__(self, made: Made) -> None:
+        object.__setattr__(self, "_made", made)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON that the command of this name writes, as a dict (docs/reference/json.md)."""
