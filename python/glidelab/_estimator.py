@@ -74,12 +74,12 @@ class Judged:
     answered, failed : int
         Replicates with a value, and those in which the estimator failed: it raised something, gave no answer as
         `estimator` describes it, or took too long.
-    bias, sd, rms : float or None
-        Mean error, standard deviation and root mean square of the errors; None without an answer.
+    bias, sd, rms_error : float or None
+        Mean error, standard deviation and root mean square of the errors; None without an answer. Also called `rms`.
     stated : int
-        Answers with a standard deviation.
-    covered : float or None
-        The part of these whose 95 % interval contains the true value.
+        Answers with an interval.
+    coverage : float or None
+        The share of these whose 95 % interval contains the true value. Also called `covered`.
     """
 
     configuration: str
@@ -93,6 +93,16 @@ class Judged:
     rms: Optional[float]
     stated: int
     covered: Optional[float]
+
+    @property
+    def rms_error(self) -> Optional[float]:
+        """Root mean square of the errors."""
+        return self.rms
+
+    @property
+    def coverage(self) -> Optional[float]:
+        """The share of stated 95 % intervals that contain the true value."""
+        return self.covered
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -127,8 +137,8 @@ class Judgement:
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
-            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered")},
-                        ("truth", "bias", "sd", "rms"))
+            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered",
+            "rms_error", "coverage")}, ("truth", "bias", "sd", "rms", "rms_error"))
 
     def _table(self) -> list[list[str]]:
         def text(value: Optional[float]) -> str:

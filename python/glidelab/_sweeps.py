@@ -201,6 +201,8 @@ class Sweep(Result):
         """A pandas.DataFrame, one row per quantity and estimator, over all runs."""
         rows = self.to_dict()["overall"]
         columns = {name: [row.get(name) for row in rows] for name in (rows[0] if rows else ())}
+        if rows:
+            columns["bias"] = columns["mean_error"]  # as other studies call it
         return frame_of(columns, [name for name in _IN_ITS_UNIT if name in columns])
 
     def plot(self) -> list[Any]:
@@ -241,7 +243,7 @@ class Sweep(Result):
         return "".join(tables) + html_plot(self.plot)
 
 
-_IN_ITS_UNIT = ("mean_error", "mean_error_sd", "rms_error", "stated_sd", "least_sd")
+_IN_ITS_UNIT = ("mean_error", "bias", "mean_error_sd", "rms_error", "stated_sd", "least_sd")
 _HEADER = ("answers", "mean error", "rms error", "stated sd", "least sd", "95 % hold")
 
 

@@ -177,6 +177,37 @@ class Shown(InFolder):
         self.assertEqual(pretty(said), str(self.coverage))
 
 
+class OneVocabulary(InFolder):
+    @needs("pandas")
+    def test_every_study_s_table_has_the_common_columns_beside_its_own(self):
+        made = glidelab._results.Made.__new__(glidelab._results.Made)
+        certified = glidelab.CertifiedQuantity("mu", 40, 3, 0.9, (0.8, 1.0), 0.1, 2e-4, 1e-4, False)
+        certificate = glidelab.Certificate(made, "", True, 40, "trajectory", "tracks", (certified,), (), (), ())
+        for study, names in (
+                (glidelab.judge(SCENARIO, noise_m=2e-5, replicates=2), {"rms": "rms_error", "covered": "coverage"}),
+                (glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2), {"determined": "answered"}),
+                (made_sweep(self.folder), {"mean_error": "bias"}), (certificate, {"rms": "rms_error"})):
+            with self.subTest(type(study).__name__):
+                table = study.to_frame()
+                for name in {"answered", "rms_error", "coverage", "bias"} - ({"bias"} if study is certificate else set()):
+                    self.assertIn(name, table)
+                self.assertEqual(table.attrs["units"]["rms_error"], BY_ROW)
+                for own, common in names.items():
+                    self.assertTrue((table[own].fillna(-1.0) == table[common].fillna(-1.0)).all())
+                    self.assertEqual(table.attrs["units"][own], table.attrs["units"][common])
+        self.assertEqual((certified.answered, certified.rms_error), (37, 2e-4))
+
+    def test_the_rms_error_of_a_coverage_is_that_of_its_errors(self):
+        # Errors 1, 2 and 6: mean 3, variance (4 + 1 + 9) / 2 = 7, mean square (1 + 4 + 36) / 3.
+        row = glidelab.CoverageRow("m1", "e", "mu", 0.0, 3, 3, 3.0, 7.0**0.5, 1.0, 1.0, (0.3, 1.0), 1.0)
+        self.assertAlmostEqual(row.rms_error, (41.0 / 3.0) ** 0.5, places=12)
+        self.assertEqual(row.answered, 3)
+        judged = glidelab.judge(SCENARIO, noise_m=2e-5, replicates=4).rows[0]
+        mean_square = judged.bias**2 + judged.sd**2 * 3 / 4
+        self.assertAlmostEqual(judged.rms_error**2 / mean_square, 1.0, places=9)
+        self.assertEqual(judged.coverage, judged.covered)
+
+
 class Units(unittest.TestCase):
     def test_they_are_those_that_the_name_ends_with(self):
         for column, unit in (("bandwidth_s", "s"), ("noise_m", "m"), ("frame_rate_hz", "Hz"), ("price_eur", "EUR"),
