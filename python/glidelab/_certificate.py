@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional, SupportsFloat, Union
 
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR
@@ -180,7 +180,7 @@ def _change(found: Mapping[str, Any]) -> ChangedTwin:
 
 
 def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, estimator: str = DEFAULT_ESTIMATOR,
-            bandwidth_s: Optional[float] = None, seed: Optional[int] = None, allow_outside: bool = False,
+            bandwidth_s: Optional[SupportsFloat] = None, seed: Optional[int] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
             masses_kg: Optional[Sequence[float]] = None, incline_sd_deg: Optional[float] = None,

@@ -6,7 +6,7 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, SupportsFloat
 
 from . import _glidelab
 from ._checks import above_0, optional_real, reals
@@ -260,7 +260,7 @@ class Coverage(Result):
 
 
 def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates: int = 1000,
-             levels: Sequence[float] = (), bandwidth_s: Optional[float] = None,
+             levels: Sequence[float] = (), bandwidth_s: Optional[SupportsFloat] = None,
              estimator_command: Optional[str] = None, estimator_name: str = "",
              estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
              seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Coverage:
