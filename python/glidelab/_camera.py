@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from . import _glidelab
 from ._arrays import Vector, frozen
+from ._brief import Brief
 from ._checks import above_0, pair, real, refuse_masked, shown, switch
 from ._errors import input_error
 from ._inputs import PathLike, Progress, is_path, job_count, teller
@@ -27,8 +28,8 @@ def _grey(image: Any, name: str) -> NDArray[Any]:
     return np.ascontiguousarray(array)
 
 
-@dataclass(frozen=True, eq=False)
-class Camera:
+@dataclass(frozen=True, eq=False, repr=False)
+class Camera(Brief):
     """A calibrated camera. Pixels are counted from the centre of the image's first pixel.
 
     Attributes

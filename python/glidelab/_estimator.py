@@ -17,12 +17,13 @@ from typing import Any, Optional, TypeVar, Union
 import numpy as np
 
 from . import _glidelab
+from ._brief import Brief
 from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._checks import real, shown
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._recovered import QUANTITIES
-from ._results import NORMAL95, Quantity, frame_of, html_table, rounded, words_of
+from ._results import NORMAL95, Quantity, frame_of, html_table, plain, rounded, words_of
 
 Found = Union[float, Sequence[float], Mapping[str, Any], Quantity, None]
 Estimator = Callable[[list[Track]], Mapping[str, Found]]
@@ -106,7 +107,7 @@ class Judged:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Judgement:
+class Judgement(Brief):
     """How estimators did on the same motions.
 
     Attributes
@@ -134,6 +135,11 @@ class Judgement:
         """The rows of one estimator and one quantity, one per configuration."""
         return tuple(row for row in self.rows if row.estimator == estimator_name and row.quantity == quantity)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
+        data: dict[str, Any] = plain(self)
+        return data
+
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
@@ -155,9 +161,6 @@ class Judgement:
         lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
         lines += [f"{name}: {1e3 * seconds:.2f} ms an experiment" for name, seconds in self.seconds.items()]
         return "\n".join(lines) + "\n"
-
-    def __repr__(self) -> str:
-        return "<glidelab.Judgement>"
 
     def _failures(self) -> list[str]:
         """A line for each estimator that failed: what is below is not about these replicates."""

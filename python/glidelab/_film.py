@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _glidelab
 from ._arrays import frozen
+from ._brief import Brief
 from ._checks import file_name, switch
 from ._errors import input_error
 from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario, job_count, teller
@@ -18,8 +19,8 @@ from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario,
 Pixels = Union[NDArray[np.uint8], NDArray[np.uint16]]
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
+@dataclass(frozen=True, eq=False, repr=False)
+class Frame(Brief):
     """One image as the camera stores it, with what is true of it.
 
     Attributes
@@ -52,8 +53,8 @@ class _Source:  # pylint: disable=too-few-public-methods
     _number: int
 
 
-@dataclass(frozen=True, eq=False)
-class FilmedClip(_Source):
+@dataclass(frozen=True, eq=False, repr=False)
+class FilmedClip(_Source, Brief):
     """One clip of a film; iterate over it for its frames. Only one frame is in memory at a time.
 
     Attributes

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, stored, vector
+from ._brief import Brief
 from ._checks import above_0, file_name, optional_real, real, shown, switch, text
 from ._errors import input_error
 from ._toml import toml_text
@@ -25,8 +26,8 @@ Scenario = Union[PathLike, Mapping[str, Any]]
 Progress = Union[Callable[[str, float], object], bool, None]
 
 
-@dataclass(frozen=True, eq=False, init=False)
-class Track:
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class Track(Brief):
     """One motion, as arrays, with what is known of it. x is positive downhill.
 
     Attributes

@@ -43,6 +43,9 @@ class Candidate:
     bounds: tuple[Optional[float], ...] = ()
 
 
+_OF_CANDIDATES = ("name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Requirement(Result):
     """Which cameras and settings reach a target.
@@ -66,11 +69,19 @@ class Requirement(Result):
         """The first that reaches the target; None where nothing does."""
         return next((one for one in self.candidates if one.reached), None)
 
-    def to_frame(self) -> Any:
-        """A pandas.DataFrame, one row per candidate, with units in ``attrs["units"]``; ``error`` and ``bound`` are those of
-        the first target, ``error_2`` and ``bound_2`` of the second, ...; ``attrs["targets"]`` names the targets."""
-        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in (
-            "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")}
+    def to_frame(self, by_target: bool = False) -> Any:
+        """A pandas.DataFrame, one row per candidate, with units in ``attrs["units"]``.
+
+        Parameters
+        ----------
+        by_target : bool
+            False: ``error`` and ``bound`` are those of the first target, ``error_2`` and ``bound_2`` of the second, ...;
+            ``attrs["targets"]`` names the targets. True: one row per candidate and target, with the columns ``target``,
+            ``quantity``, ``error``, ``error_sd`` and ``bound``, in the unit that ``unit`` says.
+        """
+        if by_target:
+            return self._frame_by_target()
+        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in _OF_CANDIDATES}
         units = {}
         for number, target in enumerate(self.targets):
             of = "" if number == 0 else f"_{number + 1}"
@@ -81,6 +92,17 @@ class Requirement(Result):
         frame.attrs["units"].update(units)
         frame.attrs["targets"] = list(self.targets)
         return frame
+
+    def _frame_by_target(self) -> Any:
+        rows = [(one, number, target) for one in self.candidates for number, target in enumerate(self.targets)]
+        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one, _, _ in rows] for name in _OF_CANDIDATES}
+        columns["target"] = [target for _, _, target in rows]
+        columns["quantity"] = [target.split()[0] for _, _, target in rows]
+        numbers = {"error": "errors", "error_sd": "error_sds", "bound": "bounds"}
+        for name, member in numbers.items():
+            columns[name] = [of[number] if number < len(of) else None
+                             for of, number in ((getattr(one, member), number) for one, number, _ in rows)]
+        return frame_of(columns, tuple(numbers))
 
     def _repr_html_(self) -> str:
         header = ["camera", "price (EUR)", "verdict"]
