@@ -40,6 +40,6 @@ class Brief:
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         shown = [one for one in (_shown(name, value) for name, value in values.items()) if one is not None]
         lengths = [len(value) for value in values.values() if isinstance(value, np.ndarray) and value.ndim == 1]
-        if lengths:
+        if any(lengths):
             shown.insert(0, f"{max(lengths)} values")
         return f"<glidelab.{type(self).__name__}{': ' if shown else ''}{', '.join(shown)}>"

@@ -9,9 +9,9 @@ from typing import Any, Optional, SupportsFloat, Union
 
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR
-from ._checks import above_0, text
+from ._checks import above_0, text, whole
 from ._errors import input_error
-from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller, whole
+from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller
 from ._results import Made, Result, frame_of, html_table
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from . import _glidelab
 from ._brief import Brief
 from ._analysis import DEFAULT_ESTIMATOR, analyze
-from ._checks import real, shown
+from ._checks import real, whole
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._recovered import QUANTITIES
@@ -416,9 +416,7 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         if name in named:
             raise input_error("estimators", f"\"{name}\" a second time", "each once, with a name of its own")
         named[name] = one
-    if isinstance(replicates, bool) or not isinstance(replicates, (int, np.integer)) or replicates < 2:
-        raise input_error("replicates", shown(replicates), "a whole number of 2 or more")
-    replicates = int(replicates)
+    replicates = whole("replicates", replicates, 2)
     _checked_seconds(seconds)
     maker = _glidelab.TrackMaker(given_scenario(scenario), real("noise_m", noise_m, "a number of metres above 0"))
     first = checked_seed(seed)

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from . import _glidelab
 from ._arrays import Vector, stored, vector
 from ._brief import Brief
-from ._checks import above_0, file_name, optional_real, real, shown, switch, text
+from ._checks import above_0, file_name, is_whole, optional_real, real, shown, switch, text, whole
 from ._errors import input_error
 from ._toml import toml_text
 
@@ -137,7 +137,7 @@ def _runs_text(runs: Runs) -> str:
     if runs is None or isinstance(runs, str):
         return runs or ""
     numbers = list(runs) if isinstance(runs, Iterable) else []
-    if not numbers or not all(isinstance(one, (int, np.integer)) and not isinstance(one, bool) for one in numbers):
+    if not numbers or not all(is_whole(one) for one in numbers):
         raise input_error("runs", shown(runs), 'numbers of runs, from 1 on, or "all"')
     return ",".join(str(one) for one in numbers)
 
@@ -265,29 +265,14 @@ def load_scenario(file: PathLike) -> dict[str, Any]:
     return scenario
 
 
-def whole(name: str, value: int, least: int, most: int) -> int:
-    """A whole number within limits, InputError for another."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
-        raise input_error(name, shown(value), f"a whole number from {least} to {most}")
-    return int(value)
-
-
 def job_count(jobs: Optional[int]) -> int:
     """How many threads: as many as there are cores, where nothing is said."""
-    if jobs is None:
-        return os.cpu_count() or 1
-    if isinstance(jobs, bool) or not isinstance(jobs, (int, np.integer)) or not 1 <= jobs <= 1024:
-        raise input_error("jobs", shown(jobs), "a whole number from 1 to 1024")
-    return int(jobs)
+    return os.cpu_count() or 1 if jobs is None else whole("jobs", jobs, 1, 1024)
 
 
 def checked_seed(seed: Optional[int]) -> Optional[int]:
     """A seed as the C++ side takes it."""
-    if seed is None:
-        return None
-    if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
-        raise input_error("seed", shown(seed), "a whole number from 0 to 18446744073709551615")
-    return int(seed)
+    return None if seed is None else whole("seed", seed, 0, 2**64 - 1)
 
 
 class _Bar:

@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike
 from . import _glidelab
 from ._arrays import Vector, vector
 from ._brief import Brief
-from ._checks import optional_real, text
+from ._checks import optional_real, text, whole
 from ._errors import input_error, input_errors
-from ._inputs import whole
 from ._results import NORMAL95, frame_of, html_plot, html_table, new_axes, plain
 
 

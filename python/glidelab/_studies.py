@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Any, Optional, SupportsFloat
 
 from . import _glidelab
-from ._checks import above_0, optional_real, reals
-from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller, whole
+from ._checks import above_0, optional_real, reals, whole
+from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller
 from ._outside import OutsideRuns, given_command, outside_runs
 from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, new_axes, words_of
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
-from ._checks import file_name, text, texts
+from ._checks import file_name, text, texts, whole
 from ._errors import input_error
-from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
+from ._inputs import PathLike, Progress, checked_seed, job_count, teller
 from ._outside import OutsideRuns, given_command, outside_runs
 from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, unit_of, words_of
 
