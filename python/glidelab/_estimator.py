@@ -41,7 +41,8 @@ def estimator(function: _Function) -> _Function:
         Called with the tracks of one configuration (one mass on one slope), a list of `Track`; returns a dict with any
         of ``k_over_m_1_s``, ``mu``, ``alpha_deg``, ``v_lim_m_s``, each a number, a pair of number and standard deviation
         (tuple, list or array), a dict ``{"value": ..., "sd": ..., "interval95": [..., ...]}`` as in results.json (the
-        last two may be left out), or a `Quantity`. What it cannot determine it leaves out, or gives as None or NaN.
+        last two may be left out), or a `Quantity`. What it cannot determine it leaves out, or gives as None or NaN. An
+        interval that does not contain its value is refused. Further keys may stand beside all four quantities.
 
     Returns
     -------
@@ -266,9 +267,11 @@ def _checked(found: Any) -> dict[str, Quantity]:
     """The answer of a user's estimator for one configuration, checked; _Wrong if it is not a valid answer."""
     if not isinstance(found, Mapping):
         raise _Wrong(f"the answer: found {found!r:.60}, expected a dict of quantities")
-    for key in found:
-        if key not in QUANTITIES:
-            raise _Wrong(f"found the quantity {key!r:.60}, expected one of {', '.join(QUANTITIES)}")
+    if not all(key in found for key in QUANTITIES):  # then a key that is none may be a misspelt one
+        for key in found:
+            if key not in QUANTITIES:
+                raise _Wrong(f"found the quantity {key!r:.60}, expected one of {', '.join(QUANTITIES)}; further keys only "
+                             "beside all four" + _glidelab.did_you_mean(str(key), list(QUANTITIES)))
     return {key: _quantity(found.get(key), key) for key in QUANTITIES}
 
 
