@@ -169,6 +169,16 @@ class CtrlC(unittest.TestCase):
         with self.assertRaises(LookupError):
             glidelab.analyze(t, x, progress=stop)
 
+    def test_the_last_report_is_that_all_is_done(self):
+        t, x = damped()
+        scenario = SOURCE / "scenarios" / "paper" / "inclined.toml"
+        for work in (lambda told: glidelab.diagnose(t, x, progress=told), lambda told: glidelab.analyze(t, x, progress=told),
+                     lambda told: glidelab.coverage(scenario, noise_m=2e-5, replicates=2, progress=told),
+                     lambda told: glidelab.judge(scenario, noise_m=2e-5, replicates=2, progress=told)):
+            told = []
+            work(lambda stage, fraction, to=told: to.append((stage, fraction)))
+            self.assertEqual(told[-1][1], 1.0, told[-1])
+
     def test_the_interpreter_runs_on_meanwhile(self):
         import threading
         t, x = damped()

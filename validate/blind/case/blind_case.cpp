@@ -31,7 +31,7 @@ BlindCause cause_of(const BlindEffect& effect, double size, double gain) {
 /// Draws effects for a design; false if they cannot be seen in it.
 bool draw_causes(BlindCase& one, const BlindDraw& draw, BlindRandom& random, std::vector<BlindEffect>& effects) {
   if (one.kind == BlindKind::none) return true;
-  const BlindDetection detection(one.design);
+  const BlindDetection detection(one.design, draw.look);
   const std::size_t many = one.kind == BlindKind::pair ? 2 : 1;
   const auto& ids = one.kind == BlindKind::outside ? outside_effects() : library_effects();
   for (std::size_t e = 0; e < many; ++e) {
