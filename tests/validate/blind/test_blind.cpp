@@ -165,7 +165,10 @@ TEST_CASE("a blind case is the same for the same seed and index, and its folder 
     CHECK(base::read_file(entry.path()).find("bow") == std::string::npos);
   }
   CHECK(files == 1 + one.design.clips.size());
-  CHECK(core::read_experiment(temp / "case").clips.size() == one.design.clips.size());
+  const core::Experiment read = core::read_experiment(temp / "case");
+  CHECK(read.clips.size() == one.design.clips.size());
+  CHECK(read.gravity_m_s2 == one.design.gravity_m_s2);
+  CHECK(read.gravity_sd_m_s2 == 0.0);  // what the motions were computed with
 }
 
 TEST_CASE("every effect of the diagnosis' list is among the blind ones, and nothing outside is") {
