@@ -54,9 +54,9 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
     display.clear();
     say(options.common,
         fmt::format(
-            "{} twins will be filmed, and {} more with one thing better; judging by the first, all take about {} "
-            "of processor time",
-            size.twins, size.of_changes, duration_text(size.processor_time_s)));
+            "{} twins will be filmed, and {} to {} more with one thing better; judging by the first, all take at most "
+            "{} of processor time",
+            size.twins, size.least_of_changes, size.most_of_changes, duration_text(size.processor_time_s)));
   };
   const validate::Certificate certificate = validate::certify(folders, how, display.callback());
   const std::string json = report::certificate_json(certificate);
@@ -94,7 +94,11 @@ void add_certify(CLI::App& app, Command& chosen) {
                    "track, as analyze takes them")
       ->type_name("DIR|FILE")
       ->required();
-  command->add_option("--twins", options->twins, "Number of twins to record")
+  command
+      ->add_option(
+          "--twins", options->twins,
+          "Number of twins to record. Of a filmed recording, each change that may help is filmed 5 to 10 times "
+          "besides")
       ->type_name("N")
       ->check(CLI::Range(validate::kFewestTwins, validate::kMostTwins))
       ->capture_default_str();

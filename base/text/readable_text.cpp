@@ -62,6 +62,15 @@ std::string printable_text(std::string_view text) {
       text, [](std::string_view character) { return is_control(character) ? std::string_view("?") : character; });
 }
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_length(text, at);
+    if (length == 0) return false;
+    at += length;
+  }
+  return true;
+}
+
 std::string first_bytes(std::string_view text, std::size_t most) {
   if (text.size() <= most) return std::string(text);
   while (most > 0 && continues_character(byte_at(text, most))) --most;

@@ -13,6 +13,9 @@ std::string valid_utf8(std::string_view text);
 /// The same with "?" for each control character, those of C1 included: it must not steer the terminal.
 std::string printable_text(std::string_view text);
 
+/// Whether all of it is well-formed UTF-8.
+bool is_utf8(std::string_view text);
+
 /// At most so many bytes of well-formed UTF-8, cut between two characters.
 std::string first_bytes(std::string_view text, std::size_t most);
 

@@ -43,33 +43,22 @@ Gravity gravity_of(const std::vector<Experiment>& experiments) {
   return {best->gravity_m_s2, best->gravity_sd_m_s2};
 }
 
-/// Clip names that occur in one folder only are kept; the others are prefixed with their folder's name.
-void name_uniquely(const std::vector<Experiment>& experiments, std::vector<ClipSetup>& setups) {
-  std::multiset<std::string> names;
-  for (const ClipSetup& setup : setups) names.insert(setup.name);
-  std::set<std::string> taken;
-  std::size_t clip = 0;
-  for (const Experiment& experiment : experiments) {
-    const std::string folder = std::filesystem::absolute(experiment.folder / "x").parent_path().filename().string();
-    for (std::size_t i = 0; i < experiment.clips.size(); ++i, ++clip) {
-      std::string& name = setups[clip].name;
-      if (names.count(name) > 1) name = folder + "-" + name;
-      const std::string wanted = name;
-      for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}-{}", wanted, again);
-    }
-  }
-}
+struct NameInFolder {
+  std::string name;
+  std::filesystem::path folder;
+};
 
-/// The experiments' names; those of one name get their folder's before it, since results are told apart by them.
-std::vector<std::string> unique_names(const std::vector<Experiment>& experiments) {
+/// Names that occur once are kept; the others get their folder's name before them and, where that is not enough, a
+/// number behind them, since results are told apart by them.
+std::vector<std::string> unique_names(const std::vector<NameInFolder>& given) {
   std::multiset<std::string> names;
-  for (const Experiment& experiment : experiments) names.insert(experiment.name);
+  for (const NameInFolder& one : given) names.insert(one.name);
   std::vector<std::string> unique;
   std::set<std::string> taken;
-  for (const Experiment& experiment : experiments) {
-    std::string name = experiment.name;
+  for (const NameInFolder& one : given) {
+    std::string name = one.name;
     if (names.count(name) > 1) {
-      name = std::filesystem::absolute(experiment.folder / "x").parent_path().filename().string() + "-" + name;
+      name = std::filesystem::absolute(one.folder / "x").parent_path().filename().string() + "-" + name;
     }
     const std::string wanted = name;
     for (int again = 2; !taken.insert(name).second; ++again) name = fmt::format("{}-{}", wanted, again);
@@ -113,7 +102,9 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
                           options.smoother};
   check_smoothing(how);
   const std::vector<Experiment> experiments = read_all(folders, options.bare);
-  const std::vector<std::string> names = unique_names(experiments);
+  std::vector<NameInFolder> of_experiments, of_clips;
+  for (const Experiment& experiment : experiments) of_experiments.push_back({experiment.name, experiment.folder});
+  const std::vector<std::string> names = unique_names(of_experiments);
   std::vector<CalibrationResult> calibrations;
   std::vector<PlumbResult> plumbs;
   std::vector<ClipSetup> setups;
@@ -126,6 +117,7 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
     ImageResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.images);
     for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
       setups.push_back(experiment.clips[i]);
+      of_clips.push_back({experiment.clips[i].name, experiment.folder});
       tracks.push_back(std::move(seen.tracks[i]));
       tracks.back().shared_m.insert(tracks.back().shared_m.begin(), modes, {});
       experiment_of.push_back(&experiment);
@@ -141,7 +133,8 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       plumbs.push_back(std::move(plumb));
     }
   }
-  name_uniquely(experiments, setups);
+  const std::vector<std::string> clips = unique_names(of_clips);
+  for (std::size_t i = 0; i < setups.size(); ++i) setups[i].name = clips[i];
   AnalysisResults results = analyze_tracks(setups, tracks, gravity_of(experiments), how, options.jobs, progress);
   for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = name_of[i];
   results.calibrations = std::move(calibrations);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,7 @@ std::string_view trimmed_line(std::string_view text) {
 }
 
 constexpr char kOfColumn = '?';  // as a decimal sign: each column has its own
+constexpr std::array kDelimiters = {'\t', ';', ',', kBlanks};
 
 struct Format {
   char delimiter = ',';
@@ -144,17 +146,26 @@ std::vector<DecimalSign> signs_of(const std::vector<Line>& lines, const Format& 
 /// Empty if no line holds two numbers. Signs that differ from column to column count only where the fields cannot be
 /// read otherwise, and not where they differ within a column.
 std::optional<Format> format_of(const std::vector<Line>& lines) {
+  // Two commas: with quotes around each number that has one.
+  constexpr std::array kFormats = {
+      Format{'\t', '.'},    Format{'\t', ','},    Format{';', '.'}, Format{';', ','},        Format{',', '.'},
+      Format{kBlanks, '.'}, Format{kBlanks, ','}, Format{',', ','}, Format{'\t', kOfColumn}, Format{';', kOfColumn}};
+  std::array<std::size_t, kFormats.size()> counts = {};
+  for (const Line& line : lines) {
+    for (const char delimiter : kDelimiters) {
+      const Fields fields = split_fields(line.text, delimiter);
+      for (std::size_t f = 0; f < kFormats.size(); ++f) {
+        if (kFormats[f].delimiter == delimiter) counts[f] += is_data(fields, kFormats[f]);
+      }
+    }
+  }
   std::optional<Format> best;
   std::size_t most = 0;
-  for (const Format& format : {Format{'\t', '.'}, Format{'\t', ','}, Format{';', '.'}, Format{';', ','},
-                               Format{',', '.'}, Format{kBlanks, '.'}, Format{kBlanks, ','},
-                               Format{',', ','},  // with quotes around each number that has a comma
-                               Format{'\t', kOfColumn}, Format{';', kOfColumn}}) {
-    std::size_t count = 0;
-    for (const Line& line : lines) count += is_data(split_fields(line.text, format.delimiter), format);
-    const auto differ = [](const DecimalSign& sign) { return sign.points && sign.commas; };
-    if (count > most && (format.decimal != kOfColumn || std::ranges::none_of(signs_of(lines, format), differ))) {
-      most = count;
+  const auto differ = [](const DecimalSign& sign) { return sign.points && sign.commas; };
+  for (std::size_t f = 0; f < kFormats.size(); ++f) {
+    const Format& format = kFormats[f];
+    if (counts[f] > most && (format.decimal != kOfColumn || std::ranges::none_of(signs_of(lines, format), differ))) {
+      most = counts[f];
       best = format;
     }
   }
@@ -186,7 +197,7 @@ std::optional<Format> format_with_text(const std::vector<Line>& lines) {
   constexpr std::size_t kFewest = 5;  // lines with numbers, which are most of all
   std::optional<Format> best;
   std::pair<std::size_t, std::size_t> most{std::max(kFewest, lines.size() / 2 + 1), 0};
-  for (const char delimiter : {'\t', ';', ',', kBlanks}) {
+  for (const char delimiter : kDelimiters) {
     std::vector<Fields> rows;
     for (const Line& line : lines) rows.push_back(split_fields(line.text, delimiter));
     for (const char decimal : {'.', ','}) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/text/readable_text.h"
+
 namespace glidelab::core {
 namespace {
 
@@ -35,28 +37,13 @@ std::string from_utf16(std::string_view bytes, bool little_endian) {
   return text;
 }
 
-bool is_utf8(std::string_view bytes) {
-  std::size_t following = 0;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const unsigned char byte = byte_at(bytes, i);
-    if (following > 0) {
-      if ((byte & 0xC0) != 0x80) return false;
-      --following;
-    } else if (byte >= 0x80) {
-      following = (byte & 0xE0) == 0xC0 ? 1 : (byte & 0xF0) == 0xE0 ? 2 : (byte & 0xF8) == 0xF0 ? 3 : 0;
-      if (following == 0) return false;
-    }
-  }
-  return following == 0;
-}
-
 }  // namespace
 
 std::string as_utf8(std::string_view bytes) {
   if (bytes.starts_with("\xFF\xFE")) return from_utf16(bytes, true);
   if (bytes.starts_with("\xFE\xFF")) return from_utf16(bytes, false);
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
-  if (is_utf8(bytes)) return std::string(bytes);
+  if (base::is_utf8(bytes)) return std::string(bytes);
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); ++i) append_utf8(byte_at(bytes, i), text);
   return text;

@@ -184,7 +184,7 @@ py::tuple smooth_by(const std::string& name, const Vector& times, const Vector& 
   }
   const std::vector<std::optional<core::SmoothedState>>& states = at ? series.at : series.points;
   const std::size_t n = states.size();
-  if (std::ranges::none_of(states, [](const auto& state) { return state.has_value(); })) {
+  if (n > 0 && std::ranges::none_of(states, [](const auto& state) { return state.has_value(); })) {
     refuse("x_m", "positions in which the smoother finds neither motion nor noise", "a motion");
   }
   py::array_t<double> values = rows(6, n);

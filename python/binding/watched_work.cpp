@@ -42,4 +42,8 @@ void WatchedWork::look() {
   }
 }
 
+void WatchedWork::tell_done() {
+  if (!told_.is_none() && !stage_.empty() && fraction_ < 1.0) told_(stage_, 1.0);
+}
+
 }  // namespace glidelab::python

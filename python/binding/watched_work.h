@@ -14,6 +14,7 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "base/errors.h"
@@ -40,7 +41,14 @@ class WatchedWork {
       end(done);
       throw pybind11::error_already_set(*raised_);
     }
-    return done.get();
+    if constexpr (std::is_void_v<decltype(done.get())>) {
+      done.get();
+      tell_done();
+    } else {
+      auto result = done.get();
+      tell_done();
+      return result;
+    }
   }
 
   /// For work that checks for interruption more often than it reports.
@@ -56,6 +64,8 @@ class WatchedWork {
   base::Progress progress();
   /// Called without the lock; takes it if there is something to do.
   void look();
+  /// Called with the lock, after work without an error: its last stage is done, whatever it last reported.
+  void tell_done();
 
   template <typename Done>
   static void end(Done& done) {

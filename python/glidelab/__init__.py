@@ -5,8 +5,9 @@
 >>> glidelab.diagnose("my-recording")              # an experiment folder # doctest: +SKIP
 
 Arguments and results are in SI units, with the unit in the name; angles are in degrees. Every `Result` has ``to_dict()``
-(the JSON that the command of its name writes) and ``write(folder)`` (its files and its page). These, `Judgement` and
-`Smoothed` show themselves in a notebook, and `explain` puts them in words. docs/guide/python.md is the tutorial.
+(the JSON that the command of its name writes) and ``write(folder)`` (its files and its page). `Judgement`, `Smoothed` and
+`Bandwidth` are of no command: they have ``to_dict()`` and no ``write()``. All show themselves in a notebook and on one
+line at a prompt, and `explain` puts them in words. docs/guide/python.md is the tutorial.
 """
 
 from __future__ import annotations

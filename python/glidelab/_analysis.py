@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, frozen
+from ._brief import Brief
 from ._checks import optional_real, switch, text, texts
 from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_gravity, given_tracks, job_count, refuse,
                       refuse_of_arrays, source_of, stated_incline, teller)
@@ -50,8 +51,8 @@ class Line:
     v_range_m_s: tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Brief):
     """A clip frame by frame. All arrays have one length; NaN where there is no value.
 
     Attributes
@@ -90,8 +91,8 @@ class Motion:
             "t_s", "measured_x_m", "x_m", "sd_x_m", "v_m_s", "sd_v_m_s", "a_m_s2", "sd_a_m_s2", "reason")})
 
 
-@dataclass(frozen=True, eq=False)
-class Clip:
+@dataclass(frozen=True, eq=False, repr=False)
+class Clip(Brief):
     """One clip, analysed by itself.
 
     Attributes
@@ -148,8 +149,8 @@ class Clip:
         return ax
 
 
-@dataclass(frozen=True)
-class Configuration:
+@dataclass(frozen=True, repr=False)
+class Configuration(Brief):
     """All clips of one mass, one stated inclination and one group.
 
     Attributes

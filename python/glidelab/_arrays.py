@@ -22,12 +22,25 @@ def vector(name: str, values: ArrayLike, of: str = "") -> Vector:
         Not real numbers, masked ones among them, or not one dimension.
     """
     refuse_masked(name, values, of)
-    array = np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise input_error(name, "rows of different lengths", "one dimension", of) from None
     if array.dtype.kind not in "fiu":
         raise input_error(name, f"values of type {array.dtype}", "real numbers", of)
     if array.ndim != 1:
         raise input_error(name, f"an array of shape {array.shape}", "one dimension", of)
     return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def stored(values: Any) -> Any:
+    """An array of real numbers of double precision, without a copy where it is one, masks included. What is none stays
+    as it is: `vector` refuses it, with all else that is wrong, where it is used."""
+    try:
+        array = np.asanyarray(values)
+    except ValueError:  # rows of different lengths
+        return values
+    return array.astype(np.float64, copy=False) if array.dtype.kind in "fiu" else array
 
 
 def frozen(array: Any) -> Any:

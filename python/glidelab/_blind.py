@@ -9,8 +9,8 @@ from typing import Any, Optional
 
 from . import _glidelab
 from ._apart import interpreter
-from ._checks import file_name, switch, text
-from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
+from ._checks import file_name, switch, text, whole
+from ._inputs import PathLike, Progress, checked_seed, job_count, teller
 from ._results import Made, Result, frame_of, html_table
 
 MOST_CASES = 100000

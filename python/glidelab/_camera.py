@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from . import _glidelab
 from ._arrays import Vector, frozen
-from ._checks import above_0, pair, real, refuse_masked, shown, switch
+from ._brief import Brief
+from ._checks import above_0, pair, real, refuse_masked, shown, switch, whole
 from ._errors import input_error
 from ._inputs import PathLike, Progress, is_path, job_count, teller
 
@@ -27,8 +28,8 @@ def _grey(image: Any, name: str) -> NDArray[Any]:
     return np.ascontiguousarray(array)
 
 
-@dataclass(frozen=True, eq=False)
-class Camera:
+@dataclass(frozen=True, eq=False, repr=False)
+class Camera(Brief):
     """A calibrated camera. Pixels are counted from the centre of the image's first pixel.
 
     Attributes
@@ -102,10 +103,9 @@ def calibrate(images: Sequence[Any], inner_corners: tuple[int, int], square_m: f
     Zhang 2000; Brown 1966; Kannala and Brandt 2006 for a fisheye, which is taken where it explains the corners
     decisively better. Corners are fitted to a hundredth of a pixel.
     """
-    columns, rows = pair("inner_corners", inner_corners, "two numbers: columns and rows")
-    if columns != int(columns) or rows != int(rows):
-        raise input_error("inner_corners", shown(inner_corners), "two whole numbers")
-    board = (int(columns), int(rows))
+    pair("inner_corners", inner_corners, "two whole numbers: columns and rows")
+    columns, rows = (whole("inner_corners", one, 1) for one in inner_corners)
+    board = (columns, rows)
     square_m = real("square_m", square_m, "metres, above 0")
     if isinstance(images, str) or not isinstance(images, (Sequence, np.ndarray)):
         raise input_error("images", shown(images), "a list of images, or of names of files")

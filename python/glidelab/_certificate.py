@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional, SupportsFloat, Union
 
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR
-from ._checks import above_0, text
+from ._checks import above_0, text, whole
 from ._errors import input_error
-from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller, whole
+from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller
 from ._results import Made, Result, frame_of, html_table
 
 
@@ -23,16 +23,16 @@ class CertifiedQuantity:
     ----------
     quantity : str
         ``"k_over_m_1_s"``, ``"mu"``, ``"alpha_deg"`` or ``"v_lim_m_s"``.
-    asked, failed : int
-        Values whose truth is known, and how many of these got no estimate.
+    asked, failed, answered : int
+        Values whose truth is known, how many of these got no estimate, and how many got one.
     coverage : float or None
         Share of the stated 95 % intervals that contain the true value; None where none was stated.
     coverage_interval95 : (float, float) or None
         What as many twins leave open of it.
     bias_sds : float or None
         Mean of error over stated standard deviation.
-    rms, stated_sd : float or None
-        Root mean square error, and stated standard deviation, in the quantity's unit.
+    rms_error, stated_sd : float or None
+        Root mean square error (also called `rms`), and stated standard deviation, in the quantity's unit.
     too_narrow : bool
         Fewer intervals hold than 95 %, by more than chance makes.
     """
@@ -46,6 +46,16 @@ class CertifiedQuantity:
     rms: Optional[float]
     stated_sd: Optional[float]
     too_narrow: bool
+
+    @property
+    def answered(self) -> int:
+        """Values whose truth is known and that got an estimate."""
+        return self.asked - self.failed
+
+    @property
+    def rms_error(self) -> Optional[float]:
+        """Root mean square error."""
+        return self.rms
 
 
 @dataclass(frozen=True)
@@ -136,8 +146,8 @@ class Certificate(Result):
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(one, name) for one in self.quantities] for name in (
-            "quantity", "asked", "failed", "coverage", "bias_sds", "rms", "stated_sd", "too_narrow")},
-                        ("rms", "stated_sd"))
+            "quantity", "asked", "failed", "coverage", "bias_sds", "rms", "stated_sd", "too_narrow", "answered", "rms_error")},
+                        ("rms", "stated_sd", "rms_error"))
 
     def _repr_html_(self) -> str:
         rows = [[one.quantity, "" if one.coverage is None else f"{100.0 * one.coverage:.0f} %",
@@ -170,7 +180,7 @@ def _change(found: Mapping[str, Any]) -> ChangedTwin:
 
 
 def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, estimator: str = DEFAULT_ESTIMATOR,
-            bandwidth_s: Optional[float] = None, seed: Optional[int] = None, allow_outside: bool = False,
+            bandwidth_s: Optional[SupportsFloat] = None, seed: Optional[int] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
             masses_kg: Optional[Sequence[float]] = None, incline_sd_deg: Optional[float] = None,

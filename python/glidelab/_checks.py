@@ -52,6 +52,19 @@ def above_0(key: str, value: Any, expected: str) -> float:
     return number
 
 
+def is_whole(value: Any) -> bool:
+    """An int, Python's or numpy's; neither a switch nor a number that merely has no decimals."""
+    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+
+
+def whole(key: str, value: Any, least: int, most: Optional[int] = None) -> int:
+    """A whole number within limits."""
+    if is_whole(value) and least <= value and (most is None or value <= most):
+        return int(value)
+    raise input_error(key, shown(value), f"a whole number from {least} to {most}" if most is not None else
+                      f"a whole number of {least} or more")
+
+
 def reals(key: str, values: Any, expected: str = "a list of numbers") -> list[float]:
     """Real numbers, one after the other."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, frozen
+from ._brief import Brief
 from ._checks import real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
@@ -57,8 +58,8 @@ class Cause:
     gap_after: Optional[float]
 
 
-@dataclass(frozen=True, eq=False)
-class Residuals:
+@dataclass(frozen=True, eq=False, repr=False)
+class Residuals(Brief):
     """What the models leave of one motion; all arrays have one length.
 
     Attributes

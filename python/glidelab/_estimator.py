@@ -17,12 +17,13 @@ from typing import Any, Optional, TypeVar, Union
 import numpy as np
 
 from . import _glidelab
+from ._brief import Brief
 from ._analysis import DEFAULT_ESTIMATOR, analyze
-from ._checks import real, shown
+from ._checks import real, whole
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._recovered import QUANTITIES
-from ._results import NORMAL95, Quantity, frame_of, html_table, rounded, words_of
+from ._results import NORMAL95, Quantity, frame_of, html_table, plain, rounded, words_of
 
 Found = Union[float, Sequence[float], Mapping[str, Any], Quantity, None]
 Estimator = Callable[[list[Track]], Mapping[str, Found]]
@@ -40,7 +41,8 @@ def estimator(function: _Function) -> _Function:
         Called with the tracks of one configuration (one mass on one slope), a list of `Track`; returns a dict with any
         of ``k_over_m_1_s``, ``mu``, ``alpha_deg``, ``v_lim_m_s``, each a number, a pair of number and standard deviation
         (tuple, list or array), a dict ``{"value": ..., "sd": ..., "interval95": [..., ...]}`` as in results.json (the
-        last two may be left out), or a `Quantity`. What it cannot determine it leaves out, or gives as None or NaN.
+        last two may be left out), or a `Quantity`. What it cannot determine it leaves out, or gives as None or NaN. An
+        interval that does not contain its value is refused. Further keys may stand beside all four quantities.
 
     Returns
     -------
@@ -74,12 +76,12 @@ class Judged:
     answered, failed : int
         Replicates with a value, and those in which the estimator failed: it raised something, gave no answer as
         `estimator` describes it, or took too long.
-    bias, sd, rms : float or None
-        Mean error, standard deviation and root mean square of the errors; None without an answer.
+    bias, sd, rms_error : float or None
+        Mean error, standard deviation and root mean square of the errors; None without an answer. Also called `rms`.
     stated : int
-        Answers with a standard deviation.
-    covered : float or None
-        The part of these whose 95 % interval contains the true value.
+        Answers with an interval.
+    coverage : float or None
+        The share of these whose 95 % interval contains the true value. Also called `covered`.
     """
 
     configuration: str
@@ -94,9 +96,19 @@ class Judged:
     stated: int
     covered: Optional[float]
 
+    @property
+    def rms_error(self) -> Optional[float]:
+        """Root mean square of the errors."""
+        return self.rms
+
+    @property
+    def coverage(self) -> Optional[float]:
+        """The share of stated 95 % intervals that contain the true value."""
+        return self.covered
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Judgement:
+class Judgement(Brief):
     """How estimators did on the same motions.
 
     Attributes
@@ -124,11 +136,16 @@ class Judgement:
         """The rows of one estimator and one quantity, one per configuration."""
         return tuple(row for row in self.rows if row.estimator == estimator_name and row.quantity == quantity)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
+        data: dict[str, Any] = plain(self)
+        return data
+
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
-            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered")},
-                        ("truth", "bias", "sd", "rms"))
+            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered",
+            "rms_error", "coverage")}, ("truth", "bias", "sd", "rms", "rms_error"))
 
     def _table(self) -> list[list[str]]:
         def text(value: Optional[float]) -> str:
@@ -145,9 +162,6 @@ class Judgement:
         lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
         lines += [f"{name}: {1e3 * seconds:.2f} ms an experiment" for name, seconds in self.seconds.items()]
         return "\n".join(lines) + "\n"
-
-    def __repr__(self) -> str:
-        return "<glidelab.Judgement>"
 
     def _failures(self) -> list[str]:
         """A line for each estimator that failed: what is below is not about these replicates."""
@@ -253,9 +267,11 @@ def _checked(found: Any) -> dict[str, Quantity]:
     """The answer of a user's estimator for one configuration, checked; _Wrong if it is not a valid answer."""
     if not isinstance(found, Mapping):
         raise _Wrong(f"the answer: found {found!r:.60}, expected a dict of quantities")
-    for key in found:
-        if key not in QUANTITIES:
-            raise _Wrong(f"found the quantity {key!r:.60}, expected one of {', '.join(QUANTITIES)}")
+    if not all(key in found for key in QUANTITIES):  # then a key that is none may be a misspelt one
+        for key in found:
+            if key not in QUANTITIES:
+                raise _Wrong(f"found the quantity {key!r:.60}, expected one of {', '.join(QUANTITIES)}; further keys only "
+                             "beside all four" + _glidelab.did_you_mean(str(key), list(QUANTITIES)))
     return {key: _quantity(found.get(key), key) for key in QUANTITIES}
 
 
@@ -403,9 +419,7 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         if name in named:
             raise input_error("estimators", f"\"{name}\" a second time", "each once, with a name of its own")
         named[name] = one
-    if isinstance(replicates, bool) or not isinstance(replicates, (int, np.integer)) or replicates < 2:
-        raise input_error("replicates", shown(replicates), "a whole number of 2 or more")
-    replicates = int(replicates)
+    replicates = whole("replicates", replicates, 2)
     _checked_seconds(seconds)
     maker = _glidelab.TrackMaker(given_scenario(scenario), real("noise_m", noise_m, "a number of metres above 0"))
     first = checked_seed(seed)

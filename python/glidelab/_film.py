@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _glidelab
 from ._arrays import frozen
+from ._brief import Brief
 from ._checks import file_name, switch
 from ._errors import input_error
 from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario, job_count, teller
@@ -18,8 +19,8 @@ from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario,
 Pixels = Union[NDArray[np.uint8], NDArray[np.uint16]]
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
+@dataclass(frozen=True, eq=False, repr=False)
+class Frame(Brief):
     """One image as the camera stores it, with what is true of it.
 
     Attributes
@@ -45,8 +46,15 @@ class Frame:
     true_v_m_s: float
 
 
-@dataclass(frozen=True)
-class FilmedClip:
+class _Source:  # pylint: disable=too-few-public-methods
+    """Where a clip's frames come from: in none of its fields."""
+
+    _film: _glidelab.Film
+    _number: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FilmedClip(_Source, Brief):
     """One clip of a film; iterate over it for its frames. Only one frame is in memory at a time.
 
     Attributes
@@ -60,8 +68,12 @@ class FilmedClip:
     name: str
     configuration: str
     frames: int
-    _film: _glidelab.Film
-    _number: int
+    film: InitVar[_glidelab.Film]
+    number: InitVar[int]
+
+    def __post_init__(self, film: _glidelab.Film, number: int) -> None:
+        object.__setattr__(self, "_film", film)
+        object.__setattr__(self, "_number", number)
 
     def __len__(self) -> int:
         return self.frames

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import vector
-from ._checks import above_0, file_name, optional_real, real, shown, switch, text
+from ._arrays import Vector, stored, vector
+from ._brief import Brief
+from ._checks import above_0, file_name, is_whole, optional_real, real, shown, switch, text, whole
 from ._errors import input_error
 from ._toml import toml_text
 
@@ -25,15 +26,15 @@ Scenario = Union[PathLike, Mapping[str, Any]]
 Progress = Union[Callable[[str, float], object], bool, None]
 
 
-@dataclass(frozen=True, eq=False)
-class Track:
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class Track(Brief):
     """One motion, as arrays, with what is known of it. x is positive downhill.
 
     Attributes
     ----------
-    t_s : array_like, shape (n,)
-        Times in seconds, rising; n is 8 or more.
-    x_m : array_like, shape (n,)
+    t_s : ndarray, shape (n,)
+        Times in seconds, rising; n is 8 or more. A Track is made of any array_like.
+    x_m : ndarray, shape (n,)
         Positions in metres.
     mass_kg : float, optional
         Of the glider. Without it 1 kg is assumed, on which K/m, mu and alpha do not depend; needed with a recorded
@@ -42,7 +43,7 @@ class Track:
         As stated, in degrees. It names the configuration; the inclination itself is measured.
     name : str
         Unique among the tracks of one call; without one, ``track-1``, ``track-2``, ...
-    force_n : array_like, shape (n,), optional
+    force_n : ndarray, shape (n,), optional
         A known force along x, in newtons.
     mass_sd_kg, incline_sd_deg : float, optional
         Standard deviations of what is stated. With that of the inclination, motion in one direction gives mu.
@@ -52,16 +53,25 @@ class Track:
         Tracks of one group share one set-up of the track. Without it, those of one stated inclination do.
     """
 
-    t_s: Any  # array_like; an estimator is given arrays
-    x_m: Any
+    t_s: Vector
+    x_m: Vector
     mass_kg: Optional[float] = None
     incline_deg: float = 0.0
     name: str = ""
-    force_n: Any = None
+    force_n: Optional[Vector] = None
     mass_sd_kg: float = 0.0
     incline_sd_deg: Optional[float] = None
     launched: str = "unknown"
     group: str = ""
+
+    def __init__(self, t_s: ArrayLike, x_m: ArrayLike, mass_kg: Optional[float] = None, incline_deg: float = 0.0,
+                 name: str = "", force_n: Optional[ArrayLike] = None, mass_sd_kg: float = 0.0,
+                 incline_sd_deg: Optional[float] = None, launched: str = "unknown", group: str = "") -> None:
+        given = {"t_s": stored(t_s), "x_m": stored(x_m), "mass_kg": mass_kg, "incline_deg": incline_deg, "name": name,
+                 "force_n": None if force_n is None else stored(force_n), "mass_sd_kg": mass_sd_kg,
+                 "incline_sd_deg": incline_sd_deg, "launched": launched, "group": group}
+        for key, value in given.items():
+            object.__setattr__(self, key, value)
 
 
 def given_tracks(tracks: Sequence[Track]) -> list[_glidelab.GivenTrack]:
@@ -127,7 +137,7 @@ def _runs_text(runs: Runs) -> str:
     if runs is None or isinstance(runs, str):
         return runs or ""
     numbers = list(runs) if isinstance(runs, Iterable) else []
-    if not numbers or not all(isinstance(one, (int, np.integer)) and not isinstance(one, bool) for one in numbers):
+    if not numbers or not all(is_whole(one) for one in numbers):
         raise input_error("runs", shown(runs), 'numbers of runs, from 1 on, or "all"')
     return ",".join(str(one) for one in numbers)
 
@@ -255,29 +265,14 @@ def load_scenario(file: PathLike) -> dict[str, Any]:
     return scenario
 
 
-def whole(name: str, value: int, least: int, most: int) -> int:
-    """A whole number within limits, InputError for another."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
-        raise input_error(name, shown(value), f"a whole number from {least} to {most}")
-    return int(value)
-
-
 def job_count(jobs: Optional[int]) -> int:
     """How many threads: as many as there are cores, where nothing is said."""
-    if jobs is None:
-        return os.cpu_count() or 1
-    if isinstance(jobs, bool) or not isinstance(jobs, (int, np.integer)) or not 1 <= jobs <= 1024:
-        raise input_error("jobs", shown(jobs), "a whole number from 1 to 1024")
-    return int(jobs)
+    return os.cpu_count() or 1 if jobs is None else whole("jobs", jobs, 1, 1024)
 
 
 def checked_seed(seed: Optional[int]) -> Optional[int]:
     """A seed as the C++ side takes it."""
-    if seed is None:
-        return None
-    if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or not 0 <= seed < 2**64:
-        raise input_error("seed", shown(seed), "a whole number from 0 to 18446744073709551615")
-    return int(seed)
+    return None if seed is None else whole("seed", seed, 0, 2**64 - 1)
 
 
 class _Bar:

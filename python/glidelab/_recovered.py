@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
+from ._brief import Brief
 from ._results import Quantity, quantity_of
 
 QUANTITIES = dict(_glidelab.quantities())  # keys and their units
@@ -32,8 +33,8 @@ def recovered_of(found: Mapping[str, Any]) -> Recovered:
     return Recovered(found["group"], found["mass_kg"], found["incline_deg"], tuple(found["with"]), **quantities)
 
 
-@dataclass(frozen=True, eq=False)
-class WithEffects:
+@dataclass(frozen=True, eq=False, repr=False)
+class WithEffects(Brief):
     """The quantities with effects in the model that the user named.
 
     Attributes

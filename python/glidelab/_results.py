@@ -12,14 +12,28 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass, fields, is_dataclass
 from typing import Any, Optional
 
+import numpy as np
+
+from ._brief import Brief
 from ._glidelab import Outcome
 from ._inputs import PathLike, Progress, teller
 
 
 NORMAL95 = 1.959964  # the normal distribution's 97.5 % quantile
+
+
+def plain(value: Any) -> Any:
+    """What JSON has for a value and its parts: a dataclass is a dict, an array a list; what is not finite is None."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {key: plain(one) for key, one in value.items()}
+    if isinstance(value, (tuple, list, np.ndarray)):
+        return [plain(one) for one in (value.tolist() if isinstance(value, np.ndarray) else value)]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 class Made:
@@ -34,11 +48,20 @@ class Made:
         return {"json": self.json, "text": self.text, "outcome": None}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Result:
-    """What every result can do."""
+class _Holder:  # pylint: disable=too-few-public-methods
+    """Where a result keeps what it was made of: in no field, so that `dataclasses.asdict` gives its data alone."""
 
     _made: Made
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(_Holder, Brief):
+    """What every result can do."""
+
+    made: InitVar[Made]
+
+    def __post_init__(self, made: Made) -> None:
+        object.__setattr__(self, "_made", made)
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON that the command of this name writes, as a dict (docs/reference/json.md)."""
@@ -52,9 +75,6 @@ class Result:
     def __str__(self) -> str:
         """What the command prints."""
         return self._made.text
-
-    def __repr__(self) -> str:
-        return f"<glidelab.{type(self).__name__}>"
 
     def write(self, folder: PathLike, progress: Progress = None) -> None:
         """Writes what the command would: JSON, tables, and the page with its plots.

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _glidelab
 from ._arrays import Vector, frozen
+from ._brief import Brief
 from ._checks import optional_real
 from ._inputs import Progress, Scenario, Track, given_scenario, teller
 from ._results import Made, Result, frame_of, html_plot, html_table, new_axes
@@ -24,8 +25,8 @@ class ModeChange:
     after: str
 
 
-@dataclass(frozen=True, eq=False)
-class SimulatedClip:
+@dataclass(frozen=True, eq=False, repr=False)
+class SimulatedClip(Brief):
     """The true motion of one clip, at the middle of each exposure.
 
     Attributes
@@ -84,6 +85,15 @@ class Simulation(Result):
     """
 
     clips: tuple[SimulatedClip, ...]
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, one row per frame of each clip, with units in ``attrs["units"]``."""
+        names = ("t_s", "x_m", "v_m_s", "a_m_s2", "mode")
+        columns: dict[str, Any] = {"clip": [clip.name for clip in self.clips for _ in clip.t_s],
+                                   "configuration": [clip.configuration for clip in self.clips for _ in clip.t_s]}
+        for name in names:
+            columns[name] = np.concatenate([getattr(clip, name) for clip in self.clips])
+        return frame_of(columns)
 
     def plot(self) -> list[Any]:
         """x(t), and the phase diagram a over v.

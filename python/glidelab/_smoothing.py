@@ -10,14 +10,14 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, vector
-from ._checks import optional_real, text
+from ._brief import Brief
+from ._checks import optional_real, text, whole
 from ._errors import input_error, input_errors
-from ._inputs import whole
-from ._results import NORMAL95, frame_of, html_plot, html_table, new_axes
+from ._results import NORMAL95, frame_of, html_plot, html_table, new_axes, plain
 
 
-@dataclass(frozen=True, eq=False)
-class Strength:
+@dataclass(frozen=True, eq=False, repr=False)
+class Strength(Brief):
     """How strongly a smoother that finds its own strength smooths.
 
     Attributes
@@ -45,7 +45,7 @@ class Strength:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Smoothed:
+class Smoothed(Brief):
     """Position, velocity and acceleration; all arrays have one length, NaN where too few points lie within reach.
 
     Attributes
@@ -99,9 +99,6 @@ class Smoothed:
         width = max(len(row[0]) for row in rows)
         return "\n".join(f"{name.ljust(width)}  {value}" for name, value in rows) + "\n"
 
-    def __repr__(self) -> str:
-        return "<glidelab.Smoothed>"
-
     def _rows(self) -> list[list[str]]:
         rows = [["points", str(len(self.t_s))], ["bandwidth (s)", f"{self.bandwidth_s:.4g}"]]
         if self.strength is not None:
@@ -117,6 +114,11 @@ class Smoothed:
 
     def _repr_html_(self) -> str:
         return html_table(["", ""], self._rows()) + html_plot(self.plot)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
+        data: dict[str, Any] = plain(self)
+        return data
 
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per time, with units in ``attrs["units"]``."""
@@ -261,7 +263,7 @@ def bandwidth_rules() -> tuple[BandwidthRule, ...]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Bandwidth:
+class Bandwidth(Brief):
     """A bandwidth that a rule chose.
 
     Attributes
@@ -279,14 +281,16 @@ class Bandwidth:
     at_s: Vector
     local_s: Vector
 
+    def to_dict(self) -> dict[str, Any]:
+        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
+        data: dict[str, Any] = plain(self)
+        return data
+
     def __float__(self) -> float:
         return self.bandwidth_s
 
     def __str__(self) -> str:
         return f"{self.bandwidth_s:.4g} s: {self.method}\n"
-
-    def __repr__(self) -> str:
-        return f"<glidelab.Bandwidth {self.bandwidth_s:.4g} s>"
 
 
 def choose_bandwidth(t_s: ArrayLike, x_m: ArrayLike, rule: str = "plug-in", *,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, SupportsFloat
 
 from . import _glidelab
-from ._checks import above_0, optional_real, reals
-from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller, whole
+from ._checks import above_0, optional_real, reals, whole
+from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller
 from ._outside import OutsideRuns, given_command, outside_runs
 from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, new_axes, words_of
 
@@ -160,10 +161,11 @@ class CoverageRow:
     ----------
     configuration, estimator, quantity : str
         Of what, by what.
-    truth, bias, sd, stated_sd : float or None
-        The truth; mean error and standard deviation of the values; the root mean square of what was stated.
-    determined, covered : int
-        Replicates with a value, and intervals that contain the true value.
+    truth, bias, sd, rms_error, stated_sd : float or None
+        The truth; mean error, standard deviation and root mean square of the errors; the root mean square of what was
+        stated.
+    answered, covered : int
+        Replicates with a value (also called `determined`), and intervals that contain the true value.
     coverage : float or None
         Their ratio.
     interval95 : (float, float) or None
@@ -184,6 +186,18 @@ class CoverageRow:
     coverage: Optional[float]
     interval95: Optional[tuple[float, float]]
     p_value: Optional[float]
+
+    @property
+    def answered(self) -> int:
+        """Replicates with a value."""
+        return self.determined
+
+    @property
+    def rms_error(self) -> Optional[float]:
+        """Root mean square of the errors: their mean and their standard deviation together."""
+        if self.bias is None or self.sd is None:
+            return None
+        return math.sqrt(self.bias**2 + self.sd**2 * (self.determined - 1) / self.determined)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -208,7 +222,7 @@ class Coverage(Result):
         """A pandas.DataFrame, one row per quantity."""
         return frame_of({name: [getattr(one, name) for one in self.rows] for name in (
             "configuration", "estimator", "quantity", "truth", "determined", "covered", "bias", "sd", "stated_sd",
-            "coverage", "p_value")}, ("truth", "bias", "sd", "stated_sd"))
+            "coverage", "p_value", "answered", "rms_error")}, ("truth", "bias", "sd", "stated_sd", "rms_error"))
 
     def plot(self) -> Any:
         """How often the 95 % intervals hold, with the interval of that count, a bar a quantity.
@@ -246,7 +260,7 @@ class Coverage(Result):
 
 
 def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates: int = 1000,
-             levels: Sequence[float] = (), bandwidth_s: Optional[float] = None,
+             levels: Sequence[float] = (), bandwidth_s: Optional[SupportsFloat] = None,
              estimator_command: Optional[str] = None, estimator_name: str = "",
              estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
              seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Coverage:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
-from ._checks import file_name, text, texts
+from ._checks import file_name, text, texts, whole
 from ._errors import input_error
-from ._inputs import PathLike, Progress, checked_seed, job_count, teller, whole
+from ._inputs import PathLike, Progress, checked_seed, job_count, teller
 from ._outside import OutsideRuns, given_command, outside_runs
 from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, unit_of, words_of
 
@@ -43,6 +43,9 @@ class Candidate:
     bounds: tuple[Optional[float], ...] = ()
 
 
+_OF_CANDIDATES = ("name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Requirement(Result):
     """Which cameras and settings reach a target.
@@ -66,11 +69,19 @@ class Requirement(Result):
         """The first that reaches the target; None where nothing does."""
         return next((one for one in self.candidates if one.reached), None)
 
-    def to_frame(self) -> Any:
-        """A pandas.DataFrame, one row per candidate, with units in ``attrs["units"]``; ``error`` and ``bound`` are those of
-        the first target, ``error_2`` and ``bound_2`` of the second, ...; ``attrs["targets"]`` names the targets."""
-        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in (
-            "name", "reached", "verdict", "price_eur", "frame_rate_hz", "noise_m")}
+    def to_frame(self, by_target: bool = False) -> Any:
+        """A pandas.DataFrame, one row per candidate, with units in ``attrs["units"]``.
+
+        Parameters
+        ----------
+        by_target : bool
+            False: ``error`` and ``bound`` are those of the first target, ``error_2`` and ``bound_2`` of the second, ...;
+            ``attrs["targets"]`` names the targets. True: one row per candidate and target, with the columns ``target``,
+            ``quantity``, ``error``, ``error_sd`` and ``bound``, in the unit that ``unit`` says.
+        """
+        if by_target:
+            return self._frame_by_target()
+        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one in self.candidates] for name in _OF_CANDIDATES}
         units = {}
         for number, target in enumerate(self.targets):
             of = "" if number == 0 else f"_{number + 1}"
@@ -81,6 +92,17 @@ class Requirement(Result):
         frame.attrs["units"].update(units)
         frame.attrs["targets"] = list(self.targets)
         return frame
+
+    def _frame_by_target(self) -> Any:
+        rows = [(one, number, target) for one in self.candidates for number, target in enumerate(self.targets)]
+        columns: dict[str, list[Any]] = {name: [getattr(one, name) for one, _, _ in rows] for name in _OF_CANDIDATES}
+        columns["target"] = [target for _, _, target in rows]
+        columns["quantity"] = [target.split()[0] for _, _, target in rows]
+        numbers = {"error": "errors", "error_sd": "error_sds", "bound": "bounds"}
+        for name, member in numbers.items():
+            columns[name] = [of[number] if number < len(of) else None
+                             for of, number in ((getattr(one, member), number) for one, number, _ in rows)]
+        return frame_of(columns, tuple(numbers))
 
     def _repr_html_(self) -> str:
         header = ["camera", "price (EUR)", "verdict"]
@@ -201,6 +223,8 @@ class Sweep(Result):
         """A pandas.DataFrame, one row per quantity and estimator, over all runs."""
         rows = self.to_dict()["overall"]
         columns = {name: [row.get(name) for row in rows] for name in (rows[0] if rows else ())}
+        if rows:
+            columns["bias"] = columns["mean_error"]  # as other studies call it
         return frame_of(columns, [name for name in _IN_ITS_UNIT if name in columns])
 
     def plot(self) -> list[Any]:
@@ -241,7 +265,7 @@ class Sweep(Result):
         return "".join(tables) + html_plot(self.plot)
 
 
-_IN_ITS_UNIT = ("mean_error", "mean_error_sd", "rms_error", "stated_sd", "least_sd")
+_IN_ITS_UNIT = ("mean_error", "bias", "mean_error_sd", "rms_error", "stated_sd", "least_sd")
 _HEADER = ("answers", "mean error", "rms error", "stated sd", "least sd", "95 % hold")
 
 

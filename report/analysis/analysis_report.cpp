@@ -9,6 +9,7 @@
 
 #include "base/math/distributions.h"
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "core/result/why_unknown.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/fitted_curve.h"
@@ -194,7 +195,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
                     quantity_text(c.k_over_m_1_s), quantity_text(c.mu), quantity_text(c.alpha_deg),
                     quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
     for (const std::string& words : undetermined_words(c)) {
-      reasons += fmt::format("{}: {}\n", printable(configuration_name(results, c)), printable(words));
+      reasons +=
+          fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)), base::printable_text(words));
     }
   }
   std::string text =
@@ -211,19 +213,20 @@ std::string analysis_text(const core::AnalysisResults& results) {
                       base::value_text(quantity->estimate->value - correction, sd), base::error_text(-correction, sd)});
     }
     for (const core::Note& note : c.notes) {
-      notes += fmt::format("{}: {}\n", printable(configuration_name(results, c)), printable(note_words(note)));
+      notes += fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)),
+                           base::printable_text(note_words(note)));
     }
   }
   for (const core::ClipResult& clip : results.clips) {
     for (const core::Note& note : clip.notes) {
       if (core::is_of_reading(note))
-        notes += fmt::format("{}: {}\n", printable(clip.name), printable(note_words(note)));
+        notes += fmt::format("{}: {}\n", base::printable_text(clip.name), base::printable_text(note_words(note)));
     }
   }
   if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));
   if (!notes.empty()) text.append("\n").append(notes);
   for (const std::string& doubt : doubts)
-    text += fmt::format("{}{}\n", &doubt == &doubts.front() ? "\n" : "", printable(doubt));
+    text += fmt::format("{}{}\n", &doubt == &doubts.front() ? "\n" : "", base::printable_text(doubt));
   return text;
 }
 

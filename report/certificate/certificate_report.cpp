@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "core/result/quantity.h"
 #include "report/certificate/certificate_words.h"
 #include "report/html/gnuplot.h"
@@ -359,8 +360,9 @@ std::string certificate_json(const Certificate& certificate) {
 
 std::string certificate_text(const Certificate& certificate) {
   std::string text = certificate_answer(certificate) + "\n";
-  if (const std::string which = explanation_words(certificate); !which.empty()) text += printable(which) + "\n";
-  if (const std::string lacks = all_lacks(certificate); !lacks.empty()) text += printable(lacks) + "\n";
+  if (const std::string which = explanation_words(certificate); !which.empty())
+    text += base::printable_text(which) + "\n";
+  if (const std::string lacks = all_lacks(certificate); !lacks.empty()) text += base::printable_text(lacks) + "\n";
   text += "\n";
   std::vector<std::vector<std::string>> rows = {kHeader};
   for (const CertifiedQuantity& quantity : certificate.quantities) rows.push_back(cells_of(quantity));
@@ -375,7 +377,7 @@ std::string certificate_text(const Certificate& certificate) {
   text += "\n" + text_table(changes, 1) + "\n" + limits_words(certificate) + "\n";
   const std::vector<std::string> best = best_changes(certificate);
   for (std::size_t i = 0; i < best.size(); ++i) text += fmt::format("{}. {}\n", i + 1, best[i]);
-  return text + "\n" + printable(twin_words(certificate)) + "\n";
+  return text + "\n" + base::printable_text(twin_words(certificate)) + "\n";
 }
 
 namespace {

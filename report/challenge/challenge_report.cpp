@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
@@ -236,8 +237,9 @@ std::string challenge_json(const ChallengeScore& score) {
 std::string challenge_text(const ChallengeScore& score) {
   std::vector<std::vector<std::string>> rows = rows_of(score);
   rows.insert(rows.begin(), kHeader);
-  std::string text = printable(answer_of(score)) + "\n\n" + title_of(score) + "\n\n" + text_table(rows, 3) + "\n";
-  for (const std::string& sentence : sentences_of(score)) text += printable(sentence) + "\n";
+  std::string text =
+      base::printable_text(answer_of(score)) + "\n\n" + title_of(score) + "\n\n" + text_table(rows, 3) + "\n";
+  for (const std::string& sentence : sentences_of(score)) text += base::printable_text(sentence) + "\n";
   text += "\n";
   for (const fit::OutsideTally& entrant : score.entrants) text += outside_text(entrant) + "\n";
   return text + "\n" + kHow + "\n";

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "report/diagnosis/diagnosis_answer.h"
 #include "report/diagnosis/diagnosis_plots.h"
@@ -331,7 +332,7 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
   for (const std::string& table : member_tables(diagnosis)) add(table);
   for (const RecoveredTable& table : recovered_tables(diagnosis)) {
     add(with_words(table.with) + ":\n" + text_table(table.rows, 1));
-    for (const std::string& why : table.why) text += wrapped(printable(why));
+    for (const std::string& why : table.why) text += wrapped(base::printable_text(why));
   }
   return text.empty() ? text : text + "\n";
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "core/result/quantity.h"
 #include "core/result/why_unknown.h"
 #include "report/analysis/doubts.h"
@@ -144,12 +145,12 @@ Html given_causes_section(const core::AnalysisResults& results, const diagnose::
 
 std::string given_causes_text(const core::AnalysisResults& results, const diagnose::GivenCauses& given) {
   std::string text = fmt::format("\nWith {} in the model:\n", list_of(names_of(given)));
-  for (const std::string& line : size_lines(given)) text += fmt::format("  {}\n", printable(line));
+  for (const std::string& line : size_lines(given)) text += fmt::format("  {}\n", base::printable_text(line));
   const BothColumns both = both_columns(results, given);
   text += "\n" + text_table(both.rows, 2) + "\n";
   for (const std::string& sentence : sentences_of(results, given)) text += sentence + "\n";
-  for (const std::string& why : both.why) text += printable(why) + "\n";
-  for (const std::string& note : notes_words(given.notes)) text += printable(note) + "\n";
+  for (const std::string& why : both.why) text += base::printable_text(why) + "\n";
+  for (const std::string& note : notes_words(given.notes)) text += base::printable_text(note) + "\n";
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/html/html.h"
@@ -98,7 +99,7 @@ std::string plan_text(const diagnose::Plan& plan) {
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     const std::string meaning = effect_meaning(effect.id);
     if (effect.seen && !meaning.empty())
-      letters += printable(fmt::format("{}: {}", effect_name(effect.id), meaning)) + "\n";
+      letters += base::printable_text(fmt::format("{}: {}", effect_name(effect.id), meaning)) + "\n";
   }
   if (!letters.empty()) text += "\n" + letters;
   if (!advice(plan).empty()) text += fmt::format("\n{}\n", advice(plan));

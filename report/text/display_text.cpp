@@ -192,10 +192,6 @@ std::string list_of(const std::vector<std::string>& words, const std::string& la
   return text;
 }
 
-std::string printable(const std::string& text) {
-  return base::printable_text(text);
-}
-
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
@@ -208,7 +204,7 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows, std::s
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string padding(widths[i] - width_of(row[i]), ' ');
       if (i > 0) line += "  ";
-      line += i >= first_number ? padding + printable(row[i]) : printable(row[i]) + padding;
+      line += i >= first_number ? padding + base::printable_text(row[i]) : base::printable_text(row[i]) + padding;
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";

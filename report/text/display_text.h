@@ -100,11 +100,8 @@ std::string shrink_text(const diagnose::GapSizes& gap);
 /// "a, b and c", or with another last word: "a, b, or c".
 std::string list_of(const std::vector<std::string>& words, const std::string& last = " and ");
 
-/// base::printable_text(): a clip's name must not steer the terminal.
-std::string printable(const std::string& text);
-
 /// Columns aligned below their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
-/// characters, not bytes. printable() is applied to every cell.
+/// characters, not bytes. base::printable_text() is applied to every cell: a clip's name must not steer the terminal.
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number);
 
 }  // namespace glidelab::report

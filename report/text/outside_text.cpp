@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
@@ -41,7 +42,8 @@ std::string outside_text(const fit::OutsideTally& tally) {
   std::string kinds;
   for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
     kinds += (kinds.empty() ? "" : "; ") + fit::words_of(failure, kind.count);
-    if (failure != fit::OutsideFailure::no_output) kinds += fmt::format(", the first: {}", printable(kind.first));
+    if (failure != fit::OutsideFailure::no_output)
+      kinds += fmt::format(", the first: {}", base::printable_text(kind.first));
   });
   const std::string failed =
       tally.failed() == 0
@@ -51,7 +53,7 @@ std::string outside_text(const fit::OutsideTally& tally) {
                                 ? fmt::format("; {} s a run, {} s at most", base::number_text(tally.seconds, 2),
                                               base::number_text(tally.longest_s, 2))
                                 : std::string();
-  return fmt::format("{}: {}{}", printable(tally.name), failed, times);
+  return fmt::format("{}: {}{}", base::printable_text(tally.name), failed, times);
 }
 
 std::string outside_failed(const fit::OutsideTally& tally) {
@@ -60,7 +62,7 @@ std::string outside_failed(const fit::OutsideTally& tally) {
   for_failures(tally, [&](fit::OutsideFailure failure, const fit::OutsideTally::Kind& kind) {
     kinds += (kinds.empty() ? "" : "; ") + fit::words_of(failure, kind.count);
   });
-  return fmt::format("“{}” failed in {} of {} {}: {}.", printable(tally.name), tally.failed(), tally.runs,
+  return fmt::format("“{}” failed in {} of {} {}: {}.", base::printable_text(tally.name), tally.failed(), tally.runs,
                      tally.runs == 1 ? "run" : "runs", kinds);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "fit/estimators.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/sections.h"
@@ -254,7 +255,7 @@ std::string headline(const validate::Comparison& comparison) {
   return fmt::format(
       "{}\n\nRecovered from the images alone by the {}, ± one standard deviation, with the truth in "
       "brackets:\n\n{}\n{}",
-      printable(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
+      base::printable_text(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
       no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
 }
 
@@ -339,8 +340,8 @@ std::string comparison_text(const validate::Comparison& comparison) {
   std::string reasons;
   for (const validate::QuantityComparison& q : comparison.quantities) {
     if (!q.value && q.truth) {
-      reasons +=
-          fmt::format("{}, {}: no {}: {}\n", q.configuration, q.estimator, symbol_of(q.quantity), printable(q.why));
+      reasons += fmt::format("{}, {}: no {}: {}\n", q.configuration, q.estimator, symbol_of(q.quantity),
+                             base::printable_text(q.why));
     }
   }
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
@@ -353,7 +354,7 @@ std::string comparison_text(const validate::Comparison& comparison) {
   text += text_table(rows, 2);
   text += restitution_text(comparison.restitution);
   text += fmt::format("marker found in {} of {} frames\n", comparison.detected, comparison.frames);
-  for (const std::string& sentence : comparison.out_of_view) text += printable(sentence) + "\n";
+  for (const std::string& sentence : comparison.out_of_view) text += base::printable_text(sentence) + "\n";
   text += fmt::format("time to render and analyse: {:.1f} s\n", comparison.wall_s);
   if (comparison.outside) text += outside_text(*comparison.outside) + "\n";
   return text;

@@ -89,6 +89,13 @@ class WrongInput(InFolder):
                 ("source", "3", lambda: glidelab.check(3)),
                 ("only", "3", lambda: glidelab.blind(1, self.folder, only=3)),
                 ("inner_corners", "9", lambda: glidelab.calibrate([], 9, 0.04)),
+                ("inner_corners", "nan", lambda: glidelab.calibrate([], (math.nan, 6), 0.04)),
+                ("inner_corners", "9.0", lambda: glidelab.calibrate([], (9.0, 6), 0.04)),
+                ("jobs", "2.0", lambda: analyze(t, x, jobs=2.0)),
+                ("seed", "True", lambda: glidelab.coverage(SCENARIO, noise_m=2e-5, seed=True)),
+                ("seed", str(2**64), lambda: glidelab.judge(SCENARIO, noise_m=2e-5, seed=2**64)),
+                ("replicates", "1", lambda: glidelab.judge(SCENARIO, noise_m=2e-5, replicates=1)),
+                ("runs", "[1.0]", lambda: analyze("none.csv", runs=[1.0])),
                 ("images", "3", lambda: glidelab.calibrate(3, (9, 6), 0.04)),
                 ("centre_px", "(nan, 1.0)", lambda: glidelab.fit_marker(np.zeros((9, 9), np.uint8), (math.nan, 1.0), 3)),
                 ("radius_px", "0", lambda: glidelab.fit_marker(np.zeros((9, 9), np.uint8), (4, 4), 0))):

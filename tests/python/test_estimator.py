@@ -102,6 +102,7 @@ class Judging(unittest.TestCase):
         nan = float("nan")
         for answer, told in ((None, "a dict of quantities"), ([0.01], "a dict of quantities"),
                              ({"K": 1.0}, "the quantity 'K'"), ({1: 1.0}, "the quantity 1"),
+                             ({"mu": 0.01, "alpha": 4.0}, 'did you mean "alpha_deg"'),
                              ({"mu": (1.0, 2.0, 3.0)}, "mu: found 3 numbers"), ({"mu": ()}, "mu: found 0 numbers"),
                              ({"mu": "0.01"}, "mu: found '0.01'"), ({"mu": True}, "mu: found True"),
                              ({"mu": 1j}, "mu: found 1j"), ({"mu": np.zeros(3)}, "mu: found array"),
@@ -124,6 +125,18 @@ class Judging(unittest.TestCase):
                 glidelab.judge(SCENARIO, wrong, noise_m=2e-5)
         with self.assertRaises(glidelab.InputError):
             glidelab.estimator(None)
+
+    def test_a_configuration_as_in_results_json_is_an_answer(self):
+        row = {"clips": ["m1-up", "m1-down"], "k_over_m_1_s": {"value": 2.77, "sd": 0.02, "interval95": [2.73, 2.81]},
+               "mu": {"value": 0.0071, "sd": 0.0003}, "alpha_deg": None, "v_lim_m_s": None,
+               "why": {"alpha_deg": "one direction only"}}
+        judged = glidelab.judge(SCENARIO, lambda tracks: row, noise_m=2e-5, replicates=2)
+        self.assertEqual(judged.failures, {})
+        self.assertEqual({(one.quantity, one.answered, one.stated) for one in judged.rows},
+                         {("k_over_m_1_s", 2, 2), ("mu", 2, 2), ("alpha_deg", 0, 0), ("v_lim_m_s", 0, 0)})
+        of_glidelab = glidelab.simulate(SCENARIO).clips[0].track(noise_m=2e-5)
+        document = glidelab.analyze(of_glidelab).to_dict()["configurations"][0]  # what the command writes
+        self.assertEqual(glidelab.judge(SCENARIO, lambda tracks: document, noise_m=2e-5, replicates=2).failures, {})
 
     def test_an_exception_without_a_text_is_told_by_its_kind(self):
         class Mute(Exception):

@@ -82,6 +82,7 @@ class Smoothing(InFolder):
             mixed = glidelab.smooth(t, x, at_s=[0.5, 0.1, 0.3, 0.1], **options)
             self.assertEqual(mixed.x_m.tolist(), rising.x_m[[2, 0, 1, 0]].tolist())
             self.assertEqual(mixed.t_s.tolist(), [0.5, 0.1, 0.3, 0.1])
+            self.assertEqual(len(glidelab.smooth(t, x, at_s=[], **options).a_m_s2), 0)
             with self.assertRaises(glidelab.InputError) as caught:
                 glidelab.smooth(t, x, at_s=[0.1, 9.0], **options)
             self.assertEqual(caught.exception.key, "at_s[1]")

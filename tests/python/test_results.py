@@ -1,5 +1,7 @@
 """Results: numbers against closed forms, tables, plots, pickling."""
 
+import dataclasses
+import json
 import pickle
 import unittest
 
@@ -46,6 +48,23 @@ class AnalysisOfArrays(InFolder):
         self.assertEqual(again.configurations, self.analysis.configurations)
         with self.assertRaises(RuntimeError):
             again.write(self.folder / "page")
+
+    def test_as_a_dict_it_is_its_public_data(self):
+        def names(value):
+            """All keys, of whatever depth."""
+            if isinstance(value, dict):
+                return set(value).union(*(names(one) for one in value.values()))
+            return set().union(*(names(one) for one in value)) if isinstance(value, (list, tuple)) else set()
+
+        scenario = SOURCE / "scenarios" / "paper" / "inclined.toml"
+        for result in (glidelab.plan(scenario, noise_m=2e-5), glidelab.coverage(scenario, noise_m=2e-5, replicates=2),
+                       glidelab.judge(scenario, noise_m=2e-5, replicates=2), self.analysis, glidelab.simulate(scenario),
+                       *glidelab.render(SOURCE / "scenarios" / "tutorial.toml").values()):
+            with self.subTest(type(result).__name__):
+                plain = dataclasses.asdict(result)
+                self.assertTrue(all(isinstance(key, str) and not key.startswith("_") for key in names(plain)))
+                text = json.dumps(plain, default=lambda array: array.tolist())  # numpy's arrays are all that JSON lacks
+                self.assertGreater(len(text), 30)
 
     def test_the_page_is_written(self):
         self.analysis.write(self.folder / "page")
@@ -149,6 +168,16 @@ class CtrlC(unittest.TestCase):
 
         with self.assertRaises(LookupError):
             glidelab.analyze(t, x, progress=stop)
+
+    def test_the_last_report_is_that_all_is_done(self):
+        t, x = damped()
+        scenario = SOURCE / "scenarios" / "paper" / "inclined.toml"
+        for work in (lambda told: glidelab.diagnose(t, x, progress=told), lambda told: glidelab.analyze(t, x, progress=told),
+                     lambda told: glidelab.coverage(scenario, noise_m=2e-5, replicates=2, progress=told),
+                     lambda told: glidelab.judge(scenario, noise_m=2e-5, replicates=2, progress=told)):
+            told = []
+            work(lambda stage, fraction, to=told: to.append((stage, fraction)))
+            self.assertEqual(told[-1][1], 1.0, told[-1])
 
     def test_the_interpreter_runs_on_meanwhile(self):
         import threading

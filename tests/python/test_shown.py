@@ -1,5 +1,6 @@
 """What a notebook shows of a result: tables with its numbers, and plots where matplotlib is; and how columns are labelled."""
 
+import json
 import re
 import unittest
 from unittest import mock
@@ -47,10 +48,46 @@ class Shown(InFolder):
         judged = glidelab.judge(SCENARIO, noise_m=2e-5, replicates=2)
         bandwidth = glidelab.choose_bandwidth(*damped(duration_s=0.5))
         for result in (self.coverage, self.smooth, self.local, judged, bandwidth):
-            self.assertRegex(repr(result), r"^<glidelab\.\w+[^\n]*>$")
+            self.assertRegex(repr(result), r"^<glidelab\.\w+: [^\n]*>$")
             self.assertEqual(glidelab.explain(result), str(result))
         self.assertIn("smoothing time (s)", glidelab.explain(self.smooth))
         self.assertIn(f"{float(bandwidth):.4g} s", glidelab.explain(bandwidth))
+
+    def test_so_does_whatever_has_arrays_or_parts(self):
+        t, x = damped()
+        analysis = glidelab.analyze(t, x, mass_kg=0.3, name="mine")
+        clip, = analysis.clips
+        simulated = glidelab.simulate(SCENARIO).clips[0]
+        for result in (analysis, clip, clip.motion, analysis.configuration, simulated, glidelab.Track(t, x, name="up"),
+                       self.smooth.strength, next(iter(glidelab.render(SCENARIO).values())),
+                       glidelab.diagnose(t, x).residuals[0]):
+            self.assertRegex(repr(result), r"^<glidelab\.%s: [^\n]{,300}>$" % type(result).__name__)
+        self.assertEqual(repr(glidelab.Track(t, x, mass_kg=0.3, name="up")),
+                         f"<glidelab.Track: {len(t)} values, mass_kg=0.3, incline_deg=0, name='up', mass_sd_kg=0, "
+                         "launched='unknown'>")
+        self.assertIn(f"mu={analysis.configuration.mu}", repr(analysis.configuration))
+        self.assertIn("len(clips)=1, len(configurations)=1", repr(analysis))
+
+    def test_what_is_of_no_command_is_json_as_well(self):
+        judged = glidelab.judge(SCENARIO, noise_m=2e-5, replicates=2)
+        order_1 = glidelab.smooth(*damped(), 0.03, order=1)  # a is NaN
+        bandwidth = glidelab.choose_bandwidth(*damped(duration_s=0.5))
+        for result in (judged, self.smooth, order_1, bandwidth):
+            text = json.dumps(result.to_dict(), allow_nan=False)
+            self.assertEqual(json.loads(text), result.to_dict())
+        self.assertEqual(judged.to_dict()["rows"][0]["bias"], judged.rows[0].bias)
+        self.assertEqual(self.smooth.to_dict()["a_m_s2"], self.smooth.a_m_s2.tolist())
+        self.assertEqual(set(order_1.to_dict()["a_m_s2"]), {None})
+
+    @needs("pandas")
+    def test_true_motions_are_a_table(self):
+        simulation = glidelab.simulate(SCENARIO)
+        table = simulation.to_frame()
+        self.assertEqual(len(table), sum(len(clip.t_s) for clip in simulation.clips))
+        last = table[table["clip"] == simulation.clips[-1].name]
+        self.assertEqual(last["a_m_s2"].tolist(), simulation.clips[-1].a_m_s2.tolist())
+        self.assertEqual(last["mode"].tolist(), simulation.clips[-1].mode.tolist())
+        self.assertEqual(table.attrs["units"]["v_m_s"], "m/s")
 
     @needs("pandas")
     def test_every_target_and_every_size_has_its_column_and_unit(self):
@@ -62,6 +99,11 @@ class Shown(InFolder):
         self.assertEqual(frame["error_2"].tolist(), [one.errors[1] for one in answer.candidates])
         self.assertEqual((frame.attrs["units"]["error"], frame.attrs["units"]["bound_2"]), ("", "°"))
         self.assertEqual(frame.attrs["targets"], list(answer.targets))
+        rows = answer.to_frame(by_target=True)
+        self.assertEqual(rows["target"].tolist(), 2 * list(answer.targets))
+        self.assertEqual(rows["error"].tolist(), [error for one in answer.candidates for error in one.errors])
+        self.assertEqual(rows["bound"].tolist(), [bound for one in answer.candidates for bound in one.bounds])
+        self.assertEqual((rows.attrs["units"]["error"], rows["unit"].tolist()), (BY_ROW, ["", "°", "", "°"]))
         plan = glidelab.plan(SCENARIO, noise_m=2e-5).to_frame().set_index("id")
         self.assertEqual(plan.attrs["units"]["seen_from"], BY_ROW)
         self.assertEqual((plan["unit"]["quadratic_drag"], plan["unit"]["load_independent_friction"]), ("kg/m", "N"))
@@ -175,6 +217,37 @@ class Shown(InFolder):
         from IPython.lib.pretty import pretty
         said = glidelab.explain(self.coverage)
         self.assertEqual(pretty(said), str(self.coverage))
+
+
+class OneVocabulary(InFolder):
+    @needs("pandas")
+    def test_every_study_s_table_has_the_common_columns_beside_its_own(self):
+        made = glidelab._results.Made.__new__(glidelab._results.Made)
+        certified = glidelab.CertifiedQuantity("mu", 40, 3, 0.9, (0.8, 1.0), 0.1, 2e-4, 1e-4, False)
+        certificate = glidelab.Certificate(made, "", True, 40, "trajectory", "tracks", (certified,), (), (), ())
+        for study, names in (
+                (glidelab.judge(SCENARIO, noise_m=2e-5, replicates=2), {"rms": "rms_error", "covered": "coverage"}),
+                (glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2), {"determined": "answered"}),
+                (made_sweep(self.folder), {"mean_error": "bias"}), (certificate, {"rms": "rms_error"})):
+            with self.subTest(type(study).__name__):
+                table = study.to_frame()
+                for name in {"answered", "rms_error", "coverage", "bias"} - ({"bias"} if study is certificate else set()):
+                    self.assertIn(name, table)
+                self.assertEqual(table.attrs["units"]["rms_error"], BY_ROW)
+                for own, common in names.items():
+                    self.assertTrue((table[own].fillna(-1.0) == table[common].fillna(-1.0)).all())
+                    self.assertEqual(table.attrs["units"][own], table.attrs["units"][common])
+        self.assertEqual((certified.answered, certified.rms_error), (37, 2e-4))
+
+    def test_the_rms_error_of_a_coverage_is_that_of_its_errors(self):
+        # Errors 1, 2 and 6: mean 3, variance (4 + 1 + 9) / 2 = 7, mean square (1 + 4 + 36) / 3.
+        row = glidelab.CoverageRow("m1", "e", "mu", 0.0, 3, 3, 3.0, 7.0**0.5, 1.0, 1.0, (0.3, 1.0), 1.0)
+        self.assertAlmostEqual(row.rms_error, (41.0 / 3.0) ** 0.5, places=12)
+        self.assertEqual(row.answered, 3)
+        judged = glidelab.judge(SCENARIO, noise_m=2e-5, replicates=4).rows[0]
+        mean_square = judged.bias**2 + judged.sd**2 * 3 / 4
+        self.assertAlmostEqual(judged.rms_error**2 / mean_square, 1.0, places=9)
+        self.assertEqual(judged.coverage, judged.covered)
 
 
 class Units(unittest.TestCase):

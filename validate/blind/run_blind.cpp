@@ -127,9 +127,11 @@ struct Made {
   std::optional<EverydayTruth> everyday = {};
 };
 
-Made make_case(const BlindOptions& options, const fs::path& out, std::size_t index, const FilmRenderer& render) {
+/// `look` as in BlindDraw.
+Made make_case(const BlindOptions& options, const fs::path& out, std::size_t index, const FilmRenderer& render,
+               const std::function<void()>& look) {
   if (options.everyday) {
-    const auto one = std::make_shared<EverydayCase>(make_everyday_case(options.seed, index, {options.only}));
+    const auto one = std::make_shared<EverydayCase>(make_everyday_case(options.seed, index, {options.only, look}));
     return {one->kind,
             one->causes,
             one->design.clips.size(),
@@ -139,7 +141,7 @@ Made make_case(const BlindOptions& options, const fs::path& out, std::size_t ind
             one->truth};
   }
   if (!options.images) {
-    const auto one = std::make_shared<BlindCase>(make_blind_case(options.seed, index, {options.only}));
+    const auto one = std::make_shared<BlindCase>(make_blind_case(options.seed, index, {options.only, look}));
     return {one->kind,
             one->causes,
             one->design.clips.size(),
@@ -148,7 +150,7 @@ Made make_case(const BlindOptions& options, const fs::path& out, std::size_t ind
             [one](const fs::path& folder) { write_blind_folder(*one, folder); },
             {}};
   }
-  const auto one = std::make_shared<FilmedCase>(make_filmed_case(options.seed, index, {options.only}));
+  const auto one = std::make_shared<FilmedCase>(make_filmed_case(options.seed, index, {options.only, look}));
   const fs::path scratch = out / fmt::format("making-{:04d}", index);
   return {one->kind,
           one->causes,
@@ -161,8 +163,8 @@ Made make_case(const BlindOptions& options, const fs::path& out, std::size_t ind
 
 /// One whole case; its files are complete once the truth exists.
 BlindOutcome run_case(const BlindOptions& options, const fs::path& out, std::size_t index, const Diagnoser& diagnose,
-                      const FilmRenderer& render) {
-  const Made one = make_case(options, out, index, render);
+                      const FilmRenderer& render, const std::function<void()>& look) {
+  const Made one = make_case(options, out, index, render, look);
   const std::string name = fmt::format("{:04d}", index);
   const fs::path folder = out / "cases" / name, diagnosis = out / "diagnoses" / name;
   const fs::path truth = out / "truth" / (name + ".json");
@@ -212,8 +214,11 @@ std::vector<BlindOutcome> run_blind(const BlindOptions& options, const fs::path&
   std::vector<BlindOutcome> outcomes(options.cases);
   std::atomic<std::size_t> done{0};
   base::for_each_parallel(options.cases, options.jobs, [&](std::size_t i) {
-    progress("diagnosing blind cases", static_cast<double>(done) / static_cast<double>(options.cases));
-    outcomes[i] = run_case(options, out, i, diagnose, render);
+    const auto look = [&] {
+      progress("diagnosing blind cases", static_cast<double>(done) / static_cast<double>(options.cases));
+    };
+    look();
+    outcomes[i] = run_case(options, out, i, diagnose, render, look);
     ++done;
   });
   return outcomes;

@@ -274,7 +274,10 @@ std::optional<core::CameraModel> true_camera(const render::Camera& camera) {
 }
 
 MadeTracks FilmStudio::film(const render::Scenario& with_plumb, std::uint64_t seed, int jobs,
-                            const std::optional<core::CameraModel>& lens) {
+                            const std::optional<core::CameraModel>& lens,
+                            const std::shared_ptr<const render::Stage>& stage) {
+  const std::lock_guard lock(filming_);
+  const std::shared_ptr<const render::Stage>& set = stage ? stage : stage_;
   const render::Scenario scenario = without_plumb(with_plumb);
   core::SeenPattern pattern = pattern_;
   if (lens) {
@@ -282,11 +285,11 @@ MadeTracks FilmStudio::film(const render::Scenario& with_plumb, std::uint64_t se
     pattern.calibration.covariance.setZero();
   }
   const bool lossy = render::lossy(scenario.codec);
-  core::Experiment experiment = rendered(scenario, folder_.path(), seed, jobs, lossy, stage_, progress_);
+  core::Experiment experiment = rendered(scenario, folder_.path(), seed, jobs, lossy, set, progress_);
   if (length_ == LengthFrom::scale) state_scale(scenario, experiment);
   const core::FrameOpener open =
       lossy ? core::FrameOpener(core::open_frames)
-            : rendered_opener(std::make_shared<const render::ClipSet>(scenario, stage_), seed, canvases_);
+            : rendered_opener(std::make_shared<const render::ClipSet>(scenario, set), seed, canvases_);
   MadeTracks made = make_tracks(scenario, seed);
   made.setups = experiment.clips;
   made.tracks =

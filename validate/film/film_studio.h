@@ -69,7 +69,7 @@ enum class LengthFrom {
 /// A camera with its calibration, for any number of recordings: of scenarios whose stills are those of the first
 /// one (the same camera, light, pattern, track and groups; motions, clock, shutter and codec may differ). Stills stay
 /// in memory; experiment.toml and everything that needs a file lie in a separate folder below the system's temporary
-/// folder, which is removed with the object. One thread at a time.
+/// folder, which is removed with the object. Threads that film at the same time wait for each other.
 class FilmStudio {
  public:
   /// Draws the stills with the noise of this seed, and calibrates. The stage of another studio for the same scene may
@@ -83,9 +83,10 @@ class FilmStudio {
   /// are written and read back. The truth's positions are relative to the track's reference point, the tracks' to the
   /// pattern. With `lens`, that camera replaces the calibrated one, as if it were known without error; the position of
   /// the plane is still found from the drawn pattern. With a scale the tracks' positions count from the image's corner,
-  /// and `lens` is not used.
+  /// and `lens` is not used. A scenario that differs from that of the stills in its marker has a `stage` of its own.
   MadeTracks film(const render::Scenario& scenario, std::uint64_t seed, int jobs,
-                  const std::optional<core::CameraModel>& lens = std::nullopt);
+                  const std::optional<core::CameraModel>& lens = std::nullopt,
+                  const std::shared_ptr<const render::Stage>& stage = nullptr);
 
   const std::shared_ptr<const render::Stage>& stage() const { return stage_; }
 
@@ -96,6 +97,7 @@ class FilmStudio {
   std::shared_ptr<CanvasPool> canvases_ = std::make_shared<CanvasPool>();
   LengthFrom length_;
   core::SeenPattern pattern_;
+  std::mutex filming_;
 };
 
 /// The scenario's camera in the analysis' form; empty for a rational lens, which that form does not include.

@@ -9,7 +9,10 @@ using namespace glidelab;
 TEST_CASE("text that is not UTF-8 gets a replacement for each wrong byte, and valid text stays") {
   for (const char* valid : {"", "plain", "ung\u00FCltig", "\u20AC \U0001F600", "\u0800\uD7FF\uE000\uFFFF"}) {
     CHECK(base::valid_utf8(valid) == valid);
+    CHECK(base::is_utf8(valid));
   }
+  for (const char* wrong : {"ung\xFCltig", "a\x80z", "\xE2\x82", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80"})
+    CHECK_FALSE(base::is_utf8(wrong));
   CHECK(base::valid_utf8("ung\xFCltig") == "ung\uFFFDltig");                  // Latin-1
   CHECK(base::valid_utf8("a\x80z") == "a\uFFFDz");                            // a continuation without a beginning
   CHECK(base::valid_utf8("\xE2\x82") == "\uFFFD\uFFFD");                      // cut off

@@ -10,6 +10,7 @@ TEST_CASE("text of spreadsheets becomes UTF-8, whatever its encoding") {
   CHECK(as_utf8("\xEF\xBB\xBFt,x\n") == "t,x\n");
   CHECK(as_utf8("Posici\xC3\xB3n\n") == "Posici\xC3\xB3n\n");
   CHECK(as_utf8("Posici\xF3n (\xB5m)\n") == "Posici\xC3\xB3n (\xC2\xB5m)\n");  // Latin-1
+  CHECK(as_utf8("\xC0\xAF") == "\xC3\x80\xC2\xAF");                            // an overlong form is no UTF-8
   CHECK(as_utf8("\xFF\xFEt\0\t\0x\0\n\0"s) == "t\tx\n");                       // UTF-16, low byte first
   CHECK(as_utf8("\xFE\xFF\0t\0\t\0\xE9\x20\x12\0\n"s) == "t\t\xC3\xA9\xE2\x80\x92\n");
   CHECK(as_utf8("\xFF\xFE\x3D\xD8\0\xDE"s) == "??");  // a pair of surrogates

@@ -10,6 +10,7 @@
 #include "tests/temp_dir.h"
 #include "validate/blind/case/blind_effects.h"
 #include "validate/blind/case/blind_strength.h"
+#include "validate/blind/case/everyday_case.h"
 #include "validate/blind/case/everyday_causes.h"
 #include "validate/blind/run_blind.h"
 
@@ -127,6 +128,27 @@ TEST_CASE("inertia that one glider's drag and friction take up has no strength, 
   CHECK_FALSE(validate::size_for(detection, wheels, 30.0).has_value());
 }
 
+TEST_CASE("who waits for a blind case is asked often, and may stop it at any time") {
+  // Each derivative asks: of the drag, the friction, and a start's two numbers at least, in each of two steps or more.
+  constexpr std::size_t kLeast = 8;
+  const auto made = [](bool everyday, const std::function<void()>& look) {
+    if (everyday) return validate::make_everyday_case(1, 0, {"", look}).x_m;
+    return validate::make_blind_case(5, 3, {"track_bow", look}).x_m;
+  };
+  for (const bool everyday : {false, true}) {
+    std::size_t looks = 0;
+    const auto whole = made(everyday, [&] { ++looks; });
+    CHECK(looks > kLeast);
+    CHECK(whole == made(everyday, {}));
+    std::size_t left = looks / 2;
+    CHECK_THROWS_AS(made(everyday,
+                         [&] {
+                           if (left-- == 0) throw base::Interrupted();
+                         }),
+                    base::Interrupted);
+  }
+}
+
 TEST_CASE("a blind case is the same for the same seed and index, and its folder holds no word of its truth") {
   const auto one = validate::make_blind_case(5, 3, {"track_bow"}),
              again = validate::make_blind_case(5, 3, {"track_bow"});
@@ -143,7 +165,10 @@ TEST_CASE("a blind case is the same for the same seed and index, and its folder 
     CHECK(base::read_file(entry.path()).find("bow") == std::string::npos);
   }
   CHECK(files == 1 + one.design.clips.size());
-  CHECK(core::read_experiment(temp / "case").clips.size() == one.design.clips.size());
+  const core::Experiment read = core::read_experiment(temp / "case");
+  CHECK(read.clips.size() == one.design.clips.size());
+  CHECK(read.gravity_m_s2 == one.design.gravity_m_s2);
+  CHECK(read.gravity_sd_m_s2 == 0.0);  // what the motions were computed with
 }
 
 TEST_CASE("every effect of the diagnosis' list is among the blind ones, and nothing outside is") {

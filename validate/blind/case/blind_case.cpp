@@ -31,7 +31,7 @@ BlindCause cause_of(const BlindEffect& effect, double size, double gain) {
 /// Draws effects for a design; false if they cannot be seen in it.
 bool draw_causes(BlindCase& one, const BlindDraw& draw, BlindRandom& random, std::vector<BlindEffect>& effects) {
   if (one.kind == BlindKind::none) return true;
-  const BlindDetection detection(one.design);
+  const BlindDetection detection(one.design, draw.look);
   const std::size_t many = one.kind == BlindKind::pair ? 2 : 1;
   const auto& ids = one.kind == BlindKind::outside ? outside_effects() : library_effects();
   for (std::size_t e = 0; e < many; ++e) {
@@ -123,8 +123,10 @@ BlindCase make_blind_case(std::uint64_t seed, std::size_t index, const BlindDraw
 
 void write_blind_folder(const BlindCase& one, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder / "tracks");
-  std::string toml = fmt::format("format = 1\nname = \"case {}\"\ngravity_m_s2 = {}\n\n[track]\ndownhill = \"+X\"\n",
-                                 one.index, one.design.gravity_m_s2);
+  // The motions have exactly this gravity, which alone would be that of no particular place.
+  std::string toml = fmt::format(
+      "format = 1\nname = \"case {}\"\ngravity_m_s2 = {}\ngravity_sd_m_s2 = 0.0\n\n[track]\ndownhill = \"+X\"\n",
+      one.index, one.design.gravity_m_s2);
   for (std::size_t c = 0; c < one.design.clips.size(); ++c) {
     const BlindClip& clip = one.design.clips[c];
     const BlindGroup& group = one.design.groups[clip.group];

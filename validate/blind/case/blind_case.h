@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -48,7 +49,8 @@ struct BlindCase : DrawnCase {
 };
 
 struct BlindDraw {
-  std::string only;  ///< an effect that every case has; empty: all kinds
+  std::string only;                 ///< an effect that every case has; empty: all kinds
+  std::function<void()> look = {};  ///< called often, since a case may take seconds; may throw to stop
 };
 
 /// NumericalError if none of many designs shows the requested effect.

@@ -171,6 +171,7 @@ FilmedCase make_filmed_case(std::uint64_t seed, std::size_t index, const BlindDr
     one.kind = lot < kFilmedNone ? BlindKind::none : lot < kFilmedSingle ? BlindKind::single : BlindKind::outside;
   }
   for (int attempt = 0; attempt < kMostScenes; ++attempt) {
+    if (draw.look) draw.look();
     const auto& ids = one.kind == BlindKind::outside ? filmed_outside_effects() : filmed_effects();
     const std::string id = one.kind == BlindKind::none ? "" : draw.only.empty() ? one_of(ids, random) : draw.only;
     const double wanted = log_uniform(random, kFilmedLeastGain, kFilmedMostGain);

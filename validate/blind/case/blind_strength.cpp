@@ -109,8 +109,8 @@ struct SettledFit {
 class LawFit {
  public:
   /// The nominal law with the effects of `puts` in it.
-  explicit LawFit(const BlindDesign& design, const std::vector<BlindPut>& puts = {})
-      : design_(design), puts_(puts), list_(nuisances(design, puts)), without_(seen_with(design, puts)) {}
+  LawFit(const BlindDesign& design, const std::vector<BlindPut>& puts, const std::function<void()>& look)
+      : design_(design), puts_(puts), look_(look), list_(nuisances(design, puts)), without_(seen_with(design, puts)) {}
 
   /// Half of the remaining chi²; a size of `more` is fitted as well. 0 if the fit does not settle.
   double misfit(const Seen& seen, const std::optional<Eigen::VectorXd>& more = {}) const {
@@ -222,6 +222,7 @@ class LawFit {
   }
 
   Eigen::VectorXd derivative(const FittedLaw& at, const Nuisance& one, const Seen& now, std::size_t* work) const {
+    if (look_) look_();
     FittedLaw changed = at;
     one.change(changed, one.step);
     Seen seen = now;
@@ -233,6 +234,7 @@ class LawFit {
 
   const BlindDesign& design_;
   std::vector<BlindPut> puts_;
+  const std::function<void()>& look_;
   std::vector<Nuisance> list_;
   Seen without_;
   mutable Eigen::MatrixXd at_start_;  // derivatives there, once they are requested
@@ -291,11 +293,12 @@ double held_out_chi2(const BlindDesign& design, const LawFit& law, const Settled
 }  // namespace
 
 struct BlindDetection::Fit {
-  explicit Fit(const BlindDesign& design) : nominal(design) {}
+  Fit(const BlindDesign& design, const std::function<void()>& look) : nominal(design, {}, look) {}
   LawFit nominal;
 };
 
-BlindDetection::BlindDetection(const BlindDesign& design) : design_(design), fit_(std::make_unique<Fit>(design)) {
+BlindDetection::BlindDetection(const BlindDesign& design, std::function<void()> look)
+    : design_(design), look_(std::move(look)), fit_(std::make_unique<Fit>(design, look_)) {
   for (const BlindClip& clip : design.clips) {
     const BlindFilm film = nominal_film(design, clip);
     speed_m_s_.emplace_back();
@@ -322,7 +325,7 @@ std::optional<double> BlindDetection::excess(const std::vector<BlindPut>& acting
   const Seen seen = seen_with(design_, acting);
   const std::size_t points = finite_positions(seen);
   if (points == 0) return std::nullopt;
-  const LawFit with(design_, known);
+  const LawFit with(design_, known, look_);
   const LawFit& law = known.empty() ? fit_->nominal : with;
   const std::optional<SettledFit> settled = law.fit(seen);
   if (!settled) return std::nullopt;

@@ -18,6 +18,7 @@
 /// counted.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -31,10 +32,10 @@ struct BlindPut {
   double size = 0.0;
 };
 
-/// The design outlives it.
+/// The design outlives it. Some fits take seconds: `look` is called several times in each, and may throw to stop.
 class BlindDetection {
  public:
-  explicit BlindDetection(const BlindDesign& design);
+  explicit BlindDetection(const BlindDesign& design, std::function<void()> look = {});
   ~BlindDetection();
   double gain(const BlindEffect& effect, double size) const;
   /// The gain with another effect that acts and is already in the model, to first order in its size.
@@ -51,6 +52,7 @@ class BlindDetection {
  private:
   struct Fit;
   const BlindDesign& design_;
+  std::function<void()> look_;
   std::unique_ptr<Fit> fit_;
   std::vector<std::vector<double>> speed_m_s_;
 };

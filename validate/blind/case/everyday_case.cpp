@@ -327,7 +327,7 @@ EverydayCase make_everyday_case(std::uint64_t seed, std::size_t index, const Eve
     if (are_equal(ids, one.design)) continue;
     Drawn drawn;
     for (const std::string& id : ids) drawn.effects.push_back(draw_everyday_effect(id, one.design, random));
-    const BlindDetection detection(one.design);
+    const BlindDetection detection(one.design, draw.look);
     if (!draw_sizes(detection, wanted, random, one, drawn)) continue;
     if (!measure(detection, wanted, drawn, one.truth)) continue;
     one.x_m = filmed(one.design, drawn.everything());

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,7 +60,8 @@ struct EverydayCase : BlindCase {
 };
 
 struct EverydayDraw {
-  std::string only;  ///< an effect that every case has; empty: all classes
+  std::string only;                 ///< an effect that every case has; empty: all classes
+  std::function<void()> look = {};  ///< as in BlindDraw
 };
 
 /// The class of a case, without making it.

@@ -3,7 +3,8 @@
 ///
 /// For n twins, the stated 95 % intervals that contain the truth are counted (run_shares.h). The twin is then changed
 /// in one respect at a time and recorded again with the same seeds: the reduction of the rms error shows what limits
-/// the recording. Source: Talts et al. 2018, and Sailynoja et al. 2025, who calibrate at the posterior.
+/// the recording. Filming takes long: of each change five twins are filmed first, and five more where these leave open
+/// whether it helps. Source: Talts et al. 2018, and Sailynoja et al. 2025, who calibrate at the posterior.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +26,9 @@ inline constexpr std::size_t kFewestTwins = 20, kMostTwins = 200;
 
 /// What is about to be filmed.
 struct FilmingSize {
-  std::size_t twins = 0;        ///< of the recording
-  std::size_t of_changes = 0;   ///< further twins, each with a change
-  double processor_time_s = 0;  ///< for all of them, from the first, which is filmed for this purpose
+  std::size_t twins = 0;                                  ///< of the recording
+  std::size_t least_of_changes = 0, most_of_changes = 0;  ///< further twins, each with a change
+  double processor_time_s = 0;  ///< for all of them at most, from the first, which is filmed for this purpose
 };
 
 struct CertifyOptions {

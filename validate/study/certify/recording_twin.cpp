@@ -386,7 +386,8 @@ void add_remainder(const TwinExplanation& explanation, const render::Scenario& s
 
 }  // namespace
 
-/// A seed's calibration, and the stage of a change.
+/// A seed's calibration, and the stage of a change. Stills show the recorded marker: what it is in the clips does not
+/// matter to the calibration.
 class TwinFilm {
  public:
   TwinFilm(TwinStudios& studios, const TwinChange& change, std::size_t explanation, std::uint64_t seed,
@@ -396,26 +397,40 @@ class TwinFilm {
   MadeTracks film(const render::Scenario& scenario, const std::optional<core::CameraModel>& lens,
                   const base::Progress& progress) {
     const std::shared_ptr<FilmStudio> studio = studio_of(scenario, progress);
-    MadeTracks made = studio->film(scenario, seed_, 1, lens);
+    const bool own_marker = change_.marker != 1.0;
+    MadeTracks made = studio->film(scenario, seed_, 1, lens, own_marker ? stage_of(scenario, progress) : nullptr);
     const std::lock_guard lock(studios_.mutex_);
-    if (studio->stage()) studios_.stages_.try_emplace(scene(), studio->stage());
+    if (studio->stage()) studios_.stages_.try_emplace(scene(1.0), studio->stage());
     if (as_recorded() && studios_.of_seed_.size() < studios_.most_) studios_.of_seed_.try_emplace(seed_, studio);
     return made;
   }
 
  private:
-  std::tuple<std::size_t, double, double> scene() const { return {explanation_, change_.noise, change_.marker}; }
-  bool as_recorded() const { return change_.noise == 1.0 && change_.marker == 1.0; }
+  using Scene = std::tuple<std::size_t, double, double>;
+  Scene scene(double marker) const { return {explanation_, change_.noise, marker}; }
+  bool as_recorded() const { return change_.noise == 1.0; }
+
+  std::shared_ptr<const render::Stage> kept_stage(const Scene& scene) const {
+    const std::lock_guard lock(studios_.mutex_);
+    const auto drawn = studios_.stages_.find(scene);
+    return drawn == studios_.stages_.end() ? nullptr : drawn->second;
+  }
+
+  std::shared_ptr<const render::Stage> stage_of(const render::Scenario& scenario, const base::Progress& progress) {
+    if (auto kept = kept_stage(scene(change_.marker))) return kept;
+    auto stage = render::set_stage(scenario, 1, [&] { progress("stage", 0.0); });
+    const std::lock_guard lock(studios_.mutex_);
+    return studios_.stages_.try_emplace(scene(change_.marker), std::move(stage)).first->second;
+  }
 
   std::shared_ptr<FilmStudio> studio_of(const render::Scenario& scenario, const base::Progress& progress) {
-    std::shared_ptr<const render::Stage> stage;
-    {
+    if (as_recorded()) {
       const std::lock_guard lock(studios_.mutex_);
-      const auto kept = studios_.of_seed_.find(seed_);
-      if (as_recorded() && kept != studios_.of_seed_.end()) return kept->second;
-      if (const auto drawn = studios_.stages_.find(scene()); drawn != studios_.stages_.end()) stage = drawn->second;
+      if (const auto kept = studios_.of_seed_.find(seed_); kept != studios_.of_seed_.end()) return kept->second;
     }
-    return std::make_shared<FilmStudio>(scenario, seed_, 1, stage, progress, length_);
+    render::Scenario stills = scenario;
+    stills.marker.diameter_m /= change_.marker;
+    return std::make_shared<FilmStudio>(stills, seed_, 1, kept_stage(scene(1.0)), progress, length_);
   }
 
   TwinStudios& studios_;

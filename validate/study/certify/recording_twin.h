@@ -105,7 +105,7 @@ std::size_t explanation_of(const RecordingTwin& twin, std::uint64_t seed);
 Truth truth_of(const RecordingTwin& twin, std::size_t explanation, bool nominal = false);
 
 /// The static scene of filmed twins is drawn once, and the calibrations of the first seeds are kept for changes that
-/// leave camera, light and pattern unchanged. Shared by threads that record different seeds.
+/// leave camera, light and pattern unchanged. Shared by threads.
 class TwinStudios {
  public:
   /// Keeps the calibrations of the first `most` seeds.

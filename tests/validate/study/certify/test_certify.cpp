@@ -178,6 +178,29 @@ TEST_CASE("half the noise halves the errors of a track, and the certificate says
                        [](const auto& a, const auto& b) { return a.together->value > b.together->value; }));
 }
 
+TEST_CASE("changes of a filmed recording are filmed five times, and ten times only where that leaves them open") {
+  RecordingTwin twin;
+  twin.scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/diagnosis/filmed.toml");
+  twin.scenario.motion.configurations.resize(1);
+  twin.scenario.pattern.views = 4;
+  twin.filmed = true;
+  const Certificate certificate = certify_twin(twin, {.runs = 20, .jobs = 2});
+  CHECK(certificate.runs == 20);
+  REQUIRE(certificate.changes.size() == 4);  // noise, marker, calibration, every clip twice
+  std::size_t decided = 0;
+  for (const ChangedTwin& change : certificate.changes) {
+    INFO(static_cast<int>(change.limit) << ": " << change.runs);
+    REQUIRE(change.together);
+    if (change.runs == 5) {
+      ++decided;
+      CHECK((change.stands_out || change.together->high < 0.1));
+    } else {
+      CHECK(change.runs == 10);
+    }
+  }
+  CHECK(decided > 0);
+}
+
 TEST_CASE("intervals of lines that leave out a drag are said not to hold") {
   const render::Scenario scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/tutorial.toml");
   const tests::TempDir temp;

@@ -196,6 +196,7 @@ TEST_CASE("a filmed twin is the same with a calibration and a stage that were ke
   twin.scenario.motion.configurations.front().motions.front().duration_s = 0.2;
   twin.filmed = true;
   const MadeTracks own = record(twin, {.camera_known = true}, 7);
+  const MadeTracks own_marker = record(twin, {.marker = 2.0}, 7), own_noise = record(twin, {.noise = 0.5}, 7);
   TwinStudios studios(2);
   const MadeTracks first = record_twin(twin, {}, 7, studios);
   const MadeTracks kept = record_twin(twin, {.camera_known = true}, 7, studios);
@@ -203,6 +204,9 @@ TEST_CASE("a filmed twin is the same with a calibration and a stage that were ke
   CHECK(kept.tracks[0].x_m == own.tracks[0].x_m);
   CHECK(kept.tracks[0].t_s == own.tracks[0].t_s);
   CHECK(first.tracks[0].x_m != own.tracks[0].x_m);  // by the calibration
+  CHECK(record_twin(twin, {.marker = 2.0}, 7, studios).tracks[0].x_m == own_marker.tracks[0].x_m);
+  CHECK(record_twin(twin, {.noise = 0.5}, 7, studios).tracks[0].x_m == own_noise.tracks[0].x_m);
+  CHECK(own_marker.tracks[0].x_m != first.tracks[0].x_m);
   CHECK(record_twin(twin, {}, 8, studios).tracks[0].x_m != first.tracks[0].x_m);
 }
 
