@@ -63,7 +63,7 @@ std::optional<core::TrackedMarker> again(const std::vector<cv::Mat>& frames, con
   const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
     return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
   };
-  return core::look_again(first, clip, core::background_of(clip), circle);
+  return core::look_again(first, core::windows_around(first, clip, circle), core::background_of(clip), circle);
 }
 
 tests::LitBall side_lit() {
