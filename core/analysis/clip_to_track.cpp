@@ -61,6 +61,7 @@ std::optional<MarkerLost> frames_lost(const SeenClip& seen) {
   if (!at_edge(first, sightings[beside])) lost.before = first.frame;
   if (!at_edge(last, sightings[sightings.size() - 1 - beside])) lost.after = lost.frames - 1 - last.frame;
   lost.between = last.frame - first.frame + 1 - sightings.size();
+  lost.between -= std::min(lost.between, seen.marker.left_out);
   for (const Note& note : seen.marker.notes) {
     if (const auto* const hidden = std::get_if<MarkerConcealed>(&note))
       lost.between -= std::min(lost.between, hidden->frames);

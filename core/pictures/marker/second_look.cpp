@@ -386,8 +386,8 @@ TrackedMarker SecondLook::tracked() const {
 bool is_worth_a_second_look(const TrackedMarker& first, std::size_t frames) {
   if (first.sightings.size() < kFewestFits) return false;
   const std::size_t from = first.sightings.front().frame, to = first.sightings.back().frame;
-  const std::size_t lost = to - from + 1 - first.sightings.size();
-  if (lost > 0 || from > kFewLost || to + 1 + kFewLost < frames) return true;
+  const std::size_t missing = to - from + 1 - first.sightings.size();
+  if (missing > first.left_out || from > kFewLost || to + 1 + kFewLost < frames) return true;
   std::vector<double> residuals;
   for (const MarkerFit& fit : first.fits) residuals.push_back(fit.rms / fit.amplitude);
   return median_of(residuals) > kDiscResidual;

@@ -138,6 +138,12 @@ TEST_CASE("Lost frames, late starts and large residuals are worth a second look"
   }
   CHECK_FALSE(core::is_worth_a_second_look(whole, kFrames));
   CHECK(core::is_worth_a_second_look(whole, kFrames + 20));
+  core::TrackedMarker without = whole;
+  without.sightings.erase(without.sightings.begin() + 20);
+  without.fits.pop_back();
+  CHECK(core::is_worth_a_second_look(without, kFrames));
+  without.left_out = 1;  // seen, and left out for another reason
+  CHECK_FALSE(core::is_worth_a_second_look(without, kFrames));
   for (core::MarkerFit& fit : whole.fits) fit.rms = 8.0;
   CHECK(core::is_worth_a_second_look(whole, kFrames));
 }
