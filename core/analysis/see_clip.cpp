@@ -235,6 +235,11 @@ class FurtherLooks {
   /// The clip after the search for a disc.
   SeenClip after(Looked disc);
 
+  /// The clip after the search by a hue, which tells the marker from everything else, but is a poor place to measure a
+  /// centroid: codecs store colours coarsely, and light from one side shifts it. A lit body is
+  /// fitted to grey values, and counts if its path is steadier.
+  SeenClip after_hue(SeenClip seen);
+
  private:
   std::optional<SeenClip> any_shape(const AnyShape& any) const;
   std::vector<FrameWindow> windows_of(const SeenClip& seen) const {
@@ -274,6 +279,12 @@ std::optional<SeenClip> FurtherLooks::any_shape(const AnyShape& any) const {
   return std::nullopt;
 }
 
+Places places_of(const TrackedMarker& marker) {
+  Places places;
+  for (const MarkerSighting& sighting : marker.sightings) places[sighting.frame] = {sighting.u_px, sighting.v_px};
+  return places;
+}
+
 /// With another marker in place of the rough one.
 SeenClip with_marker(const SeenClip& rough, TrackedMarker marker) {
   SeenClip seen = rough;
@@ -301,6 +312,14 @@ bool FurtherLooks::as_own_look(const SeenClip& rough, const std::vector<FrameWin
   const bool has_own_centre = found.marker.body == MarkerBody::disc;
   if (has_own_centre || !own_look_) own_look_ = std::move(found);
   return has_own_centre;
+}
+
+SeenClip FurtherLooks::after_hue(SeenClip seen) {
+  again_.frames = seen.frame_t_s.size();
+  auto lit = as_lit_body(seen, windows_of(seen), background_of(again_));
+  if (!lit) return seen;
+  const auto by_grey = roughness_of(places_of(lit->marker)), by_hue = roughness_of(places_of(seen.marker));
+  return by_grey && by_hue && *by_grey < *by_hue ? *std::move(lit) : std::move(seen);
 }
 
 SeenClip FurtherLooks::after(Looked disc) {
@@ -343,9 +362,14 @@ SeenClip FurtherLooks::after(Looked disc) {
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter, MarkerSearch search) {
   Looked disc = see_disc(experiment, clip, setting, open, look_at_scene, counter);
-  if (signal_kind(*experiment.marker) == SignalKind::colored) return std::move(disc).marker();
+  FurtherLooks further(experiment, clip, setting, open, look_at_scene, counter);
+  if (signal_kind(*experiment.marker) == SignalKind::colored) {
+    SeenClip seen = std::move(disc).marker();
+    const bool is_centroid = seen.marker.method == MarkerMethod::centroid;
+    return is_centroid && search == MarkerSearch::thorough ? further.after_hue(std::move(seen)) : seen;
+  }
   if (search == MarkerSearch::disc) return steady(std::move(disc).marker(), clip);
-  return FurtherLooks(experiment, clip, setting, open, look_at_scene, counter).after(std::move(disc));
+  return further.after(std::move(disc));
 }
 
 }  // namespace glidelab::core
