@@ -1,15 +1,18 @@
 #include "core/analysis/see_clip.h"
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/analysis/centroid_wander.h"
 #include "core/analysis/clip_to_track.h"
 #include "core/pictures/frames/frame_source.h"
 #include "tests/catch.h"
 #include "tests/core/clip_in_memory.h"
 #include "tests/core/lit_scene.h"
+#include "tests/core/notes.h"
 
 using namespace glidelab;
 
@@ -108,24 +111,21 @@ class ColourClip : public TimedClip {
 
 }  // namespace
 
-TEST_CASE("A green ball in side light is placed at its centre, not at that of its colour") {
+namespace {
+
+/// The results of a clip of something green: `look` is its light at an offset in radii, negative outside.
+core::ImageResults see_green(const std::function<double(double x, double y, std::size_t frame)>& look) {
   std::vector<cv::Mat> frames;
   for (std::size_t k = 0; k < kFrames; ++k) {
-    tests::LitBall ball;
-    ball.centre = place(k);
-    ball.radius_px = kRadius;
-    ball.lamp_x = -0.5;
-    ball.lamp_y = -0.2;
-    ball.lamp_z = 0.4;
-    ball.ambient = 0.15;
     std::vector<cv::Mat> channels;
     for (const double albedo : {0.2, 0.8, 0.15}) {
       const auto light = [&](double u, double v) {
-        const double behind = 0.4 + 0.08 * std::sin(0.31 * u);
-        const double on_wall = tests::light_of(ball, u, v, -1.0);
-        return on_wall < 0.0 ? behind : albedo * on_wall;
+        const double own = look((u - place(k).x) / kRadius, (v - place(k).y) / kRadius, k);
+        return own < 0.0 ? 0.4 + 0.08 * std::sin(0.31 * u) : albedo * own;
       };
-      channels.push_back(tests::expose_light(kSize, light, true, 1.5, 9100 + 3 * k + channels.size()));
+      cv::Mat image = tests::paint(kSize, light, 4);
+      for (double& pixel : cv::Mat_<double>(image)) pixel = 255.0 * tests::srgb_of_light(pixel);
+      channels.push_back(tests::expose(image, 1.5, 9100 + 3 * k + channels.size()));
     }
     cv::Mat bgr;
     cv::merge(channels, bgr);
@@ -141,7 +141,20 @@ TEST_CASE("A green ball in side light is placed at its centre, not at that of it
   experiment.clips.resize(1);
   experiment.clips.front().file = "clip.mkv";
   experiment.clips.front().group = "all";
-  const core::TrackData track = core::tracks_of(experiment, 1, base::no_progress, open).tracks.at(0);
+  return core::tracks_of(experiment, 1, base::no_progress, open);
+}
+
+}  // namespace
+
+TEST_CASE("A green ball in side light is placed at its centre, not at that of its colour") {
+  tests::LitBall ball;
+  ball.radius_px = 1.0;
+  ball.lamp_x = -0.5;
+  ball.lamp_y = -0.2;
+  ball.lamp_z = 0.4;
+  ball.ambient = 0.15;
+  const core::TrackData track =
+      see_green([&](double x, double y, std::size_t) { return tests::light_of(ball, x, y, -1.0); }).tracks.at(0);
   REQUIRE(track.sightings.size() == kFrames);
   cv::Point2d off;
   for (const core::MarkerSighting& sighting : track.sightings)
@@ -149,4 +162,32 @@ TEST_CASE("A green ball in side light is placed at its centre, not at that of it
   // The colour's centroid lies off by the light's, a fifth of the radius. The lit body's centre errs with its size, by
   // a hundredth of the radius.
   CHECK(cv::norm(off) < 0.15);
+}
+
+TEST_CASE("A centroid whose light changes sides along the path may wander, and one in even light does not") {
+  // Three prongs: no disc and no sphere.
+  const auto results = [](double most_slope) {
+    return see_green([=](double x, double y, std::size_t k) {
+      const double r = std::hypot(x, y), turn = std::atan2(y, x);
+      if (r > 1.25 || (r > 0.3 && std::cos(3.0 * turn) < 0.2)) return -1.0;
+      const double part = static_cast<double>(k) / (kFrames - 1.0);
+      return 0.5 * (1.0 + most_slope * (2.0 * part - 1.0) * x);
+    });
+  };
+  const core::ImageResults wanders = results(0.6);
+  const core::TrackData& track = wanders.tracks.at(0);
+  using What = core::MarkerMeasuredBy::What;
+  const auto* by = tests::note_of<core::MarkerMeasuredBy>(track.notes);
+  REQUIRE(by != nullptr);
+  CHECK(by->what == What::centroid);
+  REQUIRE(wanders.modes >= core::kWanderModes);
+  REQUIRE(track.shared_m.size() == wanders.modes);
+  // A slope s shifts the centroid by about s/4 of a radius, from -0.15 to 0.15 radii; in the codes of sRGB by half of
+  // that. One of four modes has most of it, and the two centroids share part of it: 0.02 radii or more.
+  const std::vector<double>& first = track.shared_m.at(wanders.modes - core::kWanderModes);
+  REQUIRE(first.size() == track.x_m.size());
+  CHECK(std::abs(first.front()) * kPixelsPerMetre > 0.02 * kRadius);
+  CHECK(std::abs(first.front()) * kPixelsPerMetre < 0.2 * kRadius);
+  CHECK(first.front() == Approx(-first.back()));
+  CHECK(results(0.0).modes + core::kWanderModes == wanders.modes);
 }
