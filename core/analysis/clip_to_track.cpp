@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/long_work.h"
 #include "base/math/angles.h"
+#include "core/analysis/centroid_wander.h"
 #include "core/motion/codec_drag.h"
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"
@@ -61,6 +62,7 @@ std::optional<MarkerLost> frames_lost(const SeenClip& seen) {
   if (!at_edge(first, sightings[beside])) lost.before = first.frame;
   if (!at_edge(last, sightings[sightings.size() - 1 - beside])) lost.after = lost.frames - 1 - last.frame;
   lost.between = last.frame - first.frame + 1 - sightings.size();
+  lost.between -= std::min(lost.between, seen.marker.left_out);
   for (const Note& note : seen.marker.notes) {
     if (const auto* const hidden = std::get_if<MarkerConcealed>(&note))
       lost.between -= std::min(lost.between, hidden->frames);
@@ -228,6 +230,52 @@ void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenCli
   results.modes += drag->error_m.size();
 }
 
+/// The light's shifts of the two centroids of a clip from each other, along x (centroid_wander.h).
+void add_shifts(const TrackedMarker& marker, const TrackData& track, std::vector<CentroidShift>& shifts) {
+  const auto n = static_cast<double>(track.x_m.size());
+  double x = 0.0, xx = 0.0;
+  cv::Point2d at, slope;  // of the image over x, px/m
+  for (std::size_t i = 0; i < track.x_m.size(); ++i) {
+    x += track.x_m[i] / n;
+    at += cv::Point2d(track.sightings[i].u_px, track.sightings[i].v_px) / n;
+  }
+  for (std::size_t i = 0; i < track.x_m.size(); ++i) {
+    const double off_m = track.x_m[i] - x;
+    xx += off_m * off_m;
+    slope += off_m * (cv::Point2d(track.sightings[i].u_px, track.sightings[i].v_px) - at);
+  }
+  if (!(cv::norm(slope) > 0.0)) return;
+  slope /= xx;
+  std::map<std::size_t, cv::Point2d> light_px;
+  for (std::size_t k = 0; k < marker.fits.size(); ++k) light_px[marker.sightings[k].frame] = marker.fits[k].light_px;
+  for (std::size_t i = 0; i < track.x_m.size(); ++i)
+    shifts.push_back({track.x_m[i], light_px[track.frame[i]].dot(slope) / slope.dot(slope)});
+}
+
+/// Adds the wander of centroids to the shared errors of a group's clips.
+void add_centroid_wander(const Experiment& experiment, const std::string& group, const std::vector<SeenClip>& seen,
+                         ImageResults& results) {
+  std::vector<std::size_t> clips;
+  std::vector<CentroidShift> shifts;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const bool of_group = !experiment.clips[i].file.empty() && experiment.clips[i].group == group;
+    if (!of_group || seen[i].marker.method != MarkerMethod::centroid) continue;
+    clips.push_back(i);
+    add_shifts(seen[i].marker, results.tracks[i], shifts);
+  }
+  const std::optional<CentroidWander> wander = centroid_wander(shifts);
+  if (!wander) return;
+  for (const std::size_t i : clips) {
+    TrackData& track = results.tracks[i];
+    track.shared_m.resize(results.modes);
+    for (std::size_t mode = 0; mode < kWanderModes; ++mode) {
+      std::vector<double>& displacement = track.shared_m.emplace_back();
+      for (const double x_m : track.x_m) displacement.push_back(wander->at(mode, x_m));
+    }
+  }
+  results.modes += kWanderModes;
+}
+
 /// What the marker of all clips is: by its outlines where the fits left them free, else as which it was fitted.
 std::optional<MarkerBody> body_of(const Experiment& experiment, const CameraAndPlanes& setting,
                                   const std::vector<SeenClip>& seen) {
@@ -344,6 +392,7 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
   for (const auto& [name, restitution] : setting.restitutions) {
     GroupTracks(experiment, setting, name, seen).add_to(results);
   }
+  for (const auto& [name, restitution] : setting.restitutions) add_centroid_wander(experiment, name, seen, results);
   take_off_codec_drag(experiment, seen, results);
   for (const std::size_t i : images) results.fits[i] = std::move(seen[i].marker.fits);
   results.calibration = setting.calibration;

@@ -114,9 +114,21 @@ void require_visible(const ClipSetup& clip, const Restitution& restitution, cv::
       "px_per_m counts the pixels of a metre"});
 }
 
-SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
-                  const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
-                  const AnyShape* any = nullptr) {
+/// What a search saw in a clip, and why it is no marker.
+struct Looked {
+  SeenClip seen;
+  std::optional<NoMarker> none = {};
+
+  /// NoMarker if there is none.
+  SeenClip marker() && {
+    if (none) throw NoMarker(*none);
+    return std::move(seen);
+  }
+};
+
+Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
+                const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
+                const AnyShape* any = nullptr) {
   const bool with_color = signal_kind(marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
@@ -149,12 +161,16 @@ SeenClip look_for(const MarkerSetup& marker, const Experiment& experiment, const
     }
     if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
   }
-  seen.marker = tracker.finish();
+  try {
+    seen.marker = tracker.finish();
+  } catch (const NoMarker& nothing) {
+    return {std::move(seen), nothing};
+  }
   seen.notes = source->notes();
   seen.predicted = source->facts().predicts;
   if (experiment.camera->time == TimeSource::container) put_even(seen);
   if (scene) finish_record(source->facts(), *scene, seen);
-  return seen;
+  return {std::move(seen)};
 }
 
 }  // namespace
@@ -169,51 +185,30 @@ void FrameCounter::add(double share) {
 namespace {
 
 /// As a disc, bright or dark.
-SeenClip see_disc(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+Looked see_disc(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+                const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
   const auto look = [&](const MarkerSetup& sought) {
     return look_for(sought, experiment, clip, setting, open, look_at_scene, counter);
   };
   const MarkerSetup marker = marker_in(experiment, clip);
-  if (marker.color_bgr) return look(marker);
-  std::optional<SeenClip> bright;
-  std::optional<NoMarker> no_bright;
-  try {
-    bright = look(marker);
-    if (well_seen(bright->marker)) return *std::move(bright);
-  } catch (const NoMarker& nothing) {
-    no_bright = nothing;
-  }
+  Looked bright = look(marker);
+  if (marker.color_bgr || (!bright.none && well_seen(bright.seen.marker))) return bright;
   MarkerSetup dark = marker;
   dark.color_bgr = {0, 0, 0};
   try {
-    SeenClip seen = look(dark);
-    const double others = bright && moves(bright->marker) ? static_cast<double>(bright->marker.sightings.size()) : 0.0;
-    if (well_seen(seen.marker) && static_cast<double>(seen.marker.sightings.size()) > kLeastSeenRatio * others) {
-      seen.dark_marker = true;
-      return seen;
+    Looked found = look(dark);
+    const double others =
+        !bright.none && moves(bright.seen.marker) ? static_cast<double>(bright.seen.marker.sightings.size()) : 0.0;
+    if (!found.none && well_seen(found.seen.marker) &&
+        static_cast<double>(found.seen.marker.sightings.size()) > kLeastSeenRatio * others) {
+      found.seen.dark_marker = true;
+      return found;
     }
   } catch (const base::InputError&) {
     // There is no single dark marker either, so the bright one counts.
   }
-  if (no_bright) throw NoMarker(*no_bright);
-  return *std::move(bright);
+  return bright;
 }
-
-/// Empty if no such object is found either.
-std::optional<SeenClip> see_any_shape(const Experiment& experiment, const ClipSetup& clip,
-                                      const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene,
-                                      FrameCounter& counter, const AnyShape& any) {
-  try {
-    return look_for(marker_in(experiment, clip), experiment, clip, setting, open, look_at_scene, counter, &any);
-  } catch (const base::InputError&) {
-    return std::nullopt;  // the error of the first search counts
-  }
-}
-
-}  // namespace
-
-namespace {
 
 /// NoMarker for sightings that jump about.
 SeenClip steady(SeenClip seen, const ClipSetup& clip) {
@@ -224,73 +219,157 @@ SeenClip steady(SeenClip seen, const ClipSetup& clip) {
                              "one thing of the stated diameter that stands out from its surroundings in every frame"});
 }
 
+/// The searches for a marker that is no disc, or that is not found well as one. Each reads the clip, so one that has
+/// found the marker ends them.
+class FurtherLooks {
+ public:
+  FurtherLooks(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
+               const FrameOpener& open, bool look_at_scene, FrameCounter& counter)
+      : experiment_(experiment),
+        clip_(clip),
+        setting_(setting),
+        open_(open),
+        look_at_scene_(look_at_scene),
+        counter_(counter) {}
+
+  /// The clip after the search for a disc.
+  SeenClip after(Looked disc);
+
+  /// The clip after the search by a hue, which tells the marker from everything else, but is a poor place to measure a
+  /// centroid: codecs store colours coarsely, and light from one side shifts it. A lit body is
+  /// fitted to grey values, and counts if its path is steadier.
+  SeenClip after_hue(SeenClip seen);
+
+ private:
+  std::optional<SeenClip> any_shape(const AnyShape& any) const;
+  std::vector<FrameWindow> windows_of(const SeenClip& seen) const {
+    return windows_around(seen.marker, again_, shape_at_);
+  }
+  std::optional<SeenClip> as_lit_body(const SeenClip& rough, const std::vector<FrameWindow>& windows,
+                                      const StillBackground& background) const;
+  bool as_own_look(const SeenClip& rough, const std::vector<FrameWindow>& windows);
+  bool in_more_frames(const SeenClip& found) const {
+    return static_cast<double>(found.marker.sightings.size()) > kLeastSeenRatio * seen_before_;
+  }
+
+  const Experiment& experiment_;
+  const ClipSetup& clip_;
+  const CameraAndPlanes& setting_;
+  const FrameOpener& open_;
+  bool look_at_scene_;
+  FrameCounter& counter_;
+  const Restitution& restitution_ = setting_.restitutions.at(clip_.group);
+  const ShapeAt shape_at_ = [this](cv::Point2d pixel, MarkerBody body) {
+    return body == MarkerBody::sphere ? restitution_.marker_shape(pixel) : restitution_.disc_shape(pixel);
+  };
+  ClipAgain again_{[this] { return open_(clip_.file, *experiment_.camera, false, setting_.size); }, 0};
+  double seen_before_ = 0.0;          ///< frames in which it was found as a disc
+  std::optional<SeenClip> own_look_;  ///< found by its own look
+};
+
+/// Empty if no such object is found either.
+std::optional<SeenClip> FurtherLooks::any_shape(const AnyShape& any) const {
+  try {
+    Looked found =
+        look_for(marker_in(experiment_, clip_), experiment_, clip_, setting_, open_, look_at_scene_, counter_, &any);
+    if (!found.none) return std::move(found.seen);
+  } catch (const base::InputError&) {
+    // The error of the first search counts.
+  }
+  return std::nullopt;
+}
+
+Places places_of(const TrackedMarker& marker) {
+  Places places;
+  for (const MarkerSighting& sighting : marker.sightings) places[sighting.frame] = {sighting.u_px, sighting.v_px};
+  return places;
+}
+
+/// With another marker in place of the rough one.
+SeenClip with_marker(const SeenClip& rough, TrackedMarker marker) {
+  SeenClip seen = rough;
+  seen.marker = std::move(marker);
+  if (seen.images) {
+    seen.images = std::make_shared<ImageRecord>(*seen.images);
+    seen.images->marker = looks_of(seen.marker, seen.frame_t_s);
+  }
+  return seen;
+}
+
+std::optional<SeenClip> FurtherLooks::as_lit_body(const SeenClip& rough, const std::vector<FrameWindow>& windows,
+                                                  const StillBackground& background) const {
+  auto marker = look_again(rough.marker, windows, background, shape_at_);
+  return marker ? std::optional(with_marker(rough, *std::move(marker))) : std::nullopt;
+}
+
+/// Keeps the first marker that is found by its own look. Whether it has a centre of its own: it is a pattern, which no
+/// search for a lit body finds.
+bool FurtherLooks::as_own_look(const SeenClip& rough, const std::vector<FrameWindow>& windows) {
+  auto marker = look_by_template(rough.marker, windows, shape_at_);
+  if (!marker || !well_seen(*marker)) return false;
+  SeenClip found = with_marker(rough, *std::move(marker));
+  if (!in_more_frames(found)) return false;
+  const bool has_own_centre = found.marker.body == MarkerBody::disc;
+  if (has_own_centre || !own_look_) own_look_ = std::move(found);
+  return has_own_centre;
+}
+
+SeenClip FurtherLooks::after_hue(SeenClip seen) {
+  again_.frames = seen.frame_t_s.size();
+  auto lit = as_lit_body(seen, windows_of(seen), background_of(again_));
+  if (!lit) return seen;
+  const auto by_grey = roughness_of(places_of(lit->marker)), by_hue = roughness_of(places_of(seen.marker));
+  return by_grey && by_hue && *by_grey < *by_hue ? *std::move(lit) : std::move(seen);
+}
+
+SeenClip FurtherLooks::after(Looked disc) {
+  again_.frames = disc.seen.frame_t_s.size();
+  if (!disc.none && !is_worth_a_second_look(disc.seen.marker, again_.frames)) return std::move(disc.seen);
+  const StillBackground background = background_of(again_);
+  if (!disc.none) {
+    if (auto lit = as_lit_body(disc.seen, windows_of(disc.seen), background)) return *std::move(lit);
+    seen_before_ = static_cast<double>(disc.seen.marker.sightings.size());
+    // A marker that is seen in most frames, but not well, cannot be surpassed by as much.
+    const bool in_most = static_cast<double>(again_.frames) <= kLeastSeenRatio * seen_before_;
+    if (well_seen(disc.seen.marker)) return std::move(disc.seen);
+    if (in_most) return steady(std::move(disc.seen), clip_);
+  }
+  // By its own look, unless it is as large as half the image.
+  const cv::Mat still = background.median();
+  const cv::Point2d middle(0.5 * still.cols, 0.5 * still.rows);
+  const double radius_px = restitution_.marker_radius_px(middle).value_or(kSomeRadiusPx);
+  const bool may_have_look = radius_px < 0.5 * std::min(middle.x, middle.y);
+  for (const AnyShape& any : {AnyShape{still}, AnyShape{}, AnyShape{{}, true}}) {
+    const std::optional<SeenClip> rough = any_shape(any);
+    if (!rough) continue;
+    const std::vector<FrameWindow> windows = windows_of(*rough);
+    auto lit = as_lit_body(*rough, windows, background);
+    if (lit && in_more_frames(*lit)) return *std::move(lit);
+    if (may_have_look && as_own_look(*rough, windows)) return *std::move(own_look_);
+  }
+  for (const bool dark : {false, true}) {
+    if (!may_have_look || own_look_) break;
+    const std::optional<SeenClip> rough = any_shape({{}, dark, kBlurRadii * radius_px});
+    if (rough) as_own_look(*rough, windows_of(*rough));
+  }
+  if (own_look_) return *std::move(own_look_);
+  if (disc.none) throw NoMarker(*disc.none);
+  return steady(std::move(disc.seen), clip_);
+}
+
 }  // namespace
 
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter, MarkerSearch search) {
-  const auto disc = [&] { return see_disc(experiment, clip, setting, open, look_at_scene, counter); };
-  const bool by_hue = signal_kind(*experiment.marker) == SignalKind::colored;
-  if (by_hue) return disc();
-  if (search == MarkerSearch::disc) return steady(disc(), clip);
-  ClipAgain again;
-  again.open = [&] { return open(clip.file, *experiment.camera, false, setting.size); };
-  std::optional<SeenClip> seen;
-  std::optional<NoMarker> none;
-  try {
-    seen = disc();
-    again.frames = seen->frame_t_s.size();
-    if (!is_worth_a_second_look(seen->marker, again.frames)) return *std::move(seen);
-  } catch (const NoMarker& nothing) {
-    none = nothing;
-    const auto source = again.open();
-    while (source->next()) ++again.frames;
+  Looked disc = see_disc(experiment, clip, setting, open, look_at_scene, counter);
+  FurtherLooks further(experiment, clip, setting, open, look_at_scene, counter);
+  if (signal_kind(*experiment.marker) == SignalKind::colored) {
+    SeenClip seen = std::move(disc).marker();
+    const bool is_centroid = seen.marker.method == MarkerMethod::centroid;
+    return is_centroid && search == MarkerSearch::thorough ? further.after_hue(std::move(seen)) : seen;
   }
-  const StillBackground background = background_of(again);
-  const Restitution& restitution = setting.restitutions.at(clip.group);
-  const ShapeAt shape_at = [&](cv::Point2d pixel, MarkerBody body) {
-    return body == MarkerBody::sphere ? restitution.marker_shape(pixel) : restitution.disc_shape(pixel);
-  };
-  const auto better = [&](SeenClip& first) {
-    auto marker = look_again(first.marker, again, background, shape_at);
-    if (!marker) return false;
-    first.marker = *std::move(marker);
-    if (first.images) first.images->marker = looks_of(first.marker, first.frame_t_s);
-    return true;
-  };
-  if (seen && better(*seen)) return *std::move(seen);
-  if (seen && well_seen(seen->marker)) return *std::move(seen);
-  const double seen_before = seen ? static_cast<double>(seen->marker.sightings.size()) : 0.0;
-  const auto in_more_frames = [&](const SeenClip& found) {
-    return static_cast<double>(found.marker.sightings.size()) > kLeastSeenRatio * seen_before;
-  };
-  // A marker that is seen in most frames, but not well, cannot be surpassed by as much.
-  if (seen && static_cast<double>(again.frames) <= kLeastSeenRatio * seen_before) return steady(*std::move(seen), clip);
-  std::vector<SeenClip> rough;
-  for (const AnyShape& any : {AnyShape{background.median()}, AnyShape{}, AnyShape{{}, true}}) {
-    auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, any);
-    if (!found) continue;
-    rough.push_back(*found);
-    if (better(*found) && in_more_frames(*found)) return *std::move(found);
-  }
-  // Neither a disc nor a sphere: by its own look, unless it is as large as half the image.
-  const cv::Point2d middle(0.5 * background.median().cols, 0.5 * background.median().rows);
-  const double radius_px = restitution.marker_radius_px(middle).value_or(kSomeRadiusPx);
-  if (radius_px < 0.5 * std::min(middle.x, middle.y)) {
-    for (const bool dark : {false, true}) {
-      const AnyShape blurred{{}, dark, kBlurRadii * radius_px};
-      auto found = see_any_shape(experiment, clip, setting, open, look_at_scene, counter, blurred);
-      if (found) rough.push_back(*std::move(found));
-    }
-    for (SeenClip& found : rough) {
-      auto marker = look_by_template(found.marker, again, shape_at);
-      if (!marker || !well_seen(*marker)) continue;
-      found.marker = *std::move(marker);
-      if (found.images) found.images->marker = looks_of(found.marker, found.frame_t_s);
-      if (in_more_frames(found)) return std::move(found);
-    }
-  }
-  if (none) throw NoMarker(*none);
-  return steady(*std::move(seen), clip);
+  if (search == MarkerSearch::disc) return steady(std::move(disc).marker(), clip);
+  return further.after(std::move(disc));
 }
 
 }  // namespace glidelab::core

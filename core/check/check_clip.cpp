@@ -126,6 +126,14 @@ bool at_edge(const MarkerSighting& sighting, const ClipCheck& clip, double smear
                    clip.height_px - 1.0 - sighting.v_px}) < margin_px;
 }
 
+/// Whether the marker came from outside the image and left it, with the smear that the clip is taken to have.
+void judge_edges(ClipCheck& clip) {
+  const double smear_px = clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
+  if (clip.sightings.empty()) return;
+  clip.entered = at_edge(clip.sightings.front(), clip, smear_px);
+  clip.left = at_edge(clip.sightings.back(), clip, smear_px);
+}
+
 /// The lengthening of the marker with speed, without the frames in which the edge of the image cuts it.
 std::optional<SmearSlope> lengthening_of(const CameraSettings& camera, const ClipAttempt& attempt,
                                          const ClipCheck& clip) {
@@ -214,16 +222,14 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
   if (camera.exposure_s) clip.blur_px = clip.top_speed_px_s * *camera.exposure_s;
   clip.lengthening = lengthening_of(camera, attempt, clip);
   measure_smear(camera, clip);
-  const double smear_px = clip.measured_blur_px.value_or(clip.blur_px.value_or(0.0));
-  clip.entered = at_edge(track.sightings.front(), clip, smear_px);
-  clip.left = at_edge(track.sightings.back(), clip, smear_px);
+  clip.sightings = track.sightings;
+  judge_edges(clip);
   clip.longest_blur_px = clip.top_speed_px_s / camera.frame_rate_hz;
   clip.stalls = stalls_of(track.sightings, std::max(clip.centre_sd_px, clip.position_noise_m.value_or(0.0) * px_per_m));
   const std::size_t every = track.sightings.size() / kPathPlaces + 1;
   for (std::size_t i = 0; i < track.sightings.size(); i += every) {
     clip.path.push_back({track.sightings[i].u_px, track.sightings[i].v_px});
   }
-  clip.sightings = track.sightings;
 }
 
 }  // namespace
@@ -290,6 +296,7 @@ void drop_contradicted_exposures(std::vector<ClipCheck>& clips) {
     if (!contradicted) continue;
     clip.measured_exposure_s.reset();
     clip.measured_blur_px.reset();
+    judge_edges(clip);
   }
 }
 

@@ -203,6 +203,8 @@ void analyze_motions(const Experiment& experiment, const std::vector<ClipAttempt
     setups.push_back(experiment.clips[i]);
     results.push_back(analyze_motion(setups.back(), attempts[i].track, {}));
     check.clips[i].against_launch = results.back().against_launch;
+    // The noise that the analysis will state, in place of the first estimate; speeds alone have none.
+    if (results.back().position_noise_m > 0.0) check.clips[i].position_noise_m = results.back().position_noise_m;
     if (check.clips[i].images) check.clips[i].jumps = results.back().lost_frames.size();
   }
   check.configurations = join_configurations(setups, results, experiment.gravity_m_s2);

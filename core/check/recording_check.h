@@ -103,8 +103,8 @@ struct ClipCheck {
   /// diameter (less may be perspective: in one clip speed and position go together).
   std::optional<double> measured_exposure_s, measured_blur_px;
   std::optional<SmearSlope> lengthening;
-  double longest_blur_px = 0.0;  ///< with an exposure as long as the frame time
-  std::optional<double> position_noise_m;
+  double longest_blur_px = 0.0;            ///< with an exposure as long as the frame time
+  std::optional<double> position_noise_m;  ///< as the analysis will state it
   MotionLook motion;
   std::optional<AgainstLaunch> against_launch;  ///< of the motion, as the analysis will find it
   double inside_pattern = 1.0;                  ///< share of the sightings within the outline of all corners seen

@@ -230,10 +230,11 @@ struct MarkerFittedAgain {
   std::size_t seen = 0, seen_before = 0;
 };
 
-/// Sightings that cannot be corrected for a mosaic or a tone curve, so that none of the clip is: the windows around
-/// them take too much memory, or their fit with the pixel response does not converge.
+/// Sightings that cannot be corrected for a mosaic or a tone curve: the windows around them take too much memory, or
+/// their fit with the pixel response does not converge. Either they are left out, or none of the clip is corrected.
 struct PixelsAnswerLeft {
   std::size_t kept = 0, sightings = 0;
+  bool left_out = false;
 };
 
 /// Frames without the marker, where it is not at the edge of the image.

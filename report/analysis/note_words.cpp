@@ -236,6 +236,13 @@ struct AnalysisSentence {
                        of.seen_before);
   }
   std::string operator()(const core::PixelsAnswerLeft& of) const {
+    if (of.left_out) {
+      return fmt::format(
+          "the marker's positions are corrected for the response of the camera's pixels to an edge; {} of {} frames, "
+          "in "
+          "which the fit with that response fails, are left out",
+          of.kept, of.sightings);
+    }
     return fmt::format(
         "the marker's positions are not corrected for the response of the camera's pixels to an edge: in {} of {} "
         "frames the clip is too long for so large a marker, or the fit with that response fails",

@@ -52,7 +52,7 @@ struct MarkerFit {
   /// than the marker. They are those of the pixels, not of the model.
   cv::Vec3d moments;
   /// The centroid of what stands out there, less the centre (px): how far light from one side or an uneven background
-  /// shifts a centroid.
+  /// shifts a centroid. Of a centroid: less that with nearly equal weights over the marker.
   cv::Point2d light_px;
   double slope_u = 0.0, slope_v = 0.0;  ///< g, in units of the signal per px
   double blur_px = 0.0;                 ///< sigma

@@ -17,6 +17,7 @@ constexpr double kMostRadiiOfMarker = 1.6;              // of the radius: pixels
 constexpr double kSmallest_px = 1.5;                    // the marker's pixels are sought at least as far out
 constexpr std::size_t kFewestOfRim = 8;                 // pixels
 constexpr double kFloorOfPeak = 0.2;                    // of the peak
+constexpr double kFlatFrom = 0.25;  // weight above which all pixels count alike in the second centroid
 
 /// The background by the median of the rim of the box, the peak by the brightest tenth near the guess.
 struct Peak {
@@ -138,6 +139,7 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
   if (!spot) return std::nullopt;
 
   double sum = 0.0, sum_u = 0.0, sum_v = 0.0, area = 0.0;
+  double flat_sum = 0.0, flat_u = 0.0, flat_v = 0.0;
   for (int v = spot->part.y; v < spot->part.br().y; ++v) {
     const unsigned char* const mask = spot->mask.ptr<unsigned char>(v);
     for (int u = spot->part.x; u < spot->part.br().x; ++u) {
@@ -149,11 +151,16 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
       sum_u += weight * (u + box.x);
       sum_v += weight * (v + box.y);
       area += std::min(weight * 2.0, 1.0);
+      const double flat = std::min(weight / kFlatFrom, 1.0);
+      flat_sum += flat;
+      flat_u += flat * (u + box.x);
+      flat_v += flat * (v + box.y);
     }
   }
   if (!(sum > 0.0)) return std::nullopt;
   MarkerFit marker;
   marker.centre = {sum_u / sum, sum_v / sum};
+  marker.light_px = marker.centre - cv::Point2d(flat_u / flat_sum, flat_v / flat_sum);
   marker.radius_px = std::sqrt(area / std::numbers::pi);
   marker.amplitude = peak->amplitude;
   marker.background = peak->level;

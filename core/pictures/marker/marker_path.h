@@ -115,6 +115,7 @@ struct TrackedMarker {
   std::vector<Note> notes;
   MarkerMethod method = MarkerMethod::undecided;  ///< by which the marker was measured
   std::optional<MarkerBody> body;                 ///< as which it was fitted, where that is of either kind
+  std::size_t left_out = 0;  ///< sightings whose fit with the response of the pixels fails (kept_windows.h)
 };
 
 /// The objects that were followed through a clip.

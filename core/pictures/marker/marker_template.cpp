@@ -24,6 +24,7 @@ constexpr double kLeastOfNode = 0.5;      // weight of pixels, below which a nod
 constexpr double kRobustTimes = 2.5;      // times the usual residual, beyond which a pixel counts less (Huber)
 constexpr double kLeastResidual = 0.29;   // codes, 1 / sqrt(12)
 constexpr double kSettled_px = 2e-4;
+constexpr double kNearlySettled_px = 0.02;  // a longer step back is no jump of a weight
 constexpr double kNormalOfMedian = 1.4826;  // standard deviation of a normal residual over the median of its size
 constexpr std::size_t kFewestPixels = 12;   // three for each parameter of the fit
 constexpr int kMostSteps = 25;
@@ -249,6 +250,8 @@ std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) con
     TemplateFit fit;
     double usual = 0.0;  // the usual residual; 0: not known yet
     int steps = 0;
+    cv::Point2d moved = {};  // by the last step
+    double damping = 1.0;
   };
   const double radius = radius_of(window.shape);
   const cv::Vec3d& m = window.shape;
@@ -282,17 +285,21 @@ std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) con
     const Eigen::Vector4d change = -base::solve_positive(equations.jtj, equations.jtr);
     const std::optional<Eigen::MatrixXd> inverse = inverse_of_equations(equations.jtj);
     if (!change.allFinite() || !inverse) return trial;
-    const double moved = std::hypot(change[0], change[1]), allowed = 0.3 * radius;
-    const double share = moved > allowed ? allowed / moved : 1.0;
+    // Weights jump from node to node, and a fit may go to and fro across a jump: halving steps back ends that.
+    const cv::Point2d step(change[0], change[1]);
+    const bool back = from.moved.dot(step) < 0.0 && cv::norm(step) < kNearlySettled_px;
+    const double damping = back ? 0.5 * from.damping : from.damping;
+    const double length = damping * cv::norm(step), allowed = 0.3 * radius;
+    const cv::Point2d moved = step * (length > allowed ? damping * allowed / length : damping);
     const double rms = std::sqrt(equations.cost / std::max(equations.weight, 1.0));
-    const TemplateFit to{fit.centre + share * cv::Point2d(change[0], change[1]),
-                         rms * std::sqrt(0.5 * ((*inverse)(0, 0) + (*inverse)(1, 1))), fit.level + change[2],
-                         fit.gain + change[3], rms};
+    const TemplateFit to{fit.centre + moved, rms * std::sqrt(0.5 * ((*inverse)(0, 0) + (*inverse)(1, 1))),
+                         fit.level + change[2], fit.gain + change[3], rms};
     trial.why_none = base::FitStop::out_of_range;
     if (to.gain < kLeastLightGain || to.gain > kMostLightGain || cv::norm(to.centre - window.start) > radius)
       return trial;
-    trial.point = Point{to, std::max(kNormalOfMedian * median_of(residuals), kLeastResidual), from.steps + 1};
-    trial.is_small = moved <= kSettled_px && from.steps >= kStepsWithUsual;
+    trial.point =
+        Point{to, std::max(kNormalOfMedian * median_of(residuals), kLeastResidual), from.steps + 1, moved, damping};
+    trial.is_small = cv::norm(moved) <= kSettled_px && from.steps >= kStepsWithUsual;
     return trial;
   });
   if (!found) return std::nullopt;

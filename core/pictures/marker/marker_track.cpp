@@ -25,8 +25,6 @@ constexpr std::size_t kFewestSightings = 5;         // a path with fewer is nois
 constexpr std::size_t kNoDisc = 2;                  // sightings by centroid in a row, after which no disc is fitted
 constexpr std::size_t kMostLit = 6;                 // blobs of the highest contrast that may be lit from one side
 constexpr double kSmallestRadiusPx = 1.2;
-constexpr std::size_t kFewestResponseWindows = 16;  // from which the response of the pixels is found,
-constexpr std::size_t kResponsePixels = 8000;       // and about the number of their pixels
 
 bool is_near_any(const std::vector<cv::Point2d>& places, cv::Point2d here, double distance) {
   return std::any_of(places.begin(), places.end(),
@@ -109,78 +107,11 @@ std::optional<MeasuredMarker> MarkerTracker::find_again(const Signal& signal, st
   return std::nullopt;
 }
 
+/// Keeps the window of a fit; a centroid, and a marker that is told by its hue or its light, are not fitted again.
 void MarkerTracker::keep(const Signal& signal, std::size_t frame, const MeasuredMarker& found) {
   const bool is_centroid = !(found.fit.blur_px > 0.0);
-  if (is_centroid || kind_ == SignalKind::colored || kind_ == SignalKind::any_shape) return;
-  const int reach = static_cast<int>(std::ceil(1.25 * found.guess.radius_px + 2.5)) + 1;
-  const cv::Point middle(cvRound(found.fit.centre.x), cvRound(found.fit.centre.y));
-  const cv::Rect box = cv::Rect(middle.x - reach, middle.y - reach, 2 * reach + 1, 2 * reach + 1) &
-                       cv::Rect(0, 0, signal.values.cols, signal.values.rows);
-  if (kept_bytes_ + box.area() * signal.values.elemSize() > most_window_bytes_) return;
-  kept_bytes_ += box.area() * signal.values.elemSize();
-  signal.see(box);
-  MarkerGuess guess = found.guess;
-  guess.centre = found.fit.centre - cv::Point2d(box.tl());
-  guess.blur_px = found.fit.blur_px;
-  guess.shape = found.fit.shape;
-  kept_.push_back({frame, found.fit.centre, {Signal{signal.values(box).clone()}, box.tl(), guess}});
-}
-
-/// Null if no window was kept.
-const MarkerWindow* MarkerTracker::window_of(const MarkerSighting& sighting) const {
-  const cv::Point2d centre(sighting.u_px, sighting.v_px);
-  const Kept* nearest = nullptr;
-  const auto first = std::lower_bound(kept_.begin(), kept_.end(), sighting.frame,
-                                      [](const Kept& kept, std::size_t frame) { return kept.frame < frame; });
-  for (auto kept = first; kept != kept_.end() && kept->frame == sighting.frame; ++kept) {
-    if (cv::norm(kept->centre - centre) > 0.5 * sighting.radius_px) continue;
-    if (nearest == nullptr || cv::norm(kept->centre - centre) < cv::norm(nearest->centre - centre)) nearest = &*kept;
-  }
-  return nearest != nullptr ? &nearest->window : nullptr;
-}
-
-/// Corrects the centres for a colour mosaic and a tone curve, in all frames or in none. Everything else stays as the
-/// codes gave it.
-void MarkerTracker::fit_without_response(TrackedMarker& tracked) const {
-  if (tracked.method != MarkerMethod::uniform && tracked.method != MarkerMethod::shaded) return;
-  const Surface surface = tracked.method == MarkerMethod::uniform ? Surface::uniform : Surface::shaded;
-  std::vector<const MarkerWindow*> windows;
-  std::size_t pixels = 0, kept = 0;
-  for (const MarkerSighting& sighting : tracked.sightings) {
-    windows.push_back(window_of(sighting));
-    if (windows.back() == nullptr) continue;
-    pixels += windows.back()->signal.values.total();
-    ++kept;
-  }
-  if (kept < kFewestResponseWindows) return;
-  const std::size_t wanted = std::max(kFewestResponseWindows, kResponsePixels * kept / pixels);
-  const std::size_t step = std::max<std::size_t>(1, windows.size() / wanted);
-  std::vector<MarkerWindow> sampled;
-  for (std::size_t i = 0; i < windows.size(); i += step) {
-    if (windows[i] != nullptr) sampled.push_back(*windows[i]);
-  }
-  const std::optional<EdgeResponse> response = marker_response(sampled, surface, kind_ == SignalKind::bright);
-  if (!response) return;
-  std::vector<std::optional<MarkerFit>> corrected;
-  for (const MarkerWindow* const window : windows)
-    corrected.push_back(window != nullptr ? fit_marker(*window, surface, *response) : std::nullopt);
-  const auto left = static_cast<std::size_t>(std::count(corrected.begin(), corrected.end(), std::nullopt));
-  if (left > 0) {  // corrected and uncorrected positions in one clip are worse than either
-    tracked.notes.emplace_back(PixelsAnswerLeft{left, windows.size()});
-    return;
-  }
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    const std::optional<MarkerFit>& found = corrected[i];
-    const cv::Point2d centre = found->centre + cv::Point2d(windows[i]->corner);
-    MarkerFit& fit = tracked.fits[i];
-    fit.light_px += fit.centre - centre;
-    fit.centre = centre;
-    fit.sd_px = found->sd_px;
-    MarkerSighting& sighting = tracked.sightings[i];
-    sighting.u_px = centre.x;
-    sighting.v_px = centre.y;
-    sighting.sd_px = found->sd_px;
-  }
+  if (is_centroid || may_have_any_shape(kind_)) return;
+  windows_.keep(signal, frame, found.guess, found.fit);
 }
 
 void MarkerTracker::accept(Path& path, const Signal& signal, std::size_t frame, const MeasuredMarker& found) {
@@ -373,6 +304,7 @@ void MarkerTracker::tidy(std::size_t frame) {
     if (!path.asleep && lost > (path.seen.size() < kFewestSightings ? 3 : kLostAfter)) path.ended = true;
   }
   std::erase_if(paths_, [](const Path& path) { return path.ended && path.seen.size() < kFewestSightings; });
+  if (windows_.should_free()) windows_.free_all_but(paths_);
 }
 
 /// A piece of the marker or a second marker that is found late is followed back through the kept frames. Only an object
@@ -433,8 +365,7 @@ TrackedMarker MarkerTracker::finish() {
   }
   TrackedMarker tracked =
       choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_, start_frame_}, marker_, clip_);
-  std::stable_sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.frame < b.frame; });
-  fit_without_response(tracked);
+  correct_for_pixels(tracked, windows_, kind_ == SignalKind::bright);
   return tracked;
 }
 

@@ -21,6 +21,7 @@
 
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
+#include "core/pictures/marker/kept_windows.h"
 #include "core/pictures/marker/marker.h"
 #include "core/pictures/marker/marker_method.h"
 #include "core/pictures/marker/marker_path.h"
@@ -41,7 +42,7 @@ class MarkerTracker {
 
   /// Limits the memory of windows around sightings; the default is 128 MiB. If any sighting
   /// has none, all keep the shift by a colour mosaic or a tone curve, and a note says how many have none.
-  void limit_windows(std::size_t bytes) { most_window_bytes_ = bytes; }
+  void limit_windows(std::size_t bytes) { windows_.limit(bytes); }
 
   /// Takes the next frame. InputError if a hue is sought in a grey clip.
   void add(const Frame& frame);
@@ -57,16 +58,7 @@ class MarkerTracker {
     Signal signal;
   };
 
-  /// A window around a sighting of any path.
-  struct Kept {
-    std::size_t frame;
-    cv::Point2d centre;
-    MarkerWindow window;
-  };
-
   void keep(const Signal& signal, std::size_t frame, const MeasuredMarker& found);
-  const MarkerWindow* window_of(const MarkerSighting& sighting) const;
-  void fit_without_response(TrackedMarker& tracked) const;
   std::optional<MeasuredMarker> find_again(const Signal& signal, std::size_t frame, const Path& path,
                                            const std::vector<cv::Point2d>& taken) const;
   void accept(Path& path, const Signal& signal, std::size_t frame, const MeasuredMarker& found);
@@ -89,8 +81,7 @@ class MarkerTracker {
   double radius_px_ = 0.0;  ///< expected radius in the middle of the image
   std::vector<Path> paths_;
   std::deque<Past> past_;  ///< frames before this one, in which paths are followed back
-  std::vector<Kept> kept_;
-  std::size_t kept_bytes_ = 0, most_window_bytes_ = std::size_t{1} << 27;
+  KeptWindows windows_;
   std::size_t searched_ = 0;
   double searched_s_ = 0.0;
   std::size_t frames_ = 0;

@@ -24,6 +24,7 @@ constexpr std::size_t kFewestFits = 8;
 constexpr double kWellKnownSize = 0.05, kLeastSizeSd = 1e-3;  // standard deviations of the log size
 constexpr double kRoughest_px = 0.3;                          // roughness of the new path
 constexpr double kLargestShare = 0.25;                        // of the residuals, relative to the contrast
+constexpr double kHopelessShare = 2.0 * kLargestShare;        // of the sampled frames, before the blur is known
 constexpr double kRougher = 1.3;                              // times the roughness of the first path that is allowed,
 constexpr double kRougherButExplained = 2.0;                  // the same if the residuals are nearly noise,
 constexpr double kRougherThanCentroid = 4.0;  // and if the first look is a centroid, which follows the light
@@ -40,8 +41,9 @@ struct Look {
   cv::Mat codes;  ///< of the window
   cv::Rect window;
   cv::Point2d expected;
-  std::optional<SphereFit> fit;
+  bool seen_first = false;  ///< whether the first look has a sighting in this frame
   cv::Vec3d shape;
+  std::optional<SphereFit> fit = {};
 };
 
 /// The quantities that all frames share.
@@ -53,19 +55,17 @@ struct Shared {
   double log_size = 0.0;
   double log_size_sd = 0.05;
   double usual_rms = 0.0;
+  double usual_share = 0.0;  ///< of the residuals, relative to the contrast
 };
 
 class SecondLook {
  public:
-  SecondLook(const TrackedMarker& first, const ClipAgain& clip, const StillBackground& background,
-             const ShapeAt& shape_at)
-      : first_(first), clip_(clip), still_(background), shape_at_(shape_at) {}
+  SecondLook(const TrackedMarker& first, const StillBackground& background, const ShapeAt& shape_at)
+      : first_(first), still_(background), shape_at_(shape_at) {}
 
-  std::optional<TrackedMarker> marker() {
-    for (const MarkerSighting& sighting : first_.sightings)
-      places_.push_back({sighting.frame, {sighting.u_px, sighting.v_px}});
-    if (places_.size() < kFewestFits) return std::nullopt;
-    read_windows();
+  std::optional<TrackedMarker> marker(const std::vector<FrameWindow>& windows) {
+    if (first_.sightings.size() < kFewestFits) return std::nullopt;
+    take_windows(windows);
     if (looks_.empty() || !find_shared()) return std::nullopt;
     fit_all();
     if (!is_better()) return std::nullopt;
@@ -73,12 +73,7 @@ class SecondLook {
   }
 
  private:
-  /// Whether the first look has a sighting in this frame.
-  bool seen_first(std::size_t frame) const {
-    return std::binary_search(places_.begin(), places_.end(), PlaceInFrame{frame, {}},
-                              [](const PlaceInFrame& a, const PlaceInFrame& b) { return a.frame < b.frame; });
-  }
-  void read_windows();
+  void take_windows(const std::vector<FrameWindow>& windows);
   std::optional<SphereFit> fit(const Look& look, cv::Point2d start, const Shared& shared,
                                const std::optional<SphereLight>& light) const;
   bool find_shared();
@@ -94,40 +89,23 @@ class SecondLook {
   TrackedMarker tracked() const;
 
   const TrackedMarker& first_;
-  const ClipAgain& clip_;
   const StillBackground& still_;
   const ShapeAt& shape_at_;
-  std::vector<PlaceInFrame> places_;  ///< sightings of the first look
-  std::vector<Look> looks_;           ///< in order of frames
+  std::vector<Look> looks_;  ///< in order of frames
   KnownBackground background_;
   Shared shared_;
 };
 
-void SecondLook::read_windows() {
-  const auto source = clip_.open();
-  while (const auto frame = source->next()) {
-    const auto expected = place_by_neighbours(places_, frame->index, false);
-    if (!expected) continue;
-    const auto shape = shape_at_(*expected, MarkerBody::sphere);
+void SecondLook::take_windows(const std::vector<FrameWindow>& windows) {
+  for (const FrameWindow& of : windows) {
+    const auto shape = shape_at_(of.expected, MarkerBody::sphere);
     if (!shape) continue;
-    background_.full_code = frame->grey.depth() == CV_8U ? 255.0 : 65535.0;
-    const double radius = radius_of(*shape);
-    const int half = static_cast<int>(std::ceil((seen_first(frame->index) ? 3.0 : 6.0) * radius + 6.0));
-    const cv::Rect window = cv::Rect(static_cast<int>(std::lround(expected->x)) - half,
-                                     static_cast<int>(std::lround(expected->y)) - half, 2 * half + 1, 2 * half + 1) &
-                            cv::Rect({}, frame->grey.size());
-    if (window.empty()) continue;
-    Look look;
-    look.frame = frame->index;
-    frame->grey(window).convertTo(look.codes, CV_32F);
-    look.window = window;
-    look.expected = *expected;
-    look.shape = *shape;
-    background_.region = looks_.empty() ? window : (background_.region | window);
-    looks_.push_back(std::move(look));
+    background_.full_code = of.full_code;
+    background_.region = looks_.empty() ? of.part : (background_.region | of.part);
+    looks_.push_back({of.frame, of.codes, of.part, of.expected, of.seen, *shape});
   }
   if (looks_.empty()) return;
-  std::vector<std::optional<std::pair<cv::Point2d, double>>> hidden(clip_.frames);
+  std::vector<std::optional<std::pair<cv::Point2d, double>>> hidden(looks_.back().frame + 1);
   for (const Look& look : looks_) hidden[look.frame] = std::pair(look.expected, 2.0 * radius_of(look.shape) + 4.0);
   background_.part = still_.behind(background_.region, [&](std::size_t frame, cv::Point pixel) {
     return frame < hidden.size() && hidden[frame] &&
@@ -170,24 +148,26 @@ constexpr std::array<std::pair<MarkerBody, ToneCurve>, 4> kChoices{{{MarkerBody:
 bool SecondLook::find_shared() {
   std::vector<const Look*> seen;
   for (const Look& look : looks_) {
-    if (seen_first(look.frame)) seen.push_back(&look);
+    if (look.seen_first) seen.push_back(&look);
   }
   std::vector<const Look*> sampled;
   const std::size_t step = std::max<std::size_t>(1, seen.size() / kSampled);
   for (std::size_t i = step / 2; i < seen.size(); i += step) sampled.push_back(seen[i]);
   std::optional<Shared> best;
   const auto attempt = [&](Shared shared, std::size_t every) {
-    std::vector<double> residuals, sizes;
+    std::vector<double> residuals, shares, sizes;
     std::size_t tried = 0;
     for (std::size_t i = 0; i < sampled.size(); i += every) {
       ++tried;
       const auto found = fit(*sampled[i], sampled[i]->expected, shared, std::nullopt);
       if (!found) continue;
       residuals.push_back(found->rms);
+      shares.push_back(found->rms / found->contrast);
       if (found->log_size_sd < kWellKnownSize) sizes.push_back(found->log_size);
     }
     if (2 * residuals.size() < tried || residuals.size() < 3) return false;
     shared.usual_rms = median_of(residuals);
+    shared.usual_share = median_of(shares);
     if (best && shared.usual_rms >= best->usual_rms) return false;
     best = shared;
     if (sizes.size() < 3) return true;
@@ -209,7 +189,7 @@ bool SecondLook::find_shared() {
       attempt(shared, 3);
     }
   }
-  if (!best) return false;
+  if (!best || best->usual_share > kHopelessShare) return false;
   const Shared chosen = *best;
   best.reset();
   for (const double blur : {0.05, 0.15, 0.3, 0.5, 0.8, 1.2}) {
@@ -220,7 +200,7 @@ bool SecondLook::find_shared() {
     shared.blur_px = blur;
     if (!attempt(shared, 2) && best) break;
   }
-  if (!best) return false;
+  if (!best || best->usual_share > kHopelessShare) return false;
   shared_ = *best;
   return true;
 }
@@ -406,8 +386,8 @@ TrackedMarker SecondLook::tracked() const {
 bool is_worth_a_second_look(const TrackedMarker& first, std::size_t frames) {
   if (first.sightings.size() < kFewestFits) return false;
   const std::size_t from = first.sightings.front().frame, to = first.sightings.back().frame;
-  const std::size_t lost = to - from + 1 - first.sightings.size();
-  if (lost > 0 || from > kFewLost || to + 1 + kFewLost < frames) return true;
+  const std::size_t missing = to - from + 1 - first.sightings.size();
+  if (missing > first.left_out || from > kFewLost || to + 1 + kFewLost < frames) return true;
   std::vector<double> residuals;
   for (const MarkerFit& fit : first.fits) residuals.push_back(fit.rms / fit.amplitude);
   return median_of(residuals) > kDiscResidual;
@@ -434,9 +414,9 @@ StillBackground background_of(const ClipAgain& clip) {
   return background;
 }
 
-std::optional<TrackedMarker> look_again(const TrackedMarker& first, const ClipAgain& clip,
+std::optional<TrackedMarker> look_again(const TrackedMarker& first, const std::vector<FrameWindow>& windows,
                                         const StillBackground& background, const ShapeAt& shape_at) {
-  return SecondLook(first, clip, background, shape_at).marker();
+  return SecondLook(first, background, shape_at).marker(windows);
 }
 
 }  // namespace glidelab::core

@@ -31,12 +31,11 @@ cv::Point2d pixels_of(const cv::Vec3d& shape, cv::Point2d q) {
 
 class TemplateLook {
  public:
-  TemplateLook(const TrackedMarker& rough, const ClipAgain& clip, const ShapeAt& shape_at)
-      : rough_(rough), clip_(clip), shape_at_(shape_at) {}
+  TemplateLook(const TrackedMarker& rough, const ShapeAt& shape_at) : rough_(rough), shape_at_(shape_at) {}
 
-  std::optional<TrackedMarker> marker() {
+  std::optional<TrackedMarker> marker(const std::vector<FrameWindow>& windows) {
     if (rough_.sightings.size() < kFewestSeen) return std::nullopt;
-    read_windows();
+    take_windows(windows);
     for (int turn = 0; turn < kTurns; ++turn) {
       if (!take_turn()) return std::nullopt;
     }
@@ -48,7 +47,7 @@ class TemplateLook {
   }
 
  private:
-  void read_windows();
+  void take_windows(const std::vector<FrameWindow>& windows);
   bool take_turn();
   bool put_at_own_centre();
   void fit_lost();
@@ -67,7 +66,6 @@ class TemplateLook {
   }
 
   const TrackedMarker& rough_;
-  const ClipAgain& clip_;
   const ShapeAt& shape_at_;
   std::vector<std::size_t> frames_;  ///< of the windows, in order
   std::vector<TemplateWindow> windows_;
@@ -77,33 +75,20 @@ class TemplateLook {
   bool has_own_centre_ = false;
 };
 
-void TemplateLook::read_windows() {
-  std::vector<PlaceInFrame> rough;
-  for (const MarkerSighting& sighting : rough_.sightings)
-    rough.push_back({sighting.frame, {sighting.u_px, sighting.v_px}});
-  const auto source = clip_.open();
-  while (const auto frame = source->next()) {
-    const auto expected = place_by_neighbours(rough, frame->index, false);
-    if (!expected) continue;
-    const auto shape = shape_at_(*expected, MarkerBody::disc);
+void TemplateLook::take_windows(const std::vector<FrameWindow>& windows) {
+  for (const FrameWindow& of : windows) {
+    const auto shape = shape_at_(of.expected, MarkerBody::disc);
     if (!shape) continue;
-    const bool was_seen =
-        std::any_of(rough.begin(), rough.end(), [&](const PlaceInFrame& place) { return place.frame == frame->index; });
-    const double slack = (was_seen ? kSlackRadii : kLostSlackRadii) * radius_of(*shape) + kSlack_px;
+    const double slack = (of.seen ? kSlackRadii : kLostSlackRadii) * radius_of(*shape) + kSlack_px;
     const int half = static_cast<int>(std::ceil(MarkerTemplate::kReach * radius_of(*shape) + slack));
-    const cv::Rect part = cv::Rect(static_cast<int>(std::lround(expected->x)) - half,
-                                   static_cast<int>(std::lround(expected->y)) - half, 2 * half + 1, 2 * half + 1) &
-                          cv::Rect({}, frame->grey.size());
+    const cv::Rect part = cv::Rect(static_cast<int>(std::lround(of.expected.x)) - half,
+                                   static_cast<int>(std::lround(of.expected.y)) - half, 2 * half + 1, 2 * half + 1) &
+                          of.part;
     if (part.empty()) continue;
-    TemplateWindow window;
-    frame->grey(part).convertTo(window.codes, CV_32F);
-    window.corner = part.tl();
-    window.shape = *shape;
-    window.start = *expected;
-    frames_.push_back(frame->index);
-    windows_.push_back(std::move(window));
+    frames_.push_back(of.frame);
+    windows_.push_back({of.codes(part - of.part.tl()), part.tl(), *shape, of.expected});
     fits_.emplace_back();
-    if (was_seen) fits_.back() = TemplateFit{*expected};
+    if (of.seen) fits_.back() = TemplateFit{of.expected};
   }
 }
 
@@ -214,9 +199,9 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
 
 }  // namespace
 
-std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const ClipAgain& clip,
+std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const std::vector<FrameWindow>& windows,
                                               const ShapeAt& shape_at) {
-  return TemplateLook(rough, clip, shape_at).marker();
+  return TemplateLook(rough, shape_at).marker(windows);
 }
 
 }  // namespace glidelab::core

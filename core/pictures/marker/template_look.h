@@ -4,17 +4,18 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/pictures/marker/marker_path.h"
-#include "core/pictures/marker/second_look.h"
+#include "core/pictures/marker/marker_windows.h"
 
 namespace glidelab::core {
 
-/// Reads the clip once more, and finds the look and the positions in all frames alternately, eight times. Frames in
-/// which the marker was lost are fitted outwards from their neighbours. Empty if the residuals or the roughness of the
-/// path are too large, if the look has no edge at the expected outline, or if the marker is seen in fewer frames than
-/// before (or in fewer than eight).
-std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const ClipAgain& clip,
+/// Finds the look and the positions in all windows around a rough track alternately, eight times. Frames in which the
+/// marker was lost are fitted outwards from their neighbours. Empty if the residuals or the roughness of the path are
+/// too large, if the look has no edge at the expected outline, or if the marker is seen in fewer frames than before (or
+/// in fewer than eight).
+std::optional<TrackedMarker> look_by_template(const TrackedMarker& rough, const std::vector<FrameWindow>& windows,
                                               const ShapeAt& shape_at);
 
 }  // namespace glidelab::core

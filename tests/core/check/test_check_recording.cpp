@@ -10,6 +10,7 @@
 #include "core/analysis/clip_to_track.h"
 #include "core/check/check_clip.h"
 #include "core/check/recording_findings.h"
+#include "core/motion/analyze_motion.h"
 #include "tests/catch.h"
 #include "tests/core/findings.h"
 #include "tests/core/simulated_track.h"
@@ -83,6 +84,9 @@ TEST_CASE("a check reads each clip once, and finds the noise and the contrast th
     CHECK(std::abs(255.0 * *clip.contrast - (kMarker - kBackground)) < 1.0);
     REQUIRE(clip.marker_level.has_value());
     CHECK(std::abs(255.0 * *clip.marker_level - kMarker) < 1.0);
+    // The noise that the analysis states.
+    const core::TrackData track = core::tracks_of(experiment, 1).tracks.at(0);
+    CHECK(clip.position_noise_m == core::analyze_motion(experiment.clips[0], track, {}).position_noise_m);
   }
 }
 
@@ -394,6 +398,15 @@ TEST_CASE("an exposure longer than the time between frames, or than twice that o
   CHECK(kept({clip(0.004, 1e-9), clip(0.003, 1e-9)}));
   CHECK_FALSE(kept({clip(0.004, 1e-9), clip(0.0008, 1e-9)}));
   CHECK(kept({clip(0.004, 1e-9), clip(0.0008, 1e-6)}));  // the other says nothing
+  // Without that exposure it has no smear of 9 px, with which it may have come from outside.
+  std::vector<core::ClipCheck> clips{clip(0.004, 1e-9), clip(0.0008, 1e-9)};
+  clips[0].width_px = 640;
+  clips[0].height_px = 480;
+  clips[0].sightings = {{0, 22.0, 200.0, 0.01, 6.0}, {1, 30.0, 200.0, 0.01, 6.0}, {2, 629.0, 200.0, 0.01, 6.0}};
+  clips[0].entered = clips[0].left = true;
+  core::drop_contradicted_exposures(clips);
+  CHECK_FALSE(clips[0].entered);
+  CHECK(clips[0].left);  // 10 px from the edge, less than three radii
 
   // A bar that lengthens with its speed as with an exposure of two frame times.
   const auto checked = [&](double frames_open) {

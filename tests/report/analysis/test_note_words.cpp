@@ -101,6 +101,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::PixelsAnswerLeft{3, 50},
        "the marker's positions are not corrected for the response of the camera's pixels to an edge: in 3 of 50 "
        "frames"},
+      {core::PixelsAnswerLeft{3, 50, true}, "3 of 50 frames, in which the fit with that response fails, are left out"},
       {core::MarkerLost{21, 0, 0, 70},
        "in 21 of 70 frames the marker is not found, though it is not at the edge of the image: the first 21"},
       {core::MarkerLost{0, 2, 4, 70}, "2 between its sightings, the last 4"},

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/pictures/marker/second_look.h"
 #include "core/pictures/marker/template_look.h"
 #include "tests/catch.h"
 #include "tests/core/clip_in_memory.h"
@@ -81,7 +82,7 @@ std::optional<core::TrackedMarker> by_template(const std::vector<cv::Mat>& frame
   const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
     return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
   };
-  return core::look_by_template(rough, clip, circle);
+  return core::look_by_template(rough, core::windows_around(rough, clip, circle), circle);
 }
 
 /// Standard deviation of the positions about the truth in px. A constant offset is allowed.
@@ -118,6 +119,35 @@ TEST_CASE("A ring, a bull's eye and quadrants are followed by their own look") {
     }();
     CHECK(scatter(*found) < 2.5 * mean_sd);
     CHECK(mean_sd < 0.05);
+  }
+}
+
+TEST_CASE("Every frame that shows the look settles, also where two places in turn ask for each other") {
+  for (const Look look : {ring, bulls_eye, quadrants}) {
+    const std::vector<cv::Mat> frames = film_look(look, false);
+    std::vector<core::TemplateWindow> windows;
+    std::vector<std::optional<core::TemplateFit>> fits;
+    for (std::size_t k = 0; k < kFrames; ++k) {
+      core::TemplateWindow window;
+      const cv::Rect part = cv::Rect(cvRound(place(k).x) - 18, cvRound(place(k).y) - 18, 37, 37) & cv::Rect({}, kSize);
+      frames[k](part).convertTo(window.codes, CV_32F);
+      window.corner = part.tl();
+      window.shape = cv::Vec3d(1.0, 0.0, 1.0) / kRadius;
+      window.start = place(k);
+      windows.push_back(window);
+      fits.emplace_back(core::TemplateFit{place(k)});
+    }
+    const auto made = core::MarkerTemplate::of(windows, fits);
+    REQUIRE(made);
+    for (std::size_t k = 4; k + 4 < kFrames; ++k) {
+      for (int start = 0; start < 9; ++start) {
+        windows[k].start = place(k) + cv::Point2d(0.4 * (start % 3 - 1), 0.4 * (start / 3 - 1));
+        CAPTURE(k, start);
+        const auto fit = made->fit(windows[k]);
+        REQUIRE(fit);
+        CHECK(cv::norm(fit->centre - place(k)) < 0.2);  // the robust weights let places a tenth apart settle
+      }
+    }
   }
 }
 

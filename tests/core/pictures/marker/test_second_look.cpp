@@ -63,7 +63,7 @@ std::optional<core::TrackedMarker> again(const std::vector<cv::Mat>& frames, con
   const core::ShapeAt circle = [](cv::Point2d, core::MarkerBody) {
     return std::optional(cv::Vec3d(1.0, 0.0, 1.0) / kRadius);
   };
-  return core::look_again(first, clip, core::background_of(clip), circle);
+  return core::look_again(first, core::windows_around(first, clip, circle), core::background_of(clip), circle);
 }
 
 tests::LitBall side_lit() {
@@ -138,6 +138,12 @@ TEST_CASE("Lost frames, late starts and large residuals are worth a second look"
   }
   CHECK_FALSE(core::is_worth_a_second_look(whole, kFrames));
   CHECK(core::is_worth_a_second_look(whole, kFrames + 20));
+  core::TrackedMarker without = whole;
+  without.sightings.erase(without.sightings.begin() + 20);
+  without.fits.pop_back();
+  CHECK(core::is_worth_a_second_look(without, kFrames));
+  without.left_out = 1;  // seen, and left out for another reason
+  CHECK_FALSE(core::is_worth_a_second_look(without, kFrames));
   for (core::MarkerFit& fit : whole.fits) fit.rms = 8.0;
   CHECK(core::is_worth_a_second_look(whole, kFrames));
 }
