@@ -301,11 +301,13 @@ std::string levels_words(const diagnose::Diagnosis& diagnosis) {
 }
 
 std::string remainder_words(const diagnose::GapRemainder& of) {
+  // Smaller scatters are traces of the search: 0.1 mm/s² is that of a friction coefficient by 0.00001.
+  constexpr double kLeastForce_m_s2 = 1e-4, kLeastDrag = 1e-3;
   std::vector<std::string> scatter;
-  if (of.clip_scatter_m_s2 > 0.0) {
+  if (of.clip_scatter_m_s2 >= kLeastForce_m_s2) {
     scatter.push_back("friction and inclination scatter by " + base::size_text(of.clip_scatter_m_s2, 2, "m/s²"));
   }
-  if (of.drag_scatter > 0.0) {
+  if (of.drag_scatter >= kLeastDrag) {
     scatter.push_back(fmt::format("the drag {}by {} %", scatter.empty() ? "scatters " : "",
                                   base::number_text(kPercent * of.drag_scatter, 2)));
   }

@@ -213,6 +213,10 @@ TEST_CASE("what is left is told as an acceleration and a scatter, with their uni
         "friction and inclination scatter by 0.8 mm/s² and the drag by 2.1 %.");
   of.clip_scatter_m_s2 = 0.0;
   CHECK(report::remainder_words(of).ends_with("From clip to clip, the drag scatters by 2.1 %."));
+  of.clip_scatter_m_s2 = 2.4e-8;  // a trace of the search
+  CHECK(report::remainder_words(of).ends_with("From clip to clip, the drag scatters by 2.1 %."));
+  of.drag_scatter = 4e-5;
+  CHECK(report::remainder_words(of).find("From clip to clip") == std::string::npos);
   of.acceleration_m_s2 = of.drag_scatter = 0.0;
   CHECK(report::remainder_words(of).empty());
   diagnose::GapRegion region{diagnose::GapVariable::mass,     0.335, 0.335, 4.0, 0.01, "m/s²",
