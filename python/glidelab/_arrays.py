@@ -40,7 +40,7 @@ def stored(values: Any) -> Any:
         array = np.asanyarray(values)
     except ValueError:  # rows of different lengths
         return values
-    return array.astype(np.float64, copy=False) if array.dtype.kind in "fiu" else array
+    return np.asanyarray(array, dtype=np.float64) if array.dtype.kind in "fiu" else array
 
 
 def frozen(array: Any) -> Any:
