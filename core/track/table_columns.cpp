@@ -300,31 +300,39 @@ std::size_t asked_column(const ColumnTable& table, const std::string& asked) {
                      "one of the " + columns_text(table));
 }
 
-/// Whether all values increase, as times do.
-bool increases(const TableColumn& column) {
+/// The steps from one value of a column to the next.
+struct Steps {
+  std::size_t up = 0, back = 0, all = 0;
+};
+
+Steps steps_of(const TableColumn& column) {
+  Steps steps;
   std::optional<double> last;
   for (const std::optional<double>& value : column.values) {
     if (!value) continue;
-    if (last && *value <= *last) return false;
+    if (last) {
+      ++steps.all;
+      steps.up += *value > *last ? 1 : 0;
+      steps.back += *value < *last ? 1 : 0;
+    }
     last = value;
   }
-  return last.has_value();
+  return steps;
+}
+
+/// Whether all values increase, as times do.
+bool increases(const TableColumn& column) {
+  const bool any =
+      std::any_of(column.values.begin(), column.values.end(), [](const auto& value) { return value.has_value(); });
+  const Steps steps = steps_of(column);
+  return any && steps.up == steps.all;
 }
 
 /// Whether few of the steps go back: times, one or the other of which is wrong or repeated.
 bool goes_back_seldom(const TableColumn& column) {
   constexpr std::size_t kOneIn = 10;
-  std::size_t back = 0, steps = 0;
-  std::optional<double> last;
-  for (const std::optional<double>& value : column.values) {
-    if (!value) continue;
-    if (last) {
-      ++steps;
-      back += *value < *last ? 1 : 0;
-    }
-    last = value;
-  }
-  return kOneIn * back <= steps;
+  const Steps steps = steps_of(column);
+  return kOneIn * steps.back <= steps.all;
 }
 
 /// Two columns without a header: t and x, unless the second increases throughout and the first often goes back.
@@ -454,17 +462,8 @@ double seconds_of(const ColumnTable& table, const TableColumn& column, std::vect
 }
 
 bool rises_mostly(const TableColumn& times) {
-  std::size_t up = 0, steps = 0;
-  std::optional<double> last;
-  for (const std::optional<double>& value : times.values) {
-    if (!value) continue;
-    if (last) {
-      ++steps;
-      up += *value > *last;
-    }
-    last = value;
-  }
-  return 2 * up >= steps;
+  const Steps steps = steps_of(times);
+  return 2 * steps.up >= steps.all;
 }
 
 }  // namespace glidelab::core

@@ -120,7 +120,8 @@ const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comp
   for (std::size_t left = best.effects.size(); left > 0 && !uncertain.empty(); --left) {
     const Hypothesis* next = nullptr;
     for (const std::size_t e : uncertain) {
-      if (next == nullptr) next = with_size_by_another_name(set, comparison, renamed != nullptr ? *renamed : best, e);
+      next = with_size_by_another_name(set, comparison, renamed != nullptr ? *renamed : best, e);
+      if (next != nullptr) break;
     }
     if (next == nullptr) break;
     renamed = next;

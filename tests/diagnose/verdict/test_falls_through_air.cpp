@@ -224,6 +224,14 @@ TEST_CASE("of coffee filters the quadratic drag comes first and the air that mov
   REQUIRE(diagnosis.explained.size() >= 2);
   CHECK(diagnosis.explained[0].id == "quadratic_drag");
   CHECK(diagnosis.explained[0].share > 0.5);  // of what a fall without any drag would leave
+  const auto note = std::ranges::find_if(
+      diagnosis.notes, [](const auto& one) { return std::holds_alternative<diagnose::FallsThroughAir>(one); });
+  REQUIRE(note != diagnosis.notes.end());
+  const auto gaps = std::get<diagnose::FallsThroughAir>(*note).gaps;
+  REQUIRE(gaps);
+  REQUIRE(diagnosis.remainder);
+  CHECK(gaps->named == diagnosis.remainder->gap);
+  CHECK(gaps->viscous > gaps->named);  // the made drag is quadratic
   REQUIRE(diagnosis.recovered.size() == 3);
   for (const auto& one : diagnosis.recovered) {
     CHECK_FALSE(one.k_over_m_1_s.estimate);

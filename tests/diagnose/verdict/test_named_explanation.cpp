@@ -1,0 +1,80 @@
+#include "diagnose/verdict/named_explanation.h"
+
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/nominal_fit.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// A comparison of explanations that follow the motions equally well.
+struct Named {
+  diagnose::TrackSet set;
+  diagnose::Comparison comparison;
+
+  Named() {
+    const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.1 * v * std::abs(v); }};
+    const tests::MadeExperiment made = tests::made_experiment(tests::made_launches({0.4}), drag, 7, 1e-4, 60, 50.0);
+    set = diagnose::track_set(made.results, made.setups, true);
+    comparison.fits.push_back(diagnose::fit_nominal(set));
+    comparison.effect_probability.assign(diagnose::effect_list().size(), 0.0);
+  }
+
+  /// An explanation by these effects, the sizes of the last of which are as fitted or 0.
+  void add(const std::vector<std::string_view>& ids, bool has_size, double probability) {
+    diagnose::Hypothesis one;
+    diagnose::MotionFit fit = comparison.fits.front();
+    for (const std::string_view id : ids) {
+      const std::size_t effect = diagnose::effect_index(id);
+      one.effects.push_back(effect);
+      fit = diagnose::fit_with_effect(set, fit, effect, diagnose::with_effect(set, fit, effect, {0.05}, {}));
+    }
+    const auto size = static_cast<Eigen::Index>(fit.layout->first_of(one.effects.back()));
+    if (!has_size) fit.at.global[size] = 0.0;
+    one.probability = probability;
+    one.gain = 40.0;
+    one.log_evidence = 30.0;
+    one.fit = static_cast<int>(comparison.fits.size());
+    comparison.fits.push_back(std::move(fit));
+    comparison.all.push_back(std::move(one));
+  }
+
+  std::vector<std::size_t> instead() const {
+    const diagnose::Hypothesis* named = diagnose::with_certain_sizes(set, comparison, comparison.all.front());
+    return named != nullptr ? named->effects : std::vector<std::size_t>();
+  }
+};
+
+const std::size_t kDrag = diagnose::effect_index(diagnose::ids::quadratic_drag);
+
+}  // namespace
+
+TEST_CASE("an effect without a certain size gives way to an equal that has one, and to no other") {
+  Named named;
+  named.add({"power_law_drag"}, false, 0.5);
+  named.add({"quadratic_drag"}, true, 0.4);
+  CHECK(named.instead() == std::vector{kDrag});
+  named.comparison.all[1].gain = 30.0;  // it follows the motions less well: no equal
+  CHECK(named.instead().empty());
+}
+
+TEST_CASE("where no equal has a certain size the others of an explanation stand alone, or it is kept") {
+  Named named;
+  named.add({"power_law_drag"}, false, 0.5);
+  named.add({"quadratic_drag"}, false, 0.4);
+  CHECK(named.instead().empty());
+  Named beside;
+  beside.add({"quadratic_drag", "load_independent_friction"}, false, 0.5);
+  beside.add({"quadratic_drag"}, true, 0.4);
+  CHECK(beside.instead() == std::vector{kDrag});
+  Named certain;
+  certain.add({"quadratic_drag"}, true, 0.5);
+  CHECK(certain.instead().empty());
+}
