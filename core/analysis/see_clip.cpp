@@ -235,9 +235,9 @@ class FurtherLooks {
   /// The clip after the search for a disc.
   SeenClip after(Looked disc);
 
-  /// The clip after the search by a hue, which tells the marker from everything else, but is a poor place to measure a
-  /// centroid: codecs store colours coarsely, and light from one side shifts it. A lit body is
-  /// fitted to grey values, and counts if its path is steadier.
+  /// The clip after the search by a hue. A hue tells the marker from everything else, but its centroid is a poor
+  /// position: codecs store colours coarsely, and light from one side shifts it. So a lit body is fitted to the grey
+  /// values as well, and counts if its path is steadier.
   SeenClip after_hue(SeenClip seen);
 
  private:
