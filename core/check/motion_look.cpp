@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "base/math/angles.h"
 #include "base/math/dense.h"
 #include "core/math/parabola.h"
 #include "core/math/quantile.h"
+#include "core/motion/free/motion.h"
 #include "core/motion/smoothing/noise.h"
 
 namespace glidelab::core {
@@ -50,6 +52,20 @@ void find_acceleration(std::span<const double> t_s, std::span<const double> x_m,
   if (!(typical > kOverNoise * sd_m_s2)) return;
   look.acceleration_m_s2 = typical;
   look.acceleration_sd_m_s2 = sd_m_s2;
+}
+
+/// The motion without single positions that lie off it: one of them bends the parabola through all of its part.
+Motion without_outliers(std::span<const double> t_s, std::span<const double> x_m, double noise_m) {
+  Motion motion;
+  motion.t_s.assign(t_s.begin(), t_s.end());
+  motion.x_m.assign(x_m.begin(), x_m.end());
+  motion.y_m = motion.x_m;
+  motion.point.resize(t_s.size());
+  std::iota(motion.point.begin(), motion.point.end(), std::size_t{0});
+  motion.step_s = median_step(t_s);
+  motion.noise_m = noise_m;
+  const Motion steady = without(motion, find_outliers(motion));
+  return steady.t_s.size() < kFewestPoints ? motion : steady;
 }
 
 /// Whether one parabola passes through all points to within `off_m`: they then include neither a bounce nor a sensor's
@@ -137,6 +153,9 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   const double noise_m = pilot_noise(t_s, x_m);
   look.smooth = noise_m < kSmoothPart * look.distance_m;
   if (forced) return look;
+  const Motion steady = without_outliers(t_s, x_m, noise_m);
+  t_s = steady.t_s;
+  x_m = steady.x_m;
   find_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / kParts), noise_m, look);
   if (!look.acceleration_m_s2 && is_parabola(t_s, x_m, kOffWhole * look.distance_m)) {
     find_acceleration(t_s, x_m, x_m.size(), noise_m, look);

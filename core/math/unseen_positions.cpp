@@ -5,16 +5,13 @@
 #include <cstddef>
 #include <set>
 
+#include "core/math/jump_limits.h"
 #include "core/math/quantile.h"
 
 namespace glidelab::core {
 namespace {
 
 constexpr std::size_t kFewestEqual = 4;
-constexpr std::size_t kFewestSteps = 8;  // that show the speed of the motion
-constexpr std::size_t kNearest = 6;      // steps on one side of a jump
-constexpr double kMostOfSteps = 0.9;     // quantile of the speeds
-constexpr double kJump = 4.0;            // times the speed: a launch or a stop within one step has 1
 
 /// Equal neighbouring values, [from, to).
 struct EqualRun {
@@ -49,7 +46,7 @@ class Steps {
       if (counts_[i]) own.push_back(speed_[i]);
     }
     enough_ = own.size() >= kFewestSteps;
-    typical_ = quantile(own, kMostOfSteps);
+    typical_ = quantile(own, kTypicalOfSteps);
   }
 
   bool enough() const { return enough_; }
@@ -57,7 +54,7 @@ class Steps {
   /// Whether step `i` is a jump, where the motion is on this side of it (-1 before, 1 after).
   bool is_jump(std::size_t i, int side) const {
     std::vector<double> near;
-    for (std::size_t k = i; near.size() < kNearest;) {
+    for (std::size_t k = i; near.size() < kNearestOfJump;) {
       if (side < 0 ? k == 0 : k + 1 == speed_.size()) break;
       k = side < 0 ? k - 1 : k + 1;
       if (counts_[k]) near.push_back(speed_[k]);
@@ -106,12 +103,12 @@ std::optional<UnseenPositions> unseen_positions(std::span<const double> t_s, std
   return unseen;
 }
 
-std::vector<double> seen_of(const std::vector<double>& values, const UnseenPositions& unseen) {
-  std::vector<double> seen;
+std::vector<double> without_flagged(const std::vector<double>& values, const std::vector<bool>& flagged) {
+  std::vector<double> kept;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!unseen.is_unseen[i]) seen.push_back(values[i]);
+    if (!flagged[i]) kept.push_back(values[i]);
   }
-  return seen;
+  return kept;
 }
 
 }  // namespace glidelab::core

@@ -26,7 +26,7 @@ struct UnseenPositions {
 /// Times rise. None if nothing is unseen, or if fewer than eight steps outside the runs show the speed of the motion.
 std::optional<UnseenPositions> unseen_positions(std::span<const double> t_s, std::span<const double> x);
 
-/// The values without those that are unseen.
-std::vector<double> seen_of(const std::vector<double>& values, const UnseenPositions& unseen);
+/// The values without the flagged ones.
+std::vector<double> without_flagged(const std::vector<double>& values, const std::vector<bool>& flagged);
 
 }  // namespace glidelab::core

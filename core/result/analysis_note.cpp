@@ -9,8 +9,8 @@ Note& Note::operator=(Note&&) noexcept = default;
 Note::~Note() = default;
 
 bool is_of_reading(const Note& note) {
-  return std::holds_alternative<PositionsUnseen>(note) || std::holds_alternative<ColumnsGuessed>(note) ||
-         std::holds_alternative<PathBends>(note);
+  return std::holds_alternative<PositionsUnseen>(note) || std::holds_alternative<PositionsAstray>(note) ||
+         std::holds_alternative<ColumnsGuessed>(note) || std::holds_alternative<PathBends>(note);
 }
 
 }  // namespace glidelab::core

@@ -100,6 +100,13 @@ struct PositionsUnseen {
   double value_m = 0.0, from_s = 0.0;  ///< of the first of them
 };
 
+/// Runs of positions that lie off the motion, as if of something else, and that are left out.
+struct PositionsAstray {
+  std::size_t positions = 0;
+  double from_s = 0.0;  ///< of the first of them
+  double off_m = 0.0;   ///< how far the largest jump leads
+};
+
 /// Columns without a header, more than one of which could be times.
 struct ColumnsGuessed {
   std::string x, t;
@@ -369,16 +376,18 @@ struct FitScatters {
   bool motions_differ = false;
 };
 
-using AnyNote = std::variant<
-    FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps, SheetTaken,
-    ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath, CountedAlongMotion, RowsIncomplete,
-    PositionsUnseen, ColumnsGuessed, PathBends, RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant,
-    PositionsOutsideClip, PositionsFilledIn, AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight,
-    UnrefinedCorners, CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
-    MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, MarkerLost, DarkMarker,
-    DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted, FramesMissing, OutliersLeftOut,
-    CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding, GeneralisedLine, NoGeneralisedLine,
-    AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline, GravityAssumed, RobustFit, FitScatters>;
+using AnyNote =
+    std::variant<FilesSkipped, ContainerOfOtherRate, LastFramesUnstamped, IrregularStamps, RepeatedFrames, EvenStamps,
+                 SheetTaken, ColumnsTaken, UnitAssumed, HeightTaken, ForceUnused, MotionAlongY, SlantedPath,
+                 CountedAlongMotion, RowsIncomplete, PositionsUnseen, PositionsAstray, ColumnsGuessed, PathBends,
+                 RoundedTimes, NoLengthUnit, PointMassTaken, MassMovesAslant, PositionsOutsideClip, PositionsFilledIn,
+                 AssumedStatements, MayBeAFall, AssumedMass, OutlyingView, NoPatternInSight, UnrefinedCorners,
+                 CornersErrTogether, UncertainFocalLength, FisheyePreferred, PlaneViewsDisagree, MarkerAtRest,
+                 MarkerConcealed, MarkerMeasuredBy, MarkerOfOtherSize, MarkerFittedAgain, PixelsAnswerLeft, MarkerLost,
+                 DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
+                 FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
+                 GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline,
+                 GravityAssumed, RobustFit, FitScatters>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

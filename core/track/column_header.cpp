@@ -66,7 +66,11 @@ TableColumn column_of(const std::string& text) {
   const auto close = open == std::string_view::npos ? open : rest.find_first_of(")]", open);
   std::string name(rest);
   if (close != std::string_view::npos && !is_index(rest.substr(open + 1, close - open - 1))) {
-    column.unit = std::string(trimmed(rest.substr(open + 1, close - open - 1)));
+    std::string_view unit = trimmed(rest.substr(open + 1, close - open - 1));
+    for (const std::string_view in : {"in ", "en "}) {  // "Zeit (in s)", "temps (en s)"
+      if (unit.starts_with(in)) unit = trimmed(unit.substr(in.size()));
+    }
+    column.unit = std::string(unit);
     column.run = std::string(trimmed(rest.substr(close + 1)));
     name = std::string(trimmed(rest.substr(0, open)));
   }
@@ -99,8 +103,8 @@ TableColumn column_of(const std::string& text) {
       name.resize(underscore);
     }
   }
-  // "x / cm", "t in s", "x, cm".
-  for (const std::string_view between : {"/", " in ", ","}) {
+  // "x / cm", "t in s", "temps en s", "x em m", "x, cm".
+  for (const std::string_view between : {"/", " in ", " en ", " em ", ","}) {
     const auto at = name.rfind(between);
     if (!column.unit.empty() || at == std::string::npos || at == 0) continue;
     const std::string_view tail = trimmed(std::string_view(name).substr(at + between.size()));
@@ -137,7 +141,9 @@ bool is_place_column(const TableColumn& column) {
       "str\xC3\xA4"
       "cka",
       "avst\xC3\xA5nd", "positie"};
-  return !is_time_column(column) && std::find(kPlaces.begin(), kPlaces.end(), lower(column.name)) != kPlaces.end();
+  const std::string name = lower(column.name);
+  if (is_time_column(column)) return false;
+  return name.ends_with("x-koordinate") || std::find(kPlaces.begin(), kPlaces.end(), name) != kPlaces.end();
 }
 
 bool is_height_column(const TableColumn& column) {
@@ -145,7 +151,9 @@ bool is_height_column(const TableColumn& column) {
       "y",           "position y",        "y-position", "y position", "position (y)", "height",       "h",
       "h\xC3\xB6he", "hauteur",           "altura",     "altezza",    "h\xC3\xB8yde", "h\xC3\xB8jde", "h\xC3\xB6jd",
       "hoogte",      "vertical position", "z"};
-  return !is_time_column(column) && std::find(kHeights.begin(), kHeights.end(), lower(column.name)) != kHeights.end();
+  const std::string name = lower(column.name);
+  if (is_time_column(column)) return false;
+  return name.ends_with("y-koordinate") || std::find(kHeights.begin(), kHeights.end(), name) != kHeights.end();
 }
 
 namespace {

@@ -135,7 +135,7 @@ PlanePath path_of(const TableColumn& x, const TableColumn& y) {
   for (const std::vector<double>* const places : {&path.x_m, &path.y_m}) {
     const std::optional<UnseenPositions> unseen = unseen_positions(rows, *places);
     if (!unseen) continue;
-    return {seen_of(path.x_m, *unseen), seen_of(path.y_m, *unseen)};
+    return {without_flagged(path.x_m, unseen->is_unseen), without_flagged(path.y_m, unseen->is_unseen)};
   }
   return path;
 }
@@ -335,11 +335,28 @@ bool goes_back_seldom(const TableColumn& column) {
   return kOneIn * steps.back <= steps.all;
 }
 
-/// Two columns without a header: t and x, unless the second increases throughout and the first often goes back.
-/// (Times with a wrong one among them keep their place, and the error names its line.)
+/// How much the steps of a column differ: their standard deviation over their mean.
+double unevenness(const TableColumn& column) {
+  std::vector<double> steps;
+  std::optional<double> last;
+  for (const std::optional<double>& value : column.values) {
+    if (value && last) steps.push_back(*value - *last);
+    if (value) last = value;
+  }
+  double mean = 0.0, square = 0.0;
+  for (const double step : steps) mean += step / static_cast<double>(steps.size());
+  for (const double step : steps) square += (step - mean) * (step - mean) / static_cast<double>(steps.size());
+  return std::sqrt(square) / std::abs(mean);
+}
+
+/// Two columns without a header: t and x, unless the second increases throughout and the first often goes back, or does
+/// so in far less even steps. (Times with a wrong one among them keep their place, and the error names its line.)
 ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
   const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
-  const std::size_t time = second && !goes_back_seldom(table.columns[0]) ? 1 : 0;
+  constexpr double kFarLess = 0.1, kEven = 1e-3;
+  const double uneven = first && second ? unevenness(table.columns[0]) : 0.0;
+  const bool is_evener = uneven > kEven && unevenness(table.columns[1]) < kFarLess * uneven;
+  const std::size_t time = second && (is_evener || !goes_back_seldom(table.columns[0])) ? 1 : 0;
   if (second && (first || time == 1))
     notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});
   return only(1 - time);

@@ -19,6 +19,7 @@
 #include "core/experiment/local_gravity.h"
 #include "core/math/even_times.h"
 #include "core/math/signed_drop.h"
+#include "core/math/stray_positions.h"
 #include "core/math/time_gap.h"
 #include "core/math/unseen_positions.h"
 #include "core/track/column_table.h"
@@ -45,26 +46,34 @@ void put_even(TrackData& track) {
   for (std::size_t i = 0; i < track.t_s.size(); ++i) track.t_s[i] = start_s + even->t_s[i];
 }
 
-}  // namespace
-
-void leave_out_unseen(TrackData& track) {
-  if (track.x_m.empty()) return;  // speeds
-  const std::optional<UnseenPositions> unseen = unseen_positions(track.t_s, track.x_m);
-  if (!unseen) return;
-  track.notes.emplace_back(PositionsUnseen{unseen->count, unseen->value, unseen->from_s});
+void leave_out(const std::vector<bool>& flagged, TrackData& track) {
   for (std::vector<double>* values : {&track.t_s, &track.x_m, &track.force_n}) {
-    if (!values->empty()) *values = seen_of(*values, *unseen);
+    if (!values->empty()) *values = without_flagged(*values, flagged);
   }
   if (track.frame.empty()) return;
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < track.frame.size(); ++i) {
-    if (!unseen->is_unseen[i]) frames.push_back(track.frame[i]);
+    if (!flagged[i]) frames.push_back(track.frame[i]);
   }
   track.frame = std::move(frames);
 }
 
+}  // namespace
+
+void leave_out_false_positions(TrackData& track) {
+  if (track.x_m.empty()) return;  // speeds
+  if (const std::optional<UnseenPositions> unseen = unseen_positions(track.t_s, track.x_m)) {
+    track.notes.emplace_back(PositionsUnseen{unseen->count, unseen->value, unseen->from_s});
+    leave_out(unseen->is_unseen, track);
+  }
+  if (const std::optional<StrayPositions> stray = stray_positions(track.t_s, track.x_m)) {
+    track.notes.emplace_back(PositionsAstray{stray->count, stray->from_s, stray->off});
+    leave_out(stray->is_stray, track);
+  }
+}
+
 void take_rows_as_frames(TrackData& track) {
-  leave_out_unseen(track);
+  leave_out_false_positions(track);
   put_even(track);
   track.frame.resize(track.t_s.size());
   std::iota(track.frame.begin(), track.frame.end(), std::size_t{0});

@@ -45,11 +45,11 @@ struct TrackData {
   std::vector<double> v_m_s = {};  ///< measured speeds in place of positions: x_m and force_n are empty then
 };
 
-/// Leaves out the values that a sensor or a tracker writes while it sees nothing (core/math/unseen_positions.h), with a
-/// note that counts them.
-void leave_out_unseen(TrackData& track);
+/// Leaves out the values that a sensor or a tracker writes while it sees nothing (core/math/unseen_positions.h), then
+/// the positions of something else (core/math/stray_positions.h), with notes that count them.
+void leave_out_false_positions(TrackData& track);
 
-/// Takes every point of a track from a file as a frame in which the object was seen, without the unseen ones; the frame
+/// Takes every point of a track from a file as a frame in which the object was seen, without false ones; the frame
 /// rate is one over the median time step. Times that are uniform except for rounding to written digits are restored to
 /// their uniform values (even_times.h); a note says so if a digit is more than a thousandth of a frame.
 void take_rows_as_frames(TrackData& track);

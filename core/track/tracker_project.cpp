@@ -297,7 +297,7 @@ TrackData read_tracker_project(const fs::path& file, std::optional<Downhill> dow
   if (off > kSlantedRad) {
     track.notes.emplace_back(MassMovesAslant{off * base::kDegreesPerRad, 1.0 - std::cos(off), along_y});
   }
-  leave_out_unseen(track);
+  leave_out_false_positions(track);
   return track;
 }
 

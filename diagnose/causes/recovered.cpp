@@ -9,6 +9,7 @@
 
 #include "base/math/angles.h"
 #include "base/math/dense.h"
+#include "base/math/distributions.h"
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
@@ -107,6 +108,8 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
   const std::optional<FewPositions> few = few_positions(set);
   const double of_noise = few ? few->degrees : std::numeric_limits<double>::infinity();
   const double of_clips = std::max(1.0, static_cast<double>(set.clips.size()) - 1.0);
+  // The motions determine mu g and g sin(alpha); where gravity is no parameter of the fit, its uncertainty is added.
+  const double by_gravity = gravity_matters(set) ? 0.0 : set.gravity_sd_m_s2 / set.gravity_m_s2;
   const auto root_of = [](const Eigen::MatrixXd& covariance, const Eigen::VectorXd& by) {
     const Eigen::VectorXd along = base::product(covariance, by);
     return std::sqrt(std::max(0.0, by.dot(along)));
@@ -154,12 +157,14 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
       one.k_over_m_1_s.why = core::unknown::DragNotViscous{};
     }
     one.mu = found(mu(at), gradient(mu), 1.0);
+    one.mu.sd = std::hypot(one.mu.sd, by_gravity * one.mu.value);
     one.mu.known &= one.mu.sd < kUnknownMu;
     if (!(std::cos(alpha(at)) > kNoLoad)) {
       one.mu.known = false;
       one.mu.why = core::unknown::FreeFall{};
     }
     one.alpha_rad = found(alpha(at), gradient(alpha), 1.0);
+    one.alpha_rad.sd = std::hypot(one.alpha_rad.sd, by_gravity * std::tan(one.alpha_rad.value));
     one.alpha_rad.known &= one.alpha_rad.sd < kUnknownAngle_rad;
     if (is_at_limit(fit, ParameterLayout::Global::Kind::alpha, of.first)) {
       one.alpha_rad.known = false;
@@ -181,19 +186,43 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
   return all;
 }
 
-/// A quantity under the reported explanation, with `others` as far as they are likely: the reported value, and sd² =
-/// sum of p (sd² + (value - reported)²) / sum of p.
+/// The distance from `centre` within which a quantity lies with 95 % by these explanations together.
+double half_width95(double centre, const std::vector<std::pair<Recovered, double>>& of) {
+  constexpr double kOutside = 0.05;
+  const auto within = [&](double distance) {  // less what may lie outside
+    double outside = 0.0, sum = 0.0;
+    for (const auto& [one, probability] : of) {
+      sum += probability;
+      if (one.sd > 0.0) {
+        outside += probability * (base::student_t_tail(one.degrees, (centre + distance - one.value) / one.sd) +
+                                  base::student_t_tail(one.degrees, (one.value - centre + distance) / one.sd));
+      } else if (!(std::abs(one.value - centre) <= distance)) {
+        outside += probability;
+      }
+    }
+    return outside <= kOutside * sum;
+  };
+  double low = 0.0, high = 0.0;
+  for (const auto& [one, probability] : of) {
+    high = std::max(high, std::abs(one.value - centre) + core::student_t975(one.degrees) * one.sd);
+  }
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (within(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+/// A quantity under the reported explanation, with `others` as far as they are likely: the reported value, and the sd
+/// whose 95 % interval is that of all of them together. An unlikely explanation far away widens it little.
 core::Quantity mixed(const Recovered& own, double probability, const std::vector<std::pair<Recovered, double>>& others,
                      double unit, double unknown_sd) {
   if (!own.known) return core::undetermined(own.why);
-  double sum = probability, square = probability * own.sd * own.sd;
+  std::vector<std::pair<Recovered, double>> all{{own, probability}};
   for (const auto& [other, p] : others) {
-    if (!other.known) continue;
-    const double off = other.value - own.value;
-    sum += p;
-    square += p * (other.sd * other.sd + off * off);
+    if (other.known) all.emplace_back(other, p);
   }
-  const double sd = std::sqrt(square / sum);
+  const double sd = all.size() > 1 ? half_width95(own.value, all) / core::student_t975(own.degrees) : own.sd;
   if (!(sd < unknown_sd)) return core::undetermined(core::unknown::ExplanationsDiffer{});
   return core::determined(core::estimate(own.value / unit, sd / unit, own.degrees));
 }

@@ -4,10 +4,12 @@
 ///     p2(bt),
 ///
 /// with p1(z) = (1 - exp(-z))/z, p2 = (1 - p1)/z and p3 = (1/2 - p2)/z, t from the start of the step and a the
-/// acceleration there. p3 is its power series: no exponential, no division, and nothing special about b = 0. SI units.
+/// acceleration there. Near the start p3 is its power series: no exponential, no division, and nothing special about
+/// b = 0. Farther away exponentials give all three. SI units.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -20,21 +22,30 @@ struct PlaceAndSpeed {
 
 class SteadyFlow {
  public:
-  /// Largest |b t|. The first term that the series leaves out is 0.3^10/13! = 1e-15 there.
+  /// Largest |b t| of the series. The first term that it leaves out is 0.3^10/13! = 1e-15 there.
   static constexpr double kReach = 0.3;
 
   SteadyFlow(const PlaceAndSpeed& from, double a_m_s2, double change_m_s3, double rate_1_s)
       : from_(from), a_(a_m_s2), c_(change_m_s3), b_(rate_1_s) {}
 
+  /// With |b t| up to kReach.
   PlaceAndSpeed at(double t) const {
     const double z = b_ * t;
     double p3 = kSeries.front();
     for (std::size_t k = 1; k < kSeries.size(); ++k) p3 = kSeries[k] - z * p3;
     const double p2 = 0.5 - z * p3, p1 = 1.0 - z * p2;
-    return {from_.x + t * (from_.v + t * (a_ * p2 + t * c_ * p3)), from_.v + t * (a_ * p1 + t * c_ * p2)};
+    return with(t, p1, p2, p3);
   }
 
-  /// At many instants, `start_s` being that of the start.
+  /// With any |b t|.
+  PlaceAndSpeed far(double t) const {
+    const double z = b_ * t;
+    if (std::abs(z) <= kReach) return at(t);
+    const double p1 = -std::expm1(-z) / z, p2 = (1.0 - p1) / z, p3 = (0.5 - p2) / z;
+    return with(t, p1, p2, p3);
+  }
+
+  /// At many instants within kReach, `start_s` being that of the start.
   void fill(double start_s, std::span<const double> at_s, double* x_m, double* v_m_s) const {
     for (std::size_t i = 0; i < at_s.size(); ++i) {
       const PlaceAndSpeed s = at(at_s[i] - start_s);
@@ -46,6 +57,10 @@ class SteadyFlow {
   double acceleration() const { return a_; }
 
  private:
+  PlaceAndSpeed with(double t, double p1, double p2, double p3) const {
+    return {from_.x + t * (from_.v + t * (a_ * p2 + t * c_ * p3)), from_.v + t * (a_ * p1 + t * c_ * p2)};
+  }
+
   /// 1/12!, 1/11!, ..., 1/3!
   static constexpr std::array<double, 10> kSeries = [] {
     std::array<double, 10> series{};

@@ -179,16 +179,28 @@ class Mover {
   }
 
   /// Of a motion in closed form: its positions and speeds at all of these times that one step reaches before a turn or
-  /// a release. Returns how many these are, and advances to the last of them.
+  /// a release. Returns how many these are, and advances to the last of them. A series is enough for steps of several
+  /// frames; if a drag is so strong that it does not reach the next frame, exponentials reach all of them.
   std::size_t flow(PlaceAndSpeed& s, double& t, std::span<const double> at, double* x_m, double* v_m_s) {
     if (!flows_ || m_.known != nullptr || direction_ == 0 || !std::isfinite(s.v)) return 0;
     const double release_s = m_.effects[kRelease];
     pushed_ = m_.effects[kPush] != 0.0 && t < release_s;
-    const double until = pushed_ ? std::min(t + reach_, release_s) : t + reach_;
-    auto count = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), until) - at.begin());
+    const auto times_until = [&](double until) {
+      if (pushed_) until = std::min(until, release_s);
+      return static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), until) - at.begin());
+    };
+    std::size_t count = times_until(t + reach_);
+    const bool is_near = count > 0;
+    if (!is_near) count = times_until(std::numeric_limits<double>::infinity());
     if (count == 0) return 0;
     ++work_;
-    flow_from(s, t).fill(t, at.first(count), x_m, v_m_s);
+    const SteadyFlow flow = flow_from(s, t);
+    if (is_near) flow.fill(t, at.first(count), x_m, v_m_s);
+    for (std::size_t i = 0; i < count && !is_near; ++i) {
+      const PlaceAndSpeed there = flow.far(at[i] - t);
+      x_m[i] = there.x;
+      v_m_s[i] = there.v;
+    }
     // The speed changes monotonically, so only the last of these can lie beyond a turn.
     while (count > 0 && !(v_m_s[count - 1] * direction_ > 0.0)) --count;
     if (count == 0) return 0;
@@ -198,6 +210,12 @@ class Mover {
   }
 
   double longest_step() const { return step_; }
+  /// Whether a motion of so many frames takes no more steps than are allowed. In closed form it takes many only at a
+  /// turn.
+  bool can_follow(double duration_s, double frame_s, double most_steps) const {
+    if (flows_ && m_.known == nullptr) return frame_s <= static_cast<double>(kMostWork) * reach_;
+    return duration_s <= most_steps * step_;
+  }
   /// Number of steps so far, including those spent on finding a turn.
   std::size_t work() const { return work_; }
 
@@ -439,10 +457,10 @@ Moved move(const TrackModel& model, std::span<const double> times_s, std::span<c
   };
   const double most_steps = kMostSteps + kMostOfFrame * static_cast<double>(at.size());
   // A diverging fit asks for millions of steps; nothing that can be filmed is so stiff.
-  if (!(at.back() - t <= most_steps * mover.longest_step())) return not_followed(at.size());
+  if (!mover.can_follow(at.back() - t, frame_s, most_steps)) return not_followed(at.size());
   const std::size_t positions = std::max(at.size(), kFewTimes);
   for (std::size_t i = 0; i < at.size();) {
-    if (mover.work() > kMostWork * positions) return not_followed(at.size());
+    if (mover.work() > kMostWork * positions || !std::isfinite(s.v)) return not_followed(at.size());
     if (const std::size_t reached = mover.flow(s, t, std::span(at).subspan(i), &moved.x_m[i], &moved.v_m_s[i])) {
       i += reached;
       continue;

@@ -62,9 +62,9 @@ struct Moved {
 };
 
 /// The motion at the given times (increasing, from the clip's first frame), each later by its entry in `late_s` unless
-/// that is empty. The result is not finite if the motion runs away, or would need more than 2500 steps plus 54 a frame
-/// (200 frames in 2 s: K/m above 2000 1/s), or more work, turns included, than 2000 steps a frame; fewer than 100
-/// frames count as 100.
+/// that is empty. The result is not finite if the motion runs away, or if it would need more work, turns included, than
+/// 2000 steps a frame (fewer than 100 frames count as 100) or, unless it is a closed form, more than 2500 steps plus 54
+/// a frame (200 frames in 2 s: K/m above 2000 1/s).
 Moved move(const TrackModel& model, std::span<const double> times_s, std::span<const double> late_s = {});
 
 /// Whether a shift of the start shifts all measured positions by as much: nothing that acts depends on place.

@@ -91,6 +91,9 @@ struct FallsThroughAir {
     double viscous = 1.0, named = 1.0;
   };
   std::optional<Gaps> gaps = {};
+
+  /// Whether a viscous drag would leave clearly less. Air cannot brake like that, so something else is wrong as well.
+  bool viscous_leaves_less() const;
 };
 
 /// A fall with a wrong scale or a wrong frame rate, which slow it: a buoyancy would do the same.
@@ -156,6 +159,11 @@ struct BeyondGravity {
   double stated_deg = 0.0, intercept_m_s2 = 0.0, gravity_m_s2 = 0.0;
 };
 
+/// Named effects that only a camera has, of positions that came without images: a motion sensor has none of them.
+struct OfCamera {
+  std::vector<std::string> ids;
+};
+
 /// The inclination that corresponds to the mean intercept of lines.
 struct MeanIncline {
   double stated_deg = 0.0, intercept_deg = 0.0;
@@ -171,7 +179,7 @@ using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePie
                              PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
                              SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
                              BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike,
-                             FitsCutOff, NoMassStated, OneOrigin, SuspectedFall, OfReading>;
+                             FitsCutOff, NoMassStated, OfCamera, OneOrigin, SuspectedFall, OfReading>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

@@ -32,6 +32,7 @@ Explanation explanation_of(const Hypothesis& hypothesis) {
 
 bool same_but(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b, std::size_t from, std::size_t to) {
   std::vector<std::size_t> expected = a, other = b;
+  if (std::find(a.begin(), a.end(), from) == a.end()) return false;
   std::replace(expected.begin(), expected.end(), from, to);
   std::sort(expected.begin(), expected.end());
   std::sort(other.begin(), other.end());
@@ -176,7 +177,7 @@ std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypo
                                         bool filmed) {
   std::vector<std::size_t> others;
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
-    if (std::find(best.effects.begin(), best.effects.end(), e) != best.effects.end()) continue;
+    if (e == effect || has(best, e)) continue;
     if (!comparison.alike.empty() && are_alike(comparison, e, effect, filmed)) {
       others.push_back(e);  // whatever has become of its fit beside the other effects
       continue;
@@ -277,10 +278,13 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
                                                     : nullptr;
     if (sized != nullptr) fit = sized;
     const TrackSet& sized_set = noise_alone != nullptr ? noise_alone->sized_set : set;
-    for (const std::size_t e : named_effects(*best, noise_alone)) {
+    const std::vector<std::size_t> named = named_effects(*best, noise_alone);
+    const Hypothesis* explanation = find(comparison, {named.begin(), named.end()});
+    if (explanation == nullptr) explanation = best;
+    for (const std::size_t e : named) {
       const EffectInfo& info = effect_list()[e];
       std::vector<std::string> alike;
-      for (const std::size_t other : not_told_apart(comparison, *best, e, set.images))
+      for (const std::size_t other : not_told_apart(comparison, *explanation, e, set.images))
         alike.emplace_back(effect_list()[other].id);
       diagnosis.effects.push_back({std::string(info.id), info.stage, std::string(info.words),
                                    comparison.effect_probability[e], std::move(alike),

@@ -137,6 +137,17 @@ std::optional<double> ratio_of_densities(const Diagnosis& diagnosis) {
   return {};
 }
 
+/// The named effects that a motion sensor cannot have.
+std::vector<std::string> named_of_camera(const Diagnosis& diagnosis) {
+  std::vector<std::string> named;
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    for (const std::string_view id : {ids::lens_distortion, ids::perspective_error, ids::camera_motion}) {
+      if (effect.id == id) named.emplace_back(id);
+    }
+  }
+  return named;
+}
+
 /// Whether the nominal model has a gap and the likeliest explanation by the noise alone leaves one too, or leaves a
 /// doubt although sizes of each clip or a second cause help it to follow the motion.
 bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
@@ -402,6 +413,10 @@ void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
   if (const std::optional<double> ratio = only_falls(set_) ? ratio_of_densities(diagnosis) : std::nullopt;
       ratio && *ratio > kLeastRatio) {
     diagnosis.notes.emplace_back(BuoyancyLooksAlike{*ratio});
+  }
+  if (std::vector<std::string> of_camera = set_.images ? std::vector<std::string>() : named_of_camera(diagnosis);
+      !of_camera.empty()) {
+    diagnosis.notes.emplace_back(OfCamera{std::move(of_camera)});
   }
 }
 

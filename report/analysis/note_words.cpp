@@ -100,6 +100,13 @@ struct AnalysisSentence {
         "tracker writes one value while it sees nothing",
         of.positions, of.value_m + 0.0, of.from_s);  // no "-0"
   }
+  std::string operator()(const core::PositionsAstray& of) const {
+    const bool one = of.positions == 1;
+    return fmt::format(
+        "{} position{} {:.6g} s {} left out: the path jumps there by up to {:.3g} m and back, as when a motion sensor "
+        "hears another object for a moment",
+        of.positions, one ? " at" : "s from", of.from_s, one ? "is" : "on are", of.off_m);
+  }
   std::string operator()(const core::ColumnsGuessed& of) const {
     return fmt::format(
         "the table has no header: \"{}\" is taken as the time{} and \"{}\" as x. Name the columns t and x in a first "

@@ -34,18 +34,19 @@ const MarkerWindow* KeptWindows::around(std::size_t frame, cv::Point2d centre, d
 }
 
 void KeptWindows::keep(const Signal& signal, std::size_t frame, const MarkerGuess& guess, const MarkerFit& fit) {
-  if (const Kept* const before = nearest(frame, fit.centre, fit.radius_px)) {
-    std::vector<Kept>& in_frame = kept_[frame];
-    bytes_ -= bytes_of(before->window);
-    in_frame.erase(in_frame.begin() + (before - in_frame.data()));
-  }
   const int reach = static_cast<int>(std::ceil(1.25 * guess.radius_px + 2.5)) + 1;
   const cv::Point middle(cvRound(fit.centre.x), cvRound(fit.centre.y));
   const cv::Rect box = cv::Rect(middle.x - reach, middle.y - reach, 2 * reach + 1, 2 * reach + 1) &
                        cv::Rect(0, 0, signal.values.cols, signal.values.rows);
-  const std::size_t bytes = static_cast<std::size_t>(box.area()) * signal.values.elemSize();
-  if (bytes_ + bytes > most_bytes_) return;
-  bytes_ += bytes;
+  const Kept* const before = nearest(frame, fit.centre, fit.radius_px);
+  const std::size_t bytes_before = before != nullptr ? bytes_of(before->window) : 0;
+  const std::size_t bytes = bytes_ - bytes_before + static_cast<std::size_t>(box.area()) * signal.values.elemSize();
+  if (bytes > most_bytes_) return;
+  if (before != nullptr) {
+    std::vector<Kept>& in_frame = kept_[frame];
+    in_frame.erase(in_frame.begin() + (before - in_frame.data()));
+  }
+  bytes_ = bytes;
   signal.see(box);
   MarkerGuess again = guess;
   again.centre = fit.centre - cv::Point2d(box.tl());

@@ -20,8 +20,10 @@ EffectInfo heavy_tailed_noise() {
       .twin = EffectTwin::none("a scenario has no outliers of its own"),
       .in_images = std::nullopt,
       .next =
-          "Record the same launch again with a larger, higher-contrast marker and no other round object in the image: "
-          "single outlying positions come from frames in which another object was mistaken for part of the marker.",
+          "Record the same launch again with a larger, higher-contrast marker and no other round object in the image, "
+          "or "
+          "with nothing else in the beam of a motion sensor: "
+          "single outlying positions come from moments in which something else was mistaken for the glider.",
       .alike = {},
   };
 }

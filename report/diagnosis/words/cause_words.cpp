@@ -16,12 +16,15 @@
 
 namespace glidelab::report {
 
-bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis) {
-  return std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const diagnose::Note& note) {
-    return std::holds_alternative<diagnose::FallsThroughAir>(note);
-  });
-}
 namespace {
+
+/// The note on falls through air; null if there is none.
+const diagnose::FallsThroughAir* falls_through_air(const diagnose::Diagnosis& diagnosis) {
+  for (const diagnose::Note& note : diagnosis.notes) {
+    if (const auto* const falls = std::get_if<diagnose::FallsThroughAir>(&note)) return falls;
+  }
+  return nullptr;
+}
 
 constexpr double kPercent = 100.0;
 constexpr double kNearEnd = 0.01;      // of a share: this close to 0 or 1, a tenth of a percent matters
@@ -141,6 +144,17 @@ std::string unknown_sequence_words(const diagnose::Diagnosis& diagnosis) {
          (diagnosis.remainder ? fmt::format(": it is {}.", over_noise_text(diagnosis.remainder->gap)) : ".");
 }
 
+/// What contradicts the named drag of air; empty if nothing does.
+std::string contradicted_drag_words(const diagnose::Diagnosis& diagnosis) {
+  const diagnose::FallsThroughAir* const falls = falls_through_air(diagnosis);
+  if (falls == nullptr || !falls->viscous_leaves_less()) return {};
+  return fmt::format(
+      " A viscous drag alone would leave less, {} times the noise, though air does not brake like that: check the "
+      "scale, "
+      "the frame rate and the first positions.",
+      base::number_text(falls->gaps->viscous, 3));
+}
+
 std::string configuration_label(const diagnose::RecoveredConfiguration& of,
                                 const std::vector<diagnose::RecoveredConfiguration>& all) {
   const bool groups = std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.group != of.group; });
@@ -149,6 +163,10 @@ std::string configuration_label(const diagnose::RecoveredConfiguration& of,
 }
 
 }  // namespace
+
+bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis) {
+  return falls_through_air(diagnosis) != nullptr;
+}
 
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval) {
   const bool is_trifle = interval && std::abs(share) < kNothing;
@@ -241,7 +259,7 @@ std::string sequence_words(const diagnose::Diagnosis& diagnosis) {
       break;
     case diagnose::Verdict::effect:
       if (diagnosis.explained.empty()) return {};
-      text = causes_words(diagnosis);
+      text = causes_words(diagnosis) + contradicted_drag_words(diagnosis);
       break;
     case diagnose::Verdict::unknown:
       if (diagnosis.explained.empty() && !diagnosis.remainder) return {};

@@ -163,7 +163,6 @@ struct Sentence {
   }
   std::string operator()(const diagnose::FallsThroughAir& of) const {
     constexpr double kClearly = 2.3;  // log evidence: ten to one
-    constexpr double kLess = 0.9;     // of a gap
     std::string words =
         "In air, a body that falls faster than 0.5 m/s is braked in proportion to the square of its speed. The gap is "
         "measured from a fall without any drag, and K/m is not given. If a magnet or a liquid brakes it, exclude this "
@@ -176,12 +175,15 @@ struct Sentence {
                    : " The positions alone do not tell it from a viscous drag: the name rests on how air brakes.";
     }
     if (!of.gaps) return words;
-    words += fmt::format(" A viscous drag alone would leave a gap of {:.3g} in place of {:.3g}", of.gaps->viscous,
-                         of.gaps->named);
-    return words +
-           (of.gaps->viscous < kLess * of.gaps->named
-                ? ": since air cannot brake like that, the scale, the clock or the first positions may be wrong."
-                : ".");
+    return words + fmt::format(" A viscous drag alone would leave a gap of {:.3g} in place of {:.3g}{}.",
+                               of.gaps->viscous, of.gaps->named,
+                               of.viscous_leaves_less() ? ": air cannot brake like that" : "");
+  }
+  std::string operator()(const diagnose::OfCamera& of) const {
+    std::string options;
+    for (const std::string& id : of.ids) options += (options.empty() ? "--without " : " --without ") + id;
+    return fmt::format("If a motion sensor measured these positions, {} cannot act: exclude {} ({}).",
+                       list_of(effect_names(of.ids)), of.ids.size() > 1 ? "them" : "it", options);
   }
   std::string operator()(const diagnose::BuoyancyLooksAlike& of) const {
     return fmt::format(

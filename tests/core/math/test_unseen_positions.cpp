@@ -60,7 +60,7 @@ TEST_CASE("a value to which the body would have to jump is not seen, at a start,
   const Series two = with(with(run, {0, 1, 2, 3, 30}, 0.0), {55, 56, 57, 58, 59}, -1.0);
   CHECK(unseen_in(two) == Places{0, 1, 2, 3, 30, 55, 56, 57, 58, 59});
   CHECK(core::unseen_positions(two.t_s, two.x)->value == 0.0);
-  CHECK(core::seen_of(two.x, *core::unseen_positions(two.t_s, two.x)).size() == 50);
+  CHECK(core::without_flagged(two.x, core::unseen_positions(two.t_s, two.x)->is_unseen).size() == 50);
 }
 
 TEST_CASE(

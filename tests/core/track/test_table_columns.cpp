@@ -145,6 +145,36 @@ TEST_CASE("of two columns without a header that both increase the first is the t
   CHECK(read_text(text, "2").x_m[10] == Approx(0.55));
 }
 
+TEST_CASE("of two columns without a header that both increase the one with far more even steps is the time") {
+  // A body that slows down from 1 m/s at 0.2 m/s²: in 2 s its steps shrink by 40 %.
+  const auto x = [](double t) { return 0.3 + t - 0.1 * t * t; };
+  const core::TrackData swapped = read_text(pairs([&](double t) { return std::pair(x(t), t); }));
+  CHECK(swapped.t_s[10] == Approx(0.5));
+  CHECK(swapped.x_m[10] == Approx(x(0.5)).margin(1e-6));
+  const auto* const note = tests::note_of<core::ColumnsGuessed>(swapped.notes);
+  REQUIRE(note != nullptr);
+  CHECK(note->t == "column 2");
+  CHECK(note->either);
+  CHECK(read_text(pairs([&](double t) { return std::pair(t, x(t)); })).x_m[10] == Approx(x(0.5)).margin(1e-6));
+}
+
+TEST_CASE("units may be told in words: in s, en s, em m") {
+  for (const auto& [t, x] :
+       std::vector<std::pair<std::string, std::string>>{{"Zeit (in s)", "x (in cm)"},
+                                                        {"temps en s", "x en cm"},
+                                                        {"tempo (s)", "x em cm"},
+                                                        {"Zeit (in s)", "Objekt 1 x-Koordinate (in cm)"},
+                                                        {"Zeit in s", "y-Koordinate in cm"}}) {
+    std::string text = "\"" + t + "\";\"" + x + "\"\n";
+    for (int i = 0; i < 20; ++i) text += fmt::format("{:.2f};{:.4f}\n", 0.1 * i, 50.0 + 1.5 * i + 0.1 * i * i);
+    CAPTURE(t, x);
+    const core::TrackData track = read_text(text);
+    CHECK(track.t_s[10] == Approx(1.0));
+    CHECK(std::abs(track.x_m[10] - track.x_m[0]) == Approx(0.25));
+  }
+  CHECK_THROWS_AS(read_text("Zeit (in s);x (in bananas)\n0;1\n1;2\n2;3\n"), base::InputError);
+}
+
 TEST_CASE("a first column without a name that counts the rows is no time where the second is") {
   std::string counted, seconds;
   for (int i = 0; i < 20; ++i) {

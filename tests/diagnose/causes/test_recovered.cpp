@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "base/math/distributions.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/scan/effect_scan.h"
@@ -96,10 +97,47 @@ TEST_CASE("an explanation that is nearly as likely widens what is recovered by a
   const core::Estimate a = *one[0].k_over_m_1_s.estimate, b = *other[0].k_over_m_1_s.estimate,
                        mixed = *both[0].k_over_m_1_s.estimate;
   CHECK(mixed.value == a.value);  // that of the reported explanation
-  CHECK(mixed.sd == Approx(std::sqrt((0.6 * a.sd * a.sd + 0.3 * (b.sd * b.sd + std::pow(b.value - a.value, 2))) / 0.9))
-                        .epsilon(1e-12));
+  // 95 % of both together lie within the interval. The other is far away and has a third of the probability: the
+  // boundary cuts off 15 % of its own distribution, on the far side.
+  const double far = std::abs(b.value - a.value), half = mixed.high95 - mixed.value;
+  REQUIRE(far - 2.0 * b.sd > 3.0 * a.sd);
+  CHECK(half == Approx(far + b.sd * base::student_t_quantile(11.0, 0.85)).epsilon(0.02));
   CHECK(mixed.sd > 2.0 * a.sd);  // otherwise the test would show nothing
   CHECK(both[0].with == std::vector<std::string>{"quadratic_drag"});
+}
+
+TEST_CASE("an unlikely explanation far away hardly widens what is recovered") {
+  const diagnose::TrackSet set = set_of(7, {});
+  const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  diagnose::MotionFit far = fit;  // a K/m that is higher by 0.5 1/s
+  far.at.global[0] += 0.5 * 0.4;
+  const double alone = diagnose::recovered_of(set, {{&fit, {}, 1.0}})[0].k_over_m_1_s.estimate->sd;
+  REQUIRE(0.5 > 20.0 * alone);
+  // Four percent lie outside with the other, so that one of the own 96 % may: 1.04 % of them.
+  const double widened = diagnose::recovered_of(set, {{&fit, {}, 0.96}, {&far, {}, 0.04}})[0].k_over_m_1_s.estimate->sd;
+  CHECK(widened / alone == Approx(base::normal_quantile(1.0 - 0.5 / 96.0) / base::kNormal95).epsilon(0.15));
+  CHECK(widened > 1.2 * alone);
+}
+
+TEST_CASE("alpha and mu of a diagnosis contain the uncertainty of gravity, on a track as in a fall") {
+  diagnose::TrackSet set = set_of(7, {});
+  set.gravity_sd_m_s2 = 0.0;
+  const auto recovered = [&] {
+    const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+    return diagnose::recovered_of(set, {{&fit, {}, 1.0}}).at(0);
+  };
+  const diagnose::RecoveredConfiguration known = recovered();
+  set.gravity_sd_m_s2 = 0.5;
+  REQUIRE_FALSE(diagnose::gravity_matters(set));
+  const diagnose::RecoveredConfiguration unknown = recovered();
+  // g sin(alpha) and mu g are what the motions show.
+  const double part = 0.5 / set.gravity_m_s2, alpha = known.alpha_deg.estimate->value;
+  const double of_alpha = part * std::tan(alpha * std::acos(-1.0) / 180.0) * 180.0 / std::acos(-1.0);
+  CHECK(unknown.alpha_deg.estimate->sd == Approx(std::hypot(known.alpha_deg.estimate->sd, of_alpha)).epsilon(1e-6));
+  CHECK(unknown.mu.estimate->sd ==
+        Approx(std::hypot(known.mu.estimate->sd, part * known.mu.estimate->value)).epsilon(1e-6));
+  CHECK(unknown.k_over_m_1_s.estimate->sd == Approx(known.k_over_m_1_s.estimate->sd).epsilon(1e-6));
+  CHECK(unknown.v_lim_m_s.estimate->sd == Approx(known.v_lim_m_s.estimate->sd).epsilon(1e-6));
 }
 
 TEST_CASE("a quantity in which the likely explanations differ by more than its value is not given") {

@@ -179,3 +179,24 @@ TEST_CASE("a height of a table needs the inclination before it is diagnosed") {
   stated.bare.incline_deg = 90.0;
   CHECK_NOTHROW(diagnose::diagnose({temp / "cups.csv"}, stated));
 }
+
+TEST_CASE("a bead that a liquid brakes within a frame has the K of its speed") {
+  // x = x0 + u t from the first frame on, so that K/m = g/u whatever the start. The line through all positions has the
+  // standard deviation of u, sigma sqrt(12/n)/T.
+  struct Bead {
+    double u_m_s, noise_m, frame_s;
+    std::size_t positions;
+  };
+  for (const Bead& bead : {Bead{6e-3, 5e-5, 0.05, 160}, Bead{0.01, 1e-4, 1.0 / 30.0, 240}, Bead{0.02, 1e-4, 0.05, 160},
+                           Bead{3e-3, 5e-5, 0.1, 200}}) {
+    CAPTURE(bead.u_m_s);
+    const double rate = 9.80665 / bead.u_m_s, n = static_cast<double>(bead.positions);
+    const auto made = tests::made_experiment({{3e-4, 90.0, 0.0, bead.u_m_s}}, {}, 7, bead.noise_m, bead.positions,
+                                             1.0 / bead.frame_s, 0.0, 0.0, {.k_n_s_m = 3e-4 * rate, .mu = 0.0});
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::MotionFit fit = diagnose::fit_nominal(set);
+    CHECK(fit.converged);
+    const double of_line = bead.noise_m * std::sqrt(12.0 / n) / (n * bead.frame_s) / bead.u_m_s;
+    CHECK(fit.at.global[0] / 3e-4 == Approx(rate).epsilon(5.0 * of_line + 0.003));  // g is known to 0.0015
+  }
+}

@@ -32,6 +32,14 @@ TEST_CASE("a steady flow is the exponential solution, and two steps are one") {
       CHECK(again.v == Approx(there.v).margin(1e-14).epsilon(0.0));
     }
   }
+  for (const double b : {-20.0, 2.9, 3.1, 20.0, 800.0}) {  // on both sides of where the series ends, and far beyond
+    using Long = long double;
+    const Long lb = b, lt = 0.1L, end = from.v + a / lb - c / (lb * lb), rest = from.v - end;
+    const Long x = from.x + end * lt + 0.5L * c / lb * lt * lt - rest * std::expm1(-lb * lt) / lb;
+    const diagnose::PlaceAndSpeed there = diagnose::SteadyFlow(from, a, c, b).far(0.1);
+    CHECK(there.x == Approx(static_cast<double>(x)).epsilon(1e-13));
+    CHECK(there.v == Approx(static_cast<double>(end + c / lb * lt + rest * std::exp(-lb * lt))).epsilon(1e-13));
+  }
   const diagnose::PlaceAndSpeed free = diagnose::SteadyFlow(from, a, c, 0.0).at(2.0);
   CHECK(free.x == Approx(from.x + 2.0 * from.v + 2.0 * a + 8.0 / 6.0 * c).margin(1e-14));
   CHECK(free.v == Approx(from.v + 2.0 * a + 2.0 * c).margin(1e-14));

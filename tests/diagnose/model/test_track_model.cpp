@@ -129,10 +129,39 @@ TEST_CASE("a drag is followed as long as any position can show it") {
   model.v0_m_s = 0.6;
   std::vector<double> t;
   for (int i = 0; i < 1000; ++i) t.push_back(0.04 * i);
+  const diagnose::UnnamedForce nothing = [](double, double, double) { return 0.0; };
+  model.unnamed = &nothing;                     // in steps
   model.k_n_s_m = 16.0 / 0.04 * model.mass_kg;  // exp(-16) = 1e-7 of the first speed is left in the second frame
   CHECK(std::isfinite(diagnose::move(model, t).x_m.back()));
   model.k_n_s_m = 18.0 / 0.04 * model.mass_kg;
   CHECK_FALSE(std::isfinite(diagnose::move(model, t).x_m.back()));
+}
+
+TEST_CASE("a closed form is exact however strong the drag: at the terminal velocity in the second frame") {
+  diagnose::TrackModel model = glider();
+  model.mu = 0.0;
+  model.v0_m_s = 0.6;
+  std::vector<double> t;
+  for (int i = 0; i < 200; ++i) t.push_back(0.05 * i);
+  for (const double rate : {8.0, 18.0, 400.0, 1635.0, 1e4}) {
+    CAPTURE(rate);
+    model.k_n_s_m = rate * model.mass_kg;
+    const double u = model.gravity_m_s2 * std::sin(model.alpha_rad) / rate, part = (model.v0_m_s - u) / rate;
+    const diagnose::Moved moved = diagnose::move(model, t);
+    for (std::size_t i = 0; i < t.size(); i += 7) {
+      CHECK(moved.x_m[i] ==
+            Approx(model.x0_m + u * t[i] - part * std::expm1(-rate * t[i])).epsilon(1e-12).margin(1e-14));
+    }
+    CHECK(moved.v_m_s.back() == Approx(u).epsilon(1e-10));
+  }
+  // Launched uphill it turns within the first frame, where friction changes its sign.
+  model.mu = 0.01;
+  model.v0_m_s = -0.6;
+  model.k_n_s_m = 1635.0 * model.mass_kg;
+  const diagnose::Moved moved = diagnose::move(model, t);
+  const double slope = std::sin(model.alpha_rad) - model.mu * std::cos(model.alpha_rad);
+  CHECK(moved.v_m_s.back() == Approx(model.gravity_m_s2 * slope / 1635.0).epsilon(1e-10));
+  CHECK((moved.x_m[150] - moved.x_m[50]) / (t[150] - t[50]) == Approx(moved.v_m_s.back()).epsilon(1e-10));
 }
 
 TEST_CASE("a shaken glider is where the closed form has it, whatever the frames") {

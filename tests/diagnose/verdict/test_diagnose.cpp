@@ -246,6 +246,22 @@ TEST_CASE("data that support no verdict are refused, or the verdict says so") {
     const diagnose::Note note = *std::find_if(diagnosis.notes.begin(), diagnosis.notes.end(), open);
     CHECK(std::get<diagnose::NoInclination>(note).groups == std::vector<std::string>{"level", "inclined"});
   }
+  SECTION("what only a camera has, of positions without images") {
+    const auto of_camera = [](tests::MadeExperiment made) {
+      const auto diagnosis = diagnosed(made);
+      std::vector<std::string> ids;
+      for (const diagnose::Note& note : diagnosis.notes) {
+        if (const auto* const one = std::get_if<diagnose::OfCamera>(&note)) ids = one->ids;
+      }
+      REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
+      return ids;
+    };
+    const tests::MadeEffect aslant = {{}, [](double x, double) { return x / (1.0 + 0.02 * x); }};
+    tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), aslant, 5);
+    CHECK(of_camera(made) == std::vector<std::string>{"perspective_error"});
+    const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.2 * v * std::abs(v); }};
+    CHECK(of_camera(tests::made_experiment(tests::made_launches(), drag, 5)).empty());
+  }
   SECTION("an effect that does not exist") {
     CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), {}, 1), {"magic"}), base::InputError);
   }

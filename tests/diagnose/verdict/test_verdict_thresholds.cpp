@@ -53,6 +53,15 @@ bool alike(double less_log_evidence, double less_gain) {
 
 }  // namespace
 
+TEST_CASE("an effect that an explanation lacks is not told apart from nothing in it, least of all from itself") {
+  diagnose::Hypothesis best = only(diagnose::ids::tether, 0.9, 50.0, 60.0);
+  best.effects.push_back(diagnose::effect_index(diagnose::ids::lens_distortion));
+  diagnose::Comparison comparison;
+  comparison.all = {best, only(diagnose::ids::damping_gradient, 0.1, 50.0, 60.0)};
+  CHECK(diagnose::not_told_apart(comparison, best, diagnose::effect_index(diagnose::ids::damping_gradient), false)
+            .empty());
+}
+
 TEST_CASE("effects are alike down to a twentieth of the likelihood and a hundredth of the evidence, and no farther") {
   CHECK(alike(0.0, 0.0));
   CHECK(alike(0.9 * std::log(100.0), 0.0));

@@ -61,6 +61,20 @@ TEST_CASE("a window that is measured again takes the place of the first, and its
   CHECK(windows.around(9, {50.6, 30.0}, kRadius) == nullptr);
 }
 
+TEST_CASE("a window for whose successor memory is too small stays") {
+  core::KeptWindows windows;
+  keep(windows, 7, {2.0, 2.0});  // cut by the image's corner: smaller than a whole one
+  const std::size_t cut = windows.bytes();
+  windows.limit(cut + 1);
+  keep(windows, 7, {3.0, 3.0});
+  CHECK(windows.bytes() == cut);
+  REQUIRE(windows.around(7, {2.0, 2.0}, kRadius) != nullptr);
+  windows.limit(2 * cut);
+  keep(windows, 7, {3.0, 3.0});
+  CHECK(windows.bytes() > cut);
+  CHECK(windows.bytes() < 2 * cut);
+}
+
 TEST_CASE("objects that sleep, ended at rest or were given up make room for the windows of others") {
   core::KeptWindows windows;
   std::vector<core::MarkerPath> paths{path_from({30.0, 30.0}, true), path_from({30.0, 12.0}, false),

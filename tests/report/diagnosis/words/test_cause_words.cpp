@@ -80,6 +80,19 @@ TEST_CASE("a cause is told without what was not fitted, of each set-up by itself
   CHECK(report::sequence_words(of).ends_with("; nothing is left above the noise."));
 }
 
+TEST_CASE("a drag of air is contradicted in the answer where a viscous drag alone would leave clearly less") {
+  diagnose::Diagnosis of = tests::two_causes();
+  const auto with_gap = [&](double viscous) {
+    of.notes = {diagnose::FallsThroughAir{{}, {{viscous, 11.2}}}};
+    return report::sequence_words(of);
+  };
+  CHECK(says(with_gap(4.85), " A viscous drag alone would leave less, 4.85 times the noise, though air does not"));
+  CHECK_FALSE(says(with_gap(10.5), "viscous"));  // within a tenth of what is named
+  CHECK_FALSE(says(with_gap(20.0), "viscous"));
+  of.notes = {diagnose::FallsThroughAir{}};
+  CHECK_FALSE(says(report::sequence_words(of), "viscous"));
+}
+
 TEST_CASE("a cause that leaves less than the noise explains all of the gap, not more than that") {
   diagnose::Diagnosis of = tests::two_causes();
   of.explained.resize(1);

@@ -51,8 +51,13 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::FallsThroughAir{7.0}, "alone also prefer it to a viscous drag"},
       {diagnose::FallsThroughAir{1.0}, "do not tell it from a viscous drag"},
       {diagnose::FallsThroughAir{-4.0}, "prefer a viscous drag: the name rests"},
-      {diagnose::FallsThroughAir{{}, {{4.85, 11.2}}}, "of 4.85 in place of 11.2: since air cannot brake like that"},
+      {diagnose::FallsThroughAir{{}, {{4.85, 11.2}}}, "of 4.85 in place of 11.2: air cannot brake like that."},
       {diagnose::FallsThroughAir{{}, {{3.2, 1.1}}}, "would leave a gap of 3.2 in place of 1.1."},
+      {diagnose::OfCamera{{"lens_distortion"}},
+       "If a motion sensor measured these positions, lens distortion cannot act: "
+       "exclude it (--without lens_distortion)."},
+      {diagnose::OfCamera{{"lens_distortion", "perspective_error"}},
+       "exclude them (--without lens_distortion --without perspective_error)."},
       {diagnose::BuoyancyLooksAlike{0.163}, "0.16 of the density of the body"},
       {diagnose::FitsCutOff{{{{"tether"}, false}, {{"lens_distortion"}, true}}},
        "The fits of cable that tightens and lens distortion + an unnamed cause reached the limit on steps before a "
