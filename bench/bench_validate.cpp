@@ -19,7 +19,7 @@
 #include "render/film/clip_renderer.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/coverage/interval_coverage.h"
-#include "validate/study/sweep/sweep_run.h"
+#include "validate/study/sweep/one_run.h"
 #include "validate/tracks/made_tracks.h"
 
 namespace {

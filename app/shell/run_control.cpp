@@ -18,7 +18,7 @@
 #include <thread>
 
 #include "base/errors.h"
-#include "base/files/passing_folders.h"
+#include "base/files/temporary_folders.h"
 
 namespace glidelab::app {
 namespace {
@@ -59,7 +59,7 @@ void end_what_does_not_end() {
   timespec left = kGracePeriod;
   while (::nanosleep(&left, &left) != 0) {
   }
-  if (keeping > 0 || !base::discard_passing_folders()) return;  // ends after the current piece, or is about to end
+  if (keeping > 0 || !base::discard_temporary_folders()) return;  // ends after the current piece, or is about to end
   const char* const over_the_bar = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
   fmt::print(stderr, "{}glidelab: error: interrupted; nothing was written\n", over_the_bar);
   std::fflush(stderr);
@@ -91,7 +91,7 @@ std::terminate_handler usual_end = nullptr;
 int lost_memory_status = 0;
 
 [[noreturn]] void end_with(const char* message) {
-  base::discard_passing_folders();
+  base::discard_temporary_folders();
   std::fputs(message, stderr);
   ::_exit(lost_memory_status);
 }

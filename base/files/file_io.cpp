@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/files/passing_folders.h"
+#include "base/files/temporary_folders.h"
 
 namespace glidelab::base {
 namespace fs = std::filesystem;
@@ -90,13 +90,13 @@ TemporaryFolder::TemporaryFolder(const std::string& purpose) {
   std::string pattern = (parent / ("glidelab-" + purpose + "-XXXXXX")).string();
   if (::mkdtemp(pattern.data()) == nullptr) throw_system_error(pattern, "cannot be made", errno);
   path_ = pattern;
-  remember_passing_folder(path_);
+  remember_temporary_folder(path_);
 }
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;  // a destructor cannot report errors
   fs::remove_all(path_, ignored);
-  forget_passing_folder(path_);
+  forget_temporary_folder(path_);
 }
 
 namespace {
@@ -310,11 +310,11 @@ StagedOutput::StagedOutput(fs::path final_dir)
   refuse_dangling(final_);
   clear_leftovers(final_);
   made_parents_ = missing_parents(staging_);
-  remember_passing_folder(staging_, made_parents_);  // before it is there: this may end for want of memory
+  remember_temporary_folder(staging_, made_parents_);  // before it is there: this may end for want of memory
   const auto give_up = [&] {
     ::rmdir(staging_.c_str());
     remove_empty_folders(made_parents_);
-    forget_passing_folder(staging_);
+    forget_temporary_folder(staging_);
   };
   try {
     fs::create_directories(staging_, error);
@@ -333,7 +333,7 @@ StagedOutput::~StagedOutput() {
     std::error_code ignored;  // a destructor cannot report errors
     fs::remove_all(staging_, ignored);
     remove_empty_folders(made_parents_);
-    forget_passing_folder(staging_);
+    forget_temporary_folder(staging_);
   } catch (const std::bad_alloc&) {  // the next run to the same output removes it
   }
 }

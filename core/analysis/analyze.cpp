@@ -10,7 +10,7 @@
 #include "core/analysis/clip_to_track.h"
 #include "core/analysis/suspected_fall.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 
 namespace glidelab::core {
 namespace {

@@ -2,7 +2,7 @@
 ///
 ///     clips  ─ frame_source ─ marker_track ─ restitution ─ motion_axis ─┐
 ///     tracks ─ column_table ────────────────────────────────────────────┴─ track_data ─ free_motion ─
-///     local_polynomial ─ line_fit (or gls_line) ─ join_configurations
+///     local_polynomial ─ line_fit (or gls_line) ─ configurations ─ mu_and_alpha
 #pragma once
 
 #include <filesystem>

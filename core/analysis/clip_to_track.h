@@ -15,7 +15,7 @@
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/frames/frame_source.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "core/pictures/marker/marker_track.h"
 #include "core/result/image_record.h"
 #include "core/result/results.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/check/recording_check.h"
+#include "core/check/check_result.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "core/pictures/scene/clip_look.h"
 #include "core/result/results.h"
 #include "core/track/track_data.h"

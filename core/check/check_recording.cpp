@@ -14,7 +14,7 @@
 #include "core/check/check_clip.h"
 #include "core/check/recording_findings.h"
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "core/pictures/camera/calibrate.h"
 #include "core/pictures/camera/plane_fit.h"
 #include "core/pictures/scene/clip_look.h"
@@ -207,7 +207,7 @@ void analyze_motions(const Experiment& experiment, const std::vector<ClipAttempt
     if (results.back().position_noise_m > 0.0) check.clips[i].position_noise_m = results.back().position_noise_m;
     if (check.clips[i].images) check.clips[i].jumps = results.back().lost_frames.size();
   }
-  check.configurations = join_configurations(setups, results, experiment.gravity_m_s2);
+  check.configurations = configurations_of_clips(setups, results, experiment.gravity_m_s2);
 }
 
 }  // namespace

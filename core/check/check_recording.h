@@ -11,7 +11,7 @@
 
 #include "base/long_work.h"
 #include "core/analysis/preview.h"
-#include "core/check/recording_check.h"
+#include "core/check/check_result.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/frames/frame_source.h"

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "core/check/recording_check.h"
+#include "core/check/check_result.h"
 #include "core/experiment/clip_setup.h"
 #include "core/result/results.h"
 

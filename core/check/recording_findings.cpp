@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 #include "base/math/angles.h"
+#include "core/check/check_result.h"
 #include "core/check/motion_look.h"
-#include "core/check/recording_check.h"
 #include "core/check/statement_findings.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/result/estimate.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 #include <vector>
-#include "core/check/recording_check.h"
+#include "core/check/check_result.h"
 #include "core/experiment/experiment.h"
 
 namespace glidelab::core {

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "core/check/recording_check.h"
+#include "core/check/check_result.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/result/estimate.h"
 #include "core/track/bare_track.h"

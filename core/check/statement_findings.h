@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "core/check/recording_check.h"
+#include "core/check/check_result.h"
 #include "core/experiment/experiment.h"
 
 namespace glidelab::core {

@@ -11,7 +11,7 @@
 
 namespace glidelab::core {
 
-/// The marker's image in one frame, as fitted by marker.h.
+/// The marker's image in one frame, as fitted by marker_fit.h.
 struct MarkerLook {
   std::size_t frame = 0;
   double t_s = 0.0;  ///< of the frame

@@ -117,7 +117,7 @@ struct LineUncertainty {
   double mass_k = 0.0;              ///< change for one standard deviation of the mass (with a known force only)
   double mass_a0 = 0.0;
   /// Random, of a line through clips that scatter: the change by each clip's departure from the line, a clip's at the
-  /// same place in the lines of both directions; with `clip_degrees` of freedom (join_configurations.h).
+  /// same place in the lines of both directions; with `clip_degrees` of freedom (configurations.h).
   std::vector<LineShift> clips = {};
   double clip_degrees = 0.0;
   /// Random, with the line of the other direction, where both rest on positions smoothed together.

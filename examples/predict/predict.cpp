@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "sim/force/law_list.h"
 #include "sim/motion/simulate.h"
 
@@ -42,7 +42,7 @@ int main() {
                 line.k_over_m_1_s.value, line.r2);
   }
   // Both lines together, with the kernel's bias taken off.
-  for (const core::ConfigurationResult& recovered : core::join_configurations({setup}, {clip}, body.gravity_m_s2)) {
+  for (const core::ConfigurationResult& recovered : core::configurations_of_clips({setup}, {clip}, body.gravity_m_s2)) {
     if (!recovered.k_over_m_1_s.estimate) continue;
     const core::Estimate& k_over_m = *recovered.k_over_m_1_s.estimate;
     std::printf("recovered K/m %.5f 1/s\n", k_over_m.value);

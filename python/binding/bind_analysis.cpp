@@ -17,7 +17,7 @@
 #include "core/analysis/analyze.h"
 #include "core/analysis/preview.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "core/motion/smoothing/smoother_list.h"
 #include "core/result/quantity.h"
 #include "diagnose/verdict/fit_given_causes.h"

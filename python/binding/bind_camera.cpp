@@ -15,7 +15,7 @@
 #include "core/pictures/board/board_views.h"
 #include "core/pictures/board/chessboard.h"
 #include "core/pictures/camera/calibrate.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "python/binding/bindings.h"
 #include "python/binding/given_tracks.h"
 #include "python/binding/watched_work.h"

@@ -10,7 +10,7 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/analysis/analyze.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/lines/line_model.h"
 #include "diagnose/next/plan.h"

@@ -1,7 +1,7 @@
 /// The glider's position during each frame's exposure.
 ///
 /// The first row's exposure of frame k is [start, start + exposure] on the clock of sim, start = k / rate if the
-/// camera's clock is right (exposure_times.h); the motion starts at t = 0, with the first exposure. Other rows follow
+/// camera's clock is right (frame_clock.h); the motion starts at t = 0, with the first exposure. Other rows follow
 /// according to the shutter. The middle of the middle row's exposure has the time `start` on the clock of the truth.
 #pragma once
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/analysis/preview.h"
-#include "core/check/recording_check.h"
+#include "core/check/check_result.h"
 #include "report/html/html.h"
 
 namespace glidelab::report {

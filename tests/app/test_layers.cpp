@@ -46,7 +46,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "core/analysis/preview.h",
       "core/characterize/camera_measurement.h",
       "core/check/finding.h",
-      "core/check/recording_check.h",
+      "core/check/check_result.h",
       "validate/truth/comparison.h",
       "validate/study/sweep/sweep_summary.h",
       "validate/study/requirement/requirement.h",
@@ -202,8 +202,8 @@ TEST_CASE("an include that the table does not allow is found") {
   CHECK(one("report/a.h", "#include \"core/result/results.h\"\n#include <vector>\n").empty());
   CHECK(one("validate/a.h", "#include \"render/scenario.h\"\n").empty());
   CHECK(one("core/pictures/a.h", "#include \"core/motion/free/motion.h\"\n").size() == 1);
-  CHECK(one("core/motion/free/a.cpp", "#include \"core/pictures/marker/marker.h\"\n").size() == 1);
-  CHECK(one("core/analysis/a.cpp", "#include \"core/pictures/marker/marker.h\"\n").empty());
+  CHECK(one("core/motion/free/a.cpp", "#include \"core/pictures/marker/marker_fit.h\"\n").size() == 1);
+  CHECK(one("core/analysis/a.cpp", "#include \"core/pictures/marker/marker_fit.h\"\n").empty());
   CHECK(one("core/a.cpp", "// no #include of \"sim/motion/simulate.h\" here\n").empty());
 }
 

@@ -1,7 +1,9 @@
-/// Measured recordings that no one here made (../shared/real beside the checkout), analysed with the experiment.toml of
-/// tests/real. Where the data are not there, tests of them pass with a warning.
+/// Measured recordings that no one here made, analysed with the experiment.toml of tests/real. The environment variable
+/// GLIDELAB_REAL_DATA names their folder (DATA-FOLDER of tools/real). Without the data, tests of them pass with a
+/// warning.
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,17 +15,29 @@
 
 namespace glidelab::tests {
 
+/// The folder or file `name` of the measured data; nothing, with a warning, where it is not there.
+inline std::optional<std::filesystem::path> real_data(const std::string& name) {
+  const char* folder = std::getenv("GLIDELAB_REAL_DATA");
+  if (folder == nullptr || *folder == '\0') {
+    WARN("skipped: no measured data (GLIDELAB_REAL_DATA is not set)");
+    return {};
+  }
+  const std::filesystem::path data = std::filesystem::path(folder) / name;
+  if (!std::filesystem::exists(data)) {
+    WARN("skipped: no measured data in " << data);
+    return {};
+  }
+  return data;
+}
+
 /// What `use` makes of the folder that an experimenter would have; nothing where the data are not there.
 template <typename Use>
 auto with_real(const std::string& name, const Use& use) -> std::optional<decltype(use(std::filesystem::path()))> {
   namespace fs = std::filesystem;
-  const fs::path data = fs::path(tests::kSourceDir) / "../shared/real" / name;
-  if (!fs::exists(data)) {
-    WARN("skipped: no measured data in " << data.lexically_normal());
-    return {};
-  }
+  const std::optional<fs::path> data = real_data(name);
+  if (!data) return {};
   const TempDir temp;
-  for (const auto& file : fs::directory_iterator(data)) {
+  for (const auto& file : fs::directory_iterator(*data)) {
     fs::create_symlink(fs::canonical(file), temp / file.path().filename());
   }
   fs::copy_file(fs::path(tests::kSourceDir) / "tests/real" / name / "experiment.toml", temp / "experiment.toml");

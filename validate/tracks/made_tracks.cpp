@@ -7,9 +7,9 @@
 #include <random>
 
 #include "base/math/angles.h"
-#include "core/motion/join_configurations.h"
-#include "core/pictures/marker/marker.h"
-#include "render/camera/exposure_times.h"
+#include "core/motion/configurations.h"
+#include "core/pictures/marker/marker_fit.h"
+#include "render/camera/frame_clock.h"
 #include "render/scenario/clip_motion.h"
 #include "render/scenario/scene.h"
 #include "sim/motion/motion_scenario.h"

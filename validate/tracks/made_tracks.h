@@ -28,9 +28,10 @@ struct WithoutLimit {
   double finer = 1.0;  ///< factor on the pixels per metre; each pixel keeps its amount of light
 };
 
-/// How well a camera can locate the marker: the bound of the marker's centre (core/pictures/marker/marker.h) for the
-/// scenario's light, sensor, distance and speed, in metres in the plane of motion. It is the standard deviation of a
-/// position for each clip of the truth, infinite if the marker is no brighter than the wall or smaller than two pixels.
+/// How well a camera can locate the marker: the bound of the marker's centre (core/pictures/marker/marker_fit.h) for
+/// the scenario's light, sensor, distance and speed, in metres in the plane of motion. It is the standard deviation of
+/// a position for each clip of the truth, infinite if the marker is no brighter than the wall or smaller than two
+/// pixels.
 ///
 ///     variance of a pixel = shot + dark + read^2 + quantisation^2 + (PRNU signal)^2 + DSNU^2,
 ///

@@ -7,7 +7,7 @@
 #include "base/errors.h"
 #include "core/math/quantile.h"
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "core/motion/smoothing/local_polynomial.h"
 
 namespace glidelab::validate {
@@ -80,7 +80,7 @@ core::AnalysisResults with_best_bandwidths(const MadeTracks& made) {
     clip.bandwidth_method = core::chosen_by::Truth{};
     results.clips.push_back(std::move(clip));
   }
-  results.configurations = core::join_configurations(made.setups, results.clips, made.gravity_m_s2);
+  results.configurations = core::configurations_of_clips(made.setups, results.clips, made.gravity_m_s2);
   return results;
 }
 

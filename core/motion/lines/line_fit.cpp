@@ -275,7 +275,7 @@ KnownVariance random_variance(const LineFit& line, const LineShift& gradient) {
   double of_clips = 0.0;
   for (const LineShift& shift : parts.clips) of_clips += std::pow(gradient.k * shift.k + gradient.a0 * shift.a0, 2);
   // The second is what the clips' scatter adds to the first. It is not independent of it; the degrees of the sum are
-  // those with which two clips that scatter have intervals of 95 % (tests/core/motion/test_join_configurations.cpp
+  // those with which two clips that scatter have intervals of 95 % (tests/core/motion/test_configurations.cpp
   // counts it).
   return sum_of({own, parts.degrees}, {std::max(0.0, of_clips - own), parts.clip_degrees});
 }

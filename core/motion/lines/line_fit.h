@@ -96,8 +96,8 @@ KnownVariance random_variance(const LineFit& line, const LineShift& gradient);
 void complete_line(LineFit& line);
 
 /// Relative standard deviation of a camera's or a sensor's clock, if nothing else is known: that of a quartz crystal at
-/// room temperatures (docs/reference/cameras.md, G1). A clock that is slow by e makes K/m (1 + e) times as large and a0
-/// (1 + e)^2, equally on all lines.
+/// room temperatures (docs/reference/camera-sources.md, G1). A clock that is slow by e makes K/m (1 + e) times as large
+/// and a0 (1 + e)^2, equally on all lines.
 inline constexpr double kClockSdRelative = 2e-5;
 
 /// Changes of the line for one standard deviation of each error that it may share with other lines: the kernel's bias

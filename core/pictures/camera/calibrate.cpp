@@ -253,8 +253,8 @@ namespace {
 
 constexpr int kTerms = 8;  // fx fy cx cy k1 k2 k3 k4
 /// Standard deviations of the relative displacement of an image's corner by k1 to k4, over all fisheyes. The two
-/// profiles of docs/reference/cameras.md (S23) displace it by 0.05, 0.15, -0.25, 0.15 and 0.23, -0.07, -0.25, 0.33. k1,
-/// which any board determines, is the only one that a profile exceeds.
+/// profiles of docs/reference/camera-sources.md (S23) displace it by 0.05, 0.15, -0.25, 0.15 and 0.23, -0.07, -0.25,
+/// 0.33. k1, which any board determines, is the only one that a profile exceeds.
 constexpr std::array<double, 4> kUsualFisheye{0.15, 0.3, 0.5, 0.5};
 
 struct Fit {

@@ -86,8 +86,8 @@ Calibration calibrate_camera(const BoardViews& boards, double square_m);
 /// is tested as the radial ones there, and fixed to zero and the rest fitted again, until the first that is
 /// significant; what is left out counts in the covariance as it does there, but without the lens's extent. Fisheyes
 /// move the image's corner by a part of N(0, 0.15²) with k1, N(0, 0.3²), N(0, 0.5²), N(0, 0.5²) with the next: an
-/// assumption, about twice the larger of two profiles for k2 to k4 (docs/reference/cameras.md, S23). The rows of the
-/// covariance are fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing if OpenCV finds no such camera.
+/// assumption, about twice the larger of two profiles for k2 to k4 (docs/reference/camera-sources.md, S23). The rows of
+/// the covariance are fx, fy, cx, cy, k1, k2, k3, k4, and one of zeros. Nothing if OpenCV finds no such camera.
 std::optional<Calibration> calibrate_fisheye(const BoardViews& boards, double square_m);
 
 /// Twice the logarithm of the likelihood ratio above which a lens is modelled as a fisheye.

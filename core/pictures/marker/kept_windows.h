@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "core/pictures/marker/marker_path.h"
 
 namespace glidelab::core {

@@ -1,10 +1,10 @@
-/// How the object of a path is measured: as a uniform or a shaded disc (marker.h) or, if it may have any shape
+/// How the object of a path is measured: as a uniform or a shaded disc (marker_fit.h) or, if it may have any shape
 /// (may_have_any_shape() in marker_search.h), by its centroid.
 #pragma once
 
 #include <optional>
 
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "core/pictures/marker/marker_path.h"
 
 namespace glidelab::core {
@@ -13,7 +13,7 @@ namespace glidelab::core {
 ///
 /// Pixels count if they stand out from the background by more than a fifth of the peak and are connected with the
 /// brightest one near the guess. Each counts in proportion to its height above that floor, so that a pixel that comes
-/// or goes at the edge does not matter. Unlike the fit of marker.h, a centroid follows the slope of the background.
+/// or goes at the edge does not matter. Unlike the fit of marker_fit.h, a centroid follows the slope of the background.
 ///
 /// sd_px is not estimated (0). Empty if nothing stands out, or if its radius is off by more than a factor of 2.
 std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGuess& guess);

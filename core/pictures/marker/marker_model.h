@@ -1,4 +1,4 @@
-/// The model of marker.h for the pixels of a window: residuals, derivatives and their normal equations.
+/// The model of marker_fit.h for the pixels of a window: residuals, derivatives and their normal equations.
 ///
 /// Pixels are processed in batches, each step for a whole batch, so that the compiler can use vector instructions;
 /// these are wider if the processor has AVX2. With either instruction set, sums are taken in four strands by the

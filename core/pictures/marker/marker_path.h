@@ -14,8 +14,8 @@
 
 #include "base/errors.h"
 #include "core/experiment/experiment.h"
-#include "core/pictures/marker/marker.h"
 #include "core/pictures/marker/marker_body.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "core/pictures/marker/marker_search.h"
 #include "core/result/analysis_note.h"
 #include "core/result/results.h"

@@ -8,7 +8,7 @@
 
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 
 namespace glidelab::core {
 

@@ -22,7 +22,7 @@
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
 #include "core/pictures/marker/kept_windows.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "core/pictures/marker/marker_method.h"
 #include "core/pictures/marker/marker_path.h"
 #include "core/pictures/marker/marker_search.h"

@@ -14,7 +14,7 @@
 
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {

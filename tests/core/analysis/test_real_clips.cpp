@@ -13,7 +13,7 @@ TEST_CASE(
     "a block sliding down a board in a phone's clip: tracked by its colour, accelerations as independently seen") {
   const auto results = tests::analyze_real("sliding-block");
   if (!results) return;
-  // Mean accelerations by an independent tracker and fit, at 240 frames a second (../shared/real/README.md), px/s^2.
+  // Mean accelerations by an independent tracker and fit, at 240 frames a second (the README of the data), px/s^2.
   const std::map<std::string, double> seen{{"R1", 340.0}, {"R2", 450.0}, {"R3", 768.0}};
   constexpr double kPxPerM = 480.0;
   REQUIRE(results->clips.size() == 3);

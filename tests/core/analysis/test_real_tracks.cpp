@@ -38,7 +38,7 @@ TEST_CASE("the linear axis has the published viscous and Coulomb friction within
 TEST_CASE("carts that bounce at the foot of an incline: inclination and friction agree with an independent fit") {
   const auto results = analyze_real("incline-cart");
   if (!results) return;
-  // Parabolas fitted to seven bounces a run (../shared/real/README.md): 1.99 to 2.08 degrees on all runs, and a
+  // Parabolas fitted to seven bounces a run (the README of the data): 1.99 to 2.08 degrees on all runs, and a
   // friction deceleration of 0.0265, 0.100 and 0.038 m/s^2. Two lines a(v) of 1 cm positions are far less certain; what
   // they state must agree (three standard deviations), and be worth stating.
   const std::map<std::string, double> friction{{"good", 0.0265}, {"plunger", 0.100}, {"magnetic", 0.038}};

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
@@ -23,7 +23,7 @@ struct Analysis {
 
 Analysis analyse(const ClipSetup& setup, const TrackData& track, std::optional<double> bandwidth_s = {}) {
   Analysis analysis{analyze_motion(setup, track, MotionOptions{.bandwidth_s = bandwidth_s}), {}};
-  analysis.configuration = join_configurations({setup}, {analysis.clip}, kGravity).front();
+  analysis.configuration = configurations_of_clips({setup}, {analysis.clip}, kGravity).front();
   return analysis;
 }
 

@@ -10,7 +10,7 @@
 
 #include "base/errors.h"
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "tests/catch.h"
 #include "tests/core/notes.h"
 #include "tests/core/simulated_track.h"
@@ -76,7 +76,7 @@ TEST_CASE("95 % intervals of lines by other smoothers hold the truth in 95 % of 
     const tests::Filming how{200.0, 1.7, 1e-4, seed};
     const auto motion = tests::launch(kInclined, -1.3 + 0.0007 * seed, how.duration_s);
     const ClipResult clip = analyze_motion(kUp, tests::film(motion, how), by(smoother));
-    const ConfigurationResult found = join_configurations({kUp}, {clip}, tests::kGravity).front();
+    const ConfigurationResult found = configurations_of_clips({kUp}, {clip}, tests::kGravity).front();
     const auto count = [&](const std::string& name, const Quantity& quantity, double truth) {
       REQUIRE(quantity.estimate);
       inside[name] += quantity.estimate->low95 <= truth && truth <= quantity.estimate->high95;
@@ -97,7 +97,7 @@ namespace {
 
 ConfigurationResult recovered(const Law& law, const tests::Filming& how, const std::string& smoother) {
   const ClipResult clip = analyze_motion(kUp, tests::film(tests::launch(law, -1.0, how.duration_s), how), by(smoother));
-  return join_configurations({kUp}, {clip}, tests::kGravity).front();
+  return configurations_of_clips({kUp}, {clip}, tests::kGravity).front();
 }
 
 /// The Cramér-Rao bound of K/m for white noise, by finite differences of the closed form in alpha, mu, K/m, v_0, x_0.
@@ -225,7 +225,7 @@ TEST_CASE("a fall at its terminal speed gives no K/m that is tight by chance") {
     ClipSetup fall = tests::clip_setup(Launched::unknown, 90.0, 0.002);
     fall.start_s = 0.43;  // 99.5 % of the terminal speed
     const ClipResult clip = analyze_motion(fall, track, by(smoother));
-    const Quantity k = join_configurations({fall}, {clip}, tests::kGravity).front().k_over_m_1_s;
+    const Quantity k = configurations_of_clips({fall}, {clip}, tests::kGravity).front().k_over_m_1_s;
     CAPTURE(smoother, seed);
     if (k.estimate) CHECK(k.estimate->high95 - k.estimate->low95 > 3.0);
   }
@@ -244,7 +244,7 @@ TEST_CASE("a motion at one speed gives no line, because the speed hardly changes
   for (const std::string smoother : {"local-polynomial", "kalman", "spline"}) {
     CAPTURE(smoother);
     const ClipResult clip = analyze_motion(down, track, by(smoother));
-    const ConfigurationResult found = join_configurations({down}, {clip}, tests::kGravity).front();
+    const ConfigurationResult found = configurations_of_clips({down}, {clip}, tests::kGravity).front();
     for (const Quantity* quantity : {&found.k_over_m_1_s, &found.mu, &found.alpha_deg, &found.v_lim_m_s}) {
       CHECK(tests::reason_of<unknown::SpeedHardlyChanges>(*quantity) != nullptr);
     }

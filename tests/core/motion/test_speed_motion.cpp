@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "core/track/bare_track.h"
 #include "core/track/track_data.h"
 #include "tests/catch.h"

@@ -265,11 +265,9 @@ TEST_CASE("a table has no Y for downhill") {
 }
 
 TEST_CASE("Tracker's own example of falling cups is where an independent look at its images finds the cups") {
-  const auto archive = std::filesystem::path(tests::kSourceDir) / "../shared/real/falling-cups/CupsClips.zip";
-  if (!std::filesystem::exists(archive)) {
-    WARN("skipped: no measured data in " << archive.lexically_normal());
-    return;
-  }
+  const auto data = tests::real_data("falling-cups/CupsClips.zip");
+  if (!data) return;
+  const std::filesystem::path& archive = *data;
   for (const int cup : {3, 7}) {
     INFO("cup " << cup);
     const core::TrackData marked = core::read_track(archive, {}, fmt::format("cup {}", cup));

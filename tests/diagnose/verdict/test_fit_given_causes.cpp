@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
@@ -66,7 +66,7 @@ TEST_CASE("with the acting drag in the model, K/m, mu and its size hold the trut
     CHECK(given.gap_after < 1.2);
     CHECK(given.converged);
     // The nominal model is off by many of its own standard deviations.
-    const auto alone = core::join_configurations(made.setups, made.results.clips, truth.gravity_m_s2);
+    const auto alone = core::configurations_of_clips(made.setups, made.results.clips, truth.gravity_m_s2);
     REQUIRE(alone.size() == 4);
     for (const core::ConfigurationResult& of : alone) {
       if (of.incline_deg < 1.0) continue;

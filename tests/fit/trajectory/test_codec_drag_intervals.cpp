@@ -8,7 +8,7 @@
 
 #include "base/math/angles.h"
 #include "core/analysis/clip_to_track.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "fit/trajectory/trajectory_results.h"
 #include "tests/catch.h"
 #include "tests/core/small_clip.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "fit/trajectory/trajectory_results.h"
 #include "tests/catch.h"
 
@@ -65,7 +65,7 @@ core::AnalysisResults analysed(const core::TrackData& track, double mass_sd_kg =
   core::AnalysisResults results;
   results.gravity_m_s2 = kGravity;
   results.clips = {core::analyze_motion(setup, track, {})};
-  results.configurations = core::join_configurations({setup}, results.clips, kGravity);
+  results.configurations = core::configurations_of_clips({setup}, results.clips, kGravity);
   return results;
 }
 

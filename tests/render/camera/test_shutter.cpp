@@ -1,4 +1,4 @@
-#include "render/camera/exposure_times.h"
+#include "render/camera/shutter.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/math/angles.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 
 namespace glidelab::validate {
 namespace {

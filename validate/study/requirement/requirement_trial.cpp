@@ -13,7 +13,7 @@
 #include "validate/film/film_studio.h"
 #include "validate/study/requirement/target.h"
 #include "validate/study/sweep/design/sweep.h"
-#include "validate/study/sweep/sweep_run.h"
+#include "validate/study/sweep/one_run.h"
 #include "validate/tracks/made_tracks.h"
 #include "validate/truth/cramer_rao.h"
 

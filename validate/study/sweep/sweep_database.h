@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "validate/study/sweep/design/sweep.h"
+#include "validate/study/sweep/one_run.h"
 #include "validate/study/sweep/sqlite.h"
-#include "validate/study/sweep/sweep_run.h"
 
 namespace glidelab::validate {
 

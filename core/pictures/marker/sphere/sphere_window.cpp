@@ -15,7 +15,7 @@ namespace glidelab::core {
 namespace {
 
 constexpr int kDirections = 24;
-constexpr double kWindowRadii = 1.25, kWindowMargin_px = 2.5;  // those of the disc's fit (marker.h)
+constexpr double kWindowRadii = 1.25, kWindowMargin_px = 2.5;  // those of the disc's fit (marker_fit.h)
 constexpr double kOutside_px = 1.3;                            // outside the outline: from here on only background
 constexpr double kStrangeSds = 4.0;            // standard deviations of the mean of a direction's pixels
 constexpr double kStrangeCodes = 2.0 / 255.0;  // change of a background from frame to frame that is allowed

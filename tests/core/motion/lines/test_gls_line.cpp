@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "core/motion/smoothing/local_polynomial.h"
 #include "tests/catch.h"
 #include "tests/core/simulated_track.h"
@@ -150,7 +150,7 @@ TEST_CASE("generalised lines of times that jitter by most of a step state the er
     }
     track.frame_t_s = track.t_s;
     const core::ClipResult clip = core::analyze_motion(setup, track, options);
-    const auto found = core::join_configurations({setup}, {clip}, tests::kGravity, options.lines).front();
+    const auto found = core::configurations_of_clips({setup}, {clip}, tests::kGravity, options.lines).front();
     const auto z2 = [](const core::Quantity& quantity, double truth) {
       REQUIRE(quantity.estimate);
       return std::pow((quantity.estimate->value - truth) / quantity.estimate->sd, 2) / kReplicates;
@@ -271,7 +271,7 @@ TEST_CASE("joined clips of generalised lines are weighed by what each of them kn
   const auto quiet = analyze(kInclined, -1.3, {200.0, 1.7, 2e-5, 1}, LineMethod::generalised);
   const auto loud = analyze(kInclined, -1.3, {200.0, 1.7, 2e-4, 2}, LineMethod::generalised);
   const std::vector<core::ClipSetup> setups(2, tests::clip_setup(core::Launched::up, 4.0));
-  const auto joined = core::join_configurations(setups, {quiet, loud}, tests::kGravity, LineMethod::generalised);
+  const auto joined = core::configurations_of_clips(setups, {quiet, loud}, tests::kGravity, LineMethod::generalised);
   REQUIRE(joined.size() == 1);
   REQUIRE(joined[0].lines.size() == 2);
   for (std::size_t d = 0; d < 2; ++d) {

@@ -8,11 +8,11 @@
 #include "base/errors.h"
 #include "base/files/file_io.h"
 #include "core/experiment/file_names.h"
-#include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/core/known_camera.h"
 #include "tests/core/notes.h"
 #include "tests/core/painter.h"
+#include "tests/core/real_data.h"
 #include "tests/temp_dir.h"
 
 using namespace glidelab;
@@ -270,12 +270,9 @@ TEST_CASE("files that are not images, or of another size, are errors that name t
 }
 
 TEST_CASE("an action camera's real chessboard views calibrate to half a pixel") {
-  const std::filesystem::path folder = std::filesystem::path(tests::kSourceDir) / "../shared/real/chessboard-barrel";
-  if (!std::filesystem::exists(folder)) {
-    WARN("skipped: " << folder << " is not there");
-    return;
-  }
-  const core::BoardViews boards = core::find_board_views(core::files_matching(folder, "*.jpg"), {8, 6}, 2);
+  const auto folder = tests::real_data("chessboard-barrel");
+  if (!folder) return;
+  const core::BoardViews boards = core::find_board_views(core::files_matching(*folder, "*.jpg"), {8, 6}, 2);
   const core::Calibration calibration = core::calibrate_camera(boards, 0.03);
   INFO("rms " << calibration.rms_px << " px, fx " << calibration.camera.fx << ", k1 "
               << calibration.camera.distortion[0] << ", " << calibration.views_used << " views");

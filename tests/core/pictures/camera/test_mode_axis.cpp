@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "tests/catch.h"
 #include "tests/core/known_camera.h"
 
@@ -126,7 +126,7 @@ void add_replicate(const Set& set, std::uint64_t seed, std::map<std::string, Sco
     setups.push_back(setup);
     clips.push_back(core::analyze_motion(setup, track, core::MotionOptions{.bandwidth_s = kBandwidth}));
   }
-  const auto results = core::join_configurations(setups, clips, kGravity);
+  const auto results = core::configurations_of_clips(setups, clips, kGravity);
   const core::ConfigurationResult& result = results.front();
   const double degrees = 180.0 / std::numbers::pi;
   const auto add = [&](const char* name, const core::Quantity& quantity, double truth) {

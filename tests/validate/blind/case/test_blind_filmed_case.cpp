@@ -9,7 +9,7 @@
 #include "base/files/file_io.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/frames/frame_source.h"
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 #include "diagnose/effects/effect_library.h"
 #include "render/film/render_experiment.h"
 #include "render/scenario/scene.h"

@@ -1,5 +1,5 @@
-/// Clips of one configuration joined: lines through the points of all of them, and from their intercepts mu, alpha and
-/// v_lim (mu_and_alpha_of_intercepts() in the .cpp).
+/// Clips joined by configuration: lines through the points of all clips of one configuration, and from these K/m, mu
+/// and alpha (lines/mu_and_alpha.h) and v_lim (lines/line_fit.h). And the whole analysis of tracks, analyze_tracks().
 #pragma once
 
 #include <vector>
@@ -18,9 +18,9 @@ namespace glidelab::core {
 ///     g sin(alpha) = (a0- + a0+)/2,     mu g cos(alpha) = (a0- - a0+)/2        (the paper's equation (13))
 ///
 /// K/m is the directions' mean. With generalised lines the clips' own lines are weighted by their inverse covariances.
-std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
-                                                     const std::vector<ClipResult>& clips, const Gravity& gravity,
-                                                     LineMethod lines = LineMethod::ordinary);
+std::vector<ConfigurationResult> configurations_of_clips(const std::vector<ClipSetup>& setups,
+                                                         const std::vector<ClipResult>& clips, const Gravity& gravity,
+                                                         LineMethod lines = LineMethod::ordinary);
 
 /// All clips of one analysis, once their x(t) is known: each on its own, then joined by configuration.
 ///

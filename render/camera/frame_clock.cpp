@@ -1,4 +1,4 @@
-#include "render/camera/exposure_times.h"
+#include "render/camera/frame_clock.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "validate/study/sweep/sweep_run.h"
+#include "validate/study/sweep/one_run.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "core/pictures/marker/marker.h"
+#include "core/pictures/marker/marker_fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/motion/analyze_motion.h"
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 #include "core/motion/lines/line_fit.h"
 #include "tests/catch.h"
 #include "tests/core/notes.h"
@@ -52,7 +52,7 @@ ClipResult clip_on(const std::vector<Line>& lines) {
 }
 
 ConfigurationResult join(const std::vector<ClipSetup>& setups, const std::vector<ClipResult>& clips) {
-  const auto results = join_configurations(setups, clips, kGravity);
+  const auto results = configurations_of_clips(setups, clips, kGravity);
   REQUIRE(results.size() == 1);
   return results.front();
 }
@@ -175,8 +175,8 @@ TEST_CASE("without the uncertainty of the inclination one line gives no mu, and 
 TEST_CASE("where gravity is not stated, alpha and mu contain its uncertainty, and K/m and v_lim do not") {
   const tests::Law law{30.0, 0.2, 2.77};
   const auto with = [&](const Gravity& gravity) {
-    return join_configurations({kUp}, {clip_on({{-1, 2.77, law.a0(-1), 0.0, 0.0}, {1, 2.77, law.a0(1), 0.0, 0.0}})},
-                               gravity)
+    return configurations_of_clips({kUp}, {clip_on({{-1, 2.77, law.a0(-1), 0.0, 0.0}, {1, 2.77, law.a0(1), 0.0, 0.0}})},
+                                   gravity)
         .front();
   };
   const auto stated = with(kGravity), assumed = with({kGravity, 0.015});
@@ -229,7 +229,7 @@ TEST_CASE("a configuration a hundred times as heavy as the lightest has a note, 
     const std::vector<ClipSetup> setups = {tests::clip_setup(Launched::up, 4.0, kLightest_kg),
                                            tests::clip_setup(Launched::up, 4.0, kg)};
     const ClipResult clip = clip_on({{-1, 2.0, 0.6, 0.01, 0.002}});
-    const auto results = join_configurations(setups, {clip, clip}, kGravity);
+    const auto results = configurations_of_clips(setups, {clip, clip}, kGravity);
     REQUIRE(results.size() == 2);
     CHECK(results[0].notes.empty());
     CHECK(results[1].notes.size() == (ratio > 100.0 ? 1 : 0));
@@ -338,7 +338,7 @@ TEST_CASE("clips of another mass, inclination or group make another configuratio
   setups[2].incline_rad = 0.0;
   setups[3].group = "other";
   const std::vector<ClipResult> clips(5, clip_on({{-1, 2.0, 0.8, 0.01, 0.002}}));
-  const auto results = join_configurations(setups, clips, kGravity);
+  const auto results = configurations_of_clips(setups, clips, kGravity);
   REQUIRE(results.size() == 4);
   CHECK(results[0].clips.size() == 2);
   CHECK(results[1].mass_kg == 0.435);

@@ -1,4 +1,4 @@
-#include "core/motion/join_configurations.h"
+#include "core/motion/configurations.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include "core/math/least_squares.h"
 #include "core/motion/lines/line_fit.h"
 #include "core/motion/lines/line_law.h"
+#include "core/motion/lines/mu_and_alpha.h"
 #include "core/motion/speed_motion.h"
-#include "core/result/estimate.h"
 #include "core/result/one_direction.h"
 
 namespace glidelab::core {
@@ -207,141 +207,9 @@ std::vector<LineFit> join_lines(const std::vector<MemberClip>& members, LineMeth
   return joined;
 }
 
-}  // namespace
-
-namespace {
-
 double degrees_of(double rad) {
   const double degrees = rad * base::kDegreesPerRad;
   return std::round(degrees * 1e9) / 1e9 + 0.0;  // 4, not 4.000000000000001; + 0.0: no -0
-}
-
-/// A combination of both lines' coefficients: its gradient in one line, and that line.
-struct OfLine {
-  LineShift gradient;
-  const LineFit* line;
-};
-
-/// The variance of a combination of lines: the random part with its degrees of freedom, and with what the lines share.
-struct CombinedVariance {
-  KnownVariance random;
-  double total = 0.0;
-};
-
-/// Errors that lines share add up with their signs, and so does the scatter of the clips that they share.
-CombinedVariance combined(const std::vector<OfLine>& lines) {
-  KnownVariance own{0.0, std::numeric_limits<double>::infinity()}, of_clips = own;
-  double explained = 0.0;  // of the clips' scatter, by the noise of the lines that have one
-  std::vector<double> clips, shared;
-  const auto add = [](const LineShift& gradient, const std::vector<LineShift>& shifts, std::vector<double>& sums) {
-    if (sums.size() < shifts.size()) sums.resize(shifts.size(), 0.0);
-    for (std::size_t i = 0; i < shifts.size(); ++i) sums[i] += gradient.k * shifts[i].k + gradient.a0 * shifts[i].a0;
-  };
-  for (const auto& [gradient, line] : lines) {
-    const LineUncertainty& parts = line->parts;
-    const double of_line = gradient.k * gradient.k * parts.var_k + gradient.a0 * gradient.a0 * parts.var_a0 +
-                           2.0 * gradient.k * gradient.a0 * parts.cov;
-    own.value += of_line;
-    own.degrees = std::min(own.degrees, parts.degrees);
-    if (!parts.clips.empty()) {
-      of_clips.degrees = std::min(of_clips.degrees, parts.clip_degrees);
-      explained += of_line;
-    }
-    add(gradient, parts.clips, clips);
-    add(gradient, shared_shifts(*line), shared);
-  }
-  if (lines.size() == 2) {
-    const LineShift &one = lines[0].gradient, &other = lines[1].gradient;
-    const LineCross& cross = lines[0].line->parts.with_other;
-    const double both = 2.0 * (one.k * (other.k * cross.k_k + other.a0 * cross.k_a0) +
-                               one.a0 * (other.k * cross.a0_k + other.a0 * cross.a0_a0));
-    own.value = std::max(0.0, own.value + both);
-    if (!lines[0].line->parts.clips.empty() && !lines[1].line->parts.clips.empty()) explained += both;
-  }
-  for (const double sum : clips) of_clips.value += sum * sum;
-  of_clips.value = std::max(0.0, of_clips.value - explained);
-  CombinedVariance made{sum_of(own, of_clips), 0.0};
-  made.total = made.random.value;
-  for (const double sum : shared) made.total += sum * sum;
-  return made;
-}
-
-/// The mean of the directions' K/m, each weighted by one over its variance. If the two differ by more than three
-/// standard deviations, half of the unexplained part is taken as an additional variance of each direction, with one
-/// degree of freedom. (DerSimonian and Laird 1986 add it at any distance; two correct lines would then state 1.2 times
-/// their standard deviation on average.) This evens out the weights, and the standard deviation grows with the spread.
-Quantity mean_k(const std::vector<LineFit>& lines) {
-  if (lines.empty()) return undetermined(unknown::NoLine{});
-  double between = 0.0;
-  if (lines.size() == 2) {
-    const double apart = lines[0].k_over_m_1_s.value - lines[1].k_over_m_1_s.value;
-    // Lines smoothed together may have one K/m but for rounding: a hundredth of their deviations is no difference.
-    const double rounding = 1e-4 * (lines[0].parts.var_k + lines[1].parts.var_k);
-    const double allowed = combined({{{1.0, 0.0}, &lines[0]}, {{-1.0, 0.0}, &lines[1]}}).total + rounding;
-    if (apart * apart > 9.0 * allowed) between = 0.5 * (apart * apart - allowed);
-  }
-  std::vector<double> weights;
-  double sum = 0.0, value = 0.0;
-  for (const LineFit& line : lines) {
-    // Noise-free points weigh the same.
-    weights.push_back(1.0 / std::max(random_variance(line, {1.0, 0.0}).value + between, 1e-30));
-    sum += weights.back();
-    value += weights.back() * line.k_over_m_1_s.value;
-  }
-  std::vector<OfLine> mean;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    mean.push_back({{weights[i] / sum, 0.0}, &lines[i]});
-    squares += weights[i] * weights[i] / (sum * sum);
-  }
-  const CombinedVariance variance = combined(mean);
-  const KnownVariance random = sum_of(variance.random, {squares * between, 1.0});
-  const double shared = variance.total - variance.random.value;
-  return determined(estimate(value / sum, random, shared), std::sqrt(random.value));
-}
-
-/// A quantity with the gradient (by_minus, by_plus) in (a0-, a0+), and its change for one standard deviation of
-/// gravity.
-Quantity of_intercepts(double value, double by_minus, double by_plus, double of_gravity, const LineFit& minus,
-                       const LineFit& plus) {
-  const auto [random, total] = combined({{{0.0, by_minus}, &minus}, {{0.0, by_plus}, &plus}});
-  return determined(estimate(value, random, total - random.value + of_gravity * of_gravity), std::sqrt(random.value));
-}
-
-/// Friction and slope of the two lines' intercepts, equation (13) of the paper:
-///
-///     (a0- + a0+)/2 = g sin(alpha),     (a0- - a0+)/2 = mu g cos(alpha)
-void mu_and_alpha_of_intercepts(const LineFit& minus, const LineFit& plus, const Gravity& gravity,
-                                ConfigurationResult& result) {
-  const double mean = 0.5 * (minus.a0_m_s2.value + plus.a0_m_s2.value);
-  const double half_jump = 0.5 * (minus.a0_m_s2.value - plus.a0_m_s2.value);
-  if (std::abs(mean) >= gravity.m_s2) {
-    result.alpha_deg = result.mu = undetermined(unknown::MeanBeyondGravity{mean});
-    return;
-  }
-  const double alpha = std::asin(mean / gravity.m_s2);
-  const double g_cos = gravity.m_s2 * std::cos(alpha);
-  const double by_mean = base::kDegreesPerRad / g_cos, by_gravity = -by_mean * mean / gravity.m_s2;
-  result.alpha_deg = of_intercepts(alpha * base::kDegreesPerRad, 0.5 * by_mean, 0.5 * by_mean,
-                                   by_gravity * gravity.sd_m_s2, minus, plus);
-  // mu = half_jump / sqrt(g^2 - mean^2)
-  const double by_jump = 1.0 / g_cos, mu_by_mean = half_jump * mean / std::pow(g_cos, 3);
-  const double mu_by_gravity = -half_jump * gravity.m_s2 / std::pow(g_cos, 3);
-  result.mu = of_intercepts(half_jump / g_cos, 0.5 * (mu_by_mean + by_jump), 0.5 * (mu_by_mean - by_jump),
-                            mu_by_gravity * gravity.sd_m_s2, minus, plus);
-}
-
-/// mu of one line and the stated inclination, or the reason why there is none.
-Quantity mu_of_line(const LineFit& line, const Gravity& gravity, const ConfigurationResult& stated) {
-  const double a0 = line.a0_m_s2.value;
-  const auto mu = mu_of_one_direction(stated, line.direction, a0, gravity.m_s2);
-  if (!mu) {
-    return undetermined(unknown::NotBothLines{
-        .minus = line.direction > 0, .plus = line.direction < 0, .incline_would_do = incline_would_do(stated)});
-  }
-  const auto [random, total] = combined({{{0.0, mu->by_a0}, &line}});
-  const double known = mu->of_incline * mu->of_incline + std::pow(mu->by_gravity * gravity.sd_m_s2, 2);
-  return determined(estimate(mu->value, random, total - random.value + known), std::sqrt(random.value));
 }
 
 /// Whether a direction has points enough for a line.
@@ -367,7 +235,9 @@ void recover(const std::vector<LineFit>& lines, const Gravity& gravity, const st
   result.k_over_m_1_s = mean_k(lines);
   result.v_lim_m_s = limit_velocity(lines);
   if (lines.size() == 2) {
-    mu_and_alpha_of_intercepts(lines[0], lines[1], gravity, result);
+    const MuAndAlpha found = mu_and_alpha_of_intercepts(lines[0], lines[1], gravity);
+    result.mu = found.mu;
+    result.alpha_deg = found.alpha_deg;
     return;
   }
   if (lines.empty()) {
@@ -439,9 +309,9 @@ ConfigurationResult join_members(const std::vector<MemberClip>& members, const G
 
 }  // namespace
 
-std::vector<ConfigurationResult> join_configurations(const std::vector<ClipSetup>& setups,
-                                                     const std::vector<ClipResult>& clips, const Gravity& gravity,
-                                                     LineMethod lines) {
+std::vector<ConfigurationResult> configurations_of_clips(const std::vector<ClipSetup>& setups,
+                                                         const std::vector<ClipResult>& clips, const Gravity& gravity,
+                                                         LineMethod lines) {
   std::vector<std::vector<MemberClip>> configurations;
   for (std::size_t i = 0; i < setups.size(); ++i) {
     const auto same = [&](const std::vector<MemberClip>& members) {
@@ -476,7 +346,7 @@ AnalysisResults analyze_tracks(const std::vector<ClipSetup>& setups, const std::
   });
   results.gravity_m_s2 = gravity.m_s2;
   results.gravity_sd_m_s2 = gravity.sd_m_s2;
-  results.configurations = join_configurations(setups, results.clips, gravity, options.lines);
+  results.configurations = configurations_of_clips(setups, results.clips, gravity, options.lines);
   note_gravity(results);
   results.estimator = name_of(options.lines);
   return results;

@@ -1,4 +1,4 @@
-#include "base/files/passing_folders.h"
+#include "base/files/temporary_folders.h"
 
 #include <unistd.h>
 
@@ -24,12 +24,12 @@ PassingFolders& passing() {
 
 }  // namespace
 
-void remember_passing_folder(const fs::path& folder, const std::vector<fs::path>& parents) {
+void remember_temporary_folder(const fs::path& folder, const std::vector<fs::path>& parents) {
   const std::lock_guard lock(passing().mutex);
   passing().folders.insert_or_assign(folder, parents);
 }
 
-void forget_passing_folder(const fs::path& folder) {
+void forget_temporary_folder(const fs::path& folder) {
   const std::lock_guard lock(passing().mutex);
   passing().folders.erase(folder);
 }
@@ -43,7 +43,7 @@ void begin_publishing() {
   passing().publishing = true;
 }
 
-bool discard_passing_folders() {
+bool discard_temporary_folders() {
   passing().mutex.lock();  // held until the process ends if something is removed
   if (passing().publishing) {
     passing().mutex.unlock();

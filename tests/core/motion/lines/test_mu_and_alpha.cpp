@@ -1,0 +1,57 @@
+#include "core/motion/lines/mu_and_alpha.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/motion/lines/line_fit.h"
+#include "tests/catch.h"
+#include "tests/core/notes.h"
+
+using namespace glidelab;
+using namespace glidelab::core;
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kG = 9.81;
+
+LineFit line(int direction, double k, double a0) {
+  LineFit fit;
+  fit.direction = direction;
+  fit.points = 20;
+  fit.k_over_m_1_s.value = k;
+  fit.a0_m_s2.value = a0;
+  fit.parts.var_k = 1e-4;
+  fit.parts.var_a0 = 1e-6;
+  fit.parts.degrees = std::numeric_limits<double>::infinity();
+  complete_line(fit);
+  return fit;
+}
+
+}  // namespace
+
+TEST_CASE("mu and alpha solve the law of both directions at v = 0, in each place's gravity") {
+  for (const double alpha_deg : {-3.0, 0.0, 4.3, 60.0}) {
+    for (const double mu : {0.0071, 0.3}) {
+      const double down = kG * std::sin(alpha_deg / kDegrees), friction = mu * kG * std::cos(alpha_deg / kDegrees);
+      const MuAndAlpha found =
+          mu_and_alpha_of_intercepts(line(-1, 2.8, down + friction), line(1, 2.8, down - friction), {kG, 0.0});
+      REQUIRE(found.mu.estimate);
+      REQUIRE(found.alpha_deg.estimate);
+      // Exact but for rounding; the smallest mu is a difference of numbers that are 300 times as large.
+      CHECK(found.alpha_deg.estimate->value == Approx(alpha_deg).epsilon(1e-12).margin(1e-12));
+      CHECK(found.mu.estimate->value == Approx(mu).epsilon(1e-10));
+    }
+  }
+}
+
+TEST_CASE("where the mean of both intercepts is beyond gravity, neither mu nor alpha is given, for that reason") {
+  const MuAndAlpha none = mu_and_alpha_of_intercepts(line(-1, 2.0, 11.0), line(1, 2.0, 10.0), {kG, 0.0});
+  for (const Quantity* quantity : {&none.mu, &none.alpha_deg}) {
+    CHECK_FALSE(quantity->estimate);
+    const auto* const why = tests::reason_of<unknown::MeanBeyondGravity>(*quantity);
+    REQUIRE(why != nullptr);
+    CHECK(why->mean_m_s2 == Approx(10.5).epsilon(1e-12));
+  }
+}
