@@ -8,8 +8,10 @@
 ///     C = H⁻¹,      C_clips = H⁻¹ (n/(n - 1) sum over clips of s s' + statements) H⁻¹
 ///
 /// with H the information matrix, s the score of a clip, n the number of clips, and `statements` the information in
-/// what the experimenter states. Other likely explanations of probability p widen it, sd² = sum of p (sd² + (value -
-/// reported)²) / sum of p, so that intervals hold the truth even where the cause is in doubt. The terminal velocity is
+/// what the experimenter states. Other likely explanations widen it, so that intervals hold the truth even where the
+/// cause is in doubt: the interval about the reported value has 95 % of the probability of all of them together, each
+/// with a distribution of its own (Student's t). Where gravity is no parameter of the fit, alpha and mu contain its
+/// standard deviation: the motions determine g sin(alpha) and mu g. The terminal velocity is
 /// the speed at which the force vanishes, m g sin(alpha) = drag(v) + friction(v) with all causes included, in the
 /// middle of the set-up's positions. Its standard deviation follows from the parameters' covariance by finite
 /// differences. Effects that act only at some positions, times or clips (EffectLaw::passing) are left out of it.
