@@ -111,6 +111,7 @@ Then, before you put anything away:
 
     glidelab check .       # is the recording good enough? what to change
     glidelab analyze .     # K/m, mu, inclination, terminal velocity
+    glidelab certify .     # can the uncertainties be trusted?
     glidelab diagnose .    # what the simple law does not explain, if anything
 )";
 
