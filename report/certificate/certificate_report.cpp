@@ -194,10 +194,6 @@ std::string all_lacks(const Certificate& certificate) {
                      lacks);
 }
 
-}  // namespace
-
-namespace {
-
 /// "the terminal velocity", "µ": within a sentence.
 std::string named(const CertifiedQuantity& quantity) {
   return (is_headline(quantity) ? "" : "the ") + symbol_of(quantity.quantity);
