@@ -206,8 +206,7 @@ void add_analyze(CLI::App& app, Command& chosen) {
       ->type_name("EFFECT")
       ->allow_extra_args(false);
   add_bare_options(*command, options->bare);
-  add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>",
-                     "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "glidelab-out/analyze-<name of the first folder>");
   command->callback([options, bandwidth, &chosen] {
     options->bandwidth_given = bandwidth->count() > 0;
     chosen = [options] {

@@ -63,8 +63,7 @@ void add_characterize(CLI::App& app, Command& chosen) {
                    "A folder with characterize.toml, dark/ and flat-…/ (docs/reference/characterize.md is the recipe)")
       ->required();
   add_max_megapixels(*command, options->most_pixels);
-  add_common_options(*command, options->common, "glidelab-out/characterize-<name of the folder>",
-                     "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "glidelab-out/characterize-<name of the folder>");
   command->callback([options, &chosen] { chosen = [options] { characterize(*options); }; });
 }
 

@@ -63,8 +63,7 @@ void add_check(CLI::App& app, Command& chosen) {
       ->type_name("DIR|FILE")
       ->required();
   add_bare_options(*command, options->bare);
-  add_common_options(*command, options->common, "glidelab-out/check-<name of the folder or file>",
-                     "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "glidelab-out/check-<name of the folder or file>");
   command->footer("Exit status: 0 usable, 4 not usable as it is, 1 wrong input (docs/reference/check.md).");
   command->callback([options, &chosen] {
     chosen = [options] {

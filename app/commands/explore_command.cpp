@@ -44,8 +44,7 @@ void add_explore(CLI::App& app, Command& chosen) {
   command->add_option("--language", options->language, "Language in which the page opens; its menu offers all")
       ->check(CLI::IsMember(teach::language_codes()))
       ->capture_default_str();
-  add_common_options(*command, options->common, "glidelab-out/explore-page",
-                     "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "glidelab-out/explore-page");
   command->callback([options, &chosen] { chosen = [options] { explore(*options); }; });
 }
 

@@ -122,8 +122,7 @@ void add_laws(CLI::App& app, Command& chosen) {
                    "Language in which the page opens (its menu offers all), and of the worksheets")
       ->check(CLI::IsMember(teach::language_codes()))
       ->capture_default_str();
-  add_common_options(*command, options->common, "glidelab-out/laws-<name of the first scenario>",
-                     "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "glidelab-out/laws-<name of the first scenario>");
   command->callback([options, &chosen] { chosen = [options] { laws(*options); }; });
 }
 

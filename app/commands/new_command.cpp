@@ -70,7 +70,7 @@ void add_new(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<NewOptions>();
   CLI::App* command = app.add_subcommand("new", "Make a commented experiment folder, to be filled with a recording");
   command->add_option("FOLDER", options->folder, "The folder to make; must not exist, or be empty");
-  add_common_options(*command, options->common, "FOLDER", "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "FOLDER");
   command->callback([options, &chosen] { chosen = [options] { make_new(*options); }; });
 }
 

@@ -113,8 +113,7 @@ void add_pattern(CLI::App& app, Command& chosen) {
       ->check(check_above_0)
       ->delimiter(',')
       ->default_str("8,12,16,24");
-  add_common_options(*command, options->common, "glidelab-out/pattern-<paper>",
-                     "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "glidelab-out/pattern-<paper>");
   command->callback([options, &chosen] { chosen = [options] { pattern(*options); }; });
 }
 

@@ -76,8 +76,7 @@ void add_simulate(CLI::App& app, Command& chosen) {
   command->add_option("--rate", options->rate_hz, "States per second; default: the scenario's frame rate")
       ->type_name("HZ")
       ->check(check_rate);
-  add_common_options(*command, options->common, "glidelab-out/simulate-<name of the scenario file>",
-                     "Accepted for consistency; has no effect here");
+  add_common_options(*command, options->common, "glidelab-out/simulate-<name of the scenario file>");
   command->callback([options, &chosen] { chosen = [options] { simulate_command(*options); }; });
 }
 

@@ -55,7 +55,8 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
         if (text.empty()) return std::string("the name is empty");
         return text.front() == '-' ? fmt::format("found \"{}\", expected the name of a folder", text) : std::string();
       });
-  command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_whole_number);
+  CLI::Option* seed = command.add_option("--seed", options.seed, seed_help)->type_name("N")->check(check_whole_number);
+  if (seed_help.empty()) seed->group("");
   command
       .add_option("--jobs", options.jobs,
                   fmt::format("Number of threads; default: the number of cores ({})", options.jobs))

@@ -46,8 +46,9 @@ struct CommonOptions {
 };
 
 /// Adds --out, --seed, --jobs, --json, --quiet and --verbose. `default_out` and `seed_help` complete their help.
+/// Without `seed_help` the command draws no random numbers: --seed is accepted and not listed.
 void add_common_options(CLI::App& command, CommonOptions& options, const std::string& default_out,
-                        const std::string& seed_help);
+                        const std::string& seed_help = {});
 
 /// --out, or glidelab-out/<command>-<name of input>; absolute, links resolved, no trailing slash.
 std::filesystem::path named_folder(const CommonOptions& options, std::string_view command,

@@ -187,7 +187,7 @@ std::string analysis_answer(const core::AnalysisResults& results, std::string_vi
 std::string analysis_text(const core::AnalysisResults& results) {
   const std::vector<std::string> doubts = doubts_about(results);
   const std::string mark = doubts.empty() ? "" : " *";
-  std::vector<std::vector<std::string>> rows = {{"mass (kg)", "incline (°)", "group", "K/m (1/s)" + mark, "µ" + mark,
+  std::vector<std::vector<std::string>> rows = {{"mass (kg)", "stated α (°)", "group", "K/m (1/s)" + mark, "µ" + mark,
                                                  "α (°)" + mark, "terminal velocity (m/s)" + mark, "R² v<0", "R² v>0"}};
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {

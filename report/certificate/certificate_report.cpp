@@ -24,6 +24,7 @@ using validate::ChangedTwin;
 
 constexpr double kSure = 2.5;  // standard deviations of a mean, for the largest of three: 4 % by chance
 constexpr std::size_t kMostChanges = 3;
+constexpr double kWorthDoing = 0.1;  // by which a change must reduce the errors to be advised
 
 std::string percent(double share) {
   return fmt::format("{:.0f}", std::round(100.0 * share) + 0.0);  // + 0.0: no "-0"
@@ -45,7 +46,11 @@ std::string fall_text(const validate::RunFall& fall) {
     return fmt::format("{} times larger ({} to {})", base::number_text(1.0 - fall.value, 2),
                        base::number_text(1.0 - fall.high, 2), base::number_text(1.0 - fall.low, 2));
   }
-  return percent_text(fall.value, fall.low, fall.high);
+  constexpr double kNearEnd = 0.99, kMostTold = 0.999;  // no error disappears: none is 100 % smaller
+  if (fall.high <= kNearEnd) return percent_text(fall.value, fall.low, fall.high);
+  if (fall.low > kMostTold) return "over 99.9 %";
+  const auto told = [&](double share) { return 100.0 * std::min(share, kMostTold); };
+  return fmt::format("{:.1f} % ({:.1f} to {:.1f} %)", told(fall.value), told(fall.low), told(fall.high));
 }
 
 bool is_headline(const CertifiedQuantity& quantity) {
@@ -115,12 +120,17 @@ std::string change_name(const ChangedTwin& change) {
 }
 
 constexpr const char* kNothingStandsOut =
-    "Nothing stands out: no change that was tried reduces the errors by more than chance would.";
+    "Nothing stands out: no change that was tried reduces the errors by a tenth or more, beyond chance.";
+
+/// Whether a change reduces the errors by more than chance and by enough to be worth the trouble.
+bool helps(const ChangedTwin& change) {
+  return change.stands_out && change.together && change.together->value >= kWorthDoing;
+}
 
 std::string limits_words(const Certificate& certificate) {
   std::string names;
   for (const ChangedTwin& change : certificate.changes) {
-    if (change.stands_out) names += (names.empty() ? "" : ", ") + limit_words(change).limit;
+    if (helps(change)) names += (names.empty() ? "" : ", ") + limit_words(change).limit;
   }
   return names.empty() ? kNothingStandsOut : fmt::format("What limits it, the largest first: {}.", names);
 }
@@ -166,8 +176,13 @@ std::string explanation_words(const Certificate& certificate) {
     if (worst == nullptr || one.probability > worst->probability) worst = &one;
   }
   if (worst == nullptr || certificate.explanations.size() < 2) return {};
-  return fmt::format("They fail under explanations with a total probability of {} %, above all under {} ({} % hold).",
-                     percent(failing), explanation_name(*worst), percent(worst->coverage.share));
+  const std::string which =
+      failing > 0.995
+          ? "every explanation of the data that the diagnosis finds likely"
+          : fmt::format("explanations of the data to which the diagnosis gives a probability of {} % in all",
+                        percent(failing));
+  return fmt::format("They fail under {}, above all under {} ({} % hold).", which, explanation_name(*worst),
+                     percent(worst->coverage.share));
 }
 
 /// "The twins are without …: read the answer with that in mind."; empty if nothing is missing.
@@ -178,10 +193,6 @@ std::string all_lacks(const Certificate& certificate) {
   return fmt::format("The twins leave out {}, which the recording has. The answer holds if that does not matter.",
                      lacks);
 }
-
-}  // namespace
-
-namespace {
 
 /// "the terminal velocity", "µ": within a sentence.
 std::string named(const CertifiedQuantity& quantity) {
@@ -240,7 +251,7 @@ std::string certificate_answer(const Certificate& certificate) {
 std::vector<std::string> best_changes(const Certificate& certificate) {
   std::vector<std::string> words;
   for (const ChangedTwin& change : certificate.changes) {
-    if (!change.stands_out || words.size() == kMostChanges) continue;
+    if (!helps(change) || words.size() == kMostChanges) continue;
     const LimitWords limit = limit_words(change);
     words.push_back(fmt::format("{}. With {}, the errors of {} are {} smaller.", limit.advice, limit.change,
                                 headline_names(certificate), fall_text(*change.together)));

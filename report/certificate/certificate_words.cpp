@@ -33,7 +33,7 @@ struct LackWords {
            "scale, with its error)";
   }
   std::string operator()(const validate::lacking::ClipScatter&) const {
-    return "what differs from clip to clip (filming leaves as much)";
+    return "the scatter from clip to clip (filming alone would leave as much)";
   }
   std::string operator()(const validate::lacking::Noise& of) const {
     return fmt::format(

@@ -69,17 +69,20 @@ std::vector<Plot> likeliest_curve(const diagnose::Diagnosis& diagnosis,
 Html rest_section(const diagnose::Diagnosis& diagnosis) {
   std::string words;
   std::vector<diagnose::GapRegion> regions;
-  if (diagnosis.remainder) {
+  const bool any_left = diagnosis.remainder && !leaves_nothing(*diagnosis.remainder);
+  if (any_left) {
     words = paragraph(remainder_words(*diagnosis.remainder));
     regions = diagnosis.remainder->regions;
-  } else if (diagnosis.verdict == diagnose::Verdict::unknown) {
+  } else if (!diagnosis.remainder && diagnosis.verdict == diagnose::Verdict::unknown) {
     regions = diagnosis.regions;
   }
   if (regions.size() > kPlacesTold) regions.resize(kPlacesTold);
   words += region_table(regions) + paragraph(levels_words(diagnosis));
   if (words.empty()) return {};
-  return fmt::format("<h2>Where the {} lies</h2>\n", diagnosis.remainder ? "rest" : "gap") + words +
-         figures(likeliest_curve(diagnosis, regions));
+  const char* const heading = any_left              ? "Where the rest lies"
+                              : diagnosis.remainder ? "How far the law holds"
+                                                    : "Where the gap lies";
+  return fmt::format("<h2>{}</h2>\n", heading) + words + figures(likeliest_curve(diagnosis, regions));
 }
 
 }  // namespace

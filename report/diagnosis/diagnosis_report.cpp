@@ -320,7 +320,7 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
     if (!part.empty()) text += (text.empty() ? "" : "\n") + part;
   };
   if (const auto rows = explained_rows(diagnosis, true); !rows.empty()) add(text_table(rows, 1));
-  if (diagnosis.remainder) {
+  if (diagnosis.remainder && !leaves_nothing(*diagnosis.remainder)) {
     std::string rest = remainder_words(*diagnosis.remainder);
     // For `unknown` the summary says where it lies.
     if (diagnosis.verdict == diagnose::Verdict::effect) {

@@ -43,12 +43,19 @@ std::optional<double> expected(const validate::TargetResult& result) {
   return result.found ? result.found : result.bound;
 }
 
+/// ", at most 0.000072": the upper limit, on which the verdict rests; empty if nothing was run or there is none.
+std::string at_most_words(const Target& target, const validate::TargetResult& result) {
+  if (!result.found || !std::isfinite(result.high)) return {};
+  return ", at most " + base::number_text(result.high, 2) + unit_suffix(unit_of(target.quantity));
+}
+
 std::string expected_words(const Requirement& requirement, const Candidate& candidate) {
   std::string text;
   for (std::size_t t = 0; t < requirement.targets.size(); ++t) {
     const std::optional<double> value = expected(candidate.results[t]);
     if (!value || !std::isfinite(*value)) continue;
-    text += (text.empty() ? "" : ", ") + error_words(requirement.targets[t], base::number_text(*value, 2));
+    text += (text.empty() ? "" : ", ") + error_words(requirement.targets[t], base::number_text(*value, 2)) +
+            at_most_words(requirement.targets[t], candidate.results[t]);
   }
   return text;
 }

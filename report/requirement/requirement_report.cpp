@@ -132,7 +132,7 @@ std::string noise_cell(const Candidate& candidate) {
   return std::isfinite(candidate.noise_m) ? base::number_text(candidate.noise_m * 1e6, 3) : "–";
 }
 
-/// "5 of 16 reach it, 2 are undecided, 9 do not."
+/// "5 of 16 reach it when filmed; 2 may (more runs would decide); 9 do not."
 std::string counts_text(const Requirement& requirement) {
   std::size_t reaching = 0, undecided = 0, possible = 0, not_filmed = 0;
   for (const Candidate& candidate : requirement.candidates) {
@@ -141,15 +141,17 @@ std::string counts_text(const Requirement& requirement) {
     possible += candidate.verdict == Verdict::unconfirmed && candidate.judged_by == validate::Confirm::none ? 1 : 0;
     not_filmed += candidate.verdict == Verdict::unconfirmed && candidate.judged_by != validate::Confirm::none ? 1 : 0;
   }
-  std::string text = fmt::format("{} of {} reach it", reaching, requirement.candidates.size());
-  if (undecided > 0) text += fmt::format(", {} may (more runs would decide)", undecided);
-  if (possible > 0) text += fmt::format(", {} can by the bound, but nothing was run", possible);
+  std::string text =
+      fmt::format("{} of {} {} it{}", reaching, requirement.candidates.size(), reaching == 1 ? "reaches" : "reach",
+                  requirement.confirm == validate::Confirm::clips ? " when filmed" : "");
+  if (undecided > 0) text += fmt::format("; {} may (more runs would decide)", undecided);
+  if (possible > 0) text += fmt::format("; {} can by the bound, but nothing was run", possible);
   if (not_filmed > 0) {
-    text += fmt::format(", {} more expensive {} as tracks and {} not filmed", not_filmed,
-                        not_filmed == 1 ? "one does" : "ones do", not_filmed == 1 ? "was" : "were");
+    text += fmt::format("; {} more expensive {} it as tracks and {} not filmed", not_filmed,
+                        not_filmed == 1 ? "one reaches" : "ones reach", not_filmed == 1 ? "was" : "were");
   }
   const std::size_t not_at_all = requirement.candidates.size() - reaching - undecided - possible - not_filmed;
-  if (not_at_all > 0) text += fmt::format(", {} {} not", not_at_all, not_at_all == 1 ? "does" : "do");
+  if (not_at_all > 0) text += fmt::format("; {} {} not", not_at_all, not_at_all == 1 ? "does" : "do");
   return text + ".";
 }
 
@@ -198,8 +200,8 @@ std::string limits_list(const Requirement& requirement) {
     items += fmt::format("<li><b>{}</b>: {}</li>\n", escape(candidate.name), escape(limits));
   }
   if (items.empty()) return {};
-  return "<h3>What limits the others</h3>\n<p>How many times smaller the least error would be without each "
-         "limitation:</p>\n<ul>\n" +
+  return "<h3>What limits the others</h3>\n<p>How many times smaller the bound (“by runs”: the error) would "
+         "be without each limitation:</p>\n<ul>\n" +
          items + "</ul>\n";
 }
 
@@ -247,7 +249,8 @@ std::string how_judged(const Requirement& requirement) {
              "standard "
              "deviation, from {} bootstrap resamples of the runs (of fewer than 20: that of normal errors; bias: that "
              "of the errors over the root of their number). “Runs beyond the target” are those, of all that were made, "
-             "whose error is larger: a few that are far off come from frames lost without a trace, not from "
+             "whose error is larger: a few that are far off come from the clock, such as frames lost without a trace, "
+             "not from "
              "noise.</p>\n",
              validate::kRunsForQuantile, validate::kResamples);
 }
@@ -294,7 +297,8 @@ std::string requirement_text(const Requirement& requirement) {
                       order_text(requirement), counts_text(requirement)) +
           text_table(rows, 4);
   if (!unanswered.empty()) text += "\n" + unanswered;
-  if (!below.empty()) text += "\nWhat limits the others (how many times smaller the bound is without it)\n" + below;
+  if (!below.empty())
+    text += "\nWhat limits the others (how many times smaller the bound, “by runs” the error, is without it)\n" + below;
   const std::string next = next_step(requirement);
   if (!next.empty()) text += "\n" + next + "\n";
   return text;

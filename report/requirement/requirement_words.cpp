@@ -66,7 +66,7 @@ std::string limitation_words(validate::Limitation limitation) {
     case Limitation::resolution:
       return fmt::format("resolution ({:.0f} times finer)", validate::kFiner);
     case Limitation::clock:
-      return "the camera's clock (even instead, by runs)";
+      return "the clock: lost frames, uneven frame times (none instead, by runs)";
     case Limitation::rolling_shutter:
       return "rolling shutter (global instead, by runs)";
     case Limitation::codec:

@@ -166,6 +166,10 @@ std::string shrink_text(const diagnose::GapSizes& gap) {
   if (!gap.shrink) return "";
   const bool grows = *gap.shrink < 0.0;
   const double percent = grows ? -100.0 : 100.0;
+  constexpr double kNearlyAll = 0.999;  // rounded it would be all
+  if (gap.interval95.shrink ? gap.interval95.shrink->low > kNearlyAll : *gap.shrink > kNearlyAll) {
+    return "shrinks by over 99.9 %";
+  }
   std::string text = fmt::format("{} by {:.1f} %", grows ? "grows" : "shrinks", percent * *gap.shrink);
   if (const auto& of = gap.interval95.shrink) {
     text += fmt::format(" ({:.1f} to {:.1f} %)", percent * (grows ? of->high : of->low),

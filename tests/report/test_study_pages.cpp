@@ -86,7 +86,7 @@ TEST_CASE("the numbers in the plot of require are those of its tables, the cheap
   CHECK(has(plotted, "# met\n10,1.98e-05,1,1.507"));
   CHECK(has(plotted, "e-05,2.600"));
   CHECK(has(plotted, "# missed\n10,0.002,2,"));
-  CHECK(has(page.html, "1 of 2 reach it, 1 does not."));
+  CHECK(has(page.html, "1 of 2 reaches it; 1 does not."));
 }
 
 TEST_CASE("points of require that lie close together share one label") {
@@ -123,12 +123,12 @@ TEST_CASE("a plan says sizes with their units, and what to do about effects that
   plan.points = 116;
   plan.noise_m = 2.2e-5;
   plan.effects = {{"quadratic_drag", "a drag that grows", "c_kg_m", 0.0028, true, {"eddy_rolloff"}},
-                  {"eddy_rolloff", "a drag that levels off", "v_c_m_s", 20.0, true, {"quadratic_drag"}},
+                  {"eddy_rolloff", "a magnetic drag", "v_c_m_s", 20.0, true, {"quadratic_drag"}},
                   {"lens_distortion", "a lens", "k_1_m2", 0.00071, true, {}},
                   {"scale_error", "a wrong scale", "e", 0.28, true, {}},
                   {"load_independent_friction", "a friction", "force_n", 0.0, false, {}}};
   const std::string text = report::plan_text(plan);
-  CHECK(has(text, "c = 0.0028 kg/m           magnetic drag that levels off"));
+  CHECK(has(text, "c = 0.0028 kg/m           magnetic drag that falls off"));
   CHECK(has(text, "\nquadratic drag: a force "));  // what the letter c is
   CHECK_FALSE(has(text, "eddy_rolloff"));
   CHECK(has(text, "v_c up to 20 m/s"));

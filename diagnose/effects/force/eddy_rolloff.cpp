@@ -1,4 +1,5 @@
-/// A magnetic drag K v / (1 + (v/v_c)²): eddy currents grow more slowly than the speed. Fitted: 1/v_c².
+/// A magnetic drag K v / (1 + (v/v_c)²): it grows more slowly than the speed, is largest at v_c and falls beyond.
+/// Fitted: 1/v_c².
 #include "diagnose/effects/effect.h"
 
 #include <cmath>
@@ -22,8 +23,8 @@ EffectInfo eddy_rolloff() {
   return {
       .id = ids::eddy_rolloff,
       .stage = Stage::dynamics,
-      .words = "a magnetic drag that grows less than proportionally to the speed",
-      .name = "magnetic drag that levels off",
+      .words = "a magnetic drag that grows less than in proportion to the speed, and falls off beyond v_c",
+      .name = "magnetic drag that falls off",
       .meaning = "K v becomes K v / (1 + (v / v_c)²)",
       .search = Search::amplitude,
       .both_signs = false,

@@ -17,6 +17,11 @@ bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis);
 /// "91 %", "99.7 %" and "0.3 %" within 1 % of the ends, and its interval: "91 % (86 to 95 %)".
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval = {});
 
+/// Whether the causes leave nothing: a remainder whose share prints as 0.0 %, of a gap within a tenth of the noise.
+inline bool leaves_nothing(const diagnose::GapRemainder& remainder) {
+  return remainder.share < 5e-4 && remainder.gap < 1.1;
+}
+
 /// "1.2 times the noise"
 std::string over_noise_text(double gap);
 

@@ -102,7 +102,7 @@ std::string alike_words(const diagnose::Diagnosis& diagnosis) {
   }
   if (text.empty()) return text;
   return fmt::format(
-      " A drag that grows less than proportionally to the speed ({}) gives the same lines as such a friction force.",
+      " A drag that grows less than in proportion to the speed ({}) gives the same lines as such a friction force.",
       text);
 }
 
@@ -135,6 +135,11 @@ std::string line_gap_words(const diagnose::Diagnosis& diagnosis) {
                       !diagnosis.lines->either_of.empty() ? "the better of them"
                       : diagnosis.effects.size() > 1      ? "both"
                                                           : "this effect");
+  if (gap.before < 1.0) {
+    text +=
+        " On average no line is off by more than its scatter: it is the pattern of the deviations that speaks for a "
+        "cause.";
+  }
   if (gap.after > 1.0 + diagnose::kClearGap * gap.standard_error) {
     text += fmt::format(
         " Even the best explanation leaves {} times the lines' own scatter: something else is missing as well, or "

@@ -38,16 +38,18 @@ TEST_CASE("help lists the commands that exist and no others") {
   CHECK(listed == std::set<std::string>(kCommands.begin(), kCommands.end()));
 }
 
-TEST_CASE("every command's help names the options that every command takes") {
+TEST_CASE("every command's help names the options that every command takes, and --seed where it has an effect") {
   for (const std::string& command : kCommands) {
     const tests::ProcessResult result = tests::glidelab({command, "--help"});
     INFO(command);
     CHECK(result.status == 0);
-    for (const char* option :
-         {"--help", "-o,--out DIR", "--seed N", "--jobs N", "--json", "-q,--quiet", "-v,--verbose"}) {
+    for (const char* option : {"--help", "-o,--out DIR", "--jobs N", "--json", "-q,--quiet", "-v,--verbose"}) {
       INFO(option);
       CHECK(result.out.find(option) != std::string::npos);
     }
+    static const std::set<std::string> kDrawNothing = {"new",     "pattern", "check",        "simulate",
+                                                       "analyze", "explore", "characterize", "laws"};
+    CHECK((result.out.find("--seed N") != std::string::npos) != kDrawNothing.contains(command));
     CHECK(result.out.find(command == "new" ? "default: FOLDER" : "glidelab-out/" + command) != std::string::npos);
   }
 }

@@ -132,6 +132,34 @@ TEST_CASE("only changes that stand out are given as advice, three at most, and n
   CHECK(report::certificate_text(made).find("Nothing stands out") != std::string::npos);
 }
 
+TEST_CASE("a change that reduces the errors by less than a tenth is no advice, however sure it is") {
+  validate::Certificate made = certificate();
+  made.changes = {change(TwinLimit::cause, true), change(TwinLimit::pixel_noise, true)};
+  made.changes[1].together = validate::RunFall{0.05, 0.049, 0.06};
+  REQUIRE(report::best_changes(made).size() == 1);
+  CHECK(report::best_changes(made).front().starts_with("Remove the cause"));
+  const std::string text = report::certificate_text(made);
+  CHECK(text.find("the largest first: a cause that the law lacks.\n") != std::string::npos);
+  made.changes.erase(made.changes.begin());
+  CHECK(report::best_changes(made).empty());
+  CHECK(report::certificate_text(made).find("reduces the errors by a tenth or more, beyond chance") !=
+        std::string::npos);
+}
+
+TEST_CASE("an error that all but disappears is over 99.9 % smaller, not 100 %") {
+  validate::Certificate made = certificate();
+  made.changes = {change(TwinLimit::cause, true)};
+  const auto words = [&](const validate::RunFall& fall) {
+    made.changes.front().together = fall;
+    const std::string advice = report::best_changes(made).front();
+    return advice.substr(advice.find(" are ") + 5);
+  };
+  CHECK(words({0.9996, 0.9994, 0.9998}) == "over 99.9 % smaller.");
+  CHECK(words({0.9996, 0.995, 0.9998}) == "99.9 % (99.5 to 99.9 %) smaller.");
+  CHECK(words({0.988, 0.98, 0.992}) == "98.8 % (98.0 to 99.2 %) smaller.");
+  CHECK(words({0.97, 0.96, 0.98}) == "97 % (96 to 98 %) smaller.");
+}
+
 TEST_CASE("what the twins are without stands right below the answer, on the page too") {
   validate::Certificate made = certificate();
   made.without = {validate::lacking::Inexpressible{"friction_drift", "it has no name"}};
@@ -148,11 +176,16 @@ TEST_CASE("a certificate says which explanation breaks the intervals where anoth
                        {{"quadratic_drag"}, 0.3, 12, {12, 36, 0.333, 0.2, 0.5}}};
   const std::string text = report::certificate_text(made);
   CHECK(text.substr(text.find('\n') + 1)
-            .starts_with("They fail under explanations with a total probability of 30 %, above all under "
-                         "quadratic drag (33 % hold).\n"));
+            .starts_with("They fail under explanations of the data to which the diagnosis gives a probability of 30 % "
+                         "in all, above all under quadratic drag (33 % hold).\n"));
   const std::string page = report::certificate_page("a", made).html;
   CHECK(page.find("the nominal law alone") != std::string::npos);
   CHECK(page.find("Each explanation") != std::string::npos);
+  made.explanations[0].coverage = {28, 84, 0.333, 0.2, 0.5};
+  const std::string all = report::certificate_text(made);
+  CHECK(all.substr(all.find('\n') + 1)
+            .starts_with("They fail under every explanation of the data that the diagnosis finds likely, above all "
+                         "under the nominal law alone (33 % hold).\n"));
   made.explanations.pop_back();
   CHECK(report::certificate_text(made).find("leaves a probability") == std::string::npos);
   CHECK(report::certificate_page("a", made).html.find("Each explanation") == std::string::npos);
@@ -205,7 +238,7 @@ TEST_CASE("everything that twins may lack has words and a reason, an error of se
        "the calibration by a pattern (one folder has a pattern and another a scale: all twins are measured by the "
        "scale, "
        "with its error)"},
-      {lacking::ClipScatter{}, "what differs from clip to clip (filming leaves as much)"},
+      {lacking::ClipScatter{}, "the scatter from clip to clip (filming alone would leave as much)"},
       {lacking::Noise{5e-4, 1.23456e-5},
        "noise as in the recording (its positions scatter by 0.0005 m, the twin's by 1.23e-05 m: something other than "
        "pixel noise is at work)"}};

@@ -69,6 +69,24 @@ TEST_CASE("without a sequence of causes the page keeps its tiles open and has no
   }
 }
 
+TEST_CASE("a remainder that is said to be nothing has no size and no place, on screen and page") {
+  diagnose::Diagnosis of = tests::two_causes();
+  of.remainder->share = 0.0;
+  of.remainder->gap = 1.02;
+  const std::string page = page_of(of);
+  std::string text = report::diagnosis_text(of);
+  std::replace(text.begin(), text.end(), '\n', ' ');  // it is wrapped
+  for (const std::string& shown : {page, text}) {
+    CHECK(shows(shown, "nothing is left above the noise"));
+    CHECK_FALSE(shows(shown, "random acceleration"));
+    CHECK_FALSE(shows(shown, "is clearest"));
+  }
+  CHECK_FALSE(shows(page, "Where the rest lies"));
+  of.remainder->gap = 1.2;
+  CHECK(shows(page_of(of), "Where the rest lies"));
+  CHECK(shows(report::diagnosis_text(of), "random acceleration"));
+}
+
 TEST_CASE("where something is missing no page shows the nominal model's K with a standard deviation") {
   diagnose::Diagnosis of = tests::two_causes();
   // Beside what was recovered it is not shown at all.

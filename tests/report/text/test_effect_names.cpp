@@ -40,8 +40,8 @@ TEST_CASE("every effect with a size says what the letters of its size mean, on t
   const std::string words = "K v becomes K v / (1 + (v / v<sub>c</sub>)²)";
   CHECK(report::diagnosis_report("d", of, {}).html.find(words) != std::string::npos);
   diagnose::Plan plan;
-  plan.effects = {{"eddy_rolloff", "a drag that levels off", "v_c_m_s", 20.0, true, {}}};
-  CHECK(report::plan_page("p", plan).html.find("a drag that levels off: " + words) != std::string::npos);
+  plan.effects = {{"eddy_rolloff", "a magnetic drag", "v_c_m_s", 20.0, true, {}}};
+  CHECK(report::plan_page("p", plan).html.find("a magnetic drag: " + words) != std::string::npos);
 }
 
 TEST_CASE("effects that act together are named together, and a cause without a name keeps its words") {

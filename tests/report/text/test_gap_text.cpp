@@ -49,6 +49,17 @@ TEST_CASE("a gap is written with its intervals over clips, and null with a reaso
   CHECK_FALSE(angle.at("why").at("z_after").get<std::string>().empty());
 }
 
+TEST_CASE("a gap that all but disappears shrinks by over 99.9 %, not by 100 %") {
+  diagnose::GapSizes gap = *with_gap().gap;
+  CHECK(report::shrink_text(gap) == "shrinks by 95.0 % (90.0 to 100.0 %)");
+  gap.shrink = 0.99996;
+  CHECK(report::shrink_text(gap) == "shrinks by 100.0 % (90.0 to 100.0 %)");
+  gap.interval95.shrink = diagnose::GapInterval{0.9993, 1.0};
+  CHECK(report::shrink_text(gap) == "shrinks by over 99.9 %");
+  gap.interval95.shrink = {};
+  CHECK(report::shrink_text(gap) == "shrinks by over 99.9 %");
+}
+
 TEST_CASE("where there are too few clips for an interval, the file and the text say so") {
   diagnose::Diagnosis diagnosis = with_gap();
   diagnosis.gap->interval95 = {

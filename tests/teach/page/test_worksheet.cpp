@@ -70,7 +70,7 @@ TEST_CASE("a worksheet's answers are the closed forms of its law") {
 TEST_CASE("a worksheet asks and answers in its language, with that language's numbers") {
   const teach::LawStudy both = law("3-viscous-and-coulomb.toml");
   const teach::WorksheetTexts english = teach::worksheet_texts(both, "en"), german = teach::worksheet_texts(both, "de");
-  CHECK(english.title == "Worksheet: Viscous and Coulomb friction together");
+  CHECK(english.title == "Worksheet: Viscous drag and Coulomb friction together");
   CHECK(
       english.answers[0] ==
       "−2.8 1/s in both: a straight line. The part of the friction that depends on v is proportional to v, with K/m = "

@@ -138,7 +138,7 @@ struct Candidate {
   std::string why;
   double need = 0.0;                  ///< bound over target, of the hardest target
   std::vector<TargetResult> results;  ///< one for each target
-  std::vector<Limit> limits;          ///< the largest gain first
+  std::vector<Limit> limits;          ///< a clock that makes most of the error first, then the largest gain
   CameraMode mode = {};
   std::optional<Enough> enough = {};  ///< for the first that reaches the targets, if its errors are kMuchLess times
                                       ///< smaller than allowed

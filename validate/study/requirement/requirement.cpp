@@ -71,8 +71,9 @@ struct Trial {
   std::optional<Setting> setting;  ///< empty if it was refused
   bool render = false;
   bool tracks_miss = false;
-  bool settled = false;                     ///< more rendered runs would not change the verdict
-  std::unique_ptr<RecordedRuns> runs = {};  ///< if it is rendered
+  std::vector<Limit> limits_by_tracks = {};  ///< of one that tracks do not show to reach the targets
+  bool settled = false;                      ///< more rendered runs would not change the verdict
+  std::unique_ptr<RecordedRuns> runs = {};   ///< if it is rendered
 };
 
 constexpr std::uint64_t kFewTrackRuns =
@@ -85,7 +86,11 @@ RequirementOptions options_of(RequirementOptions options, Confirm confirm) {
   return options;
 }
 
-/// Finds limits by the bound and, if given, by runs.
+/// From this gain on, the clock makes most of the squared error: no other limitation removed alone reduces the error as
+/// much, whatever it does to the bound.
+const double kMostOfError = std::sqrt(2.0);
+
+/// Finds limits by the bound, by tracks (many runs, which show rarely lost frames) and, if given, by rendered runs.
 void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& trial) {
   Candidate& candidate = trial.candidate;
   candidate.limits.clear();
@@ -93,11 +98,20 @@ void find_limits(const RequirementOptions& options, RecordedRuns* runs, Trial& t
   const bool none = candidate.verdict == Verdict::reached || not_filmed || candidate.verdict == Verdict::refused;
   if (none || !std::isfinite(candidate.need)) return;
   candidate.limits = limits_of(*trial.setting, candidate.need, options.targets);
+  candidate.limits.insert(candidate.limits.end(), trial.limits_by_tracks.begin(), trial.limits_by_tracks.end());
   if (runs != nullptr) {
-    for (Limit& limit : runs->limits()) candidate.limits.push_back(std::move(limit));
+    for (const Limit& limit : runs->limits()) {
+      const bool known = std::ranges::any_of(trial.limits_by_tracks,
+                                             [&](const Limit& by_tracks) { return by_tracks.what == limit.what; });
+      if (!known) candidate.limits.push_back(limit);
+    }
   }
   std::stable_sort(candidate.limits.begin(), candidate.limits.end(),
                    [](const Limit& a, const Limit& b) { return a.gain > b.gain; });
+  if (trial.limits_by_tracks.empty()) return;
+  std::stable_partition(candidate.limits.begin(), candidate.limits.end(), [](const Limit& limit) {
+    return limit.what == Limitation::clock && limit.gain >= kMostOfError;
+  });
 }
 
 /// Judges by tracks: finally, if nothing is to be rendered; otherwise by fewer, if these decide.
@@ -107,12 +121,11 @@ void judge_by_tracks(const Sweep& sweep, const RequirementOptions& options, Tria
   RecordedRuns runs(sweep, *trial.setting, trial.point, as_tracks);
   trial.render = options.confirm == Confirm::clips;
   candidate.judged_by = Confirm::tracks;
-  if (trial.render) {
-    candidate.verdict = runs.judge_after(std::min(kFewTrackRuns, as_tracks.runs), candidate.results);
-    if (candidate.verdict != Verdict::undecided) return;
-  }
-  candidate.verdict = runs.judge_after(as_tracks.runs, candidate.results);
-  if (!trial.render) find_limits(options, &runs, trial);
+  candidate.verdict = Verdict::undecided;
+  if (trial.render) candidate.verdict = runs.judge_after(std::min(kFewTrackRuns, as_tracks.runs), candidate.results);
+  if (candidate.verdict == Verdict::undecided) candidate.verdict = runs.judge_after(as_tracks.runs, candidate.results);
+  if (candidate.verdict != Verdict::reached) trial.limits_by_tracks = runs.limits();
+  if (!trial.render) find_limits(options, nullptr, trial);
 }
 
 /// Does `work`, whose errors become those of the candidate.
@@ -324,7 +337,7 @@ void confirm_by_clips(const Sweep& sweep, const RequirementOptions& options, con
       (*trial)->candidate.verdict = Verdict::unconfirmed;
   }
   progress("rendered runs", 1.0);
-  // For the cheaper points rendered runs show what limits them; for the more expensive ones the bound does.
+  // Rendered runs show what limits the cheaper points; the bound and tracks, what limits the more expensive ones.
   for (auto trial = chosen.begin(); trial != chosen.end(); ++trial) {
     progress("what limits the others",
              static_cast<double>(trial - chosen.begin()) / static_cast<double>(chosen.size()));

@@ -76,6 +76,7 @@ std::vector<Limit> limits_of(const Setting& setting, double need, const std::vec
   if (setting.scenario.recording.frame_rate_hz < kFast_hz) {
     Setting fast = setting;
     fast.scenario.recording.frame_rate_hz = kFast_hz;
+    fast.scenario.recording.clock.jitter_s = 0.0;  // it may exceed the time between these frames
     try_without(Limitation::frame_rate, fast, {});
   }
   if (!setting.given_noise_m) {
@@ -237,7 +238,7 @@ Verdict RecordedRuns::judge_after(std::uint64_t runs, std::vector<TargetResult>&
 std::vector<Limit> RecordedRuns::limits() {
   std::vector<Limit> limits;
   const Setting& setting = setting_;
-  const std::uint64_t runs = options_.confirm == Confirm::clips ? std::min(kLimitRuns, options_.runs) : options_.runs;
+  const std::uint64_t runs = options_.confirm == Confirm::clips ? std::min(kLimitRuns, options_.runs) : planned();
   plan(runs);
   base::for_each_parallel(runs, options_.jobs, [&](std::size_t run) { make(run); });
   std::vector<Outcome> as_it_is;

@@ -64,10 +64,10 @@ class RecordedRuns {
   Verdict judge_after(std::uint64_t runs, std::vector<TargetResult>& results, double confidence = kConfidence);
 
   /// Limitations that no bound contains, removed one by one, using the same runs on options.jobs threads (kLimitRuns if
-  /// rendered). Gives the factor by which the errors decrease with a uniform clock and, if clips are rendered, with a
-  /// global shutter, with a lossless codec, with the true camera instead of the calibrated one (not for a rational
-  /// lens, which the analysis cannot represent), and with the true positions plus the noise expected from the camera
-  /// (no lens, no calibration, no tracker).
+  /// rendered, otherwise all that were planned). Gives the factor by which the errors decrease with a uniform clock
+  /// and, if clips are rendered, with a global shutter, with a lossless codec, with the true camera instead of the
+  /// calibrated one (not for a rational lens, which the analysis cannot represent), and with the true positions plus
+  /// the noise expected from the camera (no lens, no calibration, no tracker).
   std::vector<Limit> limits();
 
  private:

@@ -124,7 +124,7 @@ TEST_CASE("causes that look alike, and effects that have no share, are told behi
   of.effects.front().alike = {{"quadratic_drag", "", 0.68}, {"power_law_drag", "", 0.30}, {"eddy_rolloff", "", {}}};
   of.explained.pop_back();
   CHECK(report::sureness_words(of) ==
-        "These data cannot tell quadratic drag (68 %), power-law drag (30 %) and magnetic drag that levels off apart; "
+        "These data cannot tell quadratic drag (68 %), power-law drag (30 %) and magnetic drag that falls off apart; "
         "one of them acts with a probability of 98 %. Also likely: inertia without weight 81 %. Inertia without weight "
         "contributes nothing to this gap.");
 }

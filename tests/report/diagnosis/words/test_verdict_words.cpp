@@ -149,6 +149,12 @@ TEST_CASE("a table of lines that does not tell two effects apart names both with
       "These 12 lines show either of two things (74 % together) that these lines cannot distinguish"));
   CHECK(contains(words, "24.0 ± 1.0 mN"));
   CHECK(contains(words, "Even the best explanation leaves 4.0 times"));
+  CHECK_FALSE(contains(words, "pattern of the deviations"));
+  of.gap->before = 0.8;
+  of.gap->after = 0.4;
+  CHECK(contains(report::verdict_words(of),
+                 "On average no line is off by more than its scatter: it is the pattern of the deviations that speaks "
+                 "for a cause."));
 }
 
 TEST_CASE("so few clips have no interval, and the reason counts them") {

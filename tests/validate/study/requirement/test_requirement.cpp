@@ -1,5 +1,6 @@
 #include "validate/study/requirement/requirement.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
@@ -144,6 +145,37 @@ TEST_CASE("Whoever wants to stop a search for cameras waits for one run, not for
   };
   CHECK_THROWS_AS(validate::find_requirement(sweep, options, stop_after_three), Stopped);
   CHECK(runs == 4);
+}
+
+TEST_CASE("A clock that makes most of the error is named first, before what limits the bound more") {
+  const tests::TempDir dir;
+  const auto sweep_with = [&](double jitter_s) {
+    base::write_file(dir / "scenario.toml", tests::kSweptScenario +
+                                                "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n" +
+                                                fmt::format("[clock]\njitter_s = {:.9f}\n", jitter_s));
+    base::write_file(dir / "sweep.toml",
+                     "format = 1\nname = \"clock\"\nscenario = \"scenario.toml\"\nlevel = \"clips\"\n"
+                     "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [60]\n");
+    return validate::read_sweep(dir / "sweep.toml");
+  };
+  validate::RequirementOptions options;
+  options.confirm = validate::Confirm::none;
+  options.targets = {validate::parse_target("k_over_m_1_s:sd=1")};
+  const validate::Candidate even = validate::find_requirement(sweep_with(0.0), options).candidates.front();
+  options.confirm = validate::Confirm::tracks;
+  options.track_runs = 40;
+  options.targets.front().value = 1.2 * *even.results.front().bound;
+  // At about 0.6 m/s the jitter moves a position by 2.5 times the noise: the error is 2.7 times the bound.
+  const auto limits = [&](double jitter_s) {
+    const validate::Candidate only = validate::find_requirement(sweep_with(jitter_s), options).candidates.front();
+    REQUIRE(only.verdict == validate::Verdict::missed);
+    REQUIRE(only.limits.size() > 1);
+    return only.limits;
+  };
+  const std::vector<validate::Limit> uneven = limits(2.5 * even.noise_m / 0.6);
+  CHECK(uneven[0].what == validate::Limitation::clock);
+  CHECK(uneven[0].gain > std::sqrt(2.0));
+  CHECK(uneven[1].gain > uneven[0].gain);
 }
 
 TEST_CASE("Targets are read with their measure, and anything else is refused") {
@@ -296,6 +328,35 @@ TEST_CASE("The cheapest that reaches the target is filmed in full, and nothing m
     CHECK(other.results[0].runs == 60);
     CHECK(other.limits.empty());
   }
+}
+
+TEST_CASE("A clock that tracks show to be too bad is named although a cheaper camera is the one to buy") {
+  const tests::TempDir dir;
+  base::write_file(dir / "scenario.toml",
+                   tests::kSweptScenario + "[calibration]\ninner_corners = [7, 4]\nsquare_m = 0.05\nviews = 6\n");
+  base::write_file(
+      dir / "sweep.toml",
+      "format = 1\nname = \"clock\"\nscenario = \"scenario.toml\"\nlevel = \"clips\"\n"
+      "[[vary]]\nname = \"camera\"\nchoices = [{ \"camera.frame_rate_hz\" = 60, \"clock.jitter_s\" = 0.0 }, "
+      "{ \"camera.frame_rate_hz\" = 90, \"clock.jitter_s\" = 0.0008 }]\n");
+  const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
+  validate::RequirementOptions options;
+  options.confirm = validate::Confirm::none;
+  options.targets = {validate::parse_target("k_over_m_1_s:sd=1")};
+  const double bound = *validate::find_requirement(sweep, options).candidates[0].results[0].bound;
+  options.confirm = validate::Confirm::clips;
+  options.runs = 4;
+  options.track_runs = 20;
+  options.targets.front().value = 20.0 * bound;
+  const validate::Requirement requirement = validate::find_requirement(sweep, options);
+  REQUIRE(requirement.candidates[0].verdict == validate::Verdict::reached);
+  const validate::Candidate& uneven = requirement.candidates[1];
+  REQUIRE(uneven.verdict == validate::Verdict::missed);
+  REQUIRE(uneven.judged_by == validate::Confirm::tracks);
+  REQUIRE_FALSE(uneven.limits.empty());
+  CHECK(uneven.limits.front().what == validate::Limitation::clock);
+  // A perfect clock leaves the noise, 20 times less than the target that the clock misses.
+  CHECK(uneven.limits.front().gain > 10.0);
 }
 
 TEST_CASE("Whoever wants to stop while a recording is made waits for an image or some frames, not for its end") {

@@ -158,6 +158,10 @@ void read_source(const TomlTable& table, Design design, Axis& axis, const std::f
       const std::filesystem::path resolved = std::filesystem::weakly_canonical(folder / name, ignored);
       const std::filesystem::path path = resolved.empty() ? folder / name : resolved;
       if (!std::filesystem::is_directory(path, ignored)) {
+        if (!std::filesystem::exists(path, ignored) && !ignored) {
+          table.reject("cameras", fmt::format("no file or folder {}", path.string()),
+                       "camera files, or folders with some, from this file's folder");
+        }
         source.values.emplace_back(path.string());
         continue;
       }

@@ -20,8 +20,7 @@ void check_camera_is_free(const Sweep& sweep) {
   for (const char* key : {"width_px", "height_px", "frame_rate_hz", "focal_px", "exposure_s"}) {
     if (!camera || !camera->has(key)) continue;
     issues.push_back({sweep.scenario_file.string(), camera->line(key), camera->path(key),
-                      "a value of the scenario's own",
-                      "none: it would replace every camera's own in a sweep over cameras"});
+                      "a value, in a sweep over cameras", "none: every camera has its own, which this would replace"});
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
 }

@@ -81,6 +81,8 @@ TEST_CASE("A value, a word or a camera that an axis has twice is refused") {
   CHECK_THAT(of("key = \"shutter.kind\"\nwords = [\"global\", \"global\"]\n"),
              Contains("sweep.toml:9: vary[1].words: found \"global\" twice"));
   const std::string cameras = std::string(tests::kSourceDir) + "/scenarios/cameras";
+  CHECK_THAT(of("cameras = [\"cams\"]\n"), Contains("sweep.toml:") && Contains("cameras: found no file or folder ") &&
+                                               Contains("/cams, expected camera files, or folders with some"));
   CHECK_THAT(of("cameras = [\"" + cameras + "\", \"" + cameras + "/chronos-14.toml\"]\n"),
              Contains("sweep.toml:8: vary[1].cameras: found") && Contains("chronos-14.toml\" twice"));
 }
