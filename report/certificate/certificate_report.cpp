@@ -473,7 +473,7 @@ std::string how_judged(const Certificate& certificate) {
 
 Page certificate_page(const std::string& name, const Certificate& certificate) {
   Html body = question_heading(name, "Can I trust the stated intervals?") +
-              fmt::format("<p><b>{}</b></p>\n", escape(certificate_answer(certificate)));
+              fmt::format("<p><b>{}</b></p>\n", escape_with_code(certificate_answer(certificate)));
   if (const std::string which = explanation_words(certificate); !which.empty())
     body += fmt::format("<p>{}</p>\n", escape(which));
   if (const std::string lacks = all_lacks(certificate); !lacks.empty())

@@ -261,6 +261,19 @@ std::string escape(std::string_view text) {
   return escaped;
 }
 
+std::string escape_with_code(std::string_view text) {
+  std::string html = escape(text);
+  std::size_t from = 0;
+  while ((from = html.find('`', from)) != std::string::npos) {
+    const std::size_t to = html.find('`', from + 1);
+    if (to == std::string::npos) break;
+    html.replace(to, 1, "</code>");
+    html.replace(from, 1, "<code>");
+    from = to;
+  }
+  return html;
+}
+
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;

@@ -22,6 +22,9 @@ std::string typeset_numbers(std::string_view html);
 /// The text with &, <, >, quotes and apostrophes as entities; fit for content and for attributes in quotes.
 std::string escape(std::string_view text);
 
+/// escape(), with what stands between two backticks as code: a command within a sentence.
+std::string escape_with_code(std::string_view text);
+
 /// escape(), with the names of quantities typeset: "v_lim" becomes v with the subscript lim, and likewise for all
 /// single letters; names of several letters, and those joined to more text, stay.
 std::string symbols_html(std::string_view text);

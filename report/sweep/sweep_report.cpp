@@ -298,8 +298,8 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
       "<p class=\"soft\">Errors are recovered minus true values, over all configurations of the "
       "scenario.</p>\n";
   if (const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary)) {
-    Html body =
-        question_heading(summary.name, "Which bandwidth?") + fmt::format("<p><b>{}</b></p>\n", escape(answer->text));
+    Html body = question_heading(summary.name, "Which bandwidth?") +
+                fmt::format("<p><b>{}</b></p>\n", escape_with_code(answer->text));
     body += figures(bandwidth_plots(summary));
     body += bandwidth_table(summary) + soft + runs_of(summary);
     body += folded("In words", sweep_meaning(summary) + mass_study_section(summary.masses));

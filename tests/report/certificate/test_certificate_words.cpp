@@ -94,6 +94,8 @@ TEST_CASE("where the terminal velocity alone has a known true value, the first l
   CHECK(report::certificate_answer(fall) ==
         "Do not trust the intervals of the terminal velocity: they hold in 37 % (30 to 44 %) of recordings like yours, "
         "not in 95 %. `glidelab analyze --with quadratic_drag` includes this cause in the law.");
+  CHECK(report::certificate_page("a", fall).html.find("<code>glidelab analyze --with quadratic_drag</code> includes") !=
+        std::string::npos);
   fall.quantities[0].failed = fall.quantities[0].asked;
   CHECK(fall.empty());
   CHECK(report::certificate_answer(fall).starts_with("There is nothing to count"));

@@ -175,3 +175,8 @@ TEST_CASE("a page says in words where a plot has nothing to show, and keeps its 
 TEST_CASE("a value in a tile may break before its plus-minus sign, and nowhere else") {
   CHECK(report::tile("-0.0105 ± 0.0090", "µ").find("0.0105<wbr> ± 0.0090</b>") != std::string::npos);
 }
+
+TEST_CASE("what stands between two backticks is code, a single one is a backtick, and all else is text") {
+  CHECK(report::escape_with_code("use `a <b>` or `c`, not d`") ==
+        "use <code>a &lt;b&gt;</code> or <code>c</code>, not d`");
+}
