@@ -29,7 +29,6 @@ const diagnose::FallsThroughAir* falls_through_air(const diagnose::Diagnosis& di
 constexpr double kPercent = 100.0;
 constexpr double kNearEnd = 0.01;      // of a share: this close to 0 or 1, a tenth of a percent matters
 constexpr double kNothing = 5e-4;      // a share that prints as 0.0 %
-constexpr double kAboveNoise = 1.1;    // a gap; of a gap of hundreds a share of nothing may be as much as ten
 constexpr std::size_t kSizesTold = 2;  // parameters of a cause that its sentence states
 
 std::string capital(std::string text) {
@@ -72,7 +71,7 @@ std::string sizes_aside(const diagnose::Diagnosis& diagnosis, const std::string&
 }
 
 std::string left_words(const diagnose::GapRemainder& remainder) {
-  if (remainder.share < kNothing && remainder.gap < kAboveNoise) return "nothing is left above the noise";
+  if (leaves_nothing(remainder)) return "nothing is left above the noise";
   if (remainder.share < kNothing) return fmt::format("less than 0.1 % remains, {}", over_noise_text(remainder.gap));
   return fmt::format("{} remains, {}", share_text(remainder.share), over_noise_text(remainder.gap));
 }
@@ -166,6 +165,11 @@ std::string configuration_label(const diagnose::RecoveredConfiguration& of,
 
 bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis) {
   return falls_through_air(diagnosis) != nullptr;
+}
+
+bool leaves_nothing(const diagnose::GapRemainder& remainder) {
+  constexpr double kAboveNoise = 1.1;  // a gap; of a gap of hundreds a share of nothing may be as much as ten
+  return remainder.share < kNothing && remainder.gap < kAboveNoise;
 }
 
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval) {

@@ -18,9 +18,7 @@ bool is_measured_without_drag(const diagnose::Diagnosis& diagnosis);
 std::string share_text(double share, const std::optional<diagnose::GapInterval>& interval = {});
 
 /// Whether the causes leave nothing: a remainder whose share prints as 0.0 %, of a gap within a tenth of the noise.
-inline bool leaves_nothing(const diagnose::GapRemainder& remainder) {
-  return remainder.share < 5e-4 && remainder.gap < 1.1;
-}
+bool leaves_nothing(const diagnose::GapRemainder& remainder);
 
 /// "1.2 times the noise"
 std::string over_noise_text(double gap);
