@@ -55,6 +55,8 @@ void judge_pattern(const PatternCheck& pattern, FindingBook book) {
 // Of clips.
 
 constexpr std::size_t kUnusableSightings = 20, kFewSightings = 60;
+// Of a track from a file: fewer leave less than six positions in excess of what a fit determines from them.
+constexpr std::size_t kLeastOfFall = 9, kLeastOnTrack = 11;
 constexpr double kLeastSeenShare = 0.95, kUnusableSeenShare = 2.0 / 3.0;
 constexpr std::size_t kMostUnseenAtEnd = 3;  // frames at a clip's start or end
 constexpr double kLeastPathInside = 0.95;    // of the marker's path
@@ -179,7 +181,10 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
       const auto* const incomplete = std::get_if<RowsIncomplete>(&note);
       if (incomplete != nullptr && incomplete->rows > clip.seen) few.unmarked = incomplete->rows;
     }
-    book.add(clip.seen < kUnusableSightings ? Severity::unusable : Severity::change, few);
+    const bool falls = std::any_of(experiment.clips.begin(), experiment.clips.end(), [&](const ClipSetup& setup) {
+      return setup.name == clip.name && is_fall(setup.incline_rad);
+    });
+    book.add(clip.seen < (falls ? kLeastOfFall : kLeastOnTrack) ? Severity::unusable : Severity::change, few);
   }
   for (const Note& note : clip.notes) {
     const bool reported =

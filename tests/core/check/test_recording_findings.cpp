@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <variant>
 #include "base/files/file_io.h"
 #include "core/check/check_recording.h"
 #include "core/check/recording_findings.h"
@@ -297,4 +300,26 @@ TEST_CASE("a frame rate that makes the inclination right is the cause, and the i
   CHECK(rate.stated_hz == 120.0);
   CHECK(rate.file_hz == 60.0);
   CHECK(findings[0].follow.size() == 1);
+}
+
+TEST_CASE("a track of few positions could be longer, and is unusable only where no fit is left") {
+  const auto severity = [](std::size_t positions, double incline_deg) -> std::optional<Severity> {
+    core::Experiment of = experiment();
+    of.clips[0].incline_rad = incline_deg * std::acos(-1.0) / 180.0;
+    core::RecordingCheck check;
+    check.clips = {fine_clip()};
+    check.clips[0].images = false;
+    check.clips[0].seen = check.clips[0].frames = check.clips[0].spanned = positions;
+    for (const Finding& finding : core::findings_of(of, check)) {
+      if (std::holds_alternative<core::found::FewPositions>(finding.found)) return finding.severity;
+    }
+    return {};
+  };
+  // K, x0 and v0 of a fall, and mu and alpha on an incline, and six positions more.
+  CHECK(severity(8, 90.0) == Severity::unusable);
+  CHECK(severity(9, 90.0) == Severity::change);
+  CHECK(severity(10, 4.0) == Severity::unusable);
+  CHECK(severity(11, 4.0) == Severity::change);
+  CHECK(severity(59, 4.0) == Severity::change);
+  CHECK_FALSE(severity(60, 4.0));
 }
