@@ -355,8 +355,8 @@ struct AnalysisSentence {
   }
   std::string operator()(const core::GravityAssumed& of) const {
     return fmt::format(
-        "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %). State it as it is at "
-        "your place, with more digits or its uncertainty (gravity_m_s2, for files --gravity)",
+        "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %). State its value at your "
+        "place, to more digits or with its uncertainty (gravity_m_s2; for files --gravity)",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
   }
   std::string operator()(const core::RobustFit& of) const {

@@ -408,7 +408,7 @@ TEST_CASE("gravity of a file is stated by --gravity, and a note follows what its
     const tests::ProcessResult result = tests::glidelab(more);
     INFO(result.err);
     REQUIRE(result.status == 0);
-    return result.out.find("State it as it is at your place") != std::string::npos;
+    return result.out.find("State its value at your place") != std::string::npos;
   };
   CHECK(told({}));
   CHECK(told({"--gravity", "9.8"}));
