@@ -74,7 +74,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
       {core::MuFromIncline{20.0, 0.1}, "µ rests on the stated inclination, 20"},
       {small, "incline_deg says 5.000 ± 0.020°: an angle or its uncertainty, a length"},
       {core::GravityAssumed{9.80665, 0.015},
-       "gravity of 9.80665 m/s²; their ± includes 0.015 m/s² (0.15 %). State it as it is"},
+       "gravity of 9.80665 m/s²; their ± includes 0.015 m/s² (0.15 %). State its value at your place"},
       {core::AssumedMass{}, "1 kg is assumed"},
       {core::MayBeAFall{26, 5.61},
        "26 positions are taken for those in a hand; in them the body accelerates at 5.6 m/s²"},
