@@ -9,6 +9,7 @@
 #include <span>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/model/acting_laws.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -31,60 +32,6 @@ constexpr std::size_t kFewTimes = 100;   // fewer positions than this count as t
 constexpr EffectSlot kShake = slot_of(ids::base_vibration, 0), kShakeHz = slot_of(ids::base_vibration, 1),
                      kShakePhase = slot_of(ids::base_vibration, 2);
 constexpr EffectSlot kRelease = slot_of(ids::late_release, 0), kPush = slot_of(ids::late_release, 1);
-
-/// An effect that acts in one motion, with its parameters.
-struct Acting {
-  const EffectLaw* law;
-  const double* p;
-};
-
-class ActingEffects {
- public:
-  void add(const EffectLaw& law, const double* p) { effects_[count_++] = {&law, p}; }
-  std::span<const Acting> all() const { return {effects_.data(), count_}; }
-  std::span<Acting> all() { return {effects_.data(), count_}; }
-  bool any() const { return count_ > 0; }
-
- private:
-  std::array<Acting, kEffects> effects_;
-  std::size_t count_ = 0;
-};
-
-/// The laws of the effects that act. Each of their functions is called only if it changes something.
-struct ActingLaws {
-  ActingLaws(const EffectValues& values, const GliderConstants& glider) {
-    const std::vector<EffectInfo>& list = effect_list();
-    for (std::size_t e = 0; e < list.size(); ++e) {
-      const EffectLaw& law = list[e].law;
-      const double* p = values.of(e);
-      if (!law.acts(p)) continue;
-      steady = steady && (law.steady || !law.changes_forces());
-      steady_driving = steady_driving && (law.steady || (law.resistance == nullptr && law.force_n == nullptr));
-      if (law.resistance != nullptr) resistance.add(law, p);
-      if (law.force_n != nullptr) force.add(law, p);
-      if (law.friction != nullptr) friction.add(law, p);
-      if (law.seen_m != nullptr) seen.add(law, p);
-      if (law.inertia_kg != nullptr) inertia_kg += law.inertia_kg(p, glider);
-      if (law.known_factor != nullptr) known_factor *= law.known_factor(p);
-      if (law.known_late_s != nullptr) known_late_s += law.known_late_s(p);
-      if (law.stretch != nullptr) stretch *= law.stretch(p);
-      if (law.row_s != nullptr) row_s += law.row_s(p);
-      if (law.rate_1_s != nullptr) rates.add(law, p);
-    }
-    const std::span<Acting> by_camera = seen.all();
-    if (by_camera.size() < 2) return;
-    std::stable_sort(by_camera.begin(), by_camera.end(),
-                     [](const Acting& a, const Acting& b) { return a.law->seen_by < b.law->seen_by; });
-  }
-
-  ActingEffects resistance, force, friction, seen, rates;
-  double inertia_kg = 0.0;
-  double known_factor = 1.0, known_late_s = 0.0;
-  double stretch = 1.0;  // ratio of true to stated time
-  double row_s = 0.0;
-  bool steady = true;          // all forces are (EffectLaw::steady),
-  bool steady_driving = true;  // or all but the friction
-};
 
 GliderConstants constants_of(const TrackModel& model) {
   return {.mass_kg = model.mass_kg,
