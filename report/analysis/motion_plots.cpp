@@ -331,8 +331,8 @@ Diagram diagram(const core::AnalysisResults& results, const PhaseGroup& group, c
 std::string axes(const char* y) {
   return fmt::format(
       "set xlabel 'v  (m/s)'\nset ylabel '{}'\n"
-      "set arrow from graph 0, first 0 to graph 1, first 0 nohead back lw 1 lc rgb '#888888'\n"
-      "set arrow from first 0, graph 0 to first 0, graph 1 nohead back lw 1 lc rgb '#888888'\n",
+      "set xzeroaxis lt 1 lw 1 dt 1 lc rgb '#888888'\n"  // an arrow would be drawn outside the axes as well
+      "set yzeroaxis lt 1 lw 1 dt 1 lc rgb '#888888'\n",
       y);
 }
 

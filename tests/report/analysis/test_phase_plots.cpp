@@ -66,6 +66,9 @@ TEST_CASE("a phase diagram carries its lines' bands and the bars of some points,
       for (const auto& row : data.rows) CHECK((row.empty() || row.size() == data.columns.size()));
     }
     CHECK(plot.drawing.script.find("filledcurves") != std::string::npos);
+    // v = 0 and a = 0 are drawn within the axes only: where all accelerations are positive, the latter is not.
+    CHECK(plot.drawing.script.find("set arrow") == std::string::npos);
+    CHECK(plot.drawing.script.find("set xzeroaxis") != std::string::npos);
     CHECK(plot.drawing.script.find("with vectors nohead") != std::string::npos);
   }
   // Seven labels of v at most, of -1.2 to 0.23 m/s (the lines), of 15 % of what is used both ways, and of -1 to 0.2
