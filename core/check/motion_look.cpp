@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "base/math/angles.h"
@@ -13,6 +12,7 @@
 #include "core/math/quantile.h"
 #include "core/motion/free/motion.h"
 #include "core/motion/smoothing/noise.h"
+#include "core/track/track_data.h"
 
 namespace glidelab::core {
 namespace {
@@ -55,15 +55,12 @@ void find_acceleration(std::span<const double> t_s, std::span<const double> x_m,
 }
 
 /// The motion without single positions that lie off it: one of them bends the parabola through all of its part.
-Motion without_outliers(std::span<const double> t_s, std::span<const double> x_m, double noise_m) {
-  Motion motion;
-  motion.t_s.assign(t_s.begin(), t_s.end());
-  motion.x_m.assign(x_m.begin(), x_m.end());
-  motion.y_m = motion.x_m;
-  motion.point.resize(t_s.size());
-  std::iota(motion.point.begin(), motion.point.end(), std::size_t{0});
-  motion.step_s = median_step(t_s);
-  motion.noise_m = noise_m;
+Motion without_outliers(std::span<const double> t_s, std::span<const double> x_m) {
+  TrackData track;
+  track.t_s.assign(t_s.begin(), t_s.end());
+  track.x_m.assign(x_m.begin(), x_m.end());
+  constexpr double kAnyMass_kg = 1.0;  // there is no force
+  const Motion motion = motion_of(track, kAnyMass_kg);
   const Motion steady = without(motion, find_outliers(motion));
   return steady.t_s.size() < kFewestPoints ? motion : steady;
 }
@@ -153,7 +150,7 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   const double noise_m = pilot_noise(t_s, x_m);
   look.smooth = noise_m < kSmoothPart * look.distance_m;
   if (forced) return look;
-  const Motion steady = without_outliers(t_s, x_m, noise_m);
+  const Motion steady = without_outliers(t_s, x_m);
   t_s = steady.t_s;
   x_m = steady.x_m;
   find_acceleration(t_s, x_m, std::max(kFewestOfParabola, x_m.size() / kParts), noise_m, look);

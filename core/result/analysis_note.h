@@ -104,7 +104,7 @@ struct PositionsUnseen {
 struct PositionsAstray {
   std::size_t positions = 0;
   double from_s = 0.0;  ///< of the first of them
-  double off_m = 0.0;   ///< how far the largest jump leads
+  double off_m = 0.0;   ///< the largest jump to one of them
 };
 
 /// Columns without a header, more than one of which could be times.

@@ -301,52 +301,40 @@ std::size_t asked_column(const ColumnTable& table, const std::string& asked) {
 }
 
 /// The steps from one value of a column to the next.
-struct Steps {
-  std::size_t up = 0, back = 0, all = 0;
-};
-
-Steps steps_of(const TableColumn& column) {
-  Steps steps;
-  std::optional<double> last;
-  for (const std::optional<double>& value : column.values) {
-    if (!value) continue;
-    if (last) {
-      ++steps.all;
-      steps.up += *value > *last ? 1 : 0;
-      steps.back += *value < *last ? 1 : 0;
-    }
-    last = value;
-  }
-  return steps;
-}
-
-/// Whether all values increase, as times do.
-bool increases(const TableColumn& column) {
-  const bool any =
-      std::any_of(column.values.begin(), column.values.end(), [](const auto& value) { return value.has_value(); });
-  const Steps steps = steps_of(column);
-  return any && steps.up == steps.all;
-}
-
-/// Whether few of the steps go back: times, one or the other of which is wrong or repeated.
-bool goes_back_seldom(const TableColumn& column) {
-  constexpr std::size_t kOneIn = 10;
-  const Steps steps = steps_of(column);
-  return kOneIn * steps.back <= steps.all;
-}
-
-/// How much the steps of a column differ: their standard deviation over their mean.
-double unevenness(const TableColumn& column) {
+std::vector<double> steps_of(const TableColumn& column) {
   std::vector<double> steps;
   std::optional<double> last;
   for (const std::optional<double>& value : column.values) {
     if (value && last) steps.push_back(*value - *last);
     if (value) last = value;
   }
-  double mean = 0.0, square = 0.0;
-  for (const double step : steps) mean += step / static_cast<double>(steps.size());
-  for (const double step : steps) square += (step - mean) * (step - mean) / static_cast<double>(steps.size());
-  return std::sqrt(square) / std::abs(mean);
+  return steps;
+}
+
+bool goes_up(double step) {
+  return step > 0.0;
+}
+
+/// Whether all values increase, as times do.
+bool increases(const TableColumn& column) {
+  const bool any =
+      std::any_of(column.values.begin(), column.values.end(), [](const auto& value) { return value.has_value(); });
+  return any && std::ranges::all_of(steps_of(column), goes_up);
+}
+
+/// Whether few of the steps go back: times, one or the other of which is wrong or repeated.
+bool goes_back_seldom(const TableColumn& column) {
+  constexpr std::size_t kOneIn = 10;
+  const std::vector<double> steps = steps_of(column);
+  const auto back = std::ranges::count_if(steps, [](double step) { return step < 0.0; });
+  return kOneIn * static_cast<std::size_t>(back) <= steps.size();
+}
+
+/// How much the steps of a column differ: their standard deviation over their mean.
+double unevenness(const TableColumn& column) {
+  const std::vector<double> list = steps_of(column);
+  const Eigen::Map<const Eigen::ArrayXd> steps(list.data(), static_cast<Eigen::Index>(list.size()));
+  return std::sqrt((steps - steps.mean()).square().mean()) / std::abs(steps.mean());
 }
 
 /// Two columns without a header: t and x, unless the second increases throughout and the first often goes back, or does
@@ -479,8 +467,8 @@ double seconds_of(const ColumnTable& table, const TableColumn& column, std::vect
 }
 
 bool rises_mostly(const TableColumn& times) {
-  const Steps steps = steps_of(times);
-  return 2 * steps.up >= steps.all;
+  const std::vector<double> steps = steps_of(times);
+  return 2 * static_cast<std::size_t>(std::ranges::count_if(steps, goes_up)) >= steps.size();
 }
 
 }  // namespace glidelab::core

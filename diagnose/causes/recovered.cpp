@@ -1,7 +1,9 @@
 #include "diagnose/causes/recovered.h"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -189,7 +191,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
 /// The distance from `centre` within which a quantity lies with 95 % by these explanations together.
 double half_width95(double centre, const std::vector<std::pair<Recovered, double>>& of) {
   constexpr double kOutside = 0.05;
-  const auto within = [&](double distance) {  // less what may lie outside
+  const auto too_much_outside = [&](double distance) {
     double outside = 0.0, sum = 0.0;
     for (const auto& [one, probability] : of) {
       sum += probability;
@@ -200,17 +202,17 @@ double half_width95(double centre, const std::vector<std::pair<Recovered, double
         outside += probability;
       }
     }
-    return outside <= kOutside * sum;
+    return outside - kOutside * sum;
   };
-  double low = 0.0, high = 0.0;
+  double far = 0.0;  // at least 95 % of each lie within this distance
   for (const auto& [one, probability] : of) {
-    high = std::max(high, std::abs(one.value - centre) + core::student_t975(one.degrees) * one.sd);
+    far = std::max(far, std::abs(one.value - centre) + core::student_t975(one.degrees) * one.sd);
   }
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (within(middle) ? high : low) = middle;
-  }
-  return high;
+  if (!(too_much_outside(far) < 0.0)) return far;
+  std::uintmax_t most = 100;
+  return boost::math::tools::toms748_solve(too_much_outside, 0.0, far, boost::math::tools::eps_tolerance<double>(30),
+                                           most)
+      .second;
 }
 
 /// A quantity under the reported explanation, with `others` as far as they are likely: the reported value, and the sd

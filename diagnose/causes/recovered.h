@@ -11,10 +11,12 @@
 /// what the experimenter states. Other likely explanations widen it, so that intervals hold the truth even where the
 /// cause is in doubt: the interval about the reported value has 95 % of the probability of all of them together, each
 /// with a distribution of its own (Student's t). Where gravity is no parameter of the fit, alpha and mu contain its
-/// standard deviation: the motions determine g sin(alpha) and mu g. The terminal velocity is
-/// the speed at which the force vanishes, m g sin(alpha) = drag(v) + friction(v) with all causes included, in the
-/// middle of the set-up's positions. Its standard deviation follows from the parameters' covariance by finite
-/// differences. Effects that act only at some positions, times or clips (EffectLaw::passing) are left out of it.
+/// standard deviation: the motions determine g sin(alpha) and mu g.
+///
+/// The terminal velocity is the speed at which the force vanishes, m g sin(alpha) = drag(v) + friction(v) with all
+/// causes included, in the middle of the set-up's positions. Its standard deviation follows from the parameters'
+/// covariance by finite differences. Effects that act only at some positions, times or clips (EffectLaw::passing) are
+/// left out of it.
 #pragma once
 
 #include <vector>

@@ -314,6 +314,7 @@ struct Circumstances {
 struct EffectInfo {
   std::string_view id;
   Stage stage;
+  bool of_camera;            ///< only a camera has it: the positions of a motion sensor cannot show it
   std::string_view words;    ///< a phrase for a sentence: "a drag that grows with the square of the speed"
   std::string_view name;     ///< up to 30 characters, for the axes of a plot: "quadratic drag"
   std::string_view meaning;  ///< what the symbols of its sizes mean; empty if its size is a word

@@ -54,6 +54,17 @@ class SteadyFlow {
     }
   }
 
+  /// The same at any instants, up to the first beyond a turn of a motion in `direction`; returns how many were filled.
+  std::size_t fill_far(double start_s, std::span<const double> at_s, int direction, double* x_m, double* v_m_s) const {
+    for (std::size_t i = 0; i < at_s.size(); ++i) {
+      const PlaceAndSpeed s = far(at_s[i] - start_s);
+      if (!(s.v * direction > 0.0)) return i;
+      x_m[i] = s.x;
+      v_m_s[i] = s.v;
+    }
+    return at_s.size();
+  }
+
   double acceleration() const { return a_; }
 
  private:

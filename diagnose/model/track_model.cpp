@@ -142,11 +142,10 @@ class Mover {
     if (count == 0) return 0;
     ++work_;
     const SteadyFlow flow = flow_from(s, t);
-    if (is_near) flow.fill(t, at.first(count), x_m, v_m_s);
-    for (std::size_t i = 0; i < count && !is_near; ++i) {
-      const PlaceAndSpeed there = flow.far(at[i] - t);
-      x_m[i] = there.x;
-      v_m_s[i] = there.v;
+    if (is_near) {
+      flow.fill(t, at.first(count), x_m, v_m_s);
+    } else {
+      count = flow.fill_far(t, at.first(count), direction_, x_m, v_m_s);
     }
     // The speed changes monotonically, so only the last of these can lie beyond a turn.
     while (count > 0 && !(v_m_s[count - 1] * direction_ > 0.0)) --count;

@@ -141,9 +141,7 @@ std::optional<double> ratio_of_densities(const Diagnosis& diagnosis) {
 std::vector<std::string> named_of_camera(const Diagnosis& diagnosis) {
   std::vector<std::string> named;
   for (const DiagnosedEffect& effect : diagnosis.effects) {
-    for (const std::string_view id : {ids::lens_distortion, ids::perspective_error, ids::camera_motion}) {
-      if (effect.id == id) named.emplace_back(id);
-    }
+    if (effect_list()[effect_index(effect.id)].of_camera) named.push_back(effect.id);
   }
   return named;
 }
@@ -414,8 +412,8 @@ void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
       ratio && *ratio > kLeastRatio) {
     diagnosis.notes.emplace_back(BuoyancyLooksAlike{*ratio});
   }
-  if (std::vector<std::string> of_camera = set_.images ? std::vector<std::string>() : named_of_camera(diagnosis);
-      !of_camera.empty()) {
+  if (set_.images) return;
+  if (std::vector<std::string> of_camera = named_of_camera(diagnosis); !of_camera.empty()) {
     diagnosis.notes.emplace_back(OfCamera{std::move(of_camera)});
   }
 }

@@ -8,8 +8,8 @@
 ///
 /// Prior odds: nothing 0.3, one effect 0.4 (shared by those that these data can show), two 0.1, unnamed 0.2. A drag
 /// with an arbitrary power of the speed has two fifths of another effect's prior odds, since powers with a theory are
-/// on the list themselves. If the explanation found leaves a gap, causes/cause_odds.h replaces
-/// these probabilities, and verdict/probabilities_by_share.h has the last word.
+/// on the list themselves. If the explanation found leaves a gap, causes/cause_odds.h replaces these probabilities, and
+/// verdict/probabilities_by_share.h has the last word.
 #pragma once
 
 #include <functional>

@@ -103,9 +103,9 @@ struct AnalysisSentence {
   std::string operator()(const core::PositionsAstray& of) const {
     const bool one = of.positions == 1;
     return fmt::format(
-        "{} position{} {:.6g} s {} left out: the path jumps there by up to {:.3g} m and back, as when a motion sensor "
-        "hears another object for a moment",
-        of.positions, one ? " at" : "s from", of.from_s, one ? "is" : "on are", of.off_m);
+        "{} position{} {:.6g} s {} left out: the path jumps to {} by up to {:.3g} m, as when a motion sensor hears "
+        "another object for a moment",
+        of.positions, one ? " at" : "s from", of.from_s, one ? "is" : "on are", one ? "it" : "them", of.off_m);
   }
   std::string operator()(const core::ColumnsGuessed& of) const {
     return fmt::format(

@@ -250,8 +250,7 @@ std::string how_judged(const Requirement& requirement) {
              "deviation, from {} bootstrap resamples of the runs (of fewer than 20: that of normal errors; bias: that "
              "of the errors over the root of their number). “Runs beyond the target” are those, of all that were made, "
              "whose error is larger: a few that are far off come from the clock, such as frames lost without a trace, "
-             "not from "
-             "noise.</p>\n",
+             "not from noise.</p>\n",
              validate::kRunsForQuantile, validate::kResamples);
 }
 

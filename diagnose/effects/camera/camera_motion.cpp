@@ -42,6 +42,7 @@ EffectInfo camera_motion() {
   return {
       .id = ids::camera_motion,
       .stage = Stage::optics,
+      .of_camera = true,
       .words = "a camera that sways or shakes",
       .name = "moving camera",
       .meaning = "the fixed scene moves by this amplitude, with frequency f",

@@ -14,6 +14,7 @@ EffectInfo compression() {
   return {
       .id = ids::compression,
       .stage = Stage::sensor,
+      .of_camera = true,
       .words = "a codec that loses detail",
       .name = "lossy compression",
       .meaning = {},

@@ -19,6 +19,7 @@ EffectInfo exposure_blur() {
   return {
       .id = ids::exposure_blur,
       .stage = Stage::sensor,
+      .of_camera = true,
       .words = "an exposure that is longer than stated",
       .name = "exposure longer than stated",
       .meaning = "exposure: inferred from the smear of the marker",

@@ -18,6 +18,7 @@ EffectInfo lens_distortion() {
   return {
       .id = ids::lens_distortion,
       .stage = Stage::optics,
+      .of_camera = true,
       .words = "a lens whose distortion is not corrected",
       .name = "lens distortion",
       .meaning = "x becomes x (1 + k (x − x_c)²)",

@@ -19,6 +19,7 @@ EffectInfo light_flicker() {
   return {
       .id = ids::light_flicker,
       .stage = Stage::optics,
+      .of_camera = true,
       .words = "light that flickers",
       .name = "flickering light",
       .meaning = "brightness changes by this depth, with frequency f",

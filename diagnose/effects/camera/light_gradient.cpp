@@ -24,6 +24,7 @@ EffectInfo light_gradient() {
   return {
       .id = ids::light_gradient,
       .stage = Stage::optics,
+      .of_camera = true,
       .words = "light that is much brighter on one side",
       .name = "light from one side",
       .meaning = "how much brighter it is on one side of the marker",

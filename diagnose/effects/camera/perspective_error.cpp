@@ -39,6 +39,7 @@ EffectInfo perspective_error() {
   return {
       .id = ids::perspective_error,
       .stage = Stage::optics,
+      .of_camera = true,
       .words = "a calibration pattern that was not in the plane of motion",
       .name = "pattern off the plane",
       .meaning = "x becomes x / (1 + p x)",

@@ -27,6 +27,7 @@ EffectInfo rolling_shutter() {
   return {
       .id = ids::rolling_shutter,
       .stage = Stage::timing,
+      .of_camera = true,
       .words = "a rolling shutter that differs from the stated one",
       .name = "rolling shutter",
       .meaning = "line: the time from the exposure of one row to that of the next",

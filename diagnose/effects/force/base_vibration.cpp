@@ -24,6 +24,7 @@ EffectInfo base_vibration() {
   return {
       .id = ids::base_vibration,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a table or track that shakes",
       .name = "shaking table",
       .meaning = "an acceleration of amplitude a and frequency f",

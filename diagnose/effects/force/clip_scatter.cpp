@@ -19,6 +19,7 @@ EffectInfo clip_scatter() {
   return {
       .id = ids::clip_scatter,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "friction and drag that differ from clip to clip",
       .name = "scatter from clip to clip",
       .meaning = "each clip has a µ and a K of its own; sd: how far they differ",

@@ -19,6 +19,7 @@ EffectInfo configuration_drag() {
   return {
       .id = ids::configuration_drag,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a drag that differs between configurations",
       .name = "drag by configuration",
       .meaning = "each mass on each set-up has a K of its own; sd: how far they differ",

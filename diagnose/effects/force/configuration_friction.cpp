@@ -19,6 +19,7 @@ EffectInfo configuration_friction() {
   return {
       .id = ids::configuration_friction,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a dry friction that differs between configurations",
       .name = "friction by configuration",
       .meaning = "each mass on each set-up has a µ of its own; sd: how far they differ",

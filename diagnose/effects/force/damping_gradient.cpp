@@ -22,6 +22,7 @@ EffectInfo damping_gradient() {
   return {
       .id = ids::damping_gradient,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a drag that changes along the track",
       .name = "drag that varies along x",
       .meaning = "K becomes K (1 + b (x − x_mid)), x_mid the middle of the data",

@@ -18,6 +18,7 @@ EffectInfo direction_asymmetry() {
   return {
       .id = ids::direction_asymmetry,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a dry friction that is larger in one direction than in the other",
       .name = "direction-dependent friction",
       .meaning = "µ becomes µ (1 + d sign(v))",

@@ -19,6 +19,7 @@ EffectInfo direction_dependent_drag() {
   return {
       .id = ids::direction_dependent_drag,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a drag that is larger in one direction than in the other",
       .name = "direction-dependent drag",
       .meaning = "K becomes K (1 + d sign(v))",

@@ -23,6 +23,7 @@ EffectInfo eddy_rolloff() {
   return {
       .id = ids::eddy_rolloff,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a magnetic drag that grows less than in proportion to the speed, and falls off beyond v_c",
       .name = "magnetic drag that falls off",
       .meaning = "K v becomes K v / (1 + (v / v_c)²)",

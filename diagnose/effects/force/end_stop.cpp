@@ -36,6 +36,7 @@ EffectInfo end_stop() {
   return {
       .id = ids::end_stop,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a soft bumper at an end of the track",
       .name = "soft bumper",
       .meaning = "a force −k (x − x_b) beyond x_b",

@@ -20,6 +20,7 @@ EffectInfo friction_drift() {
   return {
       .id = ids::friction_drift,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a dry friction that changes steadily from clip to clip",
       .name = "drifting friction",
       .meaning = "µ becomes µ (1 + r n) in clip number n, counted from 0",

@@ -15,6 +15,7 @@ EffectInfo late_release() {
   return {
       .id = ids::late_release,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a hand that still pushes at the start of the clips",
       .name = "hand that lets go late",
       .meaning = "the hand pushes until t_r",

@@ -33,6 +33,7 @@ EffectInfo load_independent_friction() {
   return {
       .id = ids::load_independent_friction,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a dry friction that does not depend on the load",
       .name = "load-independent friction",
       .meaning = "the same friction force at every mass",

@@ -63,6 +63,7 @@ EffectInfo place_friction() {
   return {
       .id = ids::place_friction,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a dry friction that changes along the track",
       .name = "friction that varies along x",
       .meaning = "µ becomes µ (1 + s(x)); sd: how far s is from 0",

@@ -27,6 +27,7 @@ EffectInfo power_law_drag() {
   return {
       .id = ids::power_law_drag,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a drag that grows as some other power of the speed",
       .name = "power-law drag",
       .meaning = "K v becomes K v |v|^(n − 1), v in m/s",

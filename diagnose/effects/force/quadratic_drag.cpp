@@ -26,6 +26,7 @@ EffectInfo quadratic_drag() {
   return {
       .id = ids::quadratic_drag,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a drag that grows with the square of the speed, such as that of air",
       .name = "quadratic drag",
       .meaning = "a force −c v |v|",

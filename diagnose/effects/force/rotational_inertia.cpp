@@ -31,6 +31,7 @@ EffectInfo rotational_inertia() {
   return {
       .id = ids::rotational_inertia,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "inertia without weight, such as that of wheels, or of air or water that moves with the glider",
       .name = "inertia without weight",
       .meaning = "m dv/dt becomes (m + mass) dv/dt",

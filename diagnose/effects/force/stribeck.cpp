@@ -28,6 +28,7 @@ EffectInfo stribeck() {
   return {
       .id = ids::stribeck,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a dry friction that is larger at low speeds",
       .name = "more friction at low speed",
       .meaning = "µ becomes µ (1 + (s − 1) exp(−(v / v_s)²))",

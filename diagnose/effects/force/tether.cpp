@@ -26,6 +26,7 @@ EffectInfo tether() {
   return {
       .id = ids::tether,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a cable or spring that pulls back beyond some point",
       .name = "cable that tightens",
       .meaning = "a force −k (x − x_t) beyond x_t",

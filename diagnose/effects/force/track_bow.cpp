@@ -19,6 +19,7 @@ EffectInfo track_bow() {
   return {
       .id = ids::track_bow,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a track that is not straight but bowed",
       .name = "bowed track",
       .meaning = "sin α becomes sin α + slope (x − x_mid), x_mid the middle of the data",

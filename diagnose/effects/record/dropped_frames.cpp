@@ -21,6 +21,7 @@ EffectInfo dropped_frames() {
   return {
       .id = ids::dropped_frames,
       .stage = Stage::timing,
+      .of_camera = false,
       .words = "frames that are missing",
       .name = "lost frames",
       .meaning = "this fraction of the frames is missing",

@@ -14,6 +14,7 @@ EffectInfo force_delay() {
   return {
       .id = ids::force_delay,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a force that acts later or earlier than recorded",
       .name = "delay of the force",
       .meaning = "the force acts tau later than recorded",

@@ -14,6 +14,7 @@ EffectInfo force_gain() {
   return {
       .id = ids::force_gain,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a recorded force that is too small or too large by a constant factor",
       .name = "wrong scale of the force",
       .meaning = "the force is (1 + e) times the recorded one",

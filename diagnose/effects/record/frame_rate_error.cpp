@@ -33,6 +33,7 @@ EffectInfo frame_rate_error() {
   return {
       .id = ids::frame_rate_error,
       .stage = Stage::timing,
+      .of_camera = false,
       .words = "a frame rate that differs from the stated one",
       .name = "wrong frame rate",
       .meaning = "the time from frame to frame is (1 + e) times the stated one",

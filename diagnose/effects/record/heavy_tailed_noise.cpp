@@ -6,6 +6,7 @@ EffectInfo heavy_tailed_noise() {
   return {
       .id = ids::heavy_tailed_noise,
       .stage = Stage::tracking,
+      .of_camera = false,
       .words = "single positions that lie far off the motion",
       .name = "outliers",
       .meaning = "this fraction of the positions are outliers",
@@ -21,9 +22,8 @@ EffectInfo heavy_tailed_noise() {
       .in_images = std::nullopt,
       .next =
           "Record the same launch again with a larger, higher-contrast marker and no other round object in the image, "
-          "or "
-          "with nothing else in the beam of a motion sensor: "
-          "single outlying positions come from moments in which something else was mistaken for the glider.",
+          "or with nothing else in the beam of a motion sensor: single outlying positions come from moments in which "
+          "something else was mistaken for the glider.",
       .alike = {},
   };
 }

@@ -15,6 +15,7 @@ EffectInfo mass_error() {
   return {
       .id = ids::mass_error,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "stated masses that are wrong by a common factor",
       .name = "wrong mass",
       .meaning = "the inertia is (1 + e) times the stated mass",

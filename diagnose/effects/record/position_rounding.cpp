@@ -7,6 +7,7 @@ EffectInfo position_rounding() {
   return {
       .id = ids::position_rounding,
       .stage = Stage::tracking,
+      .of_camera = false,
       .words = "positions that are rounded to a step",
       .name = "rounded positions",
       .meaning = "every position is a whole multiple of this step",

@@ -23,6 +23,7 @@ EffectInfo scale_error() {
   return {
       .id = ids::scale_error,
       .stage = Stage::optics,
+      .of_camera = false,
       .words = "a wrong length scale",
       .name = "wrong scale",
       .meaning = "x becomes (1 + e) x",

@@ -15,6 +15,7 @@ EffectInfo smoothing_bias() {
   return {
       .id = ids::smoothing_bias,
       .stage = Stage::analysis,
+      .of_camera = false,
       .words = "the bias of the smoothing itself, which bends a(v) near v = 0 in proportion to (K/m)²",
       .name = "smoothing bias",
       .meaning = "intercepts are off by this for each 1/s² of (K/m)²",

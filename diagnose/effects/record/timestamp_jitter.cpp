@@ -27,6 +27,7 @@ EffectInfo timestamp_jitter() {
   return {
       .id = ids::timestamp_jitter,
       .stage = Stage::timing,
+      .of_camera = false,
       .words = "frames taken at uneven times",
       .name = "uneven frame times",
       .meaning = "sd: standard deviation of a frame's time",

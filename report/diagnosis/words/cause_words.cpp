@@ -149,8 +149,7 @@ std::string contradicted_drag_words(const diagnose::Diagnosis& diagnosis) {
   if (falls == nullptr || !falls->viscous_leaves_less()) return {};
   return fmt::format(
       " A viscous drag alone would leave less, {} times the noise, though air does not brake like that: check the "
-      "scale, "
-      "the frame rate and the first positions.",
+      "scale, the frame rate and the first positions.",
       base::number_text(falls->gaps->viscous, 3));
 }
 

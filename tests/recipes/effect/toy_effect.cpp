@@ -21,6 +21,7 @@ EffectInfo toy_effect() {
   return {
       .id = ids::toy_effect,
       .stage = Stage::dynamics,
+      .of_camera = false,
       .words = "a spring along the whole track",
       .name = "spring",
       .meaning = "a force −k x",
