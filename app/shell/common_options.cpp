@@ -253,6 +253,11 @@ std::string check_incline(const std::string& text) {
                      decimal_point_for(text));
 }
 
+std::string check_recorder(const std::string& text) {
+  if (core::recorder_named(text) != core::RecordedBy::unstated) return {};
+  return fmt::format("\"{}\" is neither sensor nor camera", text);
+}
+
 }  // namespace
 
 void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
@@ -298,19 +303,28 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
       ->delimiter(',')
       ->check(check_above_0)
       ->excludes(mass);
+  command
+      .add_option_function<std::string>(
+          "--recorded-by", [&options](const std::string& by) { options.recorded_by = core::recorder_named(by); },
+          "For a file: what measured the positions; default: a table's header may tell. A sensor's positions have none "
+          "of the errors that only a camera makes")
+      ->type_name("sensor|camera")
+      ->check(check_recorder);
   add_permissions(command, options.permitted);
 }
 
 void check_bare_options(const core::TrackFileOptions& options, const std::vector<std::string>& inputs) {
   const bool states = options.mass_kg || options.incline_deg || options.gravity_m_s2;
   const bool has_masses = !options.masses_kg.empty() || !options.mass_of_file.empty();
-  if (options.column.empty() && !states && options.runs.empty() && !has_masses) return;
+  const bool has_recorder = options.recorded_by != core::RecordedBy::unstated;
+  if (options.column.empty() && !states && options.runs.empty() && !has_masses && !has_recorder) return;
   for (const std::string& input : inputs) {
     if (core::is_bare_track(input)) continue;
-    throw base::InputError(
-        base::Issue{input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --gravity-sd, --runs, --masses",
-                    "not a file with a track",
-                    "a file; for a folder, experiment.toml states column, mass_kg, incline_deg and gravity_m_s2"});
+    throw base::InputError(base::Issue{
+        input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --gravity-sd, --runs, --masses, --recorded-by",
+        "not a file with a track",
+        "a file; for a folder, experiment.toml states column, mass_kg, incline_deg, gravity_m_s2 and "
+        "recorded_by"});
   }
 }
 

@@ -16,6 +16,7 @@ namespace {
 constexpr double kLeastContradictionSds = 5.0;  // standard deviations between two readings of one angle
 
 constexpr std::array<const char*, 4> kLaunchNames{"up", "down", "released", "unknown"};  // in the order of Launched
+constexpr std::array<const char*, 3> kRecorderNames{"unstated", "sensor", "camera"};     // in the order of RecordedBy
 constexpr std::array<const char*, 4> kDownhillNames{"+X", "-X", "+Y", "-Y"};             // in the order of Downhill
 
 }  // namespace
@@ -30,6 +31,17 @@ bool is_along_y(Downhill downhill) {
 
 std::string name_of(Launched launched) {
   return kLaunchNames.at(static_cast<std::size_t>(launched));
+}
+
+std::string name_of(RecordedBy by) {
+  return kRecorderNames.at(static_cast<std::size_t>(by));
+}
+
+RecordedBy recorder_named(std::string_view name) {
+  for (const RecordedBy by : {RecordedBy::sensor, RecordedBy::camera}) {
+    if (name == name_of(by)) return by;
+  }
+  return RecordedBy::unstated;
 }
 
 std::string name_of(Downhill downhill) {

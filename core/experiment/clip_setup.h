@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/toml/strict_toml.h"
@@ -19,6 +20,14 @@ enum class Launched { up, down, released, unknown };
 
 /// "up", "down", "released", as in experiment.toml, or "unknown".
 std::string name_of(Launched launched);
+
+/// What measured the positions of a track, as stated.
+enum class RecordedBy { unstated, sensor, camera };
+
+/// "sensor", "camera", as in experiment.toml, or "unstated".
+std::string name_of(RecordedBy by);
+/// "sensor" or "camera"; anything else is unstated.
+RecordedBy recorder_named(std::string_view name);
 
 /// Which direction is down (on a level track: positive): along X or Y of the pattern, of the image or of a project's
 /// axes, or against it.
@@ -51,6 +60,7 @@ struct ClipSetup {
   std::filesystem::path track;  ///< a CSV `t_s,x_m[,force_n]`, an exported table or a Tracker project; empty for a clip
   std::string column = {};  ///< for an exported table the column of x, for a project the point mass: name or number;
                             ///< empty: found automatically
+  RecordedBy recorded_by = RecordedBy::unstated;  ///< of a track
   double mass_kg = 0.0;
   double mass_sd_kg = 0.0;
   bool mass_assumed = false;     ///< for a file on its own: mass_kg is assumed, not stated

@@ -149,6 +149,12 @@ Launched read_launched(const TomlTable& table) {
   return released;
 }
 
+RecordedBy read_recorder(const TomlTable& root) {
+  using enum RecordedBy;
+  if (!root.has("recorded_by")) return unstated;
+  return recorder_named(root.word("recorded_by", {name_of(sensor), name_of(camera)}));
+}
+
 ClipSetup read_clip(const TomlTable& table, const FolderFiles& folder) {
   ClipSetup clip;
   clip.name = table.text("name");
@@ -294,6 +300,14 @@ Experiment read_experiment(const fs::path& path, Permissions permitted) {
   const std::vector<TomlTable> clip_tables =
       experiment.lines || root.has("lines") ? root.tables_or_none("clip") : root.tables("clip");
   for (const TomlTable& table : clip_tables) experiment.clips.push_back(read_clip(table, folder));
+  const RecordedBy recorder = read_recorder(root);
+  for (ClipSetup& clip : experiment.clips) {
+    clip.recorded_by = recorder;
+    if (clip.file.empty() || recorder != RecordedBy::sensor) continue;
+    root.reject("recorded_by", fmt::format("\"sensor\" with clip \"{}\", which has images", clip.name),
+                "nothing, or \"camera\": it says what measured the positions of a track");
+    break;
+  }
   if (experiment.lines && !clip_tables.empty()) {
     root.reject("lines", "a table of lines and [[clip]]", "either lines or clips");
   }

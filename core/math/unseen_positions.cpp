@@ -29,14 +29,19 @@ std::vector<EqualRun> equal_runs(std::span<const double> x) {
   return runs;
 }
 
-/// The speeds of all steps, and which of them lie outside long runs and do not touch them.
+/// The speeds of all steps, and which of them touch no value that some long run has: where it may mean that nothing is
+/// seen, single ones do so as well.
 class Steps {
  public:
   Steps(std::span<const double> t_s, std::span<const double> x, const std::vector<EqualRun>& runs)
       : speed_(x.size() > 0 ? x.size() - 1 : 0), counts_(speed_.size(), true) {
     for (std::size_t i = 0; i < speed_.size(); ++i) speed_[i] = std::abs(x[i + 1] - x[i]) / (t_s[i + 1] - t_s[i]);
+    std::set<double> of_long_runs;
     for (const EqualRun& run : runs) {
-      if (run.size() < kFewestEqual) continue;
+      if (run.size() >= kFewestEqual) of_long_runs.insert(run.value);
+    }
+    for (const EqualRun& run : runs) {
+      if (!of_long_runs.contains(run.value)) continue;
       const std::size_t from = run.from > 0 ? run.from - 1 : 0, to = std::min(run.to, speed_.size());
       std::fill(counts_.begin() + static_cast<std::ptrdiff_t>(from), counts_.begin() + static_cast<std::ptrdiff_t>(to),
                 false);

@@ -3,7 +3,8 @@
 ///
 /// A body does not jump. A run of four exactly equal values or more is not a place of the body if all of its sides (one
 /// at the start or the end of the recording, both in between) are jumps: steps at more than four times the speed of the
-/// motion, both that of nine tenths of all steps outside such runs and the median of the six steps nearest to the jump.
+/// motion, both that of nine tenths of all steps that touch no value of such runs and the median of the six of them
+/// nearest to the jump.
 /// A rest is reached and left at the speed of the motion, however coarse the positions or the times are.
 ///
 /// A value found in this way means the same elsewhere: runs of four at this value are not places either, nor are

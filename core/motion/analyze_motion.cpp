@@ -316,6 +316,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   clip.frame_rate_hz = track.frame_rate_hz;
   clip.sightings = track.sightings;
   clip.scale_sd_relative = track.scale_sd_relative;
+  clip.sensor_column = track.sensor_column;
   clip.notes = track.notes;
   note_lost_frames(clip.lost_frames, options.lost_frames, clip.notes);
 

@@ -200,6 +200,7 @@ struct ClipResult {
   double position_noise_m = 0.0;
   std::vector<double> noise_autocovariance_m2;  ///< of the positions, at lags of 0, 1, … points
   double scale_sd_relative = 0.0;               ///< as in TrackData
+  std::string sensor_column = {};               ///< as in TrackData
   std::optional<double> rounding_m;             ///< step to which the positions are rounded, if that matters
   bool forced = false;                          ///< a known force acts
   /// Standard deviation of one speed, of a clip whose speeds were measured in place of positions: such a clip has no x,

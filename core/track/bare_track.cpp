@@ -130,6 +130,7 @@ Experiment read_tracks(const std::filesystem::path& path, const TrackFileOptions
   clip.track = path;
   clip.speeds_alone = speeds;
   clip.column = options.column;
+  clip.recorded_by = options.recorded_by;
   const auto own_mass = options.mass_of_file.find(path);
   const bool has_own_mass = own_mass != options.mass_of_file.end();
   clip.mass_kg = has_own_mass ? own_mass->second : options.mass_kg.value_or(1.0);

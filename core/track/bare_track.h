@@ -28,7 +28,8 @@ struct TrackFileOptions {
   /// Of these runs, one each, or without `runs` of the files, one each (masses_of_files()); empty: mass_kg for all.
   std::vector<double> masses_kg = {};
   std::map<std::filesystem::path, double> mass_of_file = {};  ///< kg; of files that have their own
-  SpeedsAlone speeds = SpeedsAlone::refused;                  ///< also of a folder
+  RecordedBy recorded_by = RecordedBy::unstated;
+  SpeedsAlone speeds = SpeedsAlone::refused;  ///< also of a folder
 };
 
 /// Gives each file its own mass if masses are stated and no runs. InputError if their numbers differ.

@@ -146,6 +146,15 @@ bool is_place_column(const TableColumn& column) {
   return name.ends_with("x-koordinate") || std::find(kPlaces.begin(), kPlaces.end(), name) != kPlaces.end();
 }
 
+bool is_sensor_column(const TableColumn& column) {
+  const std::string name = lower(column.name), text = lower(column.text);
+  if (name != "position" && name != "distance") return false;
+  if (text.find(", ch ") != std::string::npos || lower(column.run).starts_with("run #")) return true;
+  const auto colon = text.find(':');
+  return colon != std::string::npos && (text.starts_with("latest") || text.starts_with("run ")) &&
+         colon < text.find(name);
+}
+
 bool is_height_column(const TableColumn& column) {
   static const std::vector<std::string> kHeights{
       "y",           "position y",        "y-position", "y position", "position (y)", "height",       "h",

@@ -42,6 +42,10 @@ bool is_place_column(const TableColumn& column);
 /// plane, or the only one of a fall.
 bool is_height_column(const TableColumn& column);
 
+/// Whether it is the position of a motion sensor, as the programs of such sensors head it: "Position, Ch 1 (m)",
+/// "Position (m) Run #2" (Capstone), "Latest: Position (m)", "Run 1: Distance (m)" (Logger Pro).
+bool is_sensor_column(const TableColumn& column);
+
 /// The header lines of an exported table, split into name, unit and run of each of its `width` columns, which have no
 /// values yet. The lines, first to last: runs (if all fields mention a run, a set or "latest", or if there are fewer
 /// fields than names below, one of which is a time: "mass A" above t, x, y), names, short names (ignored), units. All

@@ -337,14 +337,19 @@ double unevenness(const TableColumn& column) {
   return std::sqrt((steps - steps.mean()).square().mean()) / std::abs(steps.mean());
 }
 
-/// Two columns without a header: t and x, unless the second increases throughout and the first often goes back, or does
-/// so in far less even steps. (Times with a wrong one among them keep their place, and the error names its line.)
+/// Two columns without a header: t and x, unless the second increases throughout and the first often goes back. (Times
+/// with a wrong one among them keep their place, and the error names its line.) Where both increase, and the second in
+/// far more even steps, it may be the times of a camera or the places of a picket fence.
 ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
   const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
   constexpr double kFarLess = 0.1, kEven = 1e-3;
   const double uneven = first && second ? unevenness(table.columns[0]) : 0.0;
-  const bool is_evener = uneven > kEven && unevenness(table.columns[1]) < kFarLess * uneven;
-  const std::size_t time = second && (is_evener || !goes_back_seldom(table.columns[0])) ? 1 : 0;
+  if (uneven > kEven && unevenness(table.columns[1]) < kFarLess * uneven) {
+    throw wrong_column(table, "two columns without a header that both increase, the second in even steps",
+                       "which of them is x: --column 1, or column = \"1\" in experiment.toml, if the second holds the "
+                       "times of a camera or a sensor; --column 2 if it holds the places of marks");
+  }
+  const std::size_t time = second && !goes_back_seldom(table.columns[0]) ? 1 : 0;
   if (second && (first || time == 1))
     notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});
   return only(1 - time);

@@ -223,6 +223,7 @@ TrackData import_track(const std::filesystem::path& file, const std::string& col
       speeds == SpeedsAlone::taken ? choose_speeds(table, column) : std::nullopt;
   const ChosenColumns chosen = of_speeds ? *of_speeds : choose_columns(table, column, track.notes);
   const TableColumn &x = table.columns[chosen.place], &t = table.columns[chosen.time];
+  if (is_sensor_column(x)) track.sensor_column = x.text;
   const Across across = chosen.across.value_or(Across{chosen.place});
   const TableColumn& y = table.columns[across.column];
   const double metres = downhill.value_or(1) *

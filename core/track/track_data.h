@@ -42,6 +42,7 @@ struct TrackData {
   std::shared_ptr<const ImageRecord> images;  ///< if requested
   bool dark_marker = false;                   ///< seen as darker than its surroundings, with no stated colour
   std::vector<Note> notes;
+  std::string sensor_column = {};  ///< the header of x if a motion sensor's program wrote it (is_sensor_column())
   std::vector<double> v_m_s = {};  ///< measured speeds in place of positions: x_m and force_n are empty then
 };
 

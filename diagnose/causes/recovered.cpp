@@ -161,7 +161,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     one.mu = found(mu(at), gradient(mu), 1.0);
     one.mu.sd = std::hypot(one.mu.sd, by_gravity * one.mu.value);
     one.mu.known &= one.mu.sd < kUnknownMu;
-    if (!(std::cos(alpha(at)) > kNoLoad)) {
+    if (!(std::cos(alpha(at)) > kNoLoad) || is_fall(set.groups[of.first])) {
       one.mu.known = false;
       one.mu.why = core::unknown::FreeFall{};
     }

@@ -39,7 +39,8 @@ std::optional<CoverRegion> best_cover(const TrackSet& set, const MotionFit& nomi
     best.positions = clip.x_m.size();
     best.launch = change;
   }
-  return best.inside > 0 ? std::optional(best) : std::nullopt;
+  constexpr std::size_t kFewest = 5;  // a launch with fewer positions there shows little of it
+  return best.inside >= kFewest ? std::optional(best) : std::nullopt;
 }
 
 /// A mass in the middle of the widest gap between masses, or well above the heaviest.
@@ -94,6 +95,7 @@ namespace {
 constexpr double kLeastDecisiveGain = 5.0;  // expected log likelihood above which a change is worth making
 constexpr double kStillLikely = 0.05;       // probability above which an explanation is a rival
 constexpr std::size_t kMostRivals = 3;
+constexpr double kLargestFriction = 1.0;
 constexpr double kSharpens = 0.95;  // of the standard deviation so far: a clip that leaves more is not worth it
 
 bool holds(const std::vector<std::string>& ids, const std::string& id) {
@@ -292,7 +294,11 @@ std::optional<SharpenParameter> sharpen(const TrackSet& set, const Comparison& c
   const auto sd_of = [](const Weak& weak, const Eigen::MatrixXd& covariance) {
     return std::sqrt(std::max(0.0, covariance(weak.at, weak.at))) * std::abs(weak.by_member);
   };
-  const std::vector<Weak> named = named_parameters(set, fit);
+  std::vector<Weak> named = named_parameters(set, fit);
+  // Motions of one direction say nothing of mu, and a note says what would.
+  std::erase_if(named, [&](const Weak& weak) {
+    return weak.effect.empty() && weak.key == "mu" && !(sd_of(weak, before) < kLargestFriction);
+  });
   if (named.empty()) return {};
   const Weak& weak = *std::max_element(named.begin(), named.end(), [&](const Weak& a, const Weak& b) {
     return sd_of(a, before) * std::abs(b.value) < sd_of(b, before) * std::abs(a.value);

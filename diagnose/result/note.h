@@ -164,6 +164,11 @@ struct OfCamera {
   std::vector<std::string> ids;
 };
 
+/// A motion sensor measured all positions, so that what only a camera has is left out.
+struct SensorPositions {
+  std::string column;  ///< the header that shows it; empty: it is stated
+};
+
 /// The inclination that corresponds to the mean intercept of lines.
 struct MeanIncline {
   double stated_deg = 0.0, intercept_deg = 0.0;
@@ -179,7 +184,7 @@ using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePie
                              PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
                              SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
                              BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike,
-                             FitsCutOff, NoMassStated, OfCamera, OneOrigin, SuspectedFall, OfReading>;
+                             FitsCutOff, NoMassStated, OfCamera, SensorPositions, OneOrigin, SuspectedFall, OfReading>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

@@ -131,13 +131,13 @@ double prior_odds(const TrackSet& set, std::size_t effect) {
 
 namespace {
 
-/// Whether these are enough positions to show one more effect than the fit has.
+/// Whether these are enough positions to show one more effect than the fit has: each effect needs as many to spare.
 bool are_enough(const ScoreSpace& space, std::size_t effect) {
   std::size_t positions = 0;
   for (const TrackedMotion& motion : space.set().motions) positions += motion.t_s.size();
   std::vector<std::size_t> effects = space.fit().effects;
   effects.push_back(effect);
-  return positions >= free_parameters(space.set(), effects) + kFewestSpare;
+  return positions >= free_parameters(space.set(), effects) + kFewestSpare * effects.size();
 }
 
 }  // namespace

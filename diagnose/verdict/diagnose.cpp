@@ -76,14 +76,31 @@ void refuse_heights(const std::vector<std::filesystem::path>& inputs, const core
   }
 }
 
+/// The header, or nothing where a person says so, if a motion sensor measured all positions.
+std::optional<SensorPositions> sensor_of(const core::AnalysisResults& results,
+                                         const std::vector<core::ClipSetup>& setups) {
+  SensorPositions of;
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    const std::string& column = results.clips[i].sensor_column;
+    const bool stated = setups[i].recorded_by == core::RecordedBy::sensor;
+    if (!stated && (setups[i].recorded_by != core::RecordedBy::unstated || column.empty())) return {};
+    if (!stated && of.column.empty()) of.column = column;
+  }
+  return of;
+}
+
 }  // namespace
 
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
                            const DiagnoseOptions& options, const base::Progress& progress,
                            const std::vector<std::optional<core::CameraSettings>>& cameras,
                            const std::vector<core::Experiment>& folders) {
-  const std::vector<std::size_t> without = indices(options.without);
+  std::vector<std::size_t> without = indices(options.without);
   TrackSet set = whole_motions(results, setups);
+  const std::optional<SensorPositions> sensor = sensor_of(results, setups);
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (sensor && effect_list()[e].of_camera) without.push_back(e);
+  }
   progress("weighing explanations", 0.1);
   ImageEvidence images;
   if (cameras.size() == results.clips.size()) images = image_evidence(filmed_clips(results, setups, cameras));
@@ -110,6 +127,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   }
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
   quote_tables(diagnosis);
+  if (sensor) diagnosis.notes.emplace_back(*sensor);
   if (std::optional<FitsCutOff> cut_off = fits_cut_off(diagnosis.ranking)) {
     diagnosis.notes.emplace_back(std::move(*cut_off));
   }

@@ -15,6 +15,8 @@ namespace {
 // Probability from which a cause counts together with others that do the same in these data alone: one of three at
 // most. A name that is spread over more of them says little, and of made experiments' ones hardly any is true.
 constexpr double kLikelyAmongEquals = 1.0 / 3.0;
+// An explanation that takes another's place because it has a certain size has this part of its probability or more.
+constexpr double kAboutAsLikely = 1.0 / 3.0;
 constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
 
 /// The probability of an effect of an explanation or of one that the data cannot tell from it.
@@ -89,7 +91,7 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
 namespace {
 
 /// The likeliest explanation in which another effect, one that the data cannot tell from it, has a certain size in
-/// place of an effect without one; null if there is none.
+/// place of an effect without one, if it is about as likely; null if there is none.
 const Hypothesis* with_size_by_another_name(const TrackSet& set, const Comparison& comparison, const Hypothesis& best,
                                             std::size_t without_size) {
   const Hypothesis* likeliest = nullptr;
@@ -98,7 +100,7 @@ const Hypothesis* with_size_by_another_name(const TrackSet& set, const Compariso
     effects.erase(without_size);
     effects.insert(other);
     const Hypothesis* renamed = find(comparison, effects);
-    if (renamed == nullptr || renamed->fit <= 0) continue;
+    if (renamed == nullptr || renamed->fit <= 0 || renamed->probability < kAboutAsLikely * best.probability) continue;
     if (!has_certain_size(set, comparison.fits[static_cast<std::size_t>(renamed->fit)], {other})) continue;
     if (likeliest == nullptr || renamed->probability > likeliest->probability) likeliest = renamed;
   }

@@ -82,7 +82,7 @@ void note_readings(const core::AnalysisResults& results, TrackSet& set) {
 void note_limits(const std::vector<core::ClipSetup>& setups, TrackSet& set) {
   std::vector<std::string> free, mixed;
   for (const TrackGroup& group : set.groups) {
-    if (group.statements.empty()) add_once(group.name, free);
+    if (group.statements.empty() && !is_fall(group)) add_once(group.name, free);
     for (std::size_t a = 0; a < group.statements.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         const InclineStatement &one = group.statements[a], &two = group.statements[b];

@@ -207,6 +207,7 @@ class VerdictWithCauses {
   CauseSequence sequence_with(const Hypothesis& one) const {
     return sequence_of(gap_set_, gap_nominal_, gap_with_, fit_of(one), without_, weighed_ ? kLeastNamed : 0.0);
   }
+  FallsThroughAir::Gaps gaps_of_fall(double named) const { return {held_out_gap(set_, nominal()).value, named}; }
   NoiseAlone noise_alone() const { return {gap_set_, gap_nominal_, sequence_.named, sized_.set, sized_.fit}; }
 
   void weigh(const ImageEvidence& images, const base::Progress& progress);
@@ -320,6 +321,10 @@ bool VerdictWithCauses::settle_probabilities() {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   if (open_size_) set_unknown(std::max(comparison.unknown, kOpenSize), comparison);
+  if (by_air_ && FallsThroughAir{over_viscous_, gaps_of_fall(held_out_gap(gap_set_, sequence_.named).value)}
+                     .viscous_leaves_less()) {
+    set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
+  }
   return verdict_by(comparison.none, comparison.unknown) == Verdict::effect;
 }
 
@@ -372,10 +377,12 @@ void VerdictWithCauses::move_imperfections_to_none() {
   // Scatter has no fit of its own: the verdict on it is by the noise alone.
   const bool scatter = found_ && is_scatter_alone(*found_) && claims_;
   if ((!names_ && !scatter) || found_->effects.empty()) return;
+  std::vector<std::size_t> seen = found_->effects;  // by the noise alone
+  if (!scatter) std::erase_if(seen, [&](std::size_t e) { return first_.effect_probability[e] < kLikelierThanNot; });
   if (names_ && shows_in_gap(best_)) allow_for_remainders(set_, without_, jobs_, first_);
   if (scatter && probability_of_scatter(first_) < kSureScatter) move_to_none(is_scatter_alone, first_);
   if ((scatter || shows_in_gap(best_)) && verdict_by(first_.none, first_.unknown) == Verdict::none) {
-    for (const std::size_t e : found_->effects) traces_.emplace_back(effect_list()[e].id);
+    for (const std::size_t e : seen) traces_.emplace_back(effect_list()[e].id);
   }
 }
 
@@ -404,7 +411,7 @@ void VerdictWithCauses::add_shares(const Reported& reported, Diagnosis& diagnosi
 void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
   if (by_air_) {
     FallsThroughAir note{over_viscous_};
-    if (diagnosis.remainder) note.gaps = {held_out_gap(set_, nominal()).value, diagnosis.remainder->gap};
+    if (diagnosis.remainder) note.gaps = gaps_of_fall(diagnosis.remainder->gap);
     diagnosis.notes.emplace_back(note);
   }
   constexpr double kLeastRatio = 0.01;  // air has 0.001 of the density of what falls through it, or less

@@ -22,8 +22,8 @@ bool same_effects(const Hypothesis& a, const Hypothesis& b) {
          std::set(a.effects.begin(), a.effects.end()) == std::set(b.effects.begin(), b.effects.end());
 }
 
-/// What the images say about a camera that sways as this fit has it.
-double sway_support(const ImageEvidence& images, const MotionFit& fit, std::size_t effect, double otherwise) {
+/// What the images say about a camera that sways as this fit has it: no more than they say of the sway by themselves.
+double sway_support(const ImageEvidence& images, const MotionFit& fit, std::size_t effect, double by_images) {
   double amplitude_m = 0.0, f_hz = 0.0;
   const auto& globals = fit.layout->globals();
   for (std::size_t g = 0; g < globals.size(); ++g) {
@@ -32,7 +32,22 @@ double sway_support(const ImageEvidence& images, const MotionFit& fit, std::size
     if (globals[g].parameter->slot == slot_of(ids::camera_motion)) amplitude_m = value;
     if (globals[g].parameter->slot == slot_of(ids::camera_motion, 1)) f_hz = value;
   }
-  return f_hz > 0.0 ? camera_sway_support(images.clips, amplitude_m, f_hz) : otherwise;
+  if (!(f_hz > 0.0)) return by_images;
+  const double support = camera_sway_support(images.clips, amplitude_m, f_hz);
+  return by_images > 0.0 ? std::min(support, by_images) : support;
+}
+
+/// What the images say about a camera that sways where no fit has it: no more than where the fit has what they see.
+double sway_alone(const ImageEvidence& images, const ImageFinding& finding) {
+  double amplitude_px = 0.0, f_hz = 0.0, px_per_m = 0.0;
+  for (const DiagnosedParameter& of : finding.parameters) {
+    if (of.key == "amplitude_px") amplitude_px = of.value;
+    if (of.key == "f_hz") f_hz = of.value;
+  }
+  for (const FilmedClip& clip : images.clips) px_per_m = std::max(px_per_m, clip.px_per_m);
+  if (!(f_hz > 0.0) || !(px_per_m > 0.0)) return finding.log_evidence;
+  const double along = camera_sway_support(images.clips, amplitude_px / px_per_m, f_hz);
+  return along > 0.0 ? std::min(finding.log_evidence, along) : finding.log_evidence;
 }
 
 /// What the marker's shear says about the line time of this fit.
@@ -129,7 +144,9 @@ void join_images(const TrackSet& set, const ImageEvidence& images, const std::se
   for (const ImageFinding* finding : findings) {
     const std::size_t effect = effect_index(finding->id);
     comparison.in_images.insert(effect);
-    const double of_images = finding->stated ? 0.0 : finding->log_evidence;
+    const double of_images = finding->stated  ? 0.0
+                             : effect == sway ? sway_alone(images, *finding)
+                                              : finding->log_evidence;
     const std::vector<Hypothesis> so_far = comparison.all;
     for (Hypothesis& hypothesis : comparison.all) {
       if (!has(hypothesis, effect)) continue;

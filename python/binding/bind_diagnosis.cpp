@@ -76,10 +76,12 @@ py::tuple diagnose_files(const std::vector<std::string>& inputs, const std::vect
 }
 
 py::tuple diagnose_arrays(std::vector<GivenTrack> given, const GivenGravity& given_gravity, const std::string& name,
-                          const std::vector<std::string>& without, int jobs, const py::object& progress_told) {
+                          const std::vector<std::string>& without, const std::string& recorded_by, int jobs,
+                          const py::object& progress_told) {
   const core::Gravity gravity = read_gravity(given_gravity);
   diagnose::Diagnosis diagnosis = WatchedWork(progress_told).run([&](const base::Progress& progress) {
-    const GivenTracks tracks = read_given(std::move(given));
+    GivenTracks tracks = read_given(std::move(given));
+    for (core::ClipSetup& setup : tracks.setups) setup.recorded_by = core::recorder_named(recorded_by);
     // As in diagnose::diagnose() for tracks from files: times as given, no camera.
     core::AnalysisResults results = core::analyze_tracks(tracks.setups, tracks.tracks, gravity,
                                                          {.lost_frames = core::LostFrameTimes::kept}, jobs, progress);

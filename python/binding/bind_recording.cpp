@@ -29,7 +29,7 @@ core::TrackFileOptions file_options(std::string column, std::optional<double> ma
                                     std::optional<double> incline_deg, std::optional<double> incline_sd_deg,
                                     std::optional<double> gravity_m_s2, std::optional<double> gravity_sd_m_s2,
                                     std::string runs, std::vector<double> masses_kg, bool allow_outside,
-                                    std::optional<double> most_megapixels) {
+                                    std::optional<double> most_megapixels, const std::string& recorded_by) {
   core::TrackFileOptions options;
   options.column = std::move(column);
   options.mass_kg = mass_kg;
@@ -39,6 +39,7 @@ core::TrackFileOptions file_options(std::string column, std::optional<double> ma
   options.gravity_sd_m_s2 = gravity_sd_m_s2;
   options.permitted.outside = allow_outside ? core::OutsideFiles::allowed : core::OutsideFiles::refused;
   if (most_megapixels) options.permitted.most_pixels = static_cast<std::size_t>(std::llround(1e6 * *most_megapixels));
+  options.recorded_by = core::recorder_named(recorded_by);
   options.runs = std::move(runs);
   options.masses_kg = std::move(masses_kg);
   return options;

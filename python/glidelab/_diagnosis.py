@@ -15,8 +15,8 @@ from ._brief import Brief
 from ._checks import real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
-                      given_scenario, given_tracks, job_count, refuse, refuse_of_arrays, source_of, stated_incline,
-                      teller)
+                      given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, source_of,
+                      stated_incline, teller)
 from ._recovered import Recovered, recovered_of
 from ._results import BY_ROW, Made, Result, frame_of, html_plot, html_table, new_axes
 
@@ -192,7 +192,8 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
              gravity_m_s2: Optional[float] = None, allow_outside: bool = False,
              most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
              column: str = "", runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
-             incline_sd_deg: Optional[float] = None, gravity_sd_m_s2: Optional[float] = None) -> Diagnosis:
+             incline_sd_deg: Optional[float] = None, gravity_sd_m_s2: Optional[float] = None,
+             recorded_by: str = "") -> Diagnosis:
     """Which effect, if any, the law of viscous drag and Coulomb friction lacks.
 
     Parameters
@@ -212,6 +213,9 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
         As in `analyze`.
     incline_sd_deg, gravity_sd_m_s2
         As in `analyze`.
+    recorded_by : {"", "sensor", "camera"}
+        What measured the positions of arrays or files: a motion sensor has none of the effects of a camera. Left out,
+        the header of a file's column may tell. A folder's experiment.toml states it.
 
     Returns
     -------
@@ -236,7 +240,8 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
         refuse({"name": name or None}, "a file's name is that of its results")
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
-                             gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
+                             gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg,
+                             recorded_by=recorder(recorded_by))
         return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), left_out, job_count(jobs), files,
                                                       teller(progress)))
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
@@ -245,7 +250,7 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
                       "force_n": force_n})
     gravity = given_gravity(gravity_m_s2, gravity_sd_m_s2)
     return diagnosis_of(*_glidelab.diagnose_arrays(given_tracks(given.tracks), gravity, text("name", name), left_out,
-                                                   job_count(jobs), teller(progress)))
+                                                   recorder(recorded_by), job_count(jobs), teller(progress)))
 
 
 @dataclass(frozen=True)

@@ -186,13 +186,13 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
                  mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
                  incline_sd_deg: Optional[float] = None, gravity_m_s2: Optional[float] = None,
                  gravity_sd_m_s2: Optional[float] = None, runs: Runs = None,
-                 masses_kg: Optional[Sequence[float]] = None) -> _glidelab.FileOptions:
+                 masses_kg: Optional[Sequence[float]] = None, recorded_by: str = "") -> _glidelab.FileOptions:
     """What is stated along with files with a track; a folder's experiment.toml says the same of its clips."""
     text("column", column, "a column's header or its number, as text")
     steepest_deg = 90.0  # a fall
     given = {"column": column or None, "mass_kg": mass_kg, "incline_deg": incline_deg,
              "incline_sd_deg": incline_sd_deg, "gravity_m_s2": gravity_m_s2, "gravity_sd_m_s2": gravity_sd_m_s2,
-             "runs": runs, "masses_kg": masses_kg}
+             "runs": runs, "masses_kg": masses_kg, "recorded_by": recorded_by or None}
     for key, value in given.items():
         if value is not None and any(os.path.isdir(path) for path in paths):
             raise input_error(key, shown(value), "none for a folder: its experiment.toml states it")
@@ -220,8 +220,14 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
                                  None if gravity_m_s2 is None else _positive("gravity_m_s2", gravity_m_s2,
                                                                              "metres per second squared"),
                                  gravity_sd_m_s2, _runs_text(runs), [_positive("masses_kg", one) for one in masses],
-                                 switch("allow_outside", allow_outside),
-                                 _megapixels(most_megapixels))
+                                 switch("allow_outside", allow_outside), _megapixels(most_megapixels), recorded_by)
+
+
+def recorder(recorded_by: str) -> str:
+    """What measured the positions, as stated; empty if nothing is."""
+    if recorded_by not in ("", "sensor", "camera"):
+        raise input_error("recorded_by", repr(recorded_by), '"sensor" or "camera"')
+    return recorded_by
 
 
 def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:

@@ -194,6 +194,11 @@ class SameBits(InFolder):
                 run("diagnose", file, "-q", "--no-page", "-o", self.folder / "d", *options)
                 self.assertEqual(glidelab.diagnose(file, **choices).to_json(),
                                  (self.folder / "d" / "diagnosis.json").read_text())
+        by_sensor = glidelab.diagnose(file, runs="all")  # as its header says
+        self.assertIn("motion sensor", " ".join(by_sensor.notes))
+        self.assertNotIn("motion sensor", " ".join(glidelab.diagnose(file, runs="all", recorded_by="camera").notes))
+        stated = glidelab.diagnose(tracks, recorded_by="sensor")
+        self.assertIn("A motion sensor measured the positions", " ".join(stated.notes))
         self.assertEqual(len(glidelab.analyze(file, runs=[2]).clips), 1)
 
     def test_plan(self):

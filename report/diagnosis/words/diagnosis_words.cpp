@@ -180,10 +180,18 @@ struct Sentence {
                                of.viscous_leaves_less() ? ": air cannot brake like that" : "");
   }
   std::string operator()(const diagnose::OfCamera& of) const {
-    std::string options;
-    for (const std::string& id : of.ids) options += (options.empty() ? "--without " : " --without ") + id;
-    return fmt::format("If a motion sensor measured these positions, {} cannot act: exclude {} ({}).",
-                       list_of(effect_names(of.ids)), of.ids.size() > 1 ? "them" : "it", options);
+    return fmt::format(
+        "If a motion sensor measured these positions, {} cannot act: say so (--recorded-by sensor, or recorded_by in "
+        "experiment.toml).",
+        list_of(effect_names(of.ids)));
+  }
+  std::string operator()(const diagnose::SensorPositions& of) const {
+    if (of.column.empty())
+      return "A motion sensor measured the positions, so what only a camera has is not considered.";
+    return fmt::format(
+        "\"{}\" is how a motion sensor's program heads its positions, so what only a camera has is not considered "
+        "(--recorded-by camera if a camera measured them).",
+        of.column);
   }
   std::string operator()(const diagnose::BuoyancyLooksAlike& of) const {
     return fmt::format(

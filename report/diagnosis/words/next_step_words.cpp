@@ -68,10 +68,13 @@ std::string change_words(const Change& change) {
   const std::string on = change.on.empty() ? "" : fmt::format(" on set-up \"{}\"", change.on);
   std::string launch, mass;
   if (change.clip) {
-    launch = change.falls ? "Record a fall"
-                          : fmt::format("{} a launch {} at {:.2g} m/s",
-                                        change.set_up ? set_up_words(*change.set_up) + " and record" : "Record",
-                                        direction_words(change), std::abs(change.clip->v0_m_s));
+    constexpr double kRest_m_s = 1e-3;
+    const double v0 = change.clip->v0_m_s;
+    const std::string how = std::abs(v0) < kRest_m_s
+                                ? "a release from rest"
+                                : fmt::format("a launch {} at {:.2g} m/s", direction_words(change), std::abs(v0));
+    const std::string record = change.set_up ? set_up_words(*change.set_up) + " and record" : "Record";
+    launch = change.falls ? "Record a fall" : record + " " + how;
     const double mass_kg = change.clip->mass_kg;
     mass = mass_kg < 1.0 ? base::digits_text(1000.0 * mass_kg, 3) + " g" : base::digits_text(mass_kg, 3) + " kg";
   }

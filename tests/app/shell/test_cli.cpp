@@ -212,6 +212,9 @@ TEST_CASE("help shows the words of an option where they are few, and not twenty 
   const std::string diagnose = tests::glidelab({"diagnose", "--help"}).out;
   CHECK(diagnose.find("--without EFFECT ...") != std::string::npos);
   CHECK(diagnose.find("{") == std::string::npos);
+  CHECK(diagnose.find("--recorded-by sensor|camera ") != std::string::npos);
+  CHECK(tests::glidelab({"diagnose", "x.csv", "--recorded-by", "sonar"}).err.find("neither sensor nor camera") !=
+        std::string::npos);
   CHECK(tests::glidelab({"analyze", "--help"}).out.find("--bandwidth SECONDS|RULE=lines") != std::string::npos);
   CHECK(tests::glidelab({"pattern", "--help"}).out.find("NAME:{a4,a3,letter}=a4") != std::string::npos);
   CHECK(tests::glidelab({"--man"}).out.find("quadratic_drag") == std::string::npos);

@@ -188,6 +188,19 @@ TEST_CASE("a folder of tracks needs no table of the track: x is then positive do
   CHECK(contains(folder.message(kHead + kCamera + kCalibration + kMarker + kClip), "track: found nothing"));
 }
 
+TEST_CASE("a folder of tracks says what measured them") {
+  const Folder folder;
+  const auto recorder = [&](const std::string& line) {
+    return folder
+        .read("format = 1\nname = \"t\"\n" + line + with(kClip, "file = \"clips/a.mkv\"", "track = \"track.csv\""))
+        .clips.front()
+        .recorded_by;
+  };
+  CHECK(recorder("") == core::RecordedBy::unstated);
+  CHECK(recorder("recorded_by = \"sensor\"\n") == core::RecordedBy::sensor);
+  CHECK(recorder("recorded_by = \"camera\"\n") == core::RecordedBy::camera);
+}
+
 TEST_CASE("a table of lines needs no clips") {
   const Folder folder;
   CHECK(folder.read(kHead + "lines = \"lines.csv\"\n").lines == folder.dir / "lines.csv");
@@ -247,6 +260,9 @@ TEST_CASE("each wrong key of experiment.toml is named with its line, what was fo
       {"name = \"test\"", "nam = \"test\"",
        "2: nam: found an unknown key, expected a known key; did you mean \"name\"?"},
       {"name = \"test\"", "name = 3", "2: name: found 3, expected a string"},
+      {"name = \"test\"", "name = \"test\"\nrecorded_by = \"sonar\"", "3: recorded_by: found text \"sonar\""},
+      {"name = \"test\"", "name = \"test\"\nrecorded_by = \"sensor\"",
+       "3: recorded_by: found \"sensor\" with clip \"a\", which has images"},
       {"frame_rate_hz = 200.0", "frame_rate_hz = 0", "4: camera.frame_rate_hz: found 0, expected a number above 0"},
       {"frame_rate_hz = 200.0", "frame_rate_hz = nan", "4: camera.frame_rate_hz: found nan"},
       {"frame_rate_hz = 200.0", "frame_rate_hz = \"200\"", "4: camera.frame_rate_hz: found text \"200\""},

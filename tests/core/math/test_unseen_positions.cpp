@@ -56,6 +56,10 @@ TEST_CASE("a value to which the body would have to jump is not seen, at a start,
   CHECK(unseen_in(with(run, {20, 21, 22, 23, 24}, 9.99)) == Places{20, 21, 22, 23, 24});
   CHECK(unseen_in(with(run, {56, 57, 58, 59}, 0.0)) == Places{56, 57, 58, 59});
   CHECK(unseen_in(with(run, {57, 58, 59}, 0.0)).empty());  // three may be chance
+  // Single ones of the value may be more than a tenth of all positions, as of a tracker that loses its marker.
+  Places often{0, 1, 2, 3, 4};
+  for (std::size_t i = 8; i < 60; i += 4) often.push_back(i);
+  CHECK(unseen_in(with(run, often, 0.0)) == often);
   // Two values, and single ones of a value that is known.
   const Series two = with(with(run, {0, 1, 2, 3, 30}, 0.0), {55, 56, 57, 58, 59}, -1.0);
   CHECK(unseen_in(two) == Places{0, 1, 2, 3, 30, 55, 56, 57, 58, 59});

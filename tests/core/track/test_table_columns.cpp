@@ -145,16 +145,21 @@ TEST_CASE("of two columns without a header that both increase the first is the t
   CHECK(read_text(text, "2").x_m[10] == Approx(0.55));
 }
 
-TEST_CASE("of two columns without a header that both increase the one with far more even steps is the time") {
+TEST_CASE("of two columns without a header that both increase, the second in even steps, x must be named") {
   // A body that slows down from 1 m/s at 0.2 m/s²: in 2 s its steps shrink by 40 %.
   const auto x = [](double t) { return 0.3 + t - 0.1 * t * t; };
-  const core::TrackData swapped = read_text(pairs([&](double t) { return std::pair(x(t), t); }));
-  CHECK(swapped.t_s[10] == Approx(0.5));
-  CHECK(swapped.x_m[10] == Approx(x(0.5)).margin(1e-6));
-  const auto* const note = tests::note_of<core::ColumnsGuessed>(swapped.notes);
-  REQUIRE(note != nullptr);
-  CHECK(note->t == "column 2");
-  CHECK(note->either);
+  const auto at = [](double place) { return 5.0 - std::sqrt(25.0 - 10.0 * (place - 0.3)); };  // x(t) solved for t
+  const std::string frames = pairs([&](double t) { return std::pair(x(t), t); });
+  const std::string marks = pairs([&](double step) { return std::pair(at(0.3 + 0.5 * step), 0.3 + 0.5 * step); });
+  for (const std::string& text : {frames, marks}) {
+    CHECK_THROWS_WITH(read_text(text), Contains("column") && Contains("both increase") && Contains("--column 1") &&
+                                           Contains("--column 2"));
+  }
+  const core::TrackData of_frames = read_text(frames, "1"), of_marks = read_text(marks, "2");
+  CHECK(of_frames.t_s[10] == Approx(0.5));
+  CHECK(of_frames.x_m[10] == Approx(x(0.5)).margin(1e-6));
+  CHECK(of_marks.x_m[10] == Approx(0.55));
+  CHECK(x(of_marks.t_s[10]) == Approx(0.55).margin(1e-5));
   CHECK(read_text(pairs([&](double t) { return std::pair(t, x(t)); })).x_m[10] == Approx(x(0.5)).margin(1e-6));
 }
 

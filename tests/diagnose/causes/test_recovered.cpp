@@ -214,6 +214,15 @@ TEST_CASE("an inclination at the limit of its statement is not given as if it we
   CHECK_FALSE(found.alpha_deg.estimate);
   REQUIRE(found.alpha_deg.why);
   CHECK(std::holds_alternative<core::unknown::AtItsLimit>(found.alpha_deg.why->reason));
+  // However far from the vertical that limit is, a fall presses on no track.
+  const tests::MadeExperiment loose = tests::made_experiment(falls, slow, 3, 1e-4, 30, 60.0, 10.0, 0.0, free);
+  const diagnose::TrackSet tilted = diagnose::track_set(loose.results, loose.setups, true);
+  const diagnose::MotionFit there = diagnose::linearise_again(tilted, diagnose::fit_nominal(tilted));
+  REQUIRE(std::cos(there.at.global[2]) > 0.3);
+  const diagnose::RecoveredConfiguration aslant = diagnose::recovered_of(tilted, {{&there, {}, 1.0}}).at(0);
+  CHECK_FALSE(aslant.mu.estimate);
+  REQUIRE(aslant.mu.why);
+  CHECK(std::holds_alternative<core::unknown::FreeFall>(aslant.mu.why->reason));
 }
 
 TEST_CASE("nothing is recovered from an explanation whose fit stopped before its minimum") {

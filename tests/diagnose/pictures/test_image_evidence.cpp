@@ -10,6 +10,7 @@
 #include "diagnose/pictures/image_scene.h"
 #include "diagnose/pictures/image_search.h"
 #include "diagnose/verdict/verdict_details.h"
+#include "diagnose/weigh/joined_evidence.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -148,6 +149,63 @@ TEST_CASE("A camera's sway in the tracks is borne out by a scene that sways as m
   CHECK(diagnose::camera_sway_support(resting, 0.2 / 400.0, 7.0) < -20.0);
   // Too small to be seen in the scene: neither.
   CHECK(std::abs(diagnose::camera_sway_support(resting, 0.001 / 400.0, 7.0)) < 1.0);
+}
+
+TEST_CASE("A camera that sways in the images alone has no more support than one that sways so in the tracks as well",
+          "[pictures]") {
+  constexpr double kSway_px = 0.05, kSway_hz = 7.0;
+  std::vector<diagnose::FilmedClip> clips = filmed({0.001, 0.0, 0.0, kSway_px}, 0.001, 8);
+  for (diagnose::FilmedClip& clip : clips) {  // seen far better than a patch is trusted to
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
+    for (core::SceneLook& look : record->scene) {
+      const double wave = kSway_px * std::sin(2.0 * std::numbers::pi * kSway_hz * look.t_s);
+      look.u_px = wave + 1e-3 * (look.u_px - wave);
+      look.sd_u_px = 1e-4;
+    }
+    clip.record = record;
+  }
+  const diagnose::ImageEvidence images = diagnose::image_evidence(clips);
+  const double in_tracks = diagnose::camera_sway_support(clips, kSway_px / 400.0, kSway_hz);
+  REQUIRE(in_tracks > 20.0);
+  const double by_images = finding(images, "camera_motion").log_evidence;
+  diagnose::Comparison comparison;
+  comparison.all.emplace_back();
+  diagnose::join_images({}, images, {}, comparison);
+  const auto joined = std::find_if(comparison.all.begin(), comparison.all.end(), [](const auto& one) {
+    return one.effects == std::vector<std::size_t>{diagnose::effect_index("camera_motion")};
+  });
+  REQUIRE(joined != comparison.all.end());
+  REQUIRE(by_images > 2.0 * in_tracks);
+  CHECK(joined->log_evidence < 1.05 * in_tracks);
+}
+
+TEST_CASE("Clips whose marker is a target, of which no looks are kept, count for what their images show",
+          "[pictures]") {
+  core::AnalysisResults results;
+  core::ClipResult clip;
+  clip.name = "up";
+  clip.experiment = "made";
+  auto record = std::make_shared<core::ImageRecord>(*filmed({}, 0.001, 8).front().record);
+  record->marker.clear();
+  record->codec = "avc1";
+  record->lossy = true;
+  clip.images = record;
+  for (std::size_t k = 0; k < 100; ++k) {
+    core::MotionPoint point;
+    point.measured_m = 0.002 * static_cast<double>(k);
+    clip.motion.push_back(point);
+    clip.sightings.push_back({.frame = k, .u_px = 90.0, .v_px = 20.0 + 0.8 * static_cast<double>(k)});
+  }
+  results.clips = {clip};
+  core::CameraSettings camera;
+  camera.frame_rate_hz = 120.0;
+  const std::vector<diagnose::FilmedClip> clips = diagnose::filmed_clips(results, {core::ClipSetup{}}, {camera});
+  REQUIRE(clips.size() == 1);
+  CHECK(clips.front().px_per_m == Approx(400.0));
+  CHECK(clips.front().down);
+  const diagnose::ImageEvidence images = diagnose::image_evidence(clips);
+  CHECK(finding(images, "compression").stated);
+  CHECK(finding(images, "camera_motion").log_evidence < 0.0);
 }
 
 TEST_CASE("A wave is found with its frequency, and white noise has none", "[pictures]") {

@@ -62,6 +62,24 @@ TEST_CASE("two clips show no trend: one of them always has more friction than th
   CHECK(is_visible({up, down, up}, "friction_drift"));
 }
 
+TEST_CASE("a second effect needs six further positions to spare") {
+  const auto is_shown = [](std::size_t frames, bool beside) {
+    const tests::MadeExperiment made =
+        tests::made_experiment({{0.4, 90.0, 0.0, 0.1}}, {}, 3, 1e-5, frames, 30.0, 1.0, 0.0, {.mu = 0.0});
+    const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+    const diagnose::MotionFit nominal = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+    const std::size_t lens = diagnose::effect_index(diagnose::ids::lens_distortion);
+    const diagnose::FitPoint start = diagnose::with_effect(set, nominal, lens, {0.01, 0.0}, {});
+    const diagnose::MotionFit fit = beside ? diagnose::fit_motions(set, {lens}, start) : nominal;
+    return diagnose::scan_effect(diagnose::ScoreSpace(set, fit), diagnose::effect_index(diagnose::ids::tether)).visible;
+  };
+  // K, a start and a speed, two for the cable, and two for the lens.
+  CHECK_FALSE(is_shown(10, false));
+  CHECK(is_shown(13, false));
+  CHECK_FALSE(is_shown(17, true));
+  CHECK(is_shown(21, true));
+}
+
 TEST_CASE("a falling object has no track that could be bowed") {
   const tests::MadeLaunch fall{0.4, 90.0, 0.0, 0.1}, heavier{0.8, 90.0, 0.0, 0.1}, slope{0.4, 60.0, 0.0, 0.1};
   CHECK_FALSE(is_visible({fall, heavier, fall}, "track_bow"));

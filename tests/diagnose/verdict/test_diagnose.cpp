@@ -261,6 +261,29 @@ TEST_CASE("data that support no verdict are refused, or the verdict says so") {
     CHECK(of_camera(made) == std::vector<std::string>{"perspective_error"});
     const tests::MadeEffect drag = {[](double, double, double v, double) { return -0.2 * v * std::abs(v); }};
     CHECK(of_camera(tests::made_experiment(tests::made_launches(), drag, 5)).empty());
+    // A motion sensor has no such thing, as its program's header or a person says; a person knows better.
+    const auto has_camera = [](const tests::MadeExperiment& of) {
+      const auto diagnosis = diagnosed(of);
+      bool has = false;
+      for (const diagnose::RankedExplanation& one : diagnosis.ranking) {
+        has = has || one.explanation.holds("perspective_error") || one.explanation.holds("lens_distortion");
+      }
+      const bool noted = std::any_of(diagnosis.notes.begin(), diagnosis.notes.end(), [](const diagnose::Note& note) {
+        return std::holds_alternative<diagnose::SensorPositions>(note);
+      });
+      CHECK(noted != has);
+      return has;
+    };
+    CHECK(has_camera(made));
+    for (core::ClipResult& clip : made.results.clips) clip.sensor_column = "Position, Ch 1 (m)";
+    CHECK_FALSE(has_camera(made));
+    made.results.clips.front().sensor_column.clear();
+    CHECK(has_camera(made));
+    for (core::ClipSetup& setup : made.setups) setup.recorded_by = core::RecordedBy::sensor;
+    CHECK_FALSE(has_camera(made));
+    for (core::ClipResult& clip : made.results.clips) clip.sensor_column = "Position, Ch 1 (m)";
+    for (core::ClipSetup& setup : made.setups) setup.recorded_by = core::RecordedBy::camera;
+    CHECK(has_camera(made));
   }
   SECTION("an effect that does not exist") {
     CHECK_THROWS_AS(diagnosed(tests::made_experiment(tests::made_launches(), {}, 1), {"magic"}), base::InputError);

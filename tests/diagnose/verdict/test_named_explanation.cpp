@@ -61,6 +61,10 @@ TEST_CASE("an effect without a certain size gives way to an equal that has one, 
   named.add({"power_law_drag"}, false, 0.5);
   named.add({"quadratic_drag"}, true, 0.4);
   CHECK(named.instead() == std::vector{kDrag});
+  named.comparison.all[1].probability = 0.1;  // nor does the data's favour go to it
+  CHECK(named.instead().empty());
+  named.comparison.all[1].probability = 0.4;
+  CHECK(named.instead() == std::vector{kDrag});
   named.comparison.all[1].gain = 30.0;  // it follows the motions less well: no equal
   CHECK(named.instead().empty());
 }

@@ -55,9 +55,11 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::FallsThroughAir{{}, {{3.2, 1.1}}}, "would leave a gap of 3.2 in place of 1.1."},
       {diagnose::OfCamera{{"lens_distortion"}},
        "If a motion sensor measured these positions, lens distortion cannot act: "
-       "exclude it (--without lens_distortion)."},
+       "say so (--recorded-by sensor, or recorded_by in experiment.toml)."},
       {diagnose::OfCamera{{"lens_distortion", "perspective_error"}},
-       "exclude them (--without lens_distortion --without perspective_error)."},
+       "lens distortion and pattern off the plane cannot act"},
+      {diagnose::SensorPositions{}, "A motion sensor measured the positions"},
+      {diagnose::SensorPositions{"Position, Ch 1 (m)"}, "\"Position, Ch 1 (m)\" is how a motion sensor's program"},
       {diagnose::BuoyancyLooksAlike{0.163}, "0.16 of the density of the body"},
       {diagnose::FitsCutOff{{{{"tether"}, false}, {{"lens_distortion"}, true}}},
        "The fits of cable that tightens and lens distortion + an unnamed cause reached the limit on steps before a "

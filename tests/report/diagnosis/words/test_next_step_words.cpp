@@ -91,6 +91,8 @@ TEST_CASE("where x rises uphill or the track is level, a launch goes that way an
   CHECK(words_for(change).starts_with("Record a launch towards smaller x at 1.2 m/s"));
   change.clip->v0_m_s = 1.2;
   CHECK(words_for(change).starts_with("Record a launch towards larger x at 1.2 m/s"));
+  change.clip->v0_m_s = -4e-12;  // nobody launches at that speed
+  CHECK(words_for(change).starts_with("Record a release from rest"));
 }
 
 TEST_CASE("each explanation in doubt has one clause, with all that may be in its place") {
