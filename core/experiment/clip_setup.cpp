@@ -68,6 +68,10 @@ std::string reading(const ClipSetup& clip) {
 
 }  // namespace
 
+std::string group_of_incline(double incline_rad) {
+  return fmt::format("{:.6g} deg", incline_rad * base::kDegreesPerRad + 0.0);  // + 0.0: no "-0"
+}
+
 void name_groups(std::vector<ClipSetup>& clips) {
   std::set<double> inclinations;
   bool some_named = false;
@@ -80,9 +84,7 @@ void name_groups(std::vector<ClipSetup>& clips) {
   }
   for (ClipSetup& clip : clips) {
     if (!clip.group.empty()) continue;
-    clip.group = inclinations.size() == 1 && !some_named
-                     ? "all"
-                     : fmt::format("{:.6g} deg", clip.incline_rad * base::kDegreesPerRad + 0.0);  // + 0.0: no "-0"
+    clip.group = inclinations.size() == 1 && !some_named ? "all" : group_of_incline(clip.incline_rad);
   }
 }
 

@@ -95,6 +95,9 @@ inline constexpr double kSameIncline_rad = 1e-9;  ///< stated angles that differ
 /// that states no uncertainty contradicts no other clip.
 bool contradicts(const ClipSetup& one, const ClipSetup& other);
 
+/// "4.3 deg": the name of a group that nobody named, where there are several.
+std::string group_of_incline(double incline_rad);
+
 /// Makes one group for each stated inclination among the clips that name no group; "all" if this makes one group in
 /// all.
 void name_groups(std::vector<ClipSetup>& clips);

@@ -308,7 +308,8 @@ void VerdictWithCauses::put_causes_in_order() {
 
 void VerdictWithCauses::size_causes() {
   sized_ = is_settled() ? sized_of(set_, fit_of_gap()) : Sized{with(), fit_of(best_)};
-  open_size_ = names_ && sequence_.is_gap && shows_in_gap(best_) &&
+  // Lost frames are counted one by one: their size is certain.
+  open_size_ = names_ && sequence_.is_gap && shows_in_gap(best_) && !has(best_, effect_index(ids::dropped_frames)) &&
                !has_certain_size(sized_.set, sized_.fit, fit_of_gap().effects);
 }
 

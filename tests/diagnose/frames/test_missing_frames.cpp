@@ -131,4 +131,5 @@ TEST_CASE(
   REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
   CHECK(diagnosis.effects.size() == 1);
   CHECK(diagnosis.effects.front().id == "dropped_frames");
+  CHECK(diagnosis.effects.front().probability > 0.9);  // it is counted: no estimate that may as well be none
 }
