@@ -193,7 +193,8 @@ struct FindingSentence {
                 ? fmt::format("the marker stands still for a frame {} in mid-motion, and {}: frames are duplicated",
                               times_text(of.stalls), identical)
                 : identical,
-            "export the clip at the rate at which it was filmed, with a converter that adds no frames"};
+            "export the clip at the rate at which it was filmed and at a high bit rate (strong compression repeats "
+            "frames too), with a converter that adds no frames"};
   }
   FindingWords operator()(const found::AssumedForFile& of) const {
     const std::string mass = of.mass_kg ? fmt::format("mass is taken as {:.6g} kg", *of.mass_kg) : "";
