@@ -95,8 +95,8 @@ namespace {
 constexpr double kLeastDecisiveGain = 5.0;  // expected log likelihood above which a change is worth making
 constexpr double kStillLikely = 0.05;       // probability above which an explanation is a rival
 constexpr std::size_t kMostRivals = 3;
-constexpr double kLargestFriction = 1.0;
-constexpr double kSharpens = 0.95;  // of the standard deviation so far: a clip that leaves more is not worth it
+constexpr double kLargestFriction = 1.0;  // mu of most pairs of surfaces: a larger sd says nothing
+constexpr double kSharpens = 0.95;        // of the standard deviation so far: a clip that leaves more is not worth it
 
 bool holds(const std::vector<std::string>& ids, const std::string& id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
@@ -295,7 +295,7 @@ std::optional<SharpenParameter> sharpen(const TrackSet& set, const Comparison& c
     return std::sqrt(std::max(0.0, covariance(weak.at, weak.at))) * std::abs(weak.by_member);
   };
   std::vector<Weak> named = named_parameters(set, fit);
-  // Motions of one direction say nothing of mu, and a note says what would.
+  // Motions of one direction do not determine mu, and its row among the recovered values says so.
   std::erase_if(named, [&](const Weak& weak) {
     return weak.effect.empty() && weak.key == "mu" && !(sd_of(weak, before) < kLargestFriction);
   });

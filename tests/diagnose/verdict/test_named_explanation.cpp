@@ -61,7 +61,7 @@ TEST_CASE("an effect without a certain size gives way to an equal that has one, 
   named.add({"power_law_drag"}, false, 0.5);
   named.add({"quadratic_drag"}, true, 0.4);
   CHECK(named.instead() == std::vector{kDrag});
-  named.comparison.all[1].probability = 0.1;  // nor does the data's favour go to it
+  named.comparison.all[1].probability = 0.1;  // far less likely: it does not take the place
   CHECK(named.instead().empty());
   named.comparison.all[1].probability = 0.4;
   CHECK(named.instead() == std::vector{kDrag});
