@@ -13,6 +13,7 @@ constexpr std::string_view kToml =
 
 #gravity_m_s2 = 9.8123             # at your place: 9.78 (equator) to 9.83 (poles); without it 9.80665 ± 0.015
 #gravity_sd_m_s2 = 0.0001          # its standard deviation; by default that of the last digit
+#recorded_by = "camera"            # "sensor" if all positions are a motion sensor's: then nothing is put down to a camera
 
 # ---- The camera: what it was told to do, or what its data sheet says.
 [camera]

@@ -12,6 +12,7 @@
 #include "base/math/angles.h"
 #include "base/math/dense.h"
 #include "base/math/distributions.h"
+#include "core/experiment/clip_setup.h"
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
@@ -251,6 +252,7 @@ std::vector<RecoveredConfiguration> recovered_of(const TrackSet& set, const Expl
     one.group = set.groups[group].name;
     one.mass_kg = set.masses[mass].mass_kg;
     one.incline_deg = set.groups[group].stated_rad / base::kRadPerDegree;
+    one.is_named_by_incline = one.group == core::group_of_incline(set.groups[group].stated_rad);
     for (const std::size_t e : reported.fit->effects) one.with.emplace_back(effect_list()[e].id);
     const RecoveredSet& own = under.front()[c];
     one.k_over_m_1_s = mixture(c, &RecoveredSet::k_over_m_1_s, 1.0, unknown_rate(own.k_over_m_1_s.value));

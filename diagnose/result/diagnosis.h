@@ -261,6 +261,7 @@ struct RecoveredConfiguration {
   std::string group;
   double mass_kg = 0.0;
   double incline_deg = 0.0;                               ///< as stated
+  bool is_named_by_incline = false;                       ///< nobody named the group: `group` is its inclination
   std::vector<std::string> with = {};                     ///< ids of the causes in the model
   core::Quantity k_over_m_1_s, mu, alpha_deg, v_lim_m_s;  ///< undetermined ones say why
 };

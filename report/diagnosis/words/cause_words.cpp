@@ -9,9 +9,7 @@
 #include <utility>
 #include <variant>
 
-#include "base/math/angles.h"
 #include "base/text/number_text.h"
-#include "core/experiment/clip_setup.h"
 #include "core/result/why_unknown.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
@@ -158,7 +156,7 @@ std::string contradicted_drag_words(const diagnose::Diagnosis& diagnosis) {
 std::string configuration_label(const diagnose::RecoveredConfiguration& of,
                                 const std::vector<diagnose::RecoveredConfiguration>& all) {
   const bool groups = std::any_of(all.begin(), all.end(), [&](const auto& other) { return other.group != of.group; });
-  const bool is_named = !of.group.empty() && of.group != core::group_of_incline(of.incline_deg * base::kRadPerDegree);
+  const bool is_named = !of.group.empty() && !of.is_named_by_incline;
   return fmt::format("{:.6g} kg, {:.4g}°", of.mass_kg, of.incline_deg) + (groups && is_named ? ", " + of.group : "");
 }
 

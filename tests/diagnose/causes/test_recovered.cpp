@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "base/math/angles.h"
 #include "base/math/distributions.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
@@ -72,6 +74,16 @@ TEST_CASE("K/m scatters from clip to clip, and its interval comes from how the c
   const diagnose::RemainderSpace::Solution solution = space.solve({});
   CHECK(std::sqrt(solution.covariance(0, 0)) / 0.4 < 0.1 * sd);
   CHECK(std::sqrt(solution.between_clips(0, 0)) / 0.4 == Approx(sd).epsilon(1e-6));
+}
+
+TEST_CASE("a group that bears its inclination's name is told from one that a person named") {
+  diagnose::TrackSet set = set_of(6, {});
+  const diagnose::MotionFit fit = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  set.groups.at(0).stated_rad = 4.25 * base::kRadPerDegree;
+  for (const auto& [name, by_incline] : {std::pair{"4.25 deg", true}, {"4.2 deg", false}, {"hill", false}}) {
+    set.groups[0].name = name;
+    CHECK(diagnose::recovered_of(set, {{&fit, {}, 1.0}}).at(0).is_named_by_incline == by_incline);
+  }
 }
 
 TEST_CASE("without scatter the clips give the same uncertainty as the noise") {

@@ -106,8 +106,8 @@ diagnose::Diagnosis evil_diagnosis() {
   of.remainder = diagnose::GapRemainder{0.1, 1.2, 1e-3, 1e-3, 0.01, of.regions};
   of.traces = {kEvil};
   const core::Quantity unknown{{}, core::WhyUnknown{core::unknown::Told{kEvil}}};
-  of.recovered = {{kEvil, 0.3, 4.0, {kEvil}, unknown, unknown, unknown, unknown},
-                  {"other", 0.3, 4.0, {kEvil}, unknown, unknown, unknown, unknown}};
+  of.recovered = {{kEvil, 0.3, 4.0, false, {kEvil}, unknown, unknown, unknown, unknown},
+                  {"other", 0.3, 4.0, false, {kEvil}, unknown, unknown, unknown, unknown}};
   of.limits.contradicted = {{kEvil, diagnose::Against::plumb, 0.2, 0.01, 0.1, 0.01, false, 7.0}};
   of.notes = {diagnose::NoFreeMotion{kEvil, 12},
               diagnose::StatementsDisagree{kEvil, diagnose::Against::plumb, diagnose::Against::stated, 7.0},

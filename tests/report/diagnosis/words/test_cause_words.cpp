@@ -259,7 +259,7 @@ TEST_CASE("recovered quantities stand under the causes that are in their model, 
   CHECK(tables[0].rows[1][0] == "0.335 kg, 4°, slope");
   CHECK(report::with_words(tables[1].with) == "by the nominal model");
   for (diagnose::RecoveredConfiguration& one : of.recovered) {
-    if (one.group == "slope") one.group = "4 deg";  // named by its inclination, which the label has already
+    if (one.group == "slope") one.is_named_by_incline = true;  // "4 deg", which the label has already
   }
   CHECK(report::recovered_tables(of)[0].rows[1][0] == "0.335 kg, 4°");
 }
