@@ -67,6 +67,13 @@ std::vector<std::string> estimator_names() {
   return names;
 }
 
+core::AnalysisResults estimate_and_compare(const Estimator& estimator, core::AnalysisResults of_lines,
+                                           const EstimateOptions& options) {
+  core::AnalysisResults results = estimator.estimate(std::move(of_lines), options);
+  if (estimator.of_lines) set_scatter_of_motion(results);
+  return results;
+}
+
 std::vector<core::AnalysisResults> estimate_each(
     const std::vector<Estimator>& wanted, const std::function<core::AnalysisResults(core::LineMethod)>& analyze) {
   std::map<core::LineMethod, core::AnalysisResults> lines;

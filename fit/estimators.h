@@ -41,6 +41,11 @@ std::vector<Estimator> judged_estimators();
 const Estimator* find_estimator(std::string_view name);
 std::vector<std::string> estimator_names();
 
+/// The estimate, and for an estimator of lines also how far the positions lie from the law over the whole motion
+/// (set_scatter_of_motion()): what a person is told of one experiment.
+core::AnalysisResults estimate_and_compare(const Estimator& estimator, core::AnalysisResults of_lines,
+                                           const EstimateOptions& options);
+
 /// The results of each estimator in `wanted` for one experiment; `analyze` is called once for each line method that
 /// they start from.
 std::vector<core::AnalysisResults> estimate_each(const std::vector<Estimator>& wanted,

@@ -119,7 +119,7 @@ void analyze(const AnalyzeOptions& options) {
   how.smoother = options.smoother;
   how.images = !options.with.empty();
   const core::AnalysisResults results =
-      estimator.estimate(core::analyze(folders, how, progress), {.robust = options.robust});
+      fit::estimate_and_compare(estimator, core::analyze(folders, how, progress), {.robust = options.robust});
   const std::optional<diagnose::GivenCauses> given = with_causes(options, folders, results, progress);
   const report::Json with = given ? report::given_causes_json(*given) : report::Json(nullptr);
   report::write_analysis_files(results, staged.dir(), with);

@@ -14,6 +14,7 @@
 #include "base/math/distributions.h"
 #include "core/experiment/clip_setup.h"
 #include "core/result/estimate.h"
+#include "diagnose/causes/scale_place.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/weigh/unknown_noise.h"
@@ -96,6 +97,17 @@ bool is_at_limit(const MotionFit& fit, ParameterLayout::Global::Kind kind, std::
     const ParameterLayout::Global& of = fit.layout->globals()[s.global];
     return s.held && of.kind == kind && of.index == index;
   });
+}
+
+/// Multiplies all lengths: the motions determine g sin(alpha), mu g cos(alpha) and v_lim as lengths over times.
+void scale_lengths(RecoveredSet& of, const ScaleFactor& by) {
+  const double fitted_rad = of.alpha_rad.value, fitted_cos = std::cos(fitted_rad);
+  of.alpha_rad.value = std::asin(std::clamp(by.value * std::sin(fitted_rad), -1.0, 1.0));
+  of.alpha_rad.sd = std::hypot(of.alpha_rad.sd, by.sd * std::tan(of.alpha_rad.value));
+  of.mu.value *= by.value * fitted_cos / std::cos(of.alpha_rad.value);
+  of.mu.sd = std::hypot(of.mu.sd, by.sd * of.mu.value);
+  of.v_lim_m_s.value *= by.value;
+  of.v_lim_m_s.sd = std::hypot(of.v_lim_m_s.sd, by.sd * of.v_lim_m_s.value);
 }
 
 std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {
@@ -184,6 +196,7 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     } else {
       one.v_lim_m_s.why = core::unknown::NoBalance{};
     }
+    if (set.plain_scale) scale_lengths(one, scale_along_path(model_at(at)));
     all.push_back(one);
   }
   return all;

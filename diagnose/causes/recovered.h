@@ -17,6 +17,9 @@
 /// causes included, in the middle of the set-up's positions. Its standard deviation follows from the parameters'
 /// covariance by finite differences. Effects that act only at some positions, times or clips (EffectLaw::passing) are
 /// left out of it.
+///
+/// In images with one stated scale, lengths are multiplied by the mean scale along the path where a lens or a turned
+/// plane makes it differ from place to place (scale_place.h).
 #pragma once
 
 #include <vector>

@@ -1,6 +1,7 @@
 #include "diagnose/pictures/image_evidence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -114,33 +115,28 @@ std::vector<FilmedClip> filmed_clips(const core::AnalysisResults& results, const
   std::map<std::string, std::size_t> views;
   for (std::size_t i = 0; i < results.clips.size(); ++i) {
     const core::ClipResult& clip = results.clips[i];
-    if (!clip.images || !cameras[i] || clip.images->marker.empty()) continue;
+    if (!clip.images || !cameras[i] || clip.sightings.empty()) continue;
     FilmedClip filmed;
     filmed.name = clip.name;
     filmed.view = views.emplace(clip.experiment + "/" + setups[i].group, views.size()).first->second;
     filmed.record = clip.images;
     filmed.camera = *cameras[i];
-    double xx = 0.0, ux = 0.0, vx = 0.0, mean_u = 0.0, mean_v = 0.0, mean_x = 0.0, count = 0.0;
-    for (int pass = 0; pass < 2; ++pass) {
-      for (const core::MarkerLook& look : clip.images->marker) {
-        if (look.frame >= clip.motion.size() || !clip.motion[look.frame].measured_m) continue;
-        const double x = *clip.motion[look.frame].measured_m;
-        if (pass == 0) {
-          mean_u += look.u_px;
-          mean_v += look.v_px;
-          mean_x += x;
-          count += 1.0;
-        } else {
-          ux += (look.u_px - mean_u) * (x - mean_x);
-          vx += (look.v_px - mean_v) * (x - mean_x);
-          xx += (x - mean_x) * (x - mean_x);
-        }
-      }
-      if (pass == 0) {
-        mean_u /= std::max(1.0, count);
-        mean_v /= std::max(1.0, count);
-        mean_x /= std::max(1.0, count);
-      }
+    double xx = 0.0, ux = 0.0, vx = 0.0, mean_u = 0.0, mean_v = 0.0, mean_x = 0.0;
+    std::vector<std::array<double, 3>> places;  // u and v in the image, x on the track
+    for (const core::MarkerSighting& seen : clip.sightings) {
+      if (seen.frame >= clip.motion.size() || !clip.motion[seen.frame].measured_m) continue;
+      places.push_back({seen.u_px, seen.v_px, *clip.motion[seen.frame].measured_m});
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, places.size()));
+    for (const auto& [u, v, x] : places) {
+      mean_u += u / count;
+      mean_v += v / count;
+      mean_x += x / count;
+    }
+    for (const auto& [u, v, x] : places) {
+      ux += (u - mean_u) * (x - mean_x);
+      vx += (v - mean_v) * (x - mean_x);
+      xx += (x - mean_x) * (x - mean_x);
     }
     filmed.down = std::abs(vx) > std::abs(ux);
     if (xx > 0.0) filmed.px_per_m = std::abs((filmed.down ? vx : ux) / xx);

@@ -65,7 +65,7 @@ void add_missing(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) 
   for (const FilmedClip& clip : clips) {
     missing += clip.record->stamps_missing;
     const auto& looks = clip.record->marker;
-    frames += looks.size();
+    frames += std::max(looks.size(), clip.record->scene.size());  // a target has no looks
     for (std::size_t i = 2; i < looks.size(); ++i) {
       const bool same = looks[i].u_px == looks[i - 1].u_px && looks[i].v_px == looks[i - 1].v_px;
       if (same && std::hypot(looks[i - 1].u_px - looks[i - 2].u_px, looks[i - 1].v_px - looks[i - 2].v_px) > 0.05)

@@ -43,6 +43,12 @@ struct HandLeftOut {
   std::size_t frames = 0;
 };
 
+/// Frames that look like a hand or a stop are included, and a named effect explains them.
+struct HandExplained {
+  std::size_t frames = 0;
+  std::string effect;  ///< its id
+};
+
 /// A large part of the positions is not used: left out, or outliers.
 struct SetAside {
   std::size_t positions = 0;  ///< of the motion, all
@@ -180,8 +186,8 @@ struct TableOfLines {
   std::size_t lines = 0;
 };
 
-using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, SetAside,
-                             PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
+using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, HandExplained,
+                             SetAside, PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
                              SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
                              BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike,
                              FitsCutOff, NoMassStated, OfCamera, SensorPositions, OneOrigin, SuspectedFall, OfReading>;

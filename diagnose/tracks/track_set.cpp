@@ -423,6 +423,9 @@ TrackSet track_set(const core::AnalysisResults& results, const std::vector<core:
   }
   set.x_mid_m = 0.5 * (lowest + highest);
   add_statements(results, setups, set);
+  set.plain_scale =
+      results.calibrations.empty() &&
+      std::none_of(results.clips.begin(), results.clips.end(), [](const auto& clip) { return clip.sightings.empty(); });
   set.through_air = falls_through_air(set);
   set.mass_assumed = std::any_of(setups.begin(), setups.end(), [](const auto& setup) { return setup.mass_assumed; });
   return set;

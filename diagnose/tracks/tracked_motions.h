@@ -106,13 +106,14 @@ struct TrackSet {
   std::vector<TrackGroup> groups;
   std::vector<TrackedMass> masses;
   std::vector<TrackedMotion> motions;
-  double x_mid_m = 0.0;    ///< middle of the range of x of all set-ups
-  std::size_t modes = 0;   ///< shared errors of camera and plane
-  bool pieces = false;     ///< clips are pieces of a single one (cut_driven_motions())
-  bool images = false;     ///< at least one clip was filmed
-  bool lossy = false;      ///< at least one clip has been through a lossy codec,
-  bool handed_on = false;  ///< and one through a codec that predicts images from earlier ones:
-  double held_m_s = 0.0;   ///< below this speed such a codec may hold the marker in place (0: none does)
+  double x_mid_m = 0.0;      ///< middle of the range of x of all set-ups
+  std::size_t modes = 0;     ///< shared errors of camera and plane
+  bool pieces = false;       ///< clips are pieces of a single one (cut_driven_motions())
+  bool images = false;       ///< at least one clip was filmed
+  bool plain_scale = false;  ///< and no folder has a pattern: one stated scale, which holds somewhere along the path
+  bool lossy = false;        ///< at least one clip has been through a lossy codec,
+  bool handed_on = false;    ///< and one through a codec that predicts images from earlier ones:
+  double held_m_s = 0.0;     ///< below this speed such a codec may hold the marker in place (0: none does)
   std::optional<PositionNoise> position_noise;
   bool through_air = false;   ///< falls_through_air(); K then gives way to a quadratic drag (fit/drag_of_air.h)
   bool mass_assumed = false;  ///< nobody states a mass: forces, c and k are those of 1 kg

@@ -89,6 +89,17 @@ std::optional<SensorPositions> sensor_of(const core::AnalysisResults& results,
   return of;
 }
 
+/// The named effect that acts where the analysis sees a hand or an end stop; null if there is none.
+const std::string* named_of_hand(const Diagnosis& diagnosis) {
+  if (diagnosis.verdict != Verdict::effect) return nullptr;
+  for (const DiagnosedEffect& effect : diagnosis.effects) {
+    for (const std::string_view id : {ids::end_stop, ids::tether, ids::late_release}) {
+      if (effect.id == id) return &effect.id;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups,
@@ -116,10 +127,12 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
     return compare_hypotheses(set, without, options.jobs, &images, weighed(to, to));
   };
   Comparison comparison = compare(0.1, 0.5);
+  std::size_t with_hand = set.disputed;
   if (set.disputed > 0 && (comparison.all.front().unnamed || is_misfit(set, best_fit(comparison)))) {
     // No effect on the list explains the motion with its hand and stops, so these are what the analysis took them for.
     if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, set.disputed)) {
       set = std::move(*trimmed);
+      with_hand = 0;
       progress("weighing explanations", 0.5);
       settle_noise(images, set);
       comparison = compare(0.5, 0.9);
@@ -127,6 +140,9 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   }
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
   quote_tables(diagnosis);
+  if (const std::string* effect = with_hand > 0 ? named_of_hand(diagnosis) : nullptr) {
+    diagnosis.notes.emplace_back(HandExplained{with_hand, *effect});
+  }
   if (sensor) diagnosis.notes.emplace_back(*sensor);
   if (std::optional<FitsCutOff> cut_off = fits_cut_off(diagnosis.ranking)) {
     diagnosis.notes.emplace_back(std::move(*cut_off));

@@ -28,9 +28,13 @@ double probability_of(const Comparison& comparison, const Hypothesis& best, std:
 
 }  // namespace
 
-bool shows_in_images(const Hypothesis& explanation) {
-  return std::any_of(explanation.effects.begin(), explanation.effects.end(),
-                     [](std::size_t e) { return effect_list()[e].search == Search::images; });
+bool shows_in_images_alone(const Hypothesis& explanation) {
+  bool in_images = false;
+  for (const std::size_t e : explanation.effects) {
+    if (takes_part_of_gap(effect_list()[e].search)) return false;
+    in_images = in_images || effect_list()[e].search == Search::images;
+  }
+  return in_images;
 }
 
 bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {

@@ -9,8 +9,9 @@
 
 namespace glidelab::diagnose {
 
-/// Whether any effect of an explanation shows in the images themselves.
-bool shows_in_images(const Hypothesis& explanation);
+/// Whether an explanation claims nothing but what the images themselves show, and at most the scatter of single
+/// positions: nothing that would explain a gap.
+bool shows_in_images_alone(const Hypothesis& explanation);
 
 /// Whether the likeliest effect of an explanation, together with those that the data cannot tell from it, is likelier
 /// than not. A name that is less likely is no answer.

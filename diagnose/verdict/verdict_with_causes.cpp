@@ -335,7 +335,7 @@ Diagnosis VerdictWithCauses::verdict_beside_remainder(ImageEvidence images) cons
 }
 
 Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
-  const bool in_images = names_ ? shows_in_images(best_) : found_ && shows_in_images(*found_);
+  const bool in_images = names_ ? shows_in_images_alone(best_) : found_ && shows_in_images_alone(*found_);
   // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
   // anything claimed if the positions follow the model far better than the assumed noise allows.
   const bool not_measured = noise_is_rounding(set_) || sequence_.gap_before < kLeastMeasuredGap;

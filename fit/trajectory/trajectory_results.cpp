@@ -101,6 +101,17 @@ void note_fit(const TrajectoryFit& fit, const TrajectoryOptions& options, core::
   }
 }
 
+std::vector<FitBlock> blocks_of(const core::AnalysisResults& results, const core::ConfigurationResult& of) {
+  std::vector<FitBlock> blocks;
+  for (const core::ClipResult& clip : results.clips) {
+    if (std::find(of.clips.begin(), of.clips.end(), clip.name) == of.clips.end()) continue;
+    for (const core::FreeBlock& block : clip.blocks) {
+      blocks.push_back({&block, clip.noise_autocovariance_m2, clip.scale_sd_relative});
+    }
+  }
+  return blocks;
+}
+
 void leave_out(const core::AnyReason& why, core::ConfigurationResult& result) {
   result.k_over_m_1_s = result.mu = result.alpha_deg = result.v_lim_m_s = core::undetermined(why);
 }
@@ -116,15 +127,7 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
   }
   results.estimator = kTrajectory;
   for (core::ConfigurationResult& configuration : results.configurations) {
-    std::vector<FitBlock> blocks;
-    for (const core::ClipResult& clip : results.clips) {
-      if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {
-        continue;
-      }
-      for (const core::FreeBlock& block : clip.blocks) {
-        blocks.push_back({&block, clip.noise_autocovariance_m2, clip.scale_sd_relative});
-      }
-    }
+    const std::vector<FitBlock> blocks = blocks_of(results, configuration);
     if (blocks.empty()) {
       leave_out(core::unknown::NoFreeMotion{}, configuration);
       continue;
@@ -141,6 +144,18 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
   core::note_statements(results.configurations, results.gravity_m_s2);
   core::note_gravity(results);
   return results;
+}
+
+void set_scatter_of_motion(core::AnalysisResults& results) {
+  const bool only_speeds = std::any_of(results.clips.begin(), results.clips.end(),
+                                       [](const auto& clip) { return clip.speed_noise_m_s.has_value(); });
+  if (only_speeds) return;
+  for (core::ConfigurationResult& configuration : results.configurations) {
+    const std::vector<FitBlock> blocks = blocks_of(results, configuration);
+    if (blocks.empty()) continue;
+    const auto fit = fit_trajectories(blocks, start_of(configuration), {});
+    if (fit && std::isfinite(fit->degrees) && fit->scatters) configuration.scatter = fit->scatter;
+  }
 }
 
 }  // namespace glidelab::fit

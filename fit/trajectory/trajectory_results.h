@@ -15,4 +15,9 @@ inline constexpr const char* kTrajectory = "trajectory";  ///< the estimator's n
 /// known); all of them for clips without free motion, and if no fit converges.
 core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const TrajectoryOptions& options = {});
 
+/// Sets the scatter of every configuration (ConfigurationResult::scatter) from that fit, and nothing else: whether the
+/// law follows the positions over the whole motion. Lines through a smoothed phase diagram may be straight where it
+/// does not, as each stretch has its own. Speeds without positions stay as they are.
+void set_scatter_of_motion(core::AnalysisResults& results);
+
 }  // namespace glidelab::fit

@@ -157,8 +157,8 @@ py::tuple analyze_files(const std::vector<std::string>& inputs, const AnalysisCh
       setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
       cameras.resize(setups.size(), experiment.camera);
     }
-    return with_causes(estimator.estimate(std::move(of_lines), {.robust = choices.robust}), setups, cameras, choices,
-                       progress);
+    return with_causes(fit::estimate_and_compare(estimator, std::move(of_lines), {.robust = choices.robust}), setups,
+                       cameras, choices, progress);
   });
   return told(std::move(made), title, [folders, bare](const auto& of, const base::Progress& progress) {
     return core::previews_of(folders, of, progress, bare);
@@ -182,8 +182,8 @@ py::tuple analyze_arrays(std::vector<GivenTrack> given, const GivenGravity& give
     core::AnalysisResults of_lines =
         core::analyze_tracks(tracks.setups, tracks.tracks, gravity, how, choices.jobs, progress);
     for (core::ClipResult& clip : of_lines.clips) clip.experiment = name;
-    return with_causes(estimator.estimate(std::move(of_lines), {.robust = choices.robust}), tracks.setups,
-                       Cameras(tracks.setups.size()), choices, progress);
+    return with_causes(fit::estimate_and_compare(estimator, std::move(of_lines), {.robust = choices.robust}),
+                       tracks.setups, Cameras(tracks.setups.size()), choices, progress);
   });
   return told(std::move(made), name, [](const auto&, const auto&) { return std::vector<core::Preview>{}; });
 }

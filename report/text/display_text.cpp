@@ -133,12 +133,18 @@ namespace {
 
 /// Whether a standard deviation is larger than what the parameter may be: then the data say nothing about it.
 bool is_open(const diagnose::DiagnosedParameter& parameter) {
-  constexpr double kBeyondAny = 10.0;  // m, s or Hz: of a place, a time or a frequency, whose range is that of the data
+  constexpr double kBeyondAny = 10.0;  // m, s or Hz: of a place, a time or a frequency, whose range is that of the
+                                       // data; and the least for a size that may grow with the mass
   double widest = 0.0;
   for (const diagnose::EffectInfo& effect : diagnose::effect_list()) {
     for (const diagnose::EffectParameter& of : effect.parameters) {
       if (of.key != parameter.key) continue;
-      widest = std::max(widest, of.reach == diagnose::Reach::stated ? of.high - of.low : kBeyondAny);
+      const double stated = of.high - of.low;
+      const bool with_mass = of.reach == diagnose::Reach::with_mass;
+      const double widest_of_this = of.reach == diagnose::Reach::stated ? stated
+                                    : with_mass                         ? std::max(stated, kBeyondAny)
+                                                                        : kBeyondAny;
+      widest = std::max(widest, widest_of_this);
     }
   }
   return widest > 0.0 && parameter.sd > widest;

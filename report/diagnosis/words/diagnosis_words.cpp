@@ -105,6 +105,12 @@ struct Sentence {
         "{} frames in which a hand or an end stop seems to act are excluded; no known effect explains them.",
         of.frames);
   }
+  std::string operator()(const diagnose::HandExplained& of) const {
+    return fmt::format(
+        "{} frames in which a hand or an end stop seems to act are included: {} explains them. start_s and end_s of a "
+        "clip leave them out, for a diagnosis of the free motion alone.",
+        of.frames, effect_name(of.effect));
+  }
   std::string operator()(const diagnose::SetAside& of) const {
     return fmt::format(
         "Of the {} positions of the motion, {:.0f} % are excluded: in them a hand or an end stop seems to act, or they "

@@ -1,5 +1,6 @@
 #include "diagnose/causes/recovered.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>
@@ -94,6 +95,36 @@ TEST_CASE("without scatter the clips give the same uncertainty as the noise") {
   // The variance of twelve scores is known to sqrt(2/12), and so the standard deviation to 20 %; three of these and a
   // bit.
   CHECK(std::sqrt(solution.between_clips(0, 0) / solution.covariance(0, 0)) == Approx(1.0).margin(0.7));
+}
+
+TEST_CASE("a stated scale holds along the path and not at the image's edge, where a plane was turned") {
+  // The scale is right in the middle of the path, at 0.55 m from the image's edge: a projective map about that place.
+  constexpr double kMiddle_m = 0.55, kTurn_1_m = 0.02;
+  std::vector<double> seen_m;
+  tests::MadeEffect turned;
+  turned.seen = [&](double x, double) {
+    seen_m.push_back(kMiddle_m + x / (1.0 + kTurn_1_m * x));
+    return seen_m.back();
+  };
+  diagnose::TrackSet set = set_of(9, turned);
+  const diagnose::MotionFit nominal = diagnose::linearise_again(set, diagnose::fit_nominal(set));
+  const diagnose::MotionFit fit = with_effect_of(set, nominal, diagnose::ids::perspective_error, 0.01);
+  CHECK_FALSE(set.plain_scale);  // tracks
+  const auto at_edge = diagnose::recovered_of(set, {{&fit, {}, 1.0}}).at(0);
+  set.plain_scale = true;
+  const auto along = diagnose::recovered_of(set, {{&fit, {}, 1.0}}).at(0);
+  const auto [low, high] = std::minmax_element(seen_m.begin(), seen_m.end());
+  // The square of 1 - p (x - middle) over the path: a mean of 1 to second order, and 2 p length / sqrt(12) apart.
+  const double spread = 2.0 * kTurn_1_m * (*high - *low) / std::sqrt(12.0);
+  const double sine = std::sin(4.0 * base::kRadPerDegree);
+  CHECK(at_edge.alpha_deg.estimate->value == Approx(4.0 * (1.0 + 2.0 * kTurn_1_m * kMiddle_m)).epsilon(0.003));
+  CHECK(std::abs(along.alpha_deg.estimate->value - 4.0) < 2.0 * along.alpha_deg.estimate->sd);
+  CHECK(along.alpha_deg.estimate->sd == Approx(std::atan(sine) * base::kDegreesPerRad * spread).epsilon(0.1));
+  CHECK(std::abs(along.mu.estimate->value - 0.006) < 2.0 * along.mu.estimate->sd);
+  CHECK(along.k_over_m_1_s.estimate->value == at_edge.k_over_m_1_s.estimate->value);
+  CHECK(along.v_lim_m_s.estimate->value / at_edge.v_lim_m_s.estimate->value ==
+        Approx(std::sin(along.alpha_deg.estimate->value * base::kRadPerDegree) /
+               std::sin(at_edge.alpha_deg.estimate->value * base::kRadPerDegree)));
 }
 
 TEST_CASE("an explanation that is nearly as likely widens what is recovered by as much as it differs") {

@@ -179,6 +179,35 @@ TEST_CASE("A camera that sways in the images alone has no more support than one 
   CHECK(joined->log_evidence < 1.05 * in_tracks);
 }
 
+TEST_CASE("Clips whose marker is a target, of which no looks are kept, count for what their images show",
+          "[pictures]") {
+  core::AnalysisResults results;
+  core::ClipResult clip;
+  clip.name = "up";
+  clip.experiment = "made";
+  auto record = std::make_shared<core::ImageRecord>(*filmed({}, 0.001, 8).front().record);
+  record->marker.clear();
+  record->codec = "avc1";
+  record->lossy = true;
+  clip.images = record;
+  for (std::size_t k = 0; k < 100; ++k) {
+    core::MotionPoint point;
+    point.measured_m = 0.002 * static_cast<double>(k);
+    clip.motion.push_back(point);
+    clip.sightings.push_back({.frame = k, .u_px = 90.0, .v_px = 20.0 + 0.8 * static_cast<double>(k)});
+  }
+  results.clips = {clip};
+  core::CameraSettings camera;
+  camera.frame_rate_hz = 120.0;
+  const std::vector<diagnose::FilmedClip> clips = diagnose::filmed_clips(results, {core::ClipSetup{}}, {camera});
+  REQUIRE(clips.size() == 1);
+  CHECK(clips.front().px_per_m == Approx(400.0));
+  CHECK(clips.front().down);
+  const diagnose::ImageEvidence images = diagnose::image_evidence(clips);
+  CHECK(finding(images, "compression").stated);
+  CHECK(finding(images, "camera_motion").log_evidence < 0.0);
+}
+
 TEST_CASE("A wave is found with its frequency, and white noise has none", "[pictures]") {
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0.0, 1.0);

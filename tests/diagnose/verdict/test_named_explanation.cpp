@@ -56,6 +56,20 @@ const std::size_t kDrag = diagnose::effect_index(diagnose::ids::quadratic_drag);
 
 }  // namespace
 
+TEST_CASE("what images show is claimed by them alone only where nothing beside it would explain a gap") {
+  const auto alone = [](const std::vector<std::string_view>& ids) {
+    diagnose::Hypothesis of;
+    for (const std::string_view id : ids) of.effects.push_back(diagnose::effect_index(id));
+    return diagnose::shows_in_images_alone(of);
+  };
+  CHECK(alone({diagnose::ids::compression}));
+  CHECK(alone({diagnose::ids::timestamp_jitter, diagnose::ids::exposure_blur}));
+  CHECK_FALSE(alone({diagnose::ids::tether, diagnose::ids::compression}));
+  CHECK_FALSE(alone({diagnose::ids::dropped_frames, diagnose::ids::light_flicker}));
+  CHECK_FALSE(alone({diagnose::ids::timestamp_jitter}));
+  CHECK_FALSE(alone({}));
+}
+
 TEST_CASE("an effect without a certain size gives way to an equal that has one, and to no other") {
   Named named;
   named.add({"power_law_drag"}, false, 0.5);

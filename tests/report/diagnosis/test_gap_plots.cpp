@@ -71,6 +71,8 @@ TEST_CASE("sizes come in the unit that leaves them a readable number") {
   CHECK(report::parameter_text(diagnose::DiagnosedParameter{"x_t_m", 0.0, 10946.0}) == "x_t not determined");
   CHECK(report::parameter_text(diagnose::DiagnosedParameter{"s", 51.0, 22065.0}) == "s not determined");
   CHECK(report::parameter_text(diagnose::DiagnosedParameter{"s", 0.02, 0.19}) == "s = 0.02 ± 0.19");
+  CHECK(report::parameter_text(diagnose::DiagnosedParameter{"k_n_m", 125.0, 33.0}) == "k = 125 ± 33 N/m");
+  CHECK(report::parameter_text(diagnose::DiagnosedParameter{"k_n_m", 125.0, 3300.0}) == "k not determined");
   // Known well, and no size: 0 is a place as any other.
   CHECK(report::parameter_text(diagnose::DiagnosedParameter{"x_t_m", 1e-4, 2e-3}) == "x_t = 0.1 ± 2.0 mm");
   CHECK(report::parameter_text("intercept_s2_m_s2", 0.0052, 0.001) == "intercept = 0.0052 ± 0.0010 m/s² for each 1/s²");

@@ -23,6 +23,8 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::CutAtTurns{40, 2}, "turns the motion 40 times"},
       {diagnose::SomePieces{90, 60}, "Of 90 pieces"},
       {diagnose::HandLeftOut{17}, "17 frames"},
+      {diagnose::HandExplained{18, "end_stop"},
+       "18 frames in which a hand or an end stop seems to act are included: soft bumper"},
       {diagnose::SetAside{1000, 0.21}, "21 %"},
       {diagnose::PiecesHeldOut{}, "piece"},
       {diagnose::QuartersHeldOut{}, "quarters"},
