@@ -177,6 +177,7 @@ void take_look(const ClipLook& look, ClipCheck& clip) {
   clip.contrast = look.contrast;
   clip.marker_level = look.marker_level;
   clip.pixel_noise = look.pixel_noise;
+  clip.block_steps = look.block_steps;
 }
 
 /// Empty for fewer than some twenty outlines (a centroid has none).

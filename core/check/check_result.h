@@ -92,6 +92,8 @@ struct ClipCheck {
   std::optional<double> marker_level;   ///< its own brightness
   std::optional<MarkerLighting> light;  ///< how it changes along the path; of a marker with an outline
   double pixel_noise = 0.0;             ///< of a pixel at rest from frame to frame; 0 if none is seen
+  double block_steps = 0.0;             ///< excess of the steps between pixels at the edges of a codec's 8 x 8 blocks
+                                        ///< over those elsewhere, relative; 0 if no block is beyond doubt
   double centre_sd_px = 0.0;            ///< of one coordinate of the marker's centre, from its fit, median
   double distance_m = 0.0;              ///< from the uppermost position to the lowest
   double top_speed_m_s = 0.0;

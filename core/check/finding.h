@@ -203,6 +203,11 @@ struct ContrastFalls {
   double least = 1.0;
 };
 
+/// The images show the blocks of a codec: ClipCheck::block_steps.
+struct StrongCompression {
+  double block_steps = 0.0;
+};
+
 // Its times.
 
 struct OtherRateInFile {
@@ -363,16 +368,18 @@ struct Smoothed {
 
 }  // namespace found
 
-using AnyFound = std::variant<
-    Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
-    found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
-    found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
-    found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark, found::LittleContrast,
-    found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls, found::OtherRateInFile, found::UnevenStamps,
-    found::Jumps, found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart,
-    found::MarkerSizeOff, found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit,
-    found::ScaleInUnit, found::MassInGrams, found::TrackInUnit, found::InclineInRadians, found::WrongFrameRate,
-    found::MotionFault, found::LongRun, found::SlowFrames, found::FallsSlowly, found::Gaps, found::Smoothed>;
+using AnyFound =
+    std::variant<Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
+                 found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
+                 found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
+                 found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark,
+                 found::LittleContrast, found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls,
+                 found::StrongCompression, found::OtherRateInFile, found::UnevenStamps, found::Jumps,
+                 found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart,
+                 found::MarkerSizeOff, found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch,
+                 found::LengthInUnit, found::ScaleInUnit, found::MassInGrams, found::TrackInUnit,
+                 found::InclineInRadians, found::WrongFrameRate, found::MotionFault, found::LongRun, found::SlowFrames,
+                 found::FallsSlowly, found::Gaps, found::Smoothed>;
 
 /// What was found; a Note if the analysis notes the same. What copies, moves and destroys it is compiled once
 /// (finding.cpp), as of Note.

@@ -69,6 +69,13 @@ constexpr double kMostBlur = 0.5, kUnusableBlur = 2.0;                        //
 constexpr double kUnusableMissingShare = 0.01, kUnusableRepeatedShare = 0.1;  // shares of the frames
 constexpr double kMostDriftFrames = 0.75;                                     // frames
 
+/// x264 makes such steps from a constant rate factor of 25 on (its default is 23).
+constexpr double kMostBlockSteps = 0.5;
+
+void judge_codec(const ClipCheck& clip, FindingBook& book) {
+  if (clip.block_steps > kMostBlockSteps) book.add(Severity::change, found::StrongCompression{clip.block_steps});
+}
+
 void judge_times(const Experiment& experiment, const ClipCheck& clip, FindingBook& book) {
   const auto frames = static_cast<double>(std::max<std::size_t>(clip.frames, 1));
   const bool by_rate = experiment.camera->time == TimeSource::rate;
@@ -174,6 +181,7 @@ void judge_clip(const Experiment& experiment, const ClipCheck& clip, FindingBook
     judge_marker(clip, book);
     judge_light(clip, book);
     judge_lighting(clip, book);
+    judge_codec(clip, book);
     judge_times(experiment, clip, book);
   } else if (clip.seen < kFewSightings) {
     found::FewPositions few{clip.seen};

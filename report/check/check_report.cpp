@@ -80,6 +80,7 @@ Json clip_json(const core::ClipCheck& clip) {
     json["light_pull_change_px"] = clip.light->pull_change_px;
   }
   put(json, "pixel_noise", clip.pixel_noise);
+  put(json, "block_steps", clip.block_steps);
   put(json, "centre_sd_px", clip.centre_sd_px);
   put(json, "top_speed_px_s", clip.top_speed_px_s);
   put(json, "blur_px", clip.blur_px, "exposure_s is not stated");

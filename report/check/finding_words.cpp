@@ -167,6 +167,12 @@ struct FindingSentence {
     return {fmt::format("the marker's contrast falls to {} of its largest along the path", percent_text(of.least)),
             "move lamps, and bright or dark objects in the background, away from the marker's path"};
   }
+  FindingWords operator()(const found::StrongCompression& of) const {
+    return {fmt::format("strong compression: steps between pixels are {} larger at the edges of 8 × 8 blocks than "
+                        "elsewhere, and the marker's centre errs with them over several frames",
+                        percent_text(of.block_steps)),
+            "record or export at a higher bit rate, or without loss"};
+  }
 
   FindingWords operator()(const found::OtherRateInFile& of) const {
     return {fmt::format("the file states {:.6g} frames per second, experiment.toml {:.6g}", of.file_hz, of.stated_hz),

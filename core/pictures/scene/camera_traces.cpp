@@ -98,8 +98,13 @@ BlockEdges block_edges(const BlockSteps& steps) {
   return {steps.mean[0] / mean - 1.0, (steps.mean[0] - largest) / std::hypot(std::sqrt(unlike), kLeastScatter * mean)};
 }
 
+double sure_block_steps(const BlockSteps& steps) {
+  const BlockEdges edges = block_edges(steps);
+  return edges.z > kLeastZOfCodec ? edges.relative : 0.0;
+}
+
 bool through_lossy_codec(const ImageRecord& record) {
-  return record.lossy.value_or(false) || block_edges(record.steps).z > kLeastZOfCodec;
+  return record.lossy.value_or(false) || sure_block_steps(record.steps) > 0.0;
 }
 
 }  // namespace glidelab::core

@@ -57,7 +57,10 @@ struct BlockEdges {
 /// step, as in real scenes.
 BlockEdges block_edges(const BlockSteps& steps);
 
-/// The file says so, or its images show blocks beyond doubt (z above 10).
+/// BlockEdges::relative where the blocks are beyond doubt (z above 10), else 0.
+double sure_block_steps(const BlockSteps& steps);
+
+/// The file says so, or its images show blocks beyond doubt.
 bool through_lossy_codec(const ImageRecord& record);
 
 }  // namespace glidelab::core

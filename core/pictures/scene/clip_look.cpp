@@ -114,6 +114,7 @@ FrameOpener ClipWatches::opener() {
 void ClipWatch::add(const Frame& frame) {
   size_ = frame.grey.size();
   exposure_.add(frame);
+  steps_.add(frame.grey);
   const bool second = !before_.empty();
   const bool first = (frame.index + 1) % every_ == 0;
   cv::Mat thin;
@@ -159,6 +160,7 @@ ClipLook ClipWatch::look(const MarkerSetup& marker, const std::vector<MarkerSigh
   look.exposure = exposure_.result();
   const double full = look.exposure.full_code;
   look.pixel_noise = pixel_noise(sightings) / full;
+  look.block_steps = sure_block_steps(steps_.finish());
   const SignalKind kind = signal_kind(marker);
   if (kind == SignalKind::colored || fits.empty()) return look;
   std::vector<double> contrast, level;

@@ -79,6 +79,7 @@ TEST_CASE("a check reads each clip once, and finds the noise and the contrast th
     // Of 12 to 24 pairs some 1400 pixels each: the standard deviation of differences to 1 %. Rounding adds 1/12 to the
     // variance, 0.5 %; what the 5 % left out are is known for continuous numbers, and these are whole: 2 %.
     CHECK(std::abs(255.0 * clip.pixel_noise / kNoise - 1.0) < 0.05);
+    CHECK(clip.block_steps == 0.0);  // no codec with loss
     // Each of 60 fits knows the amplitude to the noise over the root of its 100 pixels, 0.3 of 150.
     REQUIRE(clip.contrast.has_value());
     CHECK(std::abs(255.0 * *clip.contrast - (kMarker - kBackground)) < 1.0);

@@ -101,6 +101,17 @@ TEST_CASE("light is named where the marker's contrast or the place of its bright
   CHECK(found_as<core::found::ContrastFalls>(findings[0]).least == 0.3);
 }
 
+TEST_CASE("a clip whose images show a codec's blocks has too low a bit rate") {
+  core::ClipCheck clip = fine_clip();
+  clip.block_steps = 0.4;  // x264 by its default
+  CHECK(of_clip(clip).empty());
+  clip.block_steps = 0.7;
+  const auto findings = of_clip(clip);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == core::Severity::change);
+  CHECK(found_as<core::found::StrongCompression>(findings[0]).block_steps == 0.7);
+}
+
 TEST_CASE("an image counts as dark only if its marker is dark too, however small") {
   core::ClipCheck clip = fine_clip();
   clip.bright_level = 0.16;  // a bright marker may cover less than a thousandth of the image

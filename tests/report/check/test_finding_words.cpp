@@ -77,6 +77,7 @@ TEST_CASE("every kind of finding of a check has words, with its data in the unit
        "to within ±0.1 px",
        ""},
       {found::ContrastFalls{0.3}, "falls to 30 % of its largest", "move lamps"},
+      {found::StrongCompression{1.2}, "120 % larger at the edges", "higher bit rate"},
       {found::OtherRateInFile{30.0, 240.0, true}, "states 30 frames per second, experiment.toml 240",
        "filmed at 240 frames per second: a wrong rate scales every speed; a slow-motion file"},
       {found::UnevenStamps{1.5, 7, true}, "by 1.5 frames; 7 steps are irregular", "time = \"container\""},

@@ -46,6 +46,7 @@ TEST_CASE("blocks of eight pixels show at their edges, as large as they differ",
   CHECK(edges.relative == Approx(expected).epsilon(0.1));
   CHECK(edges.z > 10.0);
   CHECK(core::through_lossy_codec(record_of(steps)));
+  CHECK(core::sure_block_steps(steps) == edges.relative);
 }
 
 TEST_CASE("an image without blocks has none, nor do upright edges in the scene make them", "[blocks]") {
@@ -55,6 +56,7 @@ TEST_CASE("an image without blocks has none, nor do upright edges in the scene m
   const core::BlockSteps edges = steps_of(3, 0.0, {32, 96, 160, 240, 296});  // all where blocks would meet
   CHECK(core::block_edges(edges).z < 5.0);
   CHECK_FALSE(core::through_lossy_codec(record_of(edges)));
+  CHECK(core::sure_block_steps(edges) == 0.0);
 }
 
 TEST_CASE("a codec's smooth blocks are no scatter of its columns", "[blocks]") {
