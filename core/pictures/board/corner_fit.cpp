@@ -346,7 +346,11 @@ class CornerFit {
     const double left = response_ != nullptr ? std::pow(fit_.rms / plain_rms_, 2) : 1.0;
     return {point(), std::sqrt(0.5 * (fit_.covariance(kU, kU) + fit_.covariance(kV, kV))), left};
   }
-  FittedWindow fitted() const { return CornerModel(window_, response_).fitted(fit_.parameters); }
+  FittedWindow fitted() const {
+    FittedWindow fitted = CornerModel(window_, response_).fitted(fit_.parameters);
+    fitted.full = image_.depth() == CV_8U ? 255.0 : 65535.0;
+    return fitted;
+  }
 
  private:
   cv::Point2d point() const { return {fit_.parameters[kU], fit_.parameters[kV]}; }

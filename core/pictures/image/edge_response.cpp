@@ -13,10 +13,11 @@ namespace glidelab::core {
 namespace {
 
 constexpr std::array kNarrower_px2{0.0, 0.15, 0.3};
-constexpr int kLearningRounds = 3;          // the terms settle to a hundredth
-constexpr double kFewestPixels = 300.0;     // beyond the windows' own parameters
-constexpr double kMostLeft = 0.93;          // of the residuals' squares: noise alone leaves 1 - 13 / pixels
-constexpr double kMostLeftByCurve = 0.7;    // left by the curve's light: the noise of bright pixels weighs other there
+constexpr int kLearningRounds = 3;       // the terms settle to a hundredth
+constexpr double kFewestPixels = 300.0;  // beyond the windows' own parameters
+constexpr std::size_t kFolds = 8, kFewestWindows = 16;
+constexpr double kMostGrowth = 1.01;        // of what is left, from the first round to the last
+constexpr double kGainSd = 3.0;             // gain of the squares in windows that did not teach the terms
 constexpr double kLeastCurvature = 0.2;     // t of codes that follow a curve: 0.3 to 0.5 for BT.709
 constexpr double kMostCurvatureLeft = 0.5;  // of that, left by the curve's light
 constexpr double kRidge = 1e-3;             // of the best seen term: what the windows hardly show stays out
@@ -65,80 +66,189 @@ Columns columns_of(const FittedWindow& window, double narrower_px2) {
   return columns;
 }
 
-/// Sums over windows from which the terms follow; each window's own parameters are fitted with them.
-class Sums {
- public:
-  void add(const FittedWindow& window, const Columns& columns) {
-    const Eigen::Index own = window.jacobian.cols();
-    Eigen::MatrixXd all(window.jacobian.rows(), own + kAll);
-    all << window.jacobian, columns.terms, window.light - columns.sharp;
-    all = (window.weight.cwiseSqrt() / window.contrast).asDiagonal() * all;
-    weight_ += window.weight.sum() - static_cast<double>(own);
-    const Eigen::VectorXd size = all.leftCols(own).colwise().norm().transpose().cwiseMax(1e-300);
-    all.leftCols(own) *= size.cwiseInverse().asDiagonal();
-    // The part that the window's own parameters do not absorb: the Schur complement.
-    const Eigen::MatrixXd products = base::transposed_product(all, all);
-    const Eigen::MatrixXd across = products.topRightCorner(own, kAll);
-    products_ += products.bottomRightCorner(kAll, kAll) -
-                 base::transposed_product(across, base::solve_positive(products.topLeftCorner(own, own), across));
-  }
-  /// Held at the terms of the round before: well determined terms converge, poorly determined ones stay.
-  EdgeResponse::Terms terms(const EdgeResponse::Terms& before) const {
-    Eigen::MatrixXd held = products_.topLeftCorner(kTerms, kTerms);
-    const double weight = kRidge * held.diagonal().maxCoeff();
-    held.diagonal().array() += weight;
-    return base::solve_positive(held, products_.topRightCorner(kTerms, 1) + weight * before);
-  }
-  /// The sum of squares with the terms.
-  double left(const EdgeResponse::Terms& before) const {
-    Eigen::VectorXd with(kAll);
-    with << -terms(before), 1.0;
-    return with.dot(products_ * with);
-  }
-  double weight() const { return weight_; }
+constexpr Eigen::Index kShapes = EdgeResponse::kTerms, kAll = kShapes + 1;
+using Products = Eigen::Matrix<double, kAll, kAll>;
 
- private:
-  static constexpr Eigen::Index kTerms = EdgeResponse::kTerms, kAll = kTerms + 1;
-  Eigen::MatrixXd products_ = Eigen::MatrixXd::Zero(kAll, kAll);
-  double weight_ = 0.0;
+/// The squares and products of a window's terms, and of its residuals in the last place, with each pixel times `scale`:
+/// the part that the window's own parameters do not absorb (the Schur complement).
+Products products_of(const FittedWindow& window, const Columns& columns, const Eigen::VectorXd& scale) {
+  const Eigen::Index own = window.jacobian.cols();
+  Eigen::MatrixXd all(window.jacobian.rows(), own + kAll);
+  all << window.jacobian, columns.terms, window.light - columns.sharp;
+  all = (window.weight.cwiseSqrt().cwiseProduct(scale)).asDiagonal() * all;
+  const Eigen::VectorXd size = all.leftCols(own).colwise().norm().transpose().cwiseMax(1e-300);
+  all.leftCols(own) *= size.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd products = base::transposed_product(all, all);
+  const Eigen::MatrixXd across = products.topRightCorner(own, kAll);
+  return products.bottomRightCorner(kAll, kAll) -
+         base::transposed_product(across, base::solve_positive(products.topLeftCorner(own, own), across));
+}
+
+double freedom_of(const FittedWindow& window) {
+  return window.weight.sum() - static_cast<double>(window.jacobian.cols());
+}
+
+Eigen::VectorXd by_contrast(const FittedWindow& window) {
+  return Eigen::VectorXd::Constant(window.light.size(), 1.0 / window.contrast);
+}
+
+/// What a residual of a pixel is worth as a share of the largest code.
+Eigen::VectorXd codes_per_light(const FittedWindow& window, ToneCurve tone) {
+  const auto slope = [&](double model) {
+    constexpr double kStep = 1e-4;  // of full light: far below a code at 8 bits
+    const double light = std::clamp((window.inverse ? window.full - model : model) / window.full, kStep, 1.0 - kStep);
+    return (code_of_light(tone, light + kStep) - code_of_light(tone, light - kStep)) / (2.0 * kStep * window.full);
+  };
+  return window.model.unaryExpr(slope);
+}
+
+/// Held at the terms of the round before: well determined terms converge, poorly determined ones stay.
+EdgeResponse::Terms terms_of(const Products& sum, const EdgeResponse::Terms& before) {
+  Eigen::MatrixXd held = sum.topLeftCorner(kShapes, kShapes);
+  const double weight = kRidge * held.diagonal().maxCoeff();
+  held.diagonal().array() += weight;
+  return base::solve_positive(held, sum.topRightCorner(kShapes, 1) + weight * before);
+}
+
+/// The sum of squares that these terms leave.
+double left_by(const EdgeResponse::Terms& terms, const Products& products) {
+  Eigen::Matrix<double, kAll, 1> with;
+  with << -terms, 1.0;
+  return with.dot(products * with);
+}
+
+/// The products of the windows, one by one (empty where a fit failed), and their sum.
+struct Shown {
+  std::vector<std::optional<Products>> windows;
+  Products sum = Products::Zero();
+  void add(std::size_t window, const Products& products) {
+    windows[window] = products;
+    sum += products;
+  }
 };
 
-struct Learnt {
+/// The response with one of the reductions of the blur.
+struct Candidate {
   EdgeResponse response;
-  double left = 0.0;   // sum of the residuals' squares, over the contrast's
-  double plain = 0.0;  // the same for the fits without a response
+  double left = 0.0;  // sum of the residuals' squares, over the contrast's
 };
 
-std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const EdgeResponse* known, const FitWindow& fit) {
-  std::array<Sums, kNarrower_px2.size()> sums;
-  Learnt learnt;
+/// What the windows show that are fitted as they are.
+struct Learnt {
+  std::vector<Candidate> candidates;  // in order of what they leave
+  bool told = false;                  // whether the response of some windows foretells the residuals of others
+  Shown in_codes;
+};
+
+/// Whether a sum of what windows gain is beyond chance, by the scatter from window to window: neither the size of the
+/// noise nor its correlation within a window matters.
+bool is_beyond_chance(const std::vector<double>& gains) {
+  const auto count = static_cast<double>(gains.size());
+  if (gains.size() < kFewestWindows) return false;
+  double sum = 0.0, squares = 0.0;
+  for (const double gain : gains) {
+    sum += gain;
+    squares += gain * gain;
+  }
+  return sum > 0.0 && sum * sum > kGainSd * kGainSd * (squares - sum * sum / count) * count / (count - 1.0);
+}
+
+/// Whether terms from some windows reduce the residuals of the others. Where there is no response, terms that are made
+/// of noise add to them.
+bool foretells(const Shown& plain, const Shown& shown) {
+  std::array<Products, kFolds> rest;
+  rest.fill(shown.sum);
+  const std::size_t count = shown.windows.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (shown.windows[i]) rest[i % kFolds] -= *shown.windows[i];
+  }
+  std::array<EdgeResponse::Terms, kFolds> terms;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) terms[fold] = terms_of(rest[fold], EdgeResponse::Terms::Zero());
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!shown.windows[i]) continue;
+    gains.push_back((*plain.windows[i])(kShapes, kShapes) - left_by(terms[i % kFolds], *shown.windows[i]));
+  }
+  return is_beyond_chance(gains);
+}
+
+/// Empty if too few pixels are fitted.
+std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const FitWindow& fit) {
+  std::array<Shown, kNarrower_px2.size()> shown, in_codes;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    shown[k].windows.resize(windows);
+    in_codes[k].windows.resize(windows);
+  }
+  double freedom = 0.0;
   for (std::size_t i = 0; i < windows; ++i) {
-    const std::optional<FittedWindow> window = fit(i, tone, known);
+    const std::optional<FittedWindow> window = fit(i, tone, nullptr);
     if (!window) continue;
-    const Eigen::VectorXd rest = (window->light - window->model) / window->contrast;
-    learnt.plain += rest.cwiseAbs2().dot(window->weight);
-    if (window->bright.empty()) {
-      for (std::size_t k = 0; k < sums.size(); ++k) sums[k].add(*window, columns_of(*window, kNarrower_px2[k]));
-    } else {
-      sums.front().add(*window, columns_of(*window, 0.0));
+    freedom += freedom_of(*window);
+    const Eigen::VectorXd as_codes = codes_per_light(*window, tone);
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+      const Columns columns = columns_of(*window, kNarrower_px2[k]);
+      shown[k].add(i, products_of(*window, columns, by_contrast(*window)));
+      in_codes[k].add(i, products_of(*window, columns, as_codes));
     }
   }
-  const EdgeResponse::Terms before = known != nullptr ? known->terms : EdgeResponse::Terms(EdgeResponse::Terms::Zero());
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < sums.size(); ++k) {
-    if (sums[k].weight() > 0.0 && sums[k].left(before) < sums[best].left(before)) best = k;
+  if (!(freedom > kFewestPixels)) return std::nullopt;
+  std::array<std::size_t, kNarrower_px2.size()> order{};
+  std::array<Candidate, kNarrower_px2.size()> found;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const EdgeResponse::Terms terms = terms_of(shown[k].sum, EdgeResponse::Terms::Zero());
+    found[k] = {{terms, kNarrower_px2[k], tone}, left_by(terms, shown[k].sum)};
+    order[k] = k;
   }
-  if (!(sums[best].weight() > kFewestPixels)) return std::nullopt;
-  learnt.response = {sums[best].terms(before), kNarrower_px2[best], tone};
-  learnt.left = sums[best].left(before);
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return found[k].left; });
+  Learnt learnt;
+  for (const std::size_t k : order) learnt.candidates.push_back(found[k]);
+  learnt.told = foretells(shown.front(), shown[order.front()]);
+  learnt.in_codes = std::move(in_codes[order.front()]);
   return learnt;
 }
 
-/// Whether the light by a curve is the better description.
+/// The next round: the windows are fitted with the response that is known. Empty if too few pixels are fitted.
+std::optional<Candidate> learn_again(std::size_t windows, const EdgeResponse& known, const FitWindow& fit) {
+  Products sum = Products::Zero();
+  double freedom = 0.0, narrower_px2 = known.narrower_px2;
+  for (std::size_t i = 0; i < windows; ++i) {
+    const std::optional<FittedWindow> window = fit(i, known.tone, &known);
+    if (!window) continue;
+    freedom += freedom_of(*window);
+    if (!window->bright.empty()) narrower_px2 = 0.0;  // the fit's blur is that of I
+    sum += products_of(*window, columns_of(*window, narrower_px2), by_contrast(*window));
+  }
+  if (!(freedom > kFewestPixels)) return std::nullopt;
+  const EdgeResponse::Terms terms = terms_of(sum, known.terms);
+  return Candidate{{terms, narrower_px2, known.tone}, left_by(terms, sum)};
+}
+
+/// The response after the last round. Terms that do to an edge what its blur does (w, and t where the marker's size is
+/// free) may grow from round to round, and the fits leave more and more; then there is none.
+std::optional<EdgeResponse> settled(const Candidate& first, std::size_t windows, const FitWindow& fit) {
+  Candidate last = first;
+  for (int round = 1; round < kLearningRounds; ++round) {
+    const std::optional<Candidate> next = learn_again(windows, last.response, fit);
+    if (!next || next->left > kMostGrowth * first.left) return std::nullopt;
+    last = *next;
+  }
+  return last.response;
+}
+
+/// Whether the light by a curve is the better description: what both leave is compared in codes, window by window, or
+/// it makes the edges' curvature go.
 bool is_straighter(const Learnt& light, const Learnt& codes) {
-  const double curved = std::abs(codes.response.curvature());
-  return light.left < kMostLeftByCurve * codes.left ||
-         (curved > kLeastCurvature && std::abs(light.response.curvature()) < kMostCurvatureLeft * curved);
+  const EdgeResponse::Terms none = EdgeResponse::Terms::Zero(), by_light = terms_of(light.in_codes.sum, none),
+                            by_codes = terms_of(codes.in_codes.sum, none);
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < codes.in_codes.windows.size(); ++i) {
+    if (!light.in_codes.windows[i] || !codes.in_codes.windows[i]) continue;
+    gains.push_back(left_by(by_codes, *codes.in_codes.windows[i]) - left_by(by_light, *light.in_codes.windows[i]));
+  }
+  if (is_beyond_chance(gains)) return true;
+  const double curved = std::abs(codes.candidates.front().response.curvature());
+  return curved > kLeastCurvature &&
+         std::abs(light.candidates.front().response.curvature()) < kMostCurvatureLeft * curved;
 }
 
 }  // namespace
@@ -149,18 +259,17 @@ Eigen::VectorXd added_by(const EdgeResponse& response, const FittedWindow& windo
 }
 
 std::optional<EdgeResponse> edge_response_of(std::size_t windows, bool may_be_curved, const FitWindow& fit) {
-  std::optional<Learnt> best = learn(windows, ToneCurve::linear, nullptr, fit);
-  if (!best || !(best->left < kMostLeft * best->plain)) return std::nullopt;
+  const std::optional<Learnt> codes = learn(windows, ToneCurve::linear, fit);
+  if (!codes || !codes->told) return std::nullopt;
+  std::vector<Candidate> candidates = codes->candidates;
   if (may_be_curved) {
-    std::optional<Learnt> light = learn(windows, ToneCurve::srgb, nullptr, fit);
-    if (light && is_straighter(*light, *best)) best = std::move(light);
+    const std::optional<Learnt> light = learn(windows, ToneCurve::srgb, fit);
+    if (light && is_straighter(*light, *codes)) candidates = light->candidates;
   }
-  for (int round = 1; round < kLearningRounds; ++round) {
-    const EdgeResponse known = best->response;
-    best = learn(windows, known.tone, &known, fit);
-    if (!best) return std::nullopt;
+  for (const Candidate& candidate : candidates) {
+    if (std::optional<EdgeResponse> found = settled(candidate, windows, fit)) return found;
   }
-  return best->response;
+  return std::nullopt;
 }
 
 cv::Mat light_of(const cv::Mat& codes, ToneCurve tone) {

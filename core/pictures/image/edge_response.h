@@ -59,6 +59,8 @@ struct FittedWindow {
   Eigen::VectorXd model;     ///< as fitted
   Eigen::MatrixXd jacobian;  ///< of the model by the fit's own parameters, one row a pixel; empty if not needed
   double contrast = 0.0;     ///< C
+  double full = 255.0;       ///< the largest code, or its light
+  bool inverse = false;      ///< `light` and `model` are `full` less what the image has
   /// E after the mosaic, if the model includes the known response (and its blur is that of I); otherwise empty.
   std::vector<double> bright;
   /// The model at a pixel of the image, with the squared blur of its edges reduced by this (px²).
@@ -73,8 +75,9 @@ Eigen::VectorXd added_by(const EdgeResponse& response, const FittedWindow& windo
 using FitWindow = std::function<std::optional<FittedWindow>(std::size_t window, ToneCurve tone, const EdgeResponse*)>;
 
 /// The response that the windows show, in three rounds, each with the windows fitted without what the last response
-/// adds. The light by the sRGB curve is used if it leaves far smaller residuals, or far less curvature, than the codes
-/// do. Empty if too few pixels are fitted, or the response explains less than 7 % of the residuals' squares.
+/// adds. The light by the sRGB curve is used if it leaves smaller residuals, as codes and beyond their scatter from
+/// window to window, or far less curvature than the codes do. Empty if too few pixels are fitted, if the response of
+/// some windows does not foretell the residuals of others beyond chance, or if the rounds settle on none.
 std::optional<EdgeResponse> edge_response_of(std::size_t windows, bool may_be_curved, const FitWindow& fit);
 
 /// The light of a part of an image's codes (8 or 16 bits), as 16 bits; linear: the codes themselves.

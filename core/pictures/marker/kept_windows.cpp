@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSameRadii = 0.5;                  // between the centres of two fits of one object
 constexpr std::size_t kFewestResponseWindows = 16;  // from which the response of the pixels is found,
-constexpr std::size_t kResponsePixels = 8000;       // and about the number of their pixels
+constexpr std::size_t kResponsePixels = 32000;      // and about the number of their pixels
 
 std::size_t bytes_of(const MarkerWindow& window) {
   return window.signal.values.total() * window.signal.values.elemSize();
@@ -52,7 +52,7 @@ void KeptWindows::keep(const Signal& signal, std::size_t frame, const MarkerGues
   again.centre = fit.centre - cv::Point2d(box.tl());
   again.blur_px = fit.blur_px;
   again.shape = fit.shape;
-  kept_[frame].push_back({fit.centre, {Signal{signal.values(box).clone()}, box.tl(), again}});
+  kept_[frame].push_back({fit.centre, {Signal{signal.values(box).clone(), {}, signal.inverse}, box.tl(), again}});
 }
 
 void KeptWindows::free_all_but(const std::vector<MarkerPath>& paths) {

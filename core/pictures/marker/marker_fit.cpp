@@ -274,15 +274,26 @@ std::optional<MarkerFit> fit(const Signal& signal, const MarkerGuess& guess) {
   return plausible_marker<N>(*window, guess, pixels, *found);
 }
 
+/// The same signal with the light of the codes in their place.
+Signal in_light(const Signal& signal, ToneCurve tone) {
+  if (!signal.inverse || tone == ToneCurve::linear) return {light_of(signal.values, tone), {}, signal.inverse};
+  cv::Mat codes, light;
+  cv::bitwise_not(signal.values, codes);
+  cv::bitwise_not(light_of(codes, tone), light);
+  return {light, {}, true};
+}
+
 /// A window that is fitted to the light of its codes under a tone curve, repeatedly, each time without what a response
 /// adds.
 template <int N>
 class Refit {
  public:
   Refit(const MarkerWindow& of, ToneCurve tone)
-      : of_(of), window_(*cut_around(Signal{light_of(of.signal.values, tone)}, of.guess)), pixels_(window_) {
+      : of_(of), window_(*cut_around(in_light(of.signal, tone), of.guess)), pixels_(window_) {
     seen_.light = Eigen::Map<const Eigen::VectorXd>(window_.value().data(), size());
     seen_.weight = Eigen::Map<const Eigen::VectorXd>(window_.weight().data(), size());
+    seen_.inverse = of.signal.inverse;
+    seen_.full = of.signal.values.depth() == CV_8U && tone == ToneCurve::linear ? 255.0 : 65535.0;
     for (std::size_t i = 0; i < window_.size(); ++i) {
       seen_.pixels.push_back(of.corner + cv::Point(static_cast<int>(window_.u()[i]), static_cast<int>(window_.v()[i])));
     }
@@ -300,6 +311,7 @@ class Refit {
         window_.set_value(static_cast<std::size_t>(i), seen_.light[i] - added[i]);
       pixels_.forget();
       found_ = solve<N>(pixels_, of_.guess, *contrast, found_->parameters);
+      if (!base::is_settled(found_->stop)) found_ = solve<N>(pixels_, of_.guess, *contrast, found_->parameters);
       if (!base::is_settled(found_->stop)) found_.reset();
     }
     return found_.has_value();

@@ -29,6 +29,7 @@ namespace glidelab::core {
 struct Signal {
   cv::Mat values;
   DrawPixels draw = {};  ///< for pixels that are made on demand: call see() before at() or `values`
+  bool inverse = false;  ///< the values are the largest code less the image's
 
   /// Makes the pixels of a rectangle within the image.
   void see(const cv::Rect& part) const {

@@ -151,7 +151,7 @@ std::optional<Signal> signal_of(const Frame& frame, const MarkerSetup& marker, S
   if (frame.draw) frame.draw(cv::Rect({}, frame.grey.size()));
   cv::Mat inverse;
   cv::bitwise_not(frame.grey, inverse);
-  return Signal{inverse};
+  return Signal{inverse, {}, true};
 }
 
 std::vector<Blob> find_blobs(const Signal& signal, const BlobSearch& search) {

@@ -365,7 +365,7 @@ TrackedMarker MarkerTracker::finish() {
   }
   TrackedMarker tracked =
       choose_marker({joined_pieces(std::move(paths_)), frames_, radius_px_, start_frame_}, marker_, clip_);
-  correct_for_pixels(tracked, windows_, kind_ == SignalKind::bright);
+  correct_for_pixels(tracked, windows_, kind_ == SignalKind::bright || kind_ == SignalKind::dark);
   return tracked;
 }
 
