@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "base/math/dense.h"
 
@@ -15,8 +16,7 @@ namespace {
 constexpr std::array kNarrower_px2{0.0, 0.15, 0.3};
 constexpr int kLearningRounds = 3;       // the terms settle to a hundredth
 constexpr double kFewestPixels = 300.0;  // beyond the windows' own parameters
-constexpr std::size_t kFolds = 8, kFewestWindows = 16;
-constexpr double kMostGrowth = 1.01;        // of what is left, from the first round to the last
+constexpr std::size_t kFolds = 8, kFewestWindows = 8;
 constexpr double kGainSd = 3.0;             // gain of the squares in windows that did not teach the terms
 constexpr double kLeastCurvature = 0.2;     // t of codes that follow a curve: 0.3 to 0.5 for BT.709
 constexpr double kMostCurvatureLeft = 0.5;  // of that, left by the curve's light
@@ -136,6 +136,7 @@ struct Candidate {
 /// What the windows show that are fitted as they are.
 struct Learnt {
   std::vector<Candidate> candidates;  // in order of what they leave
+  double plain = 0.0;                 // what is left without a response
   bool told = false;                  // whether the response of some windows foretells the residuals of others
   Shown in_codes;
 };
@@ -202,34 +203,47 @@ std::optional<Learnt> learn(std::size_t windows, ToneCurve tone, const FitWindow
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return found[k].left; });
   Learnt learnt;
   for (const std::size_t k : order) learnt.candidates.push_back(found[k]);
+  learnt.plain = shown.front().sum(kShapes, kShapes);
   learnt.told = foretells(shown.front(), shown[order.front()]);
   learnt.in_codes = std::move(in_codes[order.front()]);
   return learnt;
 }
 
-/// The next round: the windows are fitted with the response that is known. Empty if too few pixels are fitted.
-std::optional<Candidate> learn_again(std::size_t windows, const EdgeResponse& known, const FitWindow& fit) {
-  Products sum = Products::Zero();
-  double freedom = 0.0, narrower_px2 = known.narrower_px2;
+/// The next round: the windows are fitted with the response that is known, and the best of the reductions of the blur
+/// is taken. Empty if too few pixels are fitted.
+std::optional<Candidate> learn_again(std::size_t windows, const EdgeResponse& known,
+                                     std::span<const double> narrower_px2, const FitWindow& fit) {
+  std::vector<Products> sums(narrower_px2.size(), Products::Zero());
+  double freedom = 0.0;
+  bool within = false;  // the model has the response in it, and its blur is that of I
   for (std::size_t i = 0; i < windows; ++i) {
     const std::optional<FittedWindow> window = fit(i, known.tone, &known);
     if (!window) continue;
     freedom += freedom_of(*window);
-    if (!window->bright.empty()) narrower_px2 = 0.0;  // the fit's blur is that of I
-    sum += products_of(*window, columns_of(*window, narrower_px2), by_contrast(*window));
+    within = !window->bright.empty();
+    for (std::size_t k = 0; k < (within ? 1 : sums.size()); ++k) {
+      const Columns columns = columns_of(*window, within ? 0.0 : narrower_px2[k]);
+      sums[k] += products_of(*window, columns, by_contrast(*window));
+    }
   }
   if (!(freedom > kFewestPixels)) return std::nullopt;
-  const EdgeResponse::Terms terms = terms_of(sum, known.terms);
-  return Candidate{{terms, narrower_px2, known.tone}, left_by(terms, sum)};
+  std::optional<Candidate> best;
+  for (std::size_t k = 0; k < (within ? 1 : sums.size()); ++k) {
+    const EdgeResponse::Terms terms = terms_of(sums[k], known.terms);
+    const double left = left_by(terms, sums[k]);
+    if (!best || left < best->left) best = Candidate{{terms, within ? 0.0 : narrower_px2[k], known.tone}, left};
+  }
+  return best;
 }
 
-/// The response after the last round. Terms that do to an edge what its blur does (w, and t where the marker's size is
-/// free) may grow from round to round, and the fits leave more and more; then there is none.
-std::optional<EdgeResponse> settled(const Candidate& first, std::size_t windows, const FitWindow& fit) {
+/// The response after the last round. Terms that do to an edge what its blur does (w) may grow from round to round,
+/// until they leave more than no response does; then there is none.
+std::optional<EdgeResponse> settled(const Candidate& first, double plain, std::size_t windows,
+                                    std::span<const double> narrower_px2, const FitWindow& fit) {
   Candidate last = first;
   for (int round = 1; round < kLearningRounds; ++round) {
-    const std::optional<Candidate> next = learn_again(windows, last.response, fit);
-    if (!next || next->left > kMostGrowth * first.left) return std::nullopt;
+    const std::optional<Candidate> next = learn_again(windows, last.response, narrower_px2, fit);
+    if (!next || !(next->left < plain)) return std::nullopt;
     last = *next;
   }
   return last.response;
@@ -261,13 +275,15 @@ Eigen::VectorXd added_by(const EdgeResponse& response, const FittedWindow& windo
 std::optional<EdgeResponse> edge_response_of(std::size_t windows, bool may_be_curved, const FitWindow& fit) {
   const std::optional<Learnt> codes = learn(windows, ToneCurve::linear, fit);
   if (!codes || !codes->told) return std::nullopt;
-  std::vector<Candidate> candidates = codes->candidates;
-  if (may_be_curved) {
-    const std::optional<Learnt> light = learn(windows, ToneCurve::srgb, fit);
-    if (light && is_straighter(*light, *codes)) candidates = light->candidates;
-  }
-  for (const Candidate& candidate : candidates) {
-    if (std::optional<EdgeResponse> found = settled(candidate, windows, fit)) return found;
+  const std::optional<Learnt> light = may_be_curved ? learn(windows, ToneCurve::srgb, fit) : std::nullopt;
+  const Learnt& better = light && is_straighter(*light, *codes) ? *light : *codes;
+  const auto from = [&](const Candidate& first, std::span<const double> narrower_px2) {
+    return settled(first, better.plain, windows, narrower_px2, fit);
+  };
+  if (std::optional<EdgeResponse> found = from(better.candidates.front(), kNarrower_px2)) return found;
+  for (const Candidate& candidate : better.candidates) {  // each with the one reduction of the blur
+    if (std::optional<EdgeResponse> found = from(candidate, std::span(&candidate.response.narrower_px2, 1)))
+      return found;
   }
   return std::nullopt;
 }

@@ -101,6 +101,27 @@ TEST_CASE("pixels that answer as the model says have no response") {
   CHECK_FALSE(found_in(windows_with({}, 1.0)));
 }
 
+TEST_CASE("a response in noise far above it is found if the windows show it beyond chance") {
+  // Noise of a fifteenth of the contrast: the response takes 5 % of the residuals' squares.
+  EdgeResponse truth;
+  truth.terms[EdgeResponse::kCurvature] = 0.25;
+  const auto found = found_in(windows_with(truth, 8.0));
+  REQUIRE(found);
+  CHECK(std::abs(found->curvature() - 0.25) < 0.1);
+}
+
+TEST_CASE("a response with which the fits leave more and more is none") {
+  EdgeResponse truth;
+  truth.terms[EdgeResponse::kCurvature] = 0.4;
+  const std::vector<core::FittedWindow> windows = windows_with(truth, 1.0);
+  const auto fit = [&](std::size_t i, core::ToneCurve, const EdgeResponse* known) {
+    core::FittedWindow window = windows[i];
+    if (known != nullptr) window.light += 3.0 * (window.light - window.model).reverse();
+    return std::optional(window);
+  };
+  CHECK_FALSE(core::edge_response_of(windows.size(), false, fit));
+}
+
 TEST_CASE("the light of codes is the sRGB curve's, at 8 and at 16 bits") {
   const cv::Mat shallow = (cv::Mat_<unsigned char>(1, 3) << 0, 128, 255);
   const cv::Mat deep = (cv::Mat_<unsigned short>(1, 3) << 0, 32896, 65535);
