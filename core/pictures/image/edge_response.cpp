@@ -17,6 +17,7 @@ constexpr std::array kNarrower_px2{0.0, 0.15, 0.3};
 constexpr int kLearningRounds = 3;       // the terms settle to a hundredth
 constexpr double kFewestPixels = 300.0;  // beyond the windows' own parameters
 constexpr std::size_t kFolds = 8, kFewestWindows = 8;
+constexpr double kMostCurvature = 1.0;      // E + t E (1 - E) falls nowhere: a tone that falls is none
 constexpr double kGainSd = 3.0;             // gain of the squares in windows that did not teach the terms
 constexpr double kLeastCurvature = 0.2;     // t of codes that follow a curve: 0.3 to 0.5 for BT.709
 constexpr double kMostCurvatureLeft = 0.5;  // of that, left by the curve's light
@@ -237,7 +238,8 @@ std::optional<Candidate> learn_again(std::size_t windows, const EdgeResponse& kn
 }
 
 /// The response after the last round. Terms that do to an edge what its blur does (w) may grow from round to round,
-/// until they leave more than no response does; then there is none.
+/// until they leave more than no response does; and a marker smeared by its motion has edges that no curve makes. Then
+/// there is none.
 std::optional<EdgeResponse> settled(const Candidate& first, double plain, std::size_t windows,
                                     std::span<const double> narrower_px2, const FitWindow& fit) {
   Candidate last = first;
@@ -246,6 +248,7 @@ std::optional<EdgeResponse> settled(const Candidate& first, double plain, std::s
     if (!next || !(next->left < plain)) return std::nullopt;
     last = *next;
   }
+  if (std::abs(last.response.curvature()) > kMostCurvature) return std::nullopt;
   return last.response;
 }
 
