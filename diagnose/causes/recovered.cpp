@@ -108,6 +108,7 @@ void scale_lengths(RecoveredSet& of, const ScaleFactor& by) {
   of.mu.sd = std::hypot(of.mu.sd, by.sd * of.mu.value);
   of.v_lim_m_s.value *= by.value;
   of.v_lim_m_s.sd = std::hypot(of.v_lim_m_s.sd, by.sd * of.v_lim_m_s.value);
+  for (Recovered* const one : {&of.alpha_rad, &of.mu, &of.v_lim_m_s}) one->known &= std::isfinite(one->value);
 }
 
 std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes) {

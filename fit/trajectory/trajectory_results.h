@@ -17,7 +17,7 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
 
 /// Sets the scatter of every configuration (ConfigurationResult::scatter) from that fit, and nothing else: whether the
 /// law follows the positions over the whole motion. Lines through a smoothed phase diagram may be straight where it
-/// does not, as each stretch has its own. Speeds without positions stay as they are.
+/// does not. Speeds without positions stay as they are.
 void set_scatter_of_motion(core::AnalysisResults& results);
 
 }  // namespace glidelab::fit

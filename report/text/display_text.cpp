@@ -139,12 +139,9 @@ bool is_open(const diagnose::DiagnosedParameter& parameter) {
   for (const diagnose::EffectInfo& effect : diagnose::effect_list()) {
     for (const diagnose::EffectParameter& of : effect.parameters) {
       if (of.key != parameter.key) continue;
-      const double stated = of.high - of.low;
-      const bool with_mass = of.reach == diagnose::Reach::with_mass;
-      const double widest_of_this = of.reach == diagnose::Reach::stated ? stated
-                                    : with_mass                         ? std::max(stated, kBeyondAny)
-                                                                        : kBeyondAny;
-      widest = std::max(widest, widest_of_this);
+      const bool as_stated = of.reach == diagnose::Reach::stated;
+      if (as_stated || of.reach == diagnose::Reach::with_mass) widest = std::max(widest, of.high - of.low);
+      if (!as_stated) widest = std::max(widest, kBeyondAny);
     }
   }
   return widest > 0.0 && parameter.sd > widest;

@@ -57,7 +57,7 @@ TEST_CASE("a block that runs into the foot of its board is stopped there", "[slo
   const auto diagnosis = diagnose_real("sliding-block");
   if (!diagnosis) return;
   // The images show it: in each clip the block slides freely until x = 0.01 m, runs into a paper cone at the foot of
-  // the board, and is nearly at rest at 0.09 m. A cable that tightens would brake it in the same way.
+  // the board, and has lost most of its speed by 0.13 m. A cable that tightens would brake it in the same way.
   REQUIRE(diagnosis->verdict == diagnose::Verdict::effect);
   const diagnose::DiagnosedEffect& first = diagnosis->effects.front();
   CHECK((first.id == "end_stop" || first.id == "tether"));
