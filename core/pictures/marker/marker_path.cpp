@@ -20,6 +20,7 @@ constexpr double kLongestBounceFrames = 30.0;   // frames over which a bounce wi
 constexpr std::size_t kSightingsAveraged = 20;  // sightings over which a path's size and brightness are averaged
 constexpr std::size_t kSightingsForSpeed = 4;   // sightings from which a path's speed is taken
 constexpr std::size_t kSightingsForSize = 50;   // sightings from which a path's size is taken
+constexpr double kBounce = 2.2;                 // times its speed: how far off a bounce takes an object, with a margin
 
 /// Whether a later path continues an earlier one. The object may have bounced while it was hidden.
 bool fits_on(const MarkerPath& early, const MarkerPath& late) {
@@ -27,7 +28,7 @@ bool fits_on(const MarkerPath& early, const MarkerPath& late) {
   const double gap = frames_between(early.seen.back().frame, late.seen.front().frame);
   const double speed = cv::norm(early.velocity());
   const double off = cv::norm(early.predict(late.seen.front().frame) - late.seen.front().fit.centre);
-  return off < 3.0 * early.radius_px + 2.2 * speed * std::min(gap, kLongestBounceFrames) &&
+  return off < 3.0 * early.radius_px + kBounce * speed * std::min(gap, kLongestBounceFrames) &&
          early.is_like(late.radius_px, late.amplitude);
 }
 
@@ -78,6 +79,46 @@ bool MarkerPath::is_like(double other_radius_px, double other_amplitude) const {
 
 bool MarkerPath::is_like(const MarkerFit& fit) const {
   return is_like(fit.radius_px, fit.amplitude) && fit.elongation < kLargestElongation;
+}
+
+namespace {
+
+/// The speed of an object, in pixels per frame, by the median of the slopes between each two of its sightings. Neither
+/// their noise nor one of another object matters much. Empty for fewer than five.
+std::optional<double> median_speed(std::span<const MarkerSeen> seen) {
+  constexpr std::size_t kFewest = 5;
+  if (seen.size() < kFewest) return std::nullopt;
+  std::vector<double> along_u, along_v;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::size_t k = i + 1; k < seen.size(); ++k) {
+      const cv::Point2d slope =
+          (seen[k].fit.centre - seen[i].fit.centre) / frames_between(seen[i].frame, seen[k].frame);
+      along_u.push_back(slope.x);
+      along_v.push_back(slope.y);
+    }
+  }
+  return std::hypot(median_of(std::move(along_u)), median_of(std::move(along_v)));
+}
+
+}  // namespace
+
+double steady_travel(const MarkerPath& path) {
+  constexpr std::size_t kBeside = 6;  // sightings on either side of a step that tell the speed
+  const std::span<const MarkerSeen> seen(path.seen);
+  double travel = 0.0;
+  std::size_t first = 0;
+  for (std::size_t next = 1; next < seen.size(); ++next) {
+    const auto before = median_speed(seen.subspan(next - std::min(next, kBeside), std::min(next, kBeside)));
+    const auto after = median_speed(seen.subspan(next, std::min(kBeside, seen.size() - next)));
+    const MarkerSeen &from = seen[next - 1], &to = seen[next];
+    const double explained =
+        kBounce * std::max(before.value_or(0.0), after.value_or(0.0)) * frames_between(from.frame, to.frame);
+    const bool jumps =
+        (before || after) && cv::norm(to.fit.centre - from.fit.centre) > least_travel(path.radius_px) + explained;
+    if (jumps) first = next;
+    travel = std::max(travel, cv::norm(to.fit.centre - seen[first].fit.centre));
+  }
+  return travel;
 }
 
 std::vector<MarkerPath> joined_pieces(std::vector<MarkerPath> paths) {
@@ -207,7 +248,7 @@ bool are_twins(const MarkerPath& one, const MarkerPath& other) {
   }
   const auto alike = [](double x, double y, double factor) { return x < factor * y && y < factor * x; };
   return 2 * common >= std::min(one.seen.size(), other.seen.size()) && alike(one.radius_px, other.radius_px, 1.2) &&
-         alike(one.amplitude, other.amplitude, 1.4) && alike(one.travel_px, other.travel_px, 1.6);
+         alike(one.amplitude, other.amplitude, 1.4) && alike(steady_travel(one), steady_travel(other), 1.6);
 }
 
 /// The choice of one path among those of a clip.
@@ -272,7 +313,7 @@ std::size_t Choice::path_at_start() const {
     nearest = distance;
     best = i;
   }
-  const double allowed = 3.0 * radius_px_ + 10.0;
+  const double allowed = farthest_from_start(radius_px_);
   if (best == paths_.size() || nearest > allowed) {
     throw NoMarker(issue(
         fmt::format("no marker near start_px = [{:.1f}, {:.1f}] in {}{}", marker_.start_px->x, marker_.start_px->y,
@@ -309,21 +350,44 @@ std::size_t Choice::choose_path(std::vector<Note>& notes) const {
   if (marker_.start_px) return path_at_start();
   const std::size_t fewest = std::min(kFewestMoving, std::max<std::size_t>(frames_ / 2, 2));
   std::vector<std::size_t> movers;
+  std::vector<double> travels(paths_.size(), 0.0);
   double farthest = 0.0, brightest = 0.0, longest = 0.0;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     const MarkerPath& path = paths_[i];
-    if (path.seen.size() < fewest || path.travel_px < least_travel(path.radius_px)) continue;
+    if (path.seen.size() < fewest) continue;
+    travels[i] = steady_travel(path);
+    if (travels[i] < least_travel(path.radius_px)) continue;
     movers.push_back(i);
-    farthest = std::max(farthest, path.travel_px);
+    farthest = std::max(farthest, travels[i]);
     brightest = std::max(brightest, path.amplitude);
     longest = std::max(longest, static_cast<double>(path.seen.size()));
+  }
+  if (std::getenv("GDBG") != nullptr) {
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const MarkerPath& p = paths_[i];
+      fmt::print(stderr,
+                 "PATH {} n={} frames {}..{} travel {:.1f} r {:.2f} ratio {:.2f} amp {:.1f} method {} at "
+                 "({:.0f},{:.0f})->({:.0f},{:.0f}) asleep {} lit {} mover {} steady {:.1f}\n",
+                 i, p.seen.size(), p.seen.front().frame, p.seen.back().frame, p.travel_px, p.radius_px, p.size_ratio(),
+                 p.amplitude, static_cast<int>(p.method), p.seen.front().fit.centre.x, p.seen.front().fit.centre.y,
+                 p.seen.back().fit.centre.x, p.seen.back().fit.centre.y, p.asleep, p.lit,
+                 !(p.seen.size() < fewest || p.travel_px < least_travel(p.radius_px)), steady_travel(p));
+    }
+  }
+  if (std::getenv("GDBG2") != nullptr) {
+    for (const MarkerPath& p : paths_) {
+      fmt::print(stderr, "\nPOS ");
+      for (const MarkerSeen& q : p.seen)
+        fmt::print(stderr, "{}:({:.1f},{:.1f};{:.1f},{:.0f}) ", q.frame, q.fit.centre.x, q.fit.centre.y,
+                   q.fit.radius_px, q.fit.amplitude);
+    }
   }
   if (movers.empty()) return resting_path(notes);
   // Squared deviations from a typical marker, each in units of its spread.
   const auto cost = [&](std::size_t i) {
     const MarkerPath& path = paths_[i];
     const double size = std::log(path.size_ratio()) / 0.2;
-    const double travel = std::log(path.travel_px / farthest) / 0.5;
+    const double travel = std::log(travels[i] / farthest) / 0.5;
     const double bright = std::log(path.amplitude / brightest) / 0.7;
     const double length = std::log(static_cast<double>(path.seen.size()) / longest) / 0.7;
     return size * size + travel * travel + bright * bright + length * length;
@@ -336,7 +400,7 @@ std::size_t Choice::choose_path(std::vector<Note>& notes) const {
     const MarkerPath& other = paths_[i];
     if (are_twins(marker, other)) {
       const cv::Point2d a = marker.seen.front().fit.centre, b = other.seen.front().fit.centre;
-      throw base::InputError(
+      throw TwoMarkers(
           issue(fmt::format(
                     "two markers that look and move alike, at ({:.0f}, {:.0f}) px in frame {} and ({:.0f}, {:.0f}) px "
                     "in frame {}",

@@ -70,6 +70,12 @@ constexpr double kLargestElongation = 4.0;  ///< long axis over short axis: a st
 /// The distance from its first position, in pixels, at which a path counts as moving.
 double least_travel(double radius_px);
 
+/// The largest distance from a first position, in pixels, without the jumps. A jump is a step by more than
+/// least_travel() beyond what the speed before it or after it explains: the object is not where it was followed any
+/// more, but another one like it is. Blobs of the background that come and go are at rest by this, however far apart
+/// they are.
+double steady_travel(const MarkerPath& path);
+
 double frames_between(std::size_t from, std::size_t to);
 
 /// The paths, with a path that ends joined to a similar one that begins later where the first was heading.
@@ -104,9 +110,19 @@ std::optional<double> jitter_of(const Places& places);
 /// squares of their weights (1, 4, 6, 4, 1). A smooth motion leaves next to nothing in them.
 std::optional<double> roughness_of(const Places& places);
 
-/// Nothing in the clip looks like the marker.
-class NoMarker : public base::InputError {
+/// The images of a clip are sound, but the marker is not found in them.
+class MarkerNotFound : public base::InputError {
   using base::InputError::InputError;
+};
+
+/// Nothing in the clip looks like the marker.
+class NoMarker : public MarkerNotFound {
+  using MarkerNotFound::MarkerNotFound;
+};
+
+/// Two things in the clip look and move alike.
+class TwoMarkers : public MarkerNotFound {
+  using MarkerNotFound::MarkerNotFound;
 };
 
 struct TrackedMarker {
@@ -126,13 +142,18 @@ struct FollowedPaths {
   std::size_t start_frame = 0;    ///< the frame to which start_px refers
 };
 
+/// The distance from start_px within which the marker is, in pixels.
+inline double farthest_from_start(double radius_px) {
+  return 3.0 * radius_px + 10.0;
+}
+
 /// Chooses the path of the marker, and the frames in which the marker is seen undisturbed.
 ///
 /// If start_px is given, the marker is the path nearest to it in the frame to which it refers. Otherwise it is the
 /// moving path that is most like a marker in size, travel, brightness and number of sightings. If nothing moves, it is
 /// the only object of the right size that is at rest all the time.
 ///
-/// Throws NoMarker and InputError like MarkerTracker::finish(); `clip` is the file that they name.
+/// Throws NoMarker and TwoMarkers like MarkerTracker::finish(); `clip` is the file that they name.
 TrackedMarker choose_marker(const FollowedPaths& followed, const MarkerSetup& marker,
                             const std::filesystem::path& clip);
 

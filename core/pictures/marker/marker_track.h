@@ -40,6 +40,9 @@ class MarkerTracker {
   static MarkerTracker of_any_shape(std::filesystem::path clip, const MarkerSetup& marker, RadiusAt radius_at,
                                     std::optional<double> start_s = {}, bool blurred = false);
 
+  /// Measures every object by one method, in place of the one that fits it best.
+  void measure_by(MarkerMethod method) { first_method_ = method; }
+
   /// Limits the memory of windows around sightings; the default is 128 MiB. If any sighting
   /// has none, all keep the shift by a colour mosaic or a tone curve, and a note says how many have none.
   void limit_windows(std::size_t bytes) { windows_.limit(bytes); }
@@ -48,7 +51,7 @@ class MarkerTracker {
   void add(const Frame& frame);
 
   /// The track of the marker. NoMarker if nothing of its size moves and not exactly one such object is at rest, or if
-  /// nothing is near start_px. InputError if two alike move alike and start_px does not say which is the marker.
+  /// nothing is near start_px. TwoMarkers if two alike move alike and start_px does not say which is the marker.
   TrackedMarker finish();
 
  private:

@@ -100,6 +100,64 @@ TEST_CASE("a place that is pushed off its neighbours' course is told, and the en
   CHECK(off[25] > core::kOffCourse);
 }
 
+namespace {
+
+/// The path of an object that is seen at these places in these frames.
+core::MarkerPath path_of(const std::vector<std::pair<std::size_t, cv::Point2d>>& places) {
+  core::MarkerPath path;
+  for (const auto& [frame, at] : places) {
+    core::MarkerFit fit;
+    fit.centre = at;
+    fit.radius_px = kRadius;
+    fit.amplitude = 30.0;
+    path.push({frame, fit, kRadius});
+  }
+  return path;
+}
+
+/// A blob at rest that is seen with noise of a pixel here, then 60 px away, then here again, in one frame of three.
+core::MarkerPath of_two_blobs(cv::Point2d here, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  std::vector<std::pair<std::size_t, cv::Point2d>> places;
+  for (std::size_t k = 0; k < kFrames; k += 3) {
+    const bool there = k > 25 && k < 50;
+    places.emplace_back(k, here + cv::Point2d((there ? 60.0 : 0.0) + noise(random), noise(random)));
+  }
+  return path_of(places);
+}
+
+}  // namespace
+
+TEST_CASE("what jumps between two places at rest does not travel, and what moves with gaps and bounces does") {
+  CHECK(of_two_blobs({40.0, 40.0}, 3).travel_px > 50.0);
+  // Twenty-seven differences of two places with noise of 1 px in both coordinates: beyond 6 px in 1 of 1000.
+  CHECK(core::steady_travel(of_two_blobs({40.0, 40.0}, 3)) < 6.0);
+  std::vector<std::pair<std::size_t, cv::Point2d>> moving, bouncing, hidden;
+  for (std::size_t k = 0; k < kFrames; ++k) {
+    const double t = static_cast<double>(k);
+    moving.emplace_back(k, cv::Point2d(10.0 + 2.5 * t, 50.0));
+    // Turned back at 110 px, while it was not seen.
+    if (k < 35 || k > 45)
+      bouncing.emplace_back(k, cv::Point2d(k < 40 ? 10.0 + 2.5 * t : 110.0 - 2.0 * (t - 40.0), 50.0));
+    // At rest, and released while it was not seen.
+    if (k < 20 || k > 40) hidden.emplace_back(k, cv::Point2d(k < 25 ? 10.0 : 10.0 + 3.0 * (t - 25.0), 50.0));
+  }
+  CHECK(core::steady_travel(path_of(moving)) == path_of(moving).travel_px);
+  CHECK(core::steady_travel(path_of(bouncing)) == path_of(bouncing).travel_px);
+  CHECK(core::steady_travel(path_of(hidden)) == path_of(hidden).travel_px);
+}
+
+TEST_CASE("two blobs of the background that come and go are no two markers") {
+  core::FollowedPaths followed;
+  followed.paths = {of_two_blobs({40.0, 40.0}, 3), of_two_blobs({40.0, 110.0}, 4)};
+  followed.frames = kFrames;
+  followed.radius_px = kRadius;
+  core::MarkerSetup setup;
+  setup.diameter_m = 0.02;
+  CHECK_THROWS_AS(core::choose_marker(followed, setup, "clip.mkv"), core::NoMarker);
+}
+
 TEST_CASE("a marker that comes into view later is followed from where it is first fully in view") {
   const auto tracked = track(kLate, {}, {});
   // The window of its fit (1.25 radii plus 2.5 px) is within the image from frame 29 on, until 231 px in frame 73.
