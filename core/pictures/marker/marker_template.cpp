@@ -53,22 +53,35 @@ std::optional<Point> gauss_newton(Point at, const Step& step) {
 }
 
 /// Weights of four values at -1, 0, 1, 2 in the Catmull-Rom cubic between 0 and 1, and in its derivative.
-struct Cubic {
-  std::array<double, 4> weight, slope;
-};
-
-Cubic cubic_at(double t) {
+std::array<double, 4> cubic_weights(double t) {
   const double t2 = t * t, t3 = t2 * t;
-  return {{-0.5 * t3 + t2 - 0.5 * t, 1.5 * t3 - 2.5 * t2 + 1.0, -1.5 * t3 + 2.0 * t2 + 0.5 * t, 0.5 * t3 - 0.5 * t2},
-          {-1.5 * t2 + 2.0 * t - 0.5, 4.5 * t2 - 5.0 * t, -4.5 * t2 + 4.0 * t + 0.5, 1.5 * t2 - t}};
+  return {-0.5 * t3 + t2 - 0.5 * t, 1.5 * t3 - 2.5 * t2 + 1.0, -1.5 * t3 + 2.0 * t2 + 0.5 * t, 0.5 * t3 - 0.5 * t2};
+}
+
+std::array<double, 4> cubic_slopes(double t) {
+  const double t2 = t * t;
+  return {-1.5 * t2 + 2.0 * t - 0.5, 4.5 * t2 - 5.0 * t, -4.5 * t2 + 4.0 * t + 0.5, 1.5 * t2 - t};
+}
+
+/// The pixels of a window around the ellipse |M d| = reach: the rest is many times as large.
+cv::Rect box_around(const TemplateWindow& window, cv::Point2d centre) {
+  const cv::Vec3d& m = window.shape;
+  const double determinant = m[0] * m[2] - m[1] * m[1];
+  const double half_u = MarkerTemplate::kReach * std::hypot(m[2], m[1]) / determinant,
+               half_v = MarkerTemplate::kReach * std::hypot(m[0], m[1]) / determinant;
+  const cv::Point2d at = centre - cv::Point2d(window.corner);
+  const cv::Point first(static_cast<int>(std::floor(at.x - half_u)), static_cast<int>(std::floor(at.y - half_v)));
+  const cv::Point last(static_cast<int>(std::ceil(at.x + half_u)), static_cast<int>(std::ceil(at.y + half_v)));
+  return cv::Rect(first, last + cv::Point(1, 1)) & cv::Rect({}, window.codes.size());
 }
 
 /// Calls `each` with q and the code for the pixels of a window within the reach.
 template <class Each>
 void for_pixels(const TemplateWindow& window, cv::Point2d centre, const Each& each) {
-  for (int v = 0; v < window.codes.rows; ++v) {
+  const cv::Rect box = box_around(window, centre);
+  for (int v = box.y; v < box.br().y; ++v) {
     const auto* const row = window.codes.ptr<float>(v);
-    for (int u = 0; u < window.codes.cols; ++u) {
+    for (int u = box.x; u < box.br().x; ++u) {
       const double du = u + window.corner.x - centre.x, dv = v + window.corner.y - centre.y;
       const double x = window.shape[0] * du + window.shape[1] * dv, y = window.shape[1] * du + window.shape[2] * dv;
       if (x * x + y * y < MarkerTemplate::kReach * MarkerTemplate::kReach) each(x, y, static_cast<double>(row[u]));
@@ -89,11 +102,13 @@ class Splat {
     const int i = static_cast<int>(std::floor(gx)), j = static_cast<int>(std::floor(gy));
     const double fx = gx - i, fy = gy - j;
     for (int dj = 0; dj < 2; ++dj) {
-      for (int di = 0; di < 2; ++di) {
-        const double share = weight * (di == 0 ? 1.0 - fx : fx) * (dj == 0 ? 1.0 - fy : fy);
-        sums_.at<double>(j + dj, i + di) += share * value;
-        weights_.at<double>(j + dj, i + di) += share;
-      }
+      auto* const sums = sums_.ptr<double>(j + dj) + i;
+      auto* const weights = weights_.ptr<double>(j + dj) + i;
+      const double of_row = weight * (dj == 0 ? 1.0 - fy : fy), left = of_row * (1.0 - fx), right = of_row * fx;
+      sums[0] += left * value;
+      sums[1] += right * value;
+      weights[0] += left;
+      weights[1] += right;
     }
   }
   const cv::Mat& weights() const { return weights_; }
@@ -114,19 +129,34 @@ MarkerTemplate::Value MarkerTemplate::at(double x, double y) const {
   const double middle = 0.5 * (look_.cols - 1);
   const double gx = x * nodes_per_radius_ + middle, gy = y * nodes_per_radius_ + middle;
   const int i = static_cast<int>(std::floor(gx)), j = static_cast<int>(std::floor(gy));
-  const Cubic along = cubic_at(gx - i), down = cubic_at(gy - j);
+  const std::array<double, 4> weight_x = cubic_weights(gx - i), weight_y = cubic_weights(gy - j),
+                              slope_x = cubic_slopes(gx - i), slope_y = cubic_slopes(gy - j);
   Value sum{0.0, 0.0, 0.0};
   for (int dj = 0; dj < 4; ++dj) {
     const auto* const row = look_.ptr<double>(j - 1 + dj) + (i - 1);
     double value = 0.0, slope = 0.0;
     for (std::size_t di = 0; di < 4; ++di) {
-      value += along.weight[di] * row[di];
-      slope += along.slope[di] * row[di];
+      value += weight_x[di] * row[di];
+      slope += slope_x[di] * row[di];
     }
     const auto k = static_cast<std::size_t>(dj);
-    sum.value += down.weight[k] * value;
-    sum.x += down.weight[k] * slope * nodes_per_radius_;
-    sum.y += down.slope[k] * value * nodes_per_radius_;
+    sum.value += weight_y[k] * value;
+    sum.x += weight_y[k] * slope * nodes_per_radius_;
+    sum.y += slope_y[k] * value * nodes_per_radius_;
+  }
+  return sum;
+}
+
+double MarkerTemplate::value_at(double x, double y) const {
+  const double middle = 0.5 * (look_.cols - 1);
+  const double gx = x * nodes_per_radius_ + middle, gy = y * nodes_per_radius_ + middle;
+  const int i = static_cast<int>(std::floor(gx)), j = static_cast<int>(std::floor(gy));
+  const std::array<double, 4> weight_x = cubic_weights(gx - i), weight_y = cubic_weights(gy - j);
+  double sum = 0.0;
+  for (int dj = 0; dj < 4; ++dj) {
+    const auto* const row = look_.ptr<double>(j - 1 + dj) + (i - 1);
+    sum += weight_y[static_cast<std::size_t>(dj)] *
+           (weight_x[0] * row[0] + weight_x[1] * row[1] + weight_x[2] * row[2] + weight_x[3] * row[3]);
   }
   return sum;
 }
@@ -178,13 +208,15 @@ std::optional<MarkerTemplate> MarkerTemplate::of(const std::vector<TemplateWindo
     return splat;
   };
   for (int round = 0; round <= kSharpenings; ++round) {
-    const Splat left = of_all([&](double x, double y, double code) { return code - made.at(x, y).value; });
+    const bool is_first = round == 0;  // nothing to subtract yet
+    const Splat left =
+        of_all([&](double x, double y, double code) { return is_first ? code : code - made.value_at(x, y); });
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) made.look_.at<double>(j, i) += left.mean(j, i);
     }
   }
   const Splat squares = of_all([&](double x, double y, double code) {
-    const double off = code - made.at(x, y).value;
+    const double off = code - made.value_at(x, y);
     return off * off;
   });
   std::vector<double> variances, values;
@@ -262,6 +294,7 @@ std::optional<TemplateFit> MarkerTemplate::fit(const TemplateWindow& window) con
     const TemplateFit& fit = from.fit;
     NormalEquations<4> equations;
     std::vector<double> residuals;
+    residuals.reserve(static_cast<std::size_t>(1.3 * whole));
     double pixels = 0.0;
     for_pixels(window, fit.centre, [&](double x, double y, double code) {
       pixels += 1.0;

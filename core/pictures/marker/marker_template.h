@@ -65,6 +65,7 @@ class MarkerTemplate {
     double value, x, y;  ///< T and its derivatives with respect to q
   };
   Value at(double x, double y) const;
+  double value_at(double x, double y) const;  ///< T alone
   double weight_at(double x, double y) const;
   double step() const { return 1.0 / nodes_per_radius_; }
 

@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kTurns = 8;                 // of look and positions; each halves the errors of the guesses
 constexpr std::size_t kFewestSeen = 8;    // frames
+constexpr int kStretches = 3;             // from which a look is taken, where that of all frames fails,
+constexpr std::size_t kStretch = 24;      // and their length in frames
 constexpr double kWorse = 3.0;            // times the usual residuals: another object
 constexpr double kLeastOff_px = 0.3;      // from the neighbours' path,
 constexpr double kTimesOff = 8.0;         // plus so many times the usual distance: another object
@@ -36,18 +38,19 @@ class TemplateLook {
   std::optional<TrackedMarker> marker(const std::vector<FrameWindow>& windows) {
     if (rough_.sightings.size() < kFewestSeen) return std::nullopt;
     take_windows(windows);
-    for (int turn = 0; turn < kTurns; ++turn) {
-      if (!take_turn()) return std::nullopt;
+    const std::vector<std::optional<TemplateFit>> guesses = fits_;
+    if (auto found = settled()) return found;
+    for (int stretch = 0; stretch < kStretches; ++stretch) {
+      keep_stretch(guesses, stretch);
+      if (auto found = settled(); found && has_own_centre_) return found;
     }
-    fit_lost();
-    drop_strays();
-    if (seen() < std::max(kFewestSeen, rough_.sightings.size())) return std::nullopt;
-    if (!put_at_own_centre()) return std::nullopt;
-    return tracked();
+    return std::nullopt;
   }
 
  private:
   void take_windows(const std::vector<FrameWindow>& windows);
+  void keep_stretch(const std::vector<std::optional<TemplateFit>>& guesses, int stretch);
+  std::optional<TrackedMarker> settled();
   bool take_turn();
   bool put_at_own_centre();
   void fit_lost();
@@ -90,6 +93,27 @@ void TemplateLook::take_windows(const std::vector<FrameWindow>& windows) {
     fits_.emplace_back();
     if (of.seen) fits_.back() = TemplateFit{of.expected};
   }
+}
+
+/// Keeps the guesses of consecutive windows at the beginning, in the middle or at the end.
+void TemplateLook::keep_stretch(const std::vector<std::optional<TemplateFit>>& guesses, int stretch) {
+  const std::size_t length = std::min(kStretch, guesses.size());
+  const std::size_t first = (guesses.size() - length) * static_cast<std::size_t>(stretch) / (kStretches - 1);
+  for (std::size_t k = 0; k < guesses.size(); ++k)
+    fits_[k] = k >= first && k < first + length ? guesses[k] : std::nullopt;
+}
+
+/// Takes all turns from the guesses that there are.
+std::optional<TrackedMarker> TemplateLook::settled() {
+  has_own_centre_ = false;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    if (!take_turn()) return std::nullopt;
+  }
+  fit_lost();
+  drop_strays();
+  if (seen() < std::max(kFewestSeen, rough_.sightings.size())) return std::nullopt;
+  if (!put_at_own_centre()) return std::nullopt;
+  return tracked();
 }
 
 /// Finds the look from the positions, then the positions from the look.
@@ -141,7 +165,8 @@ std::vector<PlaceInFrame> TemplateLook::places() const {
 void TemplateLook::fit_lost() {
   for (bool any = true; any;) {
     any = false;
-    for (std::size_t k = 0; k < fits_.size(); ++k) {
+    for (std::size_t step = 0; step < 2 * fits_.size(); ++step) {  // forwards, then backwards
+      const std::size_t k = step < fits_.size() ? step : 2 * fits_.size() - 1 - step;
       const bool beside = (k > 0 && fits_[k - 1]) || (k + 1 < fits_.size() && fits_[k + 1]);
       if (fits_[k] || !beside) continue;
       const auto expected = place_by_neighbours(places(), frames_[k], true);

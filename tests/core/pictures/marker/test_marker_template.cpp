@@ -172,6 +172,29 @@ TEST_CASE("A post in front of the marker hardly shifts its position by the look,
   CHECK(scatter(*found) < 0.15);
 }
 
+TEST_CASE("Rough positions on one end of the plate in some frames and on the marker in others give the marker in all") {
+  // A difference from the background shows the whole plate, and what was followed slides along it.
+  const Look wide = [](double x, double y) {
+    const double r = std::hypot(x, y);
+    if (r < 0.33 || (r < 1.0 && r > 0.66)) return 0.05;
+    return std::abs(x) < 2.9 && std::abs(y) < 1.7 ? 0.8 : -1.0;
+  };
+  core::TrackedMarker rough;
+  for (std::size_t k = 2; k + 2 < kFrames; ++k) {
+    const double shake = std::sin(11.0 * static_cast<double>(k * k)), end = k < 22 ? 0.0 : -kRadius;
+    const cv::Point2d at = place(k) + cv::Point2d(end + shake, 0.3 * shake);
+    core::MarkerFit fit;
+    fit.centre = at;
+    rough.sightings.push_back({k, at.x, at.y, 0.5, kRadius});
+    rough.fits.push_back(fit);
+  }
+  const auto found = by_template(film_look(wide, false), rough);
+  REQUIRE(found);
+  CHECK(found->sightings.size() + 1 >= rough.sightings.size());
+  for (const core::MarkerSighting& sighting : found->sightings)
+    CHECK(cv::norm(cv::Point2d(sighting.u_px, sighting.v_px) - place(sighting.frame)) < 0.1);  // as above
+}
+
 TEST_CASE("No look is found where nothing moves along the path") {
   const auto nothing = [](double, double) { return -1.0; };
   CHECK_FALSE(by_template(film_look(nothing, false), rough_path(0.5)));
