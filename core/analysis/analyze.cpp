@@ -112,10 +112,20 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
   std::size_t modes = 0;  // of the cameras so far: folders share no modes
   std::vector<const Experiment*> experiment_of;
   std::vector<std::string> name_of;
+  std::vector<LeftOutClip> left_out;
+  std::optional<MarkerNotFound> first_lost;
+  std::size_t place_of_clip = 0;
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     const Experiment& experiment = experiments[e];
-    ImageResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.images);
+    ImageResults seen = tracks_of(experiment, options.jobs, progress, options.open, options.images, nullptr,
+                                  MarkerSearch::thorough, options.without_marker);
     for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
+      if (seen.without_marker[i]) {
+        left_out.push_back({experiment.clips[i].name, names[e], seen.without_marker[i]->what(), place_of_clip++, 0});
+        if (!first_lost) first_lost = seen.without_marker[i];
+        continue;
+      }
+      ++place_of_clip;
       setups.push_back(experiment.clips[i]);
       of_clips.push_back({experiment.clips[i].name, experiment.folder});
       tracks.push_back(std::move(seen.tracks[i]));
@@ -133,12 +143,15 @@ AnalysisResults analyze(const std::vector<std::filesystem::path>& folders, const
       plumbs.push_back(std::move(plumb));
     }
   }
+  if (setups.empty() && first_lost) throw MarkerNotFound(*first_lost);
   const std::vector<std::string> clips = unique_names(of_clips);
   for (std::size_t i = 0; i < setups.size(); ++i) setups[i].name = clips[i];
   AnalysisResults results = analyze_tracks(setups, tracks, gravity_of(experiments), how, options.jobs, progress);
   for (std::size_t i = 0; i < setups.size(); ++i) results.clips[i].experiment = name_of[i];
   results.calibrations = std::move(calibrations);
   results.plumbs = std::move(plumbs);
+  for (LeftOutClip& clip : left_out) clip.of = place_of_clip;
+  results.left_out = std::move(left_out);
   note_assumptions(options.bare, setups, experiment_of, results);
   return results;
 }

@@ -28,6 +28,7 @@ struct AnalysisOptions {
   LostFrameTimes lost_frames = LostFrameTimes::put_right;
   bool images = false;         ///< keep what the clips' images show besides the motion (ClipResult::images)
   TrackFileOptions bare = {};  ///< for inputs that are track files
+  WithoutMarker without_marker = WithoutMarker::an_error;  ///< in a clip; one with a marker must be left
 };
 
 /// Reads and analyses all folders (or track files) together: they share the glider and the track, but not the camera.

@@ -32,6 +32,11 @@ struct PlanePoint {
   cv::Point2d place;
 };
 
+/// Whether it is a clip of images with a marker.
+bool is_seen(const SeenClip& seen) {
+  return !seen.frame_t_s.empty();
+}
+
 std::vector<PlanePoint> restituted(const SeenClip& seen, const Restitution& restitution) {
   std::vector<PlanePoint> points;
   for (const MarkerSighting& sighting : seen.marker.sightings) {
@@ -129,6 +134,7 @@ class GroupTracks {
 
   void add_to(ImageResults& results) {
     std::vector<cv::Point2d> all;
+    if (is_lost(results)) return;
     for (const std::size_t i : clips()) {
       points_[i] = restituted(seen_[i], restitution_);
       for (const PlanePoint& point : points_[i]) all.push_back(point.place);
@@ -153,13 +159,21 @@ class GroupTracks {
   }
 
  private:
-  /// The clips of the group that have images.
+  /// The clips of the group in whose images the marker is seen.
   std::vector<std::size_t> clips() const {
     std::vector<std::size_t> of_group;
     for (std::size_t i = 0; i < experiment_.clips.size(); ++i) {
-      if (!experiment_.clips[i].file.empty() && experiment_.clips[i].group == name_) of_group.push_back(i);
+      if (is_seen(seen_[i]) && experiment_.clips[i].group == name_) of_group.push_back(i);
     }
     return of_group;
+  }
+
+  /// Whether the group has images, but none with the marker.
+  bool is_lost(const ImageResults& results) const {
+    bool any = false;
+    for (std::size_t i = 0; i < experiment_.clips.size(); ++i)
+      any = any || (results.without_marker[i] && experiment_.clips[i].group == name_);
+    return any && clips().empty();
   }
 
   /// The effect of the modes on the track: the camera's first, then this plane's, after those of the previous groups.
@@ -212,7 +226,7 @@ void take_off_codec_drag(const Experiment& experiment, const std::vector<SeenCli
   std::vector<std::size_t> of_clip;
   bool predicts = false;
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
-    if (experiment.clips[i].file.empty() || !seen[i].predicted.value_or(true)) continue;
+    if (!is_seen(seen[i]) || !seen[i].predicted.value_or(true)) continue;
     tracks.push_back({&experiment.clips[i], &results.tracks[i]});
     of_clip.push_back(i);
     predicts = predicts || seen[i].predicted.value_or(false);
@@ -354,10 +368,12 @@ void count_downwards_by_set_up(const Experiment& experiment, std::vector<TrackDa
 }  // namespace
 
 ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress, const FrameOpener& open,
-                       bool look_at_scene, const SeenPattern* seen_pattern, MarkerSearch search) {
+                       bool look_at_scene, const SeenPattern* seen_pattern, MarkerSearch search,
+                       WithoutMarker without) {
   ImageResults results;
   results.tracks.resize(experiment.clips.size());
   results.fits.resize(experiment.clips.size());
+  results.without_marker.resize(experiment.clips.size());
   std::vector<std::size_t> images;
   for (std::size_t i = 0; i < experiment.clips.size(); ++i) {
     const ClipSetup& clip = experiment.clips[i];
@@ -382,8 +398,28 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
   std::vector<SeenClip> seen(experiment.clips.size());
   FrameCounter counter(progress, images.size());
   base::for_each_parallel(images.size(), jobs, [&](std::size_t k) {
-    seen[images[k]] = see_clip(experiment, experiment.clips[images[k]], setting, open, look_at_scene, counter, search);
+    const std::size_t i = images[k];
+    try {
+      seen[i] = see_clip(experiment, experiment.clips[i], setting, open, look_at_scene, counter, search);
+    } catch (const MarkerNotFound& none) {
+      if (without == WithoutMarker::an_error) throw;
+      results.without_marker[i] = none;
+    }
   });
+  if (signal_kind(*experiment.marker) == SignalKind::colored) {
+    if (const std::optional<MarkerMethod> method = common_method(seen)) {
+      base::for_each_parallel(images.size(), jobs, [&](std::size_t k) {
+        const std::size_t i = images[k];
+        if (!is_seen(seen[i]) || measured_by(seen[i]) == *method) return;
+        try {
+          seen[i] = see_clip(experiment, experiment.clips[i], setting, open, look_at_scene, counter, search, *method);
+        } catch (const MarkerNotFound&) {
+          // It is not found in that way: the clip keeps its own, and its notes tell which.
+        }
+      });
+    }
+    measure_alike(seen);
+  }
   const bool is_disc = body_of(experiment, setting, seen) == MarkerBody::disc;
   for (auto& [name, restitution] : setting.restitutions) {
     if (is_disc) restitution.take_for_disc();

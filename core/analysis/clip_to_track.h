@@ -32,16 +32,18 @@ struct ImageResults {
   std::vector<PlumbResult> plumbs;
   std::size_t modes =
       0;  ///< independent errors of camera, planes and codec: maximum number of entries in every track's shared_m
+  std::vector<std::optional<MarkerNotFound>> without_marker;  ///< one for each clip; its track is empty then
 };
 
 /// Calibrates, tracks the marker in every clip, restitutes it to the plane of motion and projects it onto the line of
 /// motion, x positive downhill. Clips that are tracks are read with read_track. Frames stream; `jobs` clips at a time.
 /// A marker whose outlines are those of a disc in the plane of motion is restituted as one, else as a sphere. With
 /// `look_at_scene` every track has its ImageRecord. `seen_pattern`: what is already known about the pattern
-/// (restitution.h); null: its images are read. InputError for images that cannot be used (no pattern, no marker,
-/// truncated, of another size, …).
+/// (restitution.h); null: its images are read. `without`: what becomes of a clip without a marker. InputError for
+/// images that cannot be used (no pattern, no marker, truncated, of another size, …).
 ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progress& progress = base::no_progress,
                        const FrameOpener& open = open_frames, bool look_at_scene = false,
-                       const SeenPattern* seen_pattern = nullptr, MarkerSearch search = MarkerSearch::thorough);
+                       const SeenPattern* seen_pattern = nullptr, MarkerSearch search = MarkerSearch::thorough,
+                       WithoutMarker without = WithoutMarker::an_error);
 
 }  // namespace glidelab::core

@@ -171,9 +171,11 @@ std::vector<Preview> previews_of(const std::vector<std::filesystem::path>& folde
                                  const base::Progress& progress, const TrackFileOptions& bare) {
   std::vector<Preview> previews;
   int videos = 0;
+  std::size_t place = 0;
   for (const std::filesystem::path& folder : folders) {
     const Experiment experiment = read_tracks(folder, bare);
     for (const ClipSetup& setup : experiment.clips) {
+      if (std::ranges::count(results.left_out, place++, &LeftOutClip::place) > 0) continue;
       if (!setup.file.empty())
         progress("preparing images", static_cast<double>(previews.size()) / static_cast<double>(results.clips.size()));
       PreviewOptions options;

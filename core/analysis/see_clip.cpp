@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -128,7 +129,7 @@ struct Looked {
 
 Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const ClipSetup& clip,
                 const CameraAndPlanes& setting, const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
-                const AnyShape* any = nullptr) {
+                const AnyShape* any = nullptr, MarkerMethod by = MarkerMethod::undecided) {
   const bool with_color = signal_kind(marker) == SignalKind::colored;
   const auto source = open(clip.file, *experiment.camera, with_color, setting.size);
   const Restitution& restitution = setting.restitutions.at(clip.group);
@@ -142,6 +143,7 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
   MarkerTracker tracker =
       any != nullptr ? MarkerTracker::of_any_shape(clip.file, marker, radius_at, clip.start_s, any->blur_px > 0.0)
                      : MarkerTracker(clip.file, marker, radius_at, clip.start_s);
+  if (by != MarkerMethod::undecided) tracker.measure_by(by);
   SeenClip seen;
   const double stated = static_cast<double>(std::max<std::size_t>(source->stated_frames(), 1));
   constexpr std::size_t kTellEvery = 10;
@@ -186,9 +188,9 @@ namespace {
 
 /// As a disc, bright or dark.
 Looked see_disc(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                const FrameOpener& open, bool look_at_scene, FrameCounter& counter) {
+                const FrameOpener& open, bool look_at_scene, FrameCounter& counter, MarkerMethod by) {
   const auto look = [&](const MarkerSetup& sought) {
-    return look_for(sought, experiment, clip, setting, open, look_at_scene, counter);
+    return look_for(sought, experiment, clip, setting, open, look_at_scene, counter, nullptr, by);
   };
   const MarkerSetup marker = marker_in(experiment, clip);
   Looked bright = look(marker);
@@ -265,6 +267,7 @@ class FurtherLooks {
   ClipAgain again_{[this] { return open_(clip_.file, *experiment_.camera, false, setting_.size); }, 0};
   double seen_before_ = 0.0;          ///< frames in which it was found as a disc
   std::optional<SeenClip> own_look_;  ///< found by its own look
+  std::optional<NoMarker> lost_;      ///< why something that was found by its own look is not the marker
 };
 
 /// Empty if no such object is found either.
@@ -299,7 +302,9 @@ SeenClip with_marker(const SeenClip& rough, TrackedMarker marker) {
 std::optional<SeenClip> FurtherLooks::as_lit_body(const SeenClip& rough, const std::vector<FrameWindow>& windows,
                                                   const StillBackground& background) const {
   auto marker = look_again(rough.marker, windows, background, shape_at_);
-  return marker ? std::optional(with_marker(rough, *std::move(marker))) : std::nullopt;
+  if (!marker) return std::nullopt;
+  SeenClip found = with_marker(rough, *std::move(marker));
+  return not_from_start(found, marker_in(experiment_, clip_), clip_) ? std::nullopt : std::optional(std::move(found));
 }
 
 /// Keeps the first marker that is found by its own look. Whether it has a centre of its own: it is a pattern, which no
@@ -309,6 +314,10 @@ bool FurtherLooks::as_own_look(const SeenClip& rough, const std::vector<FrameWin
   if (!marker || !well_seen(*marker)) return false;
   SeenClip found = with_marker(rough, *std::move(marker));
   if (!in_more_frames(found)) return false;
+  if (auto lost = not_from_start(found, marker_in(experiment_, clip_), clip_)) {
+    lost_ = std::move(lost);
+    return false;
+  }
   const bool has_own_centre = found.marker.body == MarkerBody::disc;
   if (has_own_centre || !own_look_) own_look_ = std::move(found);
   return has_own_centre;
@@ -319,7 +328,10 @@ SeenClip FurtherLooks::after_hue(SeenClip seen) {
   auto lit = as_lit_body(seen, windows_of(seen), background_of(again_));
   if (!lit) return seen;
   const auto by_grey = roughness_of(places_of(lit->marker)), by_hue = roughness_of(places_of(seen.marker));
-  return by_grey && by_hue && *by_grey < *by_hue ? *std::move(lit) : std::move(seen);
+  const bool steadier = by_grey && by_hue && *by_grey < *by_hue;
+  SeenClip chosen = steadier ? *lit : seen;
+  chosen.by_other_means = std::make_shared<TrackedMarker>(steadier ? std::move(seen.marker) : std::move(lit->marker));
+  return chosen;
 }
 
 SeenClip FurtherLooks::after(Looked disc) {
@@ -353,15 +365,89 @@ SeenClip FurtherLooks::after(Looked disc) {
     if (rough) as_own_look(*rough, windows_of(*rough));
   }
   if (own_look_) return *std::move(own_look_);
-  if (disc.none) throw NoMarker(*disc.none);
+  if (disc.none) throw NoMarker(lost_ ? *lost_ : *disc.none);
   return steady(std::move(disc.seen), clip_);
+}
+
+/// The variance of one position about its neighbours, times the number of positions.
+double summed_variance(const TrackedMarker& marker) {
+  return std::pow(roughness_of(places_of(marker)).value_or(0.0), 2) * static_cast<double>(marker.sightings.size());
 }
 
 }  // namespace
 
+std::optional<NoMarker> not_from_start(const SeenClip& seen, const MarkerSetup& marker, const ClipSetup& clip) {
+  if (!marker.start_px || seen.marker.sightings.empty()) return std::nullopt;
+  const std::vector<double>& t_s = seen.frame_t_s;
+  const auto start =
+      std::ranges::min_element(t_s, {}, [&](double t) { return std::abs(t - clip.start_s.value_or(t_s.front())); });
+  const auto frame = static_cast<std::size_t>(start - t_s.begin());
+  std::vector<PlaceInFrame> places;
+  for (const MarkerSighting& sighting : seen.marker.sightings)
+    places.push_back({sighting.frame, {sighting.u_px, sighting.v_px}});
+  const cv::Point2d at(marker.start_px->x, marker.start_px->y);
+  const bool is_before = frame<places.front().frame, is_after = frame> places.back().frame;
+  const cv::Point2d end = is_after ? places.back().at : places.front().at;
+  // Beyond an end of the track, it may have been at rest, or have bounced.
+  const cv::Point2d expected = place_by_neighbours(places, frame, false).value_or(end);
+  const double off = cv::norm(expected - at), from_end = is_before || is_after ? cv::norm(end - at) : off;
+  const double allowed = farthest_from_start(seen.marker.sightings.front().radius_px);
+  if (std::min(off, from_end) <= allowed) return std::nullopt;
+  return NoMarker(base::Issue{
+      clip.file.string(), 0, "marker",
+      fmt::format("no marker that can be followed from start_px = [{:.1f}, {:.1f}] in frame {}: what is followed {} "
+                  "{:.0f} px away from there",
+                  at.x, at.y, frame,
+                  is_before  ? fmt::format("is first seen in frame {},", places.front().frame)
+                  : is_after ? fmt::format("is last seen in frame {},", places.back().frame)
+                             : std::string("is"),
+                  from_end),
+      "one thing of the stated diameter that stands out from its surroundings in every frame, as a plain disc does, or "
+      "another start_px"});
+}
+
+MarkerMethod measured_by(const SeenClip& clip) {
+  const bool is_lit = clip.by_other_means && clip.marker.body;
+  return is_lit ? clip.by_other_means->method : clip.marker.method;
+}
+
+std::optional<MarkerMethod> common_method(const std::vector<SeenClip>& clips) {
+  std::map<MarkerMethod, std::size_t> frames;
+  for (const SeenClip& clip : clips) {
+    if (!clip.marker.sightings.empty()) frames[measured_by(clip)] += clip.marker.sightings.size();
+  }
+  if (frames.size() < 2) return std::nullopt;
+  return std::ranges::max_element(frames, {}, [](const auto& of) { return of.second; })->first;
+}
+
+void measure_alike(std::vector<SeenClip>& clips) {
+  const auto is_by_hue = [](const TrackedMarker& marker) { return !marker.body.has_value(); };
+  bool all_lit = true, any_both = false;
+  double by_hue = 0.0, lit = 0.0;
+  for (const SeenClip& clip : clips) {
+    if (clip.marker.sightings.empty()) continue;
+    if (!clip.by_other_means) {
+      all_lit = false;
+      continue;
+    }
+    any_both = true;
+    for (const TrackedMarker* marker : {&clip.marker, clip.by_other_means.get()})
+      (is_by_hue(*marker) ? by_hue : lit) += summed_variance(*marker);
+  }
+  if (!any_both) return;
+  const bool as_lit = all_lit && lit < by_hue;
+  for (SeenClip& clip : clips) {
+    if (!clip.by_other_means || is_by_hue(clip.marker) != as_lit) continue;
+    auto other = std::make_shared<TrackedMarker>(*clip.by_other_means);
+    clip = with_marker(clip, *other);
+  }
+}
+
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
-                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter, MarkerSearch search) {
-  Looked disc = see_disc(experiment, clip, setting, open, look_at_scene, counter);
+                  const FrameOpener& open, bool look_at_scene, FrameCounter& counter, MarkerSearch search,
+                  MarkerMethod by) {
+  Looked disc = see_disc(experiment, clip, setting, open, look_at_scene, counter, by);
+  if (!disc.none) disc.none = not_from_start(disc.seen, marker_in(experiment, clip), clip);
   FurtherLooks further(experiment, clip, setting, open, look_at_scene, counter);
   if (signal_kind(*experiment.marker) == SignalKind::colored) {
     SeenClip seen = std::move(disc).marker();

@@ -28,7 +28,25 @@ struct SeenClip {
   std::shared_ptr<ImageRecord> images;  ///< if requested
   bool dark_marker = false;             ///< seen as darker than its surroundings, with no stated colour
   std::optional<bool> predicted;        ///< whether a lossy codec predicts images from earlier ones; empty if not known
+  /// Of a marker with a hue, measured by that alone and as a lit body: by whichever of the two the marker above is not.
+  std::shared_ptr<const TrackedMarker> by_other_means = {};
 };
+
+/// Why a track is not that of the object at start_px: in the frame to which start_px refers it is elsewhere or, beyond
+/// its ends, neither is it on its way from there nor has it been at rest there. Empty if it may be that object, and if
+/// no start_px is given.
+std::optional<NoMarker> not_from_start(const SeenClip& seen, const MarkerSetup& marker, const ClipSetup& clip);
+
+/// The method by which a marker with a hue is measured, before it may be fitted as a lit body.
+MarkerMethod measured_by(const SeenClip& clip);
+
+/// The method by which a marker with a hue is measured in most frames of the clips; empty if it is one in all of them.
+/// The centroid of a hue and the disc that is fitted to it differ by an offset, so that clips have to agree.
+std::optional<MarkerMethod> common_method(const std::vector<SeenClip>& clips);
+
+/// The same for a marker that was measured by its hue alone and as a lit body: takes the body if there is one in every
+/// clip and if it is the steadier on average over their frames, else the hue.
+void measure_alike(std::vector<SeenClip>& clips);
 
 /// Counts frames over all clips for the progress; clips may be processed concurrently.
 class FrameCounter {
@@ -51,9 +69,10 @@ enum class MarkerSearch {
 
 /// Reads the clip once or twice: a marker without a stated colour is searched for as a bright disc and, if a bright one
 /// is hardly seen but a dark one well, as a dark disc. With `look_at_scene` there is a ImageRecord. InputError for
-/// images that cannot be used, NoMarker (marker_track.h) if there is no marker.
+/// images that cannot be used, NoMarker (marker_track.h) if there is no marker. `by`: the method for a marker with a
+/// hue.
 SeenClip see_clip(const Experiment& experiment, const ClipSetup& clip, const CameraAndPlanes& setting,
                   const FrameOpener& open, bool look_at_scene, FrameCounter& counter,
-                  MarkerSearch search = MarkerSearch::thorough);
+                  MarkerSearch search = MarkerSearch::thorough, MarkerMethod by = MarkerMethod::undecided);
 
 }  // namespace glidelab::core

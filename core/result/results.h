@@ -302,6 +302,21 @@ struct PlumbResult {
   std::string experiment = {};  ///< as in ClipResult: another folder's group of that name is another set-up
 };
 
+/// What a clip is in which the marker is not found.
+enum class WithoutMarker {
+  an_error,  ///< of the whole experiment
+  left_out   ///< while the other clips are analysed
+};
+
+/// A clip of a folder that is not analysed, because its marker was not found.
+struct LeftOutClip {
+  std::string name;
+  std::string experiment;  ///< as in ClipResult
+  std::string why;         ///< what was found in the clip, and what is needed
+  std::size_t place = 0;   ///< among the clips of all folders, in order,
+  std::size_t of = 0;      ///< and the number of those
+};
+
 struct AnalysisResults {
   double gravity_m_s2 = 0.0;
   double gravity_sd_m_s2 = 0.0;  ///< in alpha and mu (core/experiment/local_gravity.h)
@@ -310,6 +325,15 @@ struct AnalysisResults {
   std::vector<CalibrationResult> calibrations;            ///< one for each folder that has a pattern
   std::vector<PlumbResult> plumbs;                        ///< one for each group that has a plumb line
   std::string estimator = name_of(LineMethod::ordinary);  ///< a name of fit/estimators.h
+  std::vector<LeftOutClip> left_out = {};                 ///< in order; `clips` has the others
 };
+
+/// What belongs to the clips of the results, of what belongs to the clips of all folders in order.
+template <class T>
+std::vector<T> of_analysed(const AnalysisResults& results, std::vector<T> of_all) {
+  for (auto clip = results.left_out.rbegin(); clip != results.left_out.rend(); ++clip)
+    of_all.erase(of_all.begin() + static_cast<std::ptrdiff_t>(clip->place));
+  return of_all;
+}
 
 }  // namespace glidelab::core
