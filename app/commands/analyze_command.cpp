@@ -72,7 +72,8 @@ std::optional<diagnose::GivenCauses> with_causes(const AnalyzeOptions& options, 
     setups.insert(setups.end(), experiment.clips.begin(), experiment.clips.end());
     cameras.resize(setups.size(), experiment.camera);
   }
-  return diagnose::fit_given_causes(results, setups, cameras, options.with, kWith, progress);
+  return diagnose::fit_given_causes(results, core::of_analysed(results, std::move(setups)),
+                                    core::of_analysed(results, std::move(cameras)), options.with, kWith, progress);
 }
 
 /// A smoother that finds its own strength has no bandwidth, and lines fitted to local cubics need one.
@@ -118,6 +119,7 @@ void analyze(const AnalyzeOptions& options) {
   how.lines = estimator.lines;
   how.smoother = options.smoother;
   how.images = !options.with.empty();
+  how.without_marker = core::WithoutMarker::left_out;
   const core::AnalysisResults results =
       fit::estimate_and_compare(estimator, core::analyze(folders, how, progress), {.robust = options.robust});
   const std::optional<diagnose::GivenCauses> given = with_causes(options, folders, results, progress);

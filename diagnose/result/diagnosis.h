@@ -292,9 +292,10 @@ struct Diagnosis {
   std::vector<Note> notes;
   std::string twin;  ///< the fitted motions as a scenario file; empty for a table of lines
   std::vector<TwinLack> twin_lacks;
-  std::vector<LikelyTwin> likely_twins;  ///< the reported explanation first; empty for a table of lines
-  double twin_from_m = 0.0;              ///< x of the data where the twin's x is 0
-  std::vector<MeasuredMotion> measured;  ///< of the clips that a twin repeats; empty for a table of lines
+  std::vector<LikelyTwin> likely_twins;          ///< the reported explanation first; empty for a table of lines
+  double twin_from_m = 0.0;                      ///< x of the data where the twin's x is 0
+  std::vector<MeasuredMotion> measured;          ///< of the clips that a twin repeats; empty for a table of lines
+  std::vector<core::LeftOutClip> left_out = {};  ///< clips that are not part of it
 };
 
 /// The explanations of the ranking with a probability of 1 % or more whose fits did not reach a minimum; none if all

@@ -155,14 +155,16 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
 }
 
 core::AnalysisResults analyze_for_diagnosis(const std::vector<std::filesystem::path>& folders,
-                                            const DiagnoseOptions& options, const base::Progress& progress) {
+                                            const DiagnoseOptions& options, const base::Progress& progress,
+                                            core::WithoutMarker without) {
   refuse_heights(folders, options.bare);
   return core::analyze(folders,
                        {.bandwidth_s = {},
                         .jobs = options.jobs,
                         .lost_frames = core::LostFrameTimes::kept,
                         .images = true,
-                        .bare = options.bare},
+                        .bare = options.bare,
+                        .without_marker = without},
                        progress);
 }
 
@@ -185,8 +187,12 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
     experiments.push_back(experiment);
   }
   indices(options.without);  // a misspelt id is refused before the clips are read
-  const core::AnalysisResults results = analyze_for_diagnosis(folders, options, progress);
-  return diagnose_results(results, setups, options, progress, cameras, experiments);
+  const core::AnalysisResults results =
+      analyze_for_diagnosis(folders, options, progress, core::WithoutMarker::left_out);
+  Diagnosis diagnosis = diagnose_results(results, core::of_analysed(results, std::move(setups)), options, progress,
+                                         core::of_analysed(results, std::move(cameras)), experiments);
+  diagnosis.left_out = results.left_out;
+  return diagnosis;
 }
 
 }  // namespace glidelab::diagnose

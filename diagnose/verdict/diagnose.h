@@ -27,7 +27,7 @@ struct DiagnoseOptions {
 
 /// The diagnosis of the experiment in these folders, or of one table of lines. InputError for a faulty folder, for data
 /// that allow no verdict (too few positions, no free motion), for a table of lines beside other folders, and for an
-/// unknown effect in `without`.
+/// unknown effect in `without`. A clip without a marker is left out and named (Diagnosis::left_out), unless all are.
 Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const DiagnoseOptions& options,
                    const base::Progress& progress = base::no_progress);
 
@@ -35,7 +35,8 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& folders, const Diag
 /// InputError, before anything is analysed, for a file whose x is a height while no inclination is stated.
 core::AnalysisResults analyze_for_diagnosis(const std::vector<std::filesystem::path>& folders,
                                             const DiagnoseOptions& options,
-                                            const base::Progress& progress = base::no_progress);
+                                            const base::Progress& progress = base::no_progress,
+                                            core::WithoutMarker without = core::WithoutMarker::an_error);
 
 /// The same from such an analysis. `setups` are the clips of all folders in order. `cameras` is what is stated of each
 /// clip's camera; without it, the images do not count. `folders` is what else the folders state, for a twin's camera.

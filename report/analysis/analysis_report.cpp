@@ -13,6 +13,7 @@
 #include "core/result/why_unknown.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/fitted_curve.h"
+#include "report/analysis/left_out_clips.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
 #include "report/analysis/sections.h"
@@ -199,8 +200,9 @@ std::string analysis_text(const core::AnalysisResults& results) {
           fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)), base::printable_text(words));
     }
   }
-  std::string text =
-      analysis_answer(results, " (but the law is in doubt: see below the table)") + "\n\n" + text_table(rows, 3);
+  std::string text = left_out_text(results.left_out) +
+                     analysis_answer(results, " (but the law is in doubt: see below the table)") + "\n\n" +
+                     text_table(rows, 3);
   if (!doubts.empty()) text += fmt::format("* {}\n", kIfItHeld);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
   rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
@@ -314,6 +316,7 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
                      const std::vector<core::Preview>& previews, const base::Progress& progress,
                      const Html& with_causes) {
   Html body = question_heading(title, "What are K/m, µ and α?");
+  body += left_out_html(results.left_out);
   // Whether the law fits, and what the numbers mean, comes before the numbers.
   const bool in_doubt = !doubts_about(results).empty();
   const bool few = results.configurations.size() <= kFew;

@@ -12,6 +12,7 @@
 #include "core/result/quantity.h"
 #include "core/result/results.h"
 #include "report/analysis/doubts.h"
+#include "report/analysis/left_out_clips.h"
 #include "report/analysis/motion_plots.h"
 #include "report/analysis/note_words.h"
 #include "report/text/display_text.h"
@@ -269,6 +270,7 @@ std::string results_json(const core::AnalysisResults& results, const Json& with)
     }
   }
   document["inclination"] = inclination_json(results);
+  document["clips_left_out"] = left_out_json(results.left_out);
   document["doubts"] = doubts_about(results);
   if (!with.is_null()) document["with"] = with;
   return json_text(document);

@@ -8,6 +8,7 @@
 
 #include "base/math/distributions.h"
 #include "report/analysis/camera_plots.h"
+#include "report/analysis/left_out_clips.h"
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/diagnosis/words/image_words.h"
@@ -227,6 +228,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& diagnosis) {
   document["format"] = 1;
   document["verdict"] = verdict_id(diagnosis.verdict);
   document["points"] = diagnosis.points;
+  document["clips_left_out"] = left_out_json(diagnosis.left_out);
   document["summary"] = verdict_words(diagnosis);
   document["effects"] = Json::array();
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) document["effects"].push_back(effect_json(effect));

@@ -8,6 +8,7 @@
 #include "base/text/number_text.h"
 #include "base/text/readable_text.h"
 #include "diagnose/effects/effect_library.h"
+#include "report/analysis/left_out_clips.h"
 #include "report/diagnosis/diagnosis_answer.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/gap_plots.h"
@@ -235,6 +236,7 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
                       const std::vector<validate::TwinMotion>& twin) {
   if (diagnosis.lines) return line_report(title, diagnosis);
   Html body = question_heading(title, kDiagnosisQuestion);
+  body += left_out_html(diagnosis.left_out);
   body += diagnosis_meaning(diagnosis);
   // The sentence about the causes contains what the tiles would say.
   const bool told = !sequence_words(diagnosis).empty();
@@ -340,7 +342,8 @@ std::string sequence_lines(const diagnose::Diagnosis& diagnosis) {
 }  // namespace
 
 std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
-  std::string text = fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), verdict_id(diagnosis.verdict));
+  std::string text = left_out_text(diagnosis.left_out);
+  text += fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), verdict_id(diagnosis.verdict));
   const std::string sequence = diagnosis.lines ? std::string() : sequence_lines(diagnosis);
   if (!sequence.empty()) text += sequence + "next: " + wrapped(next_step_words(diagnosis.next)) + "\n";
   std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "log evidence"}};
