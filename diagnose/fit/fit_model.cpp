@@ -48,6 +48,11 @@ bool begins_with_its_clip(const TrackSet& set, const TrackedMotion& motion) {
   return motion.t_s.front() <= kFewFrames / set.clips[motion.clip].frame_rate_hz;
 }
 
+double least_filmed_jitter_s(double top_px_s) {
+  constexpr double kShortExposure_s = 1e-3, kPixelError_px = 0.015;
+  return std::max(0.01 * kShortExposure_s, top_px_s > 0.0 ? kPixelError_px / top_px_s : 0.0);
+}
+
 ParameterRange range_of_places(const TrackSet& set) {
   ParameterRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const TrackedMotion& motion : set.motions) {

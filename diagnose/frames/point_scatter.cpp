@@ -184,8 +184,9 @@ void SpeedScatter::add(const SpeedScatter& of_a_motion) {
 
 SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, double independent) {
   SpeedNoise found;
-  double step = 0.0, sd = 0.0;
+  double step = 0.0, sd = 0.0, m_per_px = 0.0;
   for (const TrackedMotion& motion : set.motions) {
+    m_per_px = std::max(m_per_px, motion.m_per_px);
     step = std::max(step, 1.0 / set.clips[motion.clip].frame_rate_hz);
     sd += motion.sd_m / static_cast<double>(set.motions.size());
   }
@@ -206,11 +207,11 @@ SpeedNoise find_speed_noise(const TrackSet& set, const SpeedScatter& scatter, do
   const double none = log_likelihood(0.0);
   std::vector<double> logs;
   // Starts at the size that begins to show among n points, in units of the jitter that makes one standard deviation of
-  // position at top speed. In images it starts above what the marker's blur can cause, whose noise grows with the speed
-  // as well.
+  // position at top speed. In images it starts above what the marker's blur and its place in the pixel can cause, whose
+  // noise grows with the speed as well.
   const double unit = sd / scatter.top_m_s;
   const double least = 2.0 * std::pow(2.0 / (independent * n), 0.25) * unit;
-  const double least_s = set.images ? kLeastFilmedJitter_s : 0.0;
+  const double least_s = set.images ? least_filmed_jitter_s(m_per_px > 0.0 ? scatter.top_m_s / m_per_px : 0.0) : 0.0;
   for (double tau = least; tau < 40.0 * scatter.widest * unit && tau < 0.5 * step; tau *= 1.3) {
     const double gain = log_likelihood(tau) - none;
     if (tau * std::sqrt(mean_square) < least_s) continue;

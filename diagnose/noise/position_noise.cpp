@@ -337,12 +337,13 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
   std::vector<Dial> all = {times};
   all.insert(all.end(), dials.begin(), dials.end());
   climb(likelihood, all, uneven, with);
+  const double least_s = least_filmed_jitter_s(set.images ? top_px_s : 0.0);
   std::vector<OfSpeed> of_speed;
   for (const double tau : times.values) {
     uneven.jitter_s = tau;
     Likelihood there = likelihood.of(uneven);
     const double jitter_s = tau * there.white_px / pilot_px;  // the pilot may hold the jitter of the mean speed
-    if (jitter_s < kLeastFilmedJitter_s || jitter_s > 0.5 * step_s) continue;
+    if (jitter_s < least_s || jitter_s > 0.5 * step_s) continue;
     of_speed.push_back({tau / unit, jitter_s, there.value - best.value, std::move(there)});
   }
   if (const OfSpeed* chosen = weigh_speed(of_speed, set.handed_on, noise)) {

@@ -164,7 +164,20 @@ TEST_CASE("no jitter is found at rest, in few positions, and in images below wha
   CHECK(std::abs(std::log(diagnose::find_speed_noise(small, scatter, 1.0).jitter_s / 5e-6)) < std::log(1.3));
   small.images = true;
   const double filmed_s = diagnose::find_speed_noise(small, scatter, 1.0).jitter_s;
-  CHECK((filmed_s == 0.0 || filmed_s >= diagnose::kLeastFilmedJitter_s));
+  CHECK((filmed_s == 0.0 || filmed_s >= diagnose::least_filmed_jitter_s(0.0)));
+}
+
+TEST_CASE("in images, jitter that moves a marker by less than its place in the pixel does is none") {
+  diagnose::TrackSet set = at_rates({100.0}, 5e-6);
+  set.images = true;
+  const diagnose::SpeedScatter scatter = scattered(set, 15e-6, 3000, 5);  // up to 1 m/s
+  set.motions[0].m_per_px = 1e-3;                                         // 0.015 px at 1000 px/s is 15 µs
+  CHECK(diagnose::find_speed_noise(set, scatter, 1.0).jitter_s > 12e-6);
+  set.motions[0].m_per_px = 2e-3;
+  const double coarse_s = diagnose::find_speed_noise(set, scatter, 1.0).jitter_s;
+  CHECK((coarse_s == 0.0 || coarse_s >= 0.015 / 500.0));
+  set.motions[0].m_per_px = 0.5e-3;
+  CHECK(std::abs(std::log(diagnose::find_speed_noise(set, scatter, 1.0).jitter_s / 15e-6)) < std::log(1.3));
 }
 
 TEST_CASE("a motion's scatter counts over the noise of its speed, and joins that of others") {
