@@ -97,8 +97,8 @@ void add_certify(CLI::App& app, Command& chosen) {
   command
       ->add_option(
           "--twins", options->twins,
-          "Number of twins to record. Of a filmed recording, each change that may help is filmed 5 to 10 times "
-          "besides")
+          "Number of twins to record. For a filmed recording, each change that may help is filmed another 5 to 10 "
+          "times")
       ->type_name("N")
       ->check(CLI::Range(validate::kFewestTwins, validate::kMostTwins))
       ->capture_default_str();

@@ -173,7 +173,7 @@ void add_challenge(CLI::App& app, Command& chosen) {
       ->type_name("FILE");
   command->add_option("--estimator", options->estimator, "For run: one of Glidelab's own estimators")
       ->check(CLI::IsMember(fit::estimator_names()));
-  add_outside_options(*command, options->outside, "For run: an estimator of your own, which answers");
+  add_outside_options(*command, options->outside, "For run: an estimator of your own");
   add_common_options(*command, options->common,
                      "glidelab-out/answers-<name of the estimator>, glidelab-out/challenge-<name of the folder>",
                      "For make: seed of the cases, stored only in the truth file; default: 1");

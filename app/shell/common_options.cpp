@@ -283,8 +283,8 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
       ->needs(incline);
   CLI::Option* gravity = command
                              .add_option("--gravity", options.gravity_m_s2,
-                                         "For a file: gravity at its place in m/s², known to its last digit; "
-                                         "without it 9.80665, known to 0.015")
+                                         "For a file: local gravity in m/s², taken as known to its last digit; "
+                                         "default: 9.80665 ± 0.015")
                              ->type_name("M_S2")
                              ->check(check_above_0);
   command.add_option("--gravity-sd", options.gravity_sd_m_s2, "With --gravity: its standard deviation in m/s²")
@@ -306,8 +306,8 @@ void add_bare_options(CLI::App& command, core::TrackFileOptions& options) {
   command
       .add_option_function<std::string>(
           "--recorded-by", [&options](const std::string& by) { options.recorded_by = core::recorder_named(by); },
-          "For a file: what measured the positions; default: a table's header may tell. A sensor's positions have none "
-          "of the errors that only a camera makes")
+          "For a file: what measured the positions; default: as the table's header says, if it does. A sensor's "
+          "positions have none of the errors that only a camera makes")
       ->type_name("sensor|camera")
       ->check(check_recorder);
   add_permissions(command, options.permitted);

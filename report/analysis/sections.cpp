@@ -181,7 +181,7 @@ Html camera_section(const core::AnalysisResults& results) {
   for (const core::CalibrationResult& calibration : results.calibrations) {
     text += fmt::format(
         "<p>{}: calibrated from {} views, corners reprojected to {} px (rms). In the plane of motion the pattern's "
-        "corners are restituted to {} mm (rms).</p>\n",
+        "corners are reproduced to {} mm (rms).</p>\n",
         escape(calibration.experiment), calibration.views_used, base::number_text(calibration.rms_px, 2),
         base::number_text(calibration.restitution_rms_m * 1e3, 2));
     text += fmt::format(

@@ -185,12 +185,12 @@ std::string explanation_words(const Certificate& certificate) {
                      percent(worst->coverage.share));
 }
 
-/// "The twins are without …: read the answer with that in mind."; empty if nothing is missing.
+/// "The twins leave out …, unlike the recording."; empty if nothing is missing.
 std::string all_lacks(const Certificate& certificate) {
   if (certificate.without.empty()) return {};
   std::string lacks;
   for (const validate::NotInTwins& lack : certificate.without) lacks += (lacks.empty() ? "" : "; ") + lack_words(lack);
-  return fmt::format("The twins leave out {}, which the recording has. The answer holds if that does not matter.",
+  return fmt::format("The twins leave out {}, unlike the recording. The answer holds only if this does not matter.",
                      lacks);
 }
 

@@ -114,7 +114,7 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
   return {
       Drawing{script, std::vector{data}},
       fmt::format("{} {} over {} that would explain the gap, with two standard deviations{}",
-                  alternatives > 1 ? "One smooth" : "The smooth", to_text(curve.what), axis_of(curve.variable),
+                  alternatives > 1 ? "A smooth" : "The smooth", to_text(curve.what), axis_of(curve.variable),
                   alternatives > 1 ? fmt::format(": any one of these {} curves alone, not all of them", alternatives)
                                    : std::string()),
       fmt::format("Curve of the {} over {}", to_text(curve.what), axis_of(curve.variable))};

@@ -62,12 +62,11 @@ std::string advice(const diagnose::Plan& plan) {
 }
 
 constexpr const char* kPlanMethod =
-    "An effect is seen when it changes the positions by four standard deviations after everything that a fit may "
-    "adjust (K, µ, inclinations, starts) has been adjusted, and if a diagnosis of so many clips may name it. Two "
-    "effects are alike where the angle between the changes "
-    "that remain is below 18 degrees (cosine 0.95). The table has the effects that change the positions in one way, "
-    "more or less strongly; waves, late releases, missing frames, uneven frame times and outliers have no single such "
-    "change and are not in it.";
+    "An effect counts as seen if it changes the positions by four standard deviations after everything that a fit may "
+    "adjust (K, µ, inclinations, starts) has been adjusted, and if a diagnosis of this many clips may name it. Two "
+    "effects are alike if the angle between the changes that remain is below 18 degrees (cosine 0.95). The table has "
+    "the effects that change the positions in one way, more or less strongly; waves, late releases, missing frames, "
+    "uneven frame times and outliers have no single such change and are not in it.";
 
 }  // namespace
 

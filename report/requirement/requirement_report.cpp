@@ -239,18 +239,16 @@ std::string how_judged(const Requirement& requirement) {
       order_text(requirement), judged_by_text(requirement));
   return text +
          fmt::format(
-             "<p>95 % of the runs stay within the 95 % error (of fewer than 20 runs: 1.96 times their rms error). A "
-             "target is reached where the error's upper limit (“at most”) is within it, and missed "
-             "where the lower limit is beyond it: with {} runs or more the limits are two of their errors, with fewer "
-             "they assume normal errors, and few runs decide only what is far from the target; if one of fewer is "
-             "beyond the target, “at most” is not below that error, and the target is not reached. “Judged by” names "
-             "the estimator with the smaller error; one without an answer in a run is infinitely far off there. ± is "
-             "one "
-             "standard "
-             "deviation, from {} bootstrap resamples of the runs (of fewer than 20: that of normal errors; bias: that "
-             "of the errors over the root of their number). “Runs beyond the target” are those, of all that were made, "
-             "whose error is larger: a few that are far off come from the clock, such as frames lost without a trace, "
-             "not from noise.</p>\n",
+             "<p>95 % of the runs stay within the 95 % error (for fewer than 20 runs: 1.96 times their rms error). A "
+             "target is reached if the error's upper limit (“at most”) is within it, and missed if the lower limit is "
+             "beyond it. With {} runs or more the limits are two of their errors; with fewer they assume normal "
+             "errors, so that few runs decide only what is far from the target. If one of fewer runs is beyond the "
+             "target, “at most” is not below that error, and the target is not reached. “Judged by” names the "
+             "estimator with the smaller error; one without an answer in a run counts as infinitely far off there. ± "
+             "is one standard deviation, from {} bootstrap resamples of the runs (for fewer than 20: that of normal "
+             "errors; for a bias: that of the errors over the root of their number). “Runs beyond the target” counts, "
+             "of all runs made, those with a larger error: a few that are far off come from the clock, such as frames "
+             "lost without a trace, not from noise.</p>\n",
              validate::kRunsForQuantile, validate::kResamples);
 }
 

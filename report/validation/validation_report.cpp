@@ -221,9 +221,8 @@ std::string agreement_of(const validate::Comparison& comparison) {
   text +=
       fmt::format("{} of {} recovered values lie within two of their standard deviations of the truth", near, compared);
   if (farthest != nullptr) {
-    text +=
-        fmt::format("; the largest error is that of {} of {} {}: {} standard deviations", symbol_of(farthest->quantity),
-                    farthest->configuration, by_estimator(farthest->estimator), base::digits_text(worst, 2));
+    text += fmt::format("; the largest error: {} of {} {}, {} standard deviations", symbol_of(farthest->quantity),
+                        farthest->configuration, by_estimator(farthest->estimator), base::digits_text(worst, 2));
   }
   return text + ".";
 }
