@@ -61,6 +61,21 @@ std::vector<SameCauses> by_causes(const std::vector<Hypothesis>& all) {
   return list;
 }
 
+/// Whether it has a cause that makes a gap beside the drag of air, and a fit.
+bool is_beside_drag_of_air(const Hypothesis& one) {
+  if (one.unnamed || one.fit <= 0 || !has(one, effect_index(ids::quadratic_drag))) return false;
+  return std::count_if(one.effects.begin(), one.effects.end(),
+                       [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); }) > 1;
+}
+
+/// What the drag of air alone leaves in a fall; none elsewhere, or if that was not measured.
+std::optional<double> excess_of_drag_of_air(const LeftExcess& excess, const Comparison& comparison) {
+  const Hypothesis* drag = find(comparison, {effect_index(ids::quadratic_drag)});
+  if (!excess.without_drag || drag == nullptr || drag->fit <= 0) return {};
+  const double left = excess.of_fits[static_cast<std::size_t>(drag->fit)];
+  return left > kNoClipHeldOut ? std::optional(left) : std::nullopt;
+}
+
 double tempered(double behind) {
   return -kTailPower * std::log1p(behind / kTailScale);
 }
@@ -83,13 +98,19 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
   for (Hypothesis& one : all) {
     one.left = part_left(one.fit > 0 ? left[static_cast<std::size_t>(one.fit)] : left.front(), before(one));
   }
+  const std::optional<double> of_drag = excess_of_drag_of_air(excess, comparison);
   std::vector<double> logs;
   for (const SameCauses& group : groups) {
     const Hypothesis& one = all[group.plain];
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = tempered(best - evidence);
     if (no_noise) log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
-    if (makes_a_gap(one)) log += named(before(one)) - kLeftSlope * *one.left;
+    if (of_drag && is_beside_drag_of_air(one)) {
+      log += named(before(one)) - kLeftSlope * part_left(*of_drag, before(one));
+      log += named(*of_drag) - kLeftSlope * part_left(left[static_cast<std::size_t>(one.fit)], *of_drag);
+    } else if (makes_a_gap(one)) {
+      log += named(before(one)) - kLeftSlope * *one.left;
+    }
     if (one.unnamed && one.effects.empty()) {
       log += std::max(
           0.0, named(left.front()) - kAgainstUnnamedAlone - kLeftSlope * part_left(excess.of_unnamed, left.front()));

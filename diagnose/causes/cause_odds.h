@@ -19,6 +19,10 @@
 /// constants make the true causes of simulated experiments likeliest (blind --everyday);
 /// docs/evidence/blind-everyday.md says how they were found, and how well they hold on other experiments.
 ///
+/// In a fall through air the drag of air takes nearly all of the excess of a fall without drag, so that r would not
+/// tell what a further cause does. It counts in two steps there: the drag by what it leaves of a fall without drag, and
+/// the further causes by what they leave of what the drag alone leaves, each with the terms above.
+///
 /// The scatter of single positions makes no gap. Explanations that differ only in such scatter are one explanation of
 /// the gap. Its odds are those of the one without scatter, however strong the evidence of the scatter; they share its
 /// probability by their evidence.

@@ -18,7 +18,7 @@
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
-#include "diagnose/weigh/air_odds.h"
+#include "diagnose/weigh/fit_odds.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -143,7 +143,7 @@ std::vector<Hypothesis> beside(const Comparison& comparison, const LeftExcess& e
   Comparison so_far;
   so_far.all = comparison.all;
   so_far.odds = comparison.odds;
-  so_far.air_odds = comparison.air_odds;
+  so_far.fit_odds = comparison.fit_odds;
   weigh_beside_remainder(excess, so_far);
   double likeliest = 0.0;
   for (const Hypothesis& one : so_far.all) {  // by falling probability
@@ -163,7 +163,7 @@ std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const
   Comparison so_far;
   so_far.all = comparison.all;
   so_far.odds = comparison.odds;
-  so_far.air_odds = comparison.air_odds;
+  so_far.fit_odds = comparison.fit_odds;
   weigh_beside_remainder(excess, so_far);
   std::vector<Hypothesis> laws;
   for (const Hypothesis& one : so_far.all) {  // by falling probability
@@ -363,7 +363,7 @@ void CauseWeighing::take_own_evidence() {
                              : -kNotWeighed;
   }
   std::erase_if(all, [](const Hypothesis& one) { return one.unnamed; });
-  set_air_odds(weighed_.set, comparison());
+  set_fit_odds(weighed_.set, comparison());
 }
 
 /// The likeliest laws that leave much of the gap, each together with clip scatter.
@@ -375,7 +375,7 @@ void CauseWeighing::add_laws_with_clip_scatter() {
   base::for_each_parallel(pairs.size(), jobs_,
                           [&](std::size_t k) { found[k] = settled(set_, pairs[k].both, sizes_of(pairs[k].law)); });
   for (std::size_t k = 0; k < pairs.size(); ++k) add(std::move(pairs[k]), std::move(found[k]));
-  set_air_odds(weighed_.set, comparison());  // of the fits that were added
+  set_fit_odds(weighed_.set, comparison());  // of the fits that were added
 }
 
 /// A weighed fit at its minimum by the noise alone; it stands at the one beside its remainder.

@@ -30,7 +30,8 @@ constexpr double kFastestLossy = 0.2;   // the same after a codec, which takes t
                                         // with its own error
 constexpr double kLatestRelease = 0.4;  // fraction of the longest motion: anything later is not at the start
 constexpr double kFewFrames = 3.0;
-constexpr double kShortestPush = 4.0;  // frames: a push that ends earlier is an error of single frames
+constexpr double kReachOfHand_m = 0.15;  // a hand does not follow a body that falls further
+constexpr double kShortestPush = 4.0;    // frames: a push that ends earlier is an error of single frames
 
 ParameterRange range_of_waves(const TrackSet& set) {
   double longest = 0.0, rate = std::numeric_limits<double>::infinity();
@@ -40,6 +41,14 @@ ParameterRange range_of_waves(const TrackSet& set) {
     rate = std::min(rate, static_cast<double>(motion.t_s.size() - 1) / span);
   }
   return {kFewestTurns / longest, (set.lossy ? kFastestLossy : kFastest) * rate};
+}
+
+/// Until when a motion is within a hand's reach of its start.
+double time_within_reach(const TrackedMotion& motion) {
+  const auto beyond = std::find_if(motion.x_m.begin(), motion.x_m.end(),
+                                   [&](double x) { return std::abs(x - motion.x_m.front()) > kReachOfHand_m; });
+  return beyond == motion.x_m.end() ? motion.t_s.back()
+                                    : motion.t_s[static_cast<std::size_t>(beyond - motion.x_m.begin())];
 }
 
 }  // namespace
@@ -66,15 +75,17 @@ ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter, c
   if (parameter.reach == Reach::waves) return range_of_waves(set);
   ParameterRange range{parameter.low, parameter.high};
   if (parameter.reach == Reach::release) {
-    double longest = 0.0, frame = 0.0;
+    double longest = 0.0, frame = 0.0, within_reach = 0.0;
     for (const TrackedMotion& motion : set.motions) {
       if (!begins_with_its_clip(set, motion)) continue;
       longest = std::max(longest, motion.t_s.back());
+      within_reach = std::max(within_reach, time_within_reach(motion));
       frame = std::max(frame, 1.0 / set.clips[motion.clip].frame_rate_hz);
     }
     if (longest > 0.0) {
       range.low = kShortestPush * frame;
       range.high = std::max(range.low, std::min(parameter.high, kLatestRelease * longest));
+      if (only_falls(set)) range.high = std::max(range.low, std::min(range.high, within_reach));
     }
   }
   if (parameter.reach == Reach::bulge) {

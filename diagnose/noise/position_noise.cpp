@@ -247,38 +247,40 @@ struct OfSpeed {
   double jitter_s = 0.0;
   double gain = 0.0;  ///< log likelihood, relative to the likeliest noise without it
   Likelihood likelihood;
+  bool may_be_uneven = true;  ///< no less than least_filmed_jitter_s()
 };
 
 /// Weighs timing jitter, all sizes equally likely, against the likeliest noise without it, to which a codec's own
-/// errors belong. Returns the size that the positions show beyond doubt, whatever its cause; nullptr: none.
+/// errors belong, and those of a marker's place in the pixel. Returns the size that the positions show beyond doubt,
+/// whatever its cause; nullptr: none.
 const OfSpeed* weigh_speed(const std::vector<OfSpeed>& sizes, bool handed_on, PositionNoise& noise) {
   if (sizes.empty()) return nullptr;
-  std::vector<double> uneven, of_codec;
-  const OfSpeed *likeliest = nullptr, *codecs = nullptr;
-  double codecs_gain = 0.0;
-  double weights = 0.0;
+  std::vector<double> uneven, of_others;
+  const OfSpeed *likeliest = nullptr, *others = nullptr;
+  double others_gain = 0.0, weights = 0.0;
   for (const OfSpeed& size : sizes) {
-    uneven.push_back(size.gain);
-    if (size.gain > (likeliest != nullptr ? likeliest->gain : 0.0)) likeliest = &size;
-    const double known = -0.5 * std::pow(std::log(size.at_top / kCodecMoves) / kCodecMovesFactor, 2);
-    of_codec.push_back(size.gain + known);
+    if (size.may_be_uneven) uneven.push_back(size.gain);
+    if (size.may_be_uneven && size.gain > (likeliest != nullptr ? likeliest->gain : 0.0)) likeliest = &size;
+    if (!handed_on && size.may_be_uneven) continue;
+    const double known = handed_on ? -0.5 * std::pow(std::log(size.at_top / kCodecMoves) / kCodecMovesFactor, 2) : 0.0;
+    of_others.push_back(size.gain + known);
     weights += std::exp(known);
-    if (of_codec.back() > codecs_gain) {
-      codecs_gain = of_codec.back();
-      codecs = &size;
+    if (of_others.back() > others_gain) {
+      others_gain = of_others.back();
+      others = &size;
     }
   }
-  const auto many = static_cast<double>(sizes.size());
   // Sizes below the smallest one tried count as none.
-  const double codecs_evidence = handed_on ? std::max(0.0, base::log_mean(of_codec) + std::log(many / weights)) : 0.0;
-  noise.jitter_log_evidence = base::log_mean(uneven) - codecs_evidence;
+  const double to_mean = std::log(static_cast<double>(of_others.size()) / weights);
+  const double others_evidence = of_others.empty() ? 0.0 : std::max(0.0, base::log_mean(of_others) + to_mean);
+  noise.jitter_log_evidence = (uneven.empty() ? 0.0 : base::log_mean(uneven)) - others_evidence;
   if (likeliest != nullptr) {
     noise.jitter_s = likeliest->jitter_s;
-    noise.jitter_gain = std::max(0.0, likeliest->gain - (handed_on ? codecs_gain : 0.0));
+    noise.jitter_gain = std::max(0.0, likeliest->gain - others_gain);
     noise.jitter_sd_s = noise.jitter_s / std::sqrt(std::max(1.0, 2.0 * likeliest->gain));
   }
   if (noise.jitter_log_evidence > kBeyondDoubt) return likeliest;
-  return codecs_evidence > kBeyondDoubt ? codecs : nullptr;
+  return others_evidence > kBeyondDoubt ? others : nullptr;
 }
 
 double wave_frequency(const TrackSet& set, const MotionFit& fit) {
@@ -343,8 +345,8 @@ bool find_position_noise(TrackSet& set, const MotionFit& fit) {
     uneven.jitter_s = tau;
     Likelihood there = likelihood.of(uneven);
     const double jitter_s = tau * there.white_px / pilot_px;  // the pilot may hold the jitter of the mean speed
-    if (jitter_s < least_s || jitter_s > 0.5 * step_s) continue;
-    of_speed.push_back({tau / unit, jitter_s, there.value - best.value, std::move(there)});
+    if (jitter_s < least_filmed_jitter_s(0.0) || jitter_s > 0.5 * step_s) continue;
+    of_speed.push_back({tau / unit, jitter_s, there.value - best.value, std::move(there), jitter_s >= least_s});
   }
   if (const OfSpeed* chosen = weigh_speed(of_speed, set.handed_on, noise)) {
     noise.shape = uneven;

@@ -139,7 +139,7 @@ bool only_falls(const TrackSet& set);
 /// terminal velocity v = 2/9 (rho_s/rho - 1) g r²/nu with 2 r v = nu has v = (nu g (rho_s/rho - 1)/18)^(1/3): 0.2 m/s
 /// for water drops in air (nu = 1.5e-5 m²/s). What falls faster through air is braked by its density. A large bead in a
 /// thick liquid may be as fast at a Reynolds number of 10, with a power of the speed of 1.3: the size of the drag tells
-/// it (set_air_odds()).
+/// it (weigh/air_odds.h).
 bool falls_through_air(const TrackSet& set);
 
 /// Whether the uncertainty of g counts in these motions: some set-up is a fall, or has an inclination alpha that is

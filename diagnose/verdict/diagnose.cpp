@@ -138,6 +138,7 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
       comparison = compare(0.5, 0.9);
     }
   }
+  if (settle_noise_again(best_fit(comparison), set)) comparison = compare(0.9, 0.9);
   Diagnosis diagnosis = with_causes(set, std::move(comparison), std::move(images), without, options.jobs, progress);
   quote_tables(diagnosis);
   if (const std::string* effect = with_hand > 0 ? named_of_hand(diagnosis) : nullptr) {

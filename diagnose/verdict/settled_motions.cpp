@@ -148,6 +148,12 @@ void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
   }
 }
 
+void whiten_all(TrackSet& set) {
+  for (TrackedMotion& motion : set.motions) {
+    whiten(motion, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
+  }
+}
+
 /// Finds the noise of every position from single frames. Missing frames are corrected first: a jump is neither noise
 /// nor an outlier.
 void settle(TrackSet& set) {
@@ -171,9 +177,7 @@ void settle(TrackSet& set) {
     refit();
     set_tails_aside(set, missing.fit);
     note_lasting_noise(set);
-    for (TrackedMotion& motion : set.motions) {
-      whiten(motion, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
-    }
+    whiten_all(set);
     return;
   }
   if (give_fast_positions_their_noise(set, missing.fit.late)) {
@@ -233,6 +237,15 @@ bool is_misfit(const TrackSet& set, const MotionFit& fit) {
 void settle_noise(const ImageEvidence& images, TrackSet& set) {
   note_loss(images, set);
   settle(set);
+}
+
+bool settle_noise_again(const MotionFit& explanation, TrackSet& set) {
+  constexpr double kMostOfNoise = 0.5;  // of its variance: no explanation of hundreds of positions leaves less
+  if (!set.images || !set.position_noise || !std::isfinite(explanation.cost)) return false;
+  if (explanation.cost > kMostOfNoise * static_cast<double>(points_of(set))) return false;
+  if (!find_position_noise(set, explanation)) return false;
+  whiten_all(set);
+  return true;
 }
 
 }  // namespace glidelab::diagnose

@@ -31,6 +31,11 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
 /// aside. Missing frames are corrected first: a jump is neither noise nor an outlier.
 void settle_noise(const ImageEvidence& images, TrackSet& set);
 
+/// What the nominal model lacks of a strong effect (a bounce, the drag of a fall) is in part taken for noise of filmed
+/// positions. If an explanation leaves less than half of that noise's variance, finds the noise anew from what it
+/// leaves. Whether it did.
+bool settle_noise_again(const MotionFit& explanation, TrackSet& set);
+
 /// Whether a fit leaves so much that the motion counts as not explained: chi² per position above 1.5.
 bool is_misfit(const TrackSet& set, const MotionFit& fit);
 

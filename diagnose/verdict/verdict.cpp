@@ -208,7 +208,7 @@ std::vector<RankedExplanation> ranking_of(const TrackSet& set, const Comparison&
                              hypothesis.gain,
                              parameters_added(set, comparison, hypothesis),
                              {}};
-    if (hypothesis.fit >= 0 && hypothesis.converged && set.clips.size() > 1) {
+    if (hypothesis.fit >= 0 && hypothesis.converged) {
       const auto [gap, is_new] = gaps.emplace(hypothesis.fit, 0.0);
       if (is_new) {
         const MotionFit& fit = comparison.fits[static_cast<std::size_t>(hypothesis.fit)];

@@ -24,6 +24,7 @@
 #include "diagnose/verdict/likely_explanations.h"
 #include "diagnose/verdict/named_explanation.h"
 #include "diagnose/verdict/probabilities_by_share.h"
+#include "diagnose/verdict/unnamed_trifle.h"
 #include "diagnose/verdict/verdict.h"
 #include "diagnose/verdict/verdict_details.h"
 
@@ -207,6 +208,7 @@ class VerdictWithCauses {
   CauseSequence sequence_with(const Hypothesis& one) const {
     return sequence_of(gap_set_, gap_nominal_, gap_with_, fit_of(one), without_, weighed_ ? kLeastNamed : 0.0);
   }
+  bool viscous_leaves_less() const;
   FallsThroughAir::Gaps gaps_of_fall(double named) const { return {held_out_gap(set_, nominal()).value, named}; }
   NoiseAlone noise_alone() const { return {gap_set_, gap_nominal_, sequence_.named, sized_.set, sized_.fit}; }
 
@@ -313,6 +315,27 @@ void VerdictWithCauses::size_causes() {
                !has_certain_size(sized_.set, sized_.fit, fit_of_gap().effects);
 }
 
+/// Whether some viscous drag is clearly likelier by the positions alone than any quadratic one and leaves less, each
+/// with what acts beside it.
+bool VerdictWithCauses::viscous_leaves_less() const {
+  const std::size_t drag = effect_index(ids::quadratic_drag), power = effect_index(ids::power_law_drag);
+  const Hypothesis *viscous = nullptr, *quadratic = nullptr;
+  for (const Hypothesis& one : by().all) {
+    if (one.unnamed || one.fit < 0 || !one.converged || has(one, power)) continue;
+    const Hypothesis*& best = has(one, drag) ? quadratic : viscous;
+    if (best == nullptr || one.log_evidence > best->log_evidence) best = &one;
+  }
+  constexpr double kClearly = 2.3;  // log evidence: ten to one
+  if (viscous == nullptr || quadratic == nullptr) return false;
+  if (viscous->log_evidence < quadratic->log_evidence + kClearly) return false;
+  const auto gap_of = [&](const Hypothesis& one) {
+    const MotionFit& fit = by().fits[static_cast<std::size_t>(one.fit)];
+    return held_out_gap(set_, fit_motions(set_, fit.effects, fit.at, fit.late)).value;
+  };
+  return FallsThroughAir{over_viscous_, FallsThroughAir::Gaps{gap_of(*viscous), gap_of(*quadratic)}}
+      .viscous_leaves_less();
+}
+
 /// The probabilities by what the named causes take of the gap. Whether they still make a verdict beside a remainder.
 bool VerdictWithCauses::settle_probabilities() {
   if (!is_settled()) return false;
@@ -322,8 +345,7 @@ bool VerdictWithCauses::settle_probabilities() {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   if (open_size_) set_unknown(std::max(comparison.unknown, kOpenSize), comparison);
-  if (by_air_ && FallsThroughAir{over_viscous_, gaps_of_fall(held_out_gap(gap_set_, sequence_.named).value)}
-                     .viscous_leaves_less()) {
+  if (by_air_ && viscous_leaves_less()) {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   return verdict_by(comparison.none, comparison.unknown) == Verdict::effect;
@@ -345,6 +367,12 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
     first_.none += std::exchange(first_.unknown, 0.0);
   }
   doubt_by_share(in_images);
+  const bool by_name = first_.unknown < kUnknownIfLess;
+  if (!by_name && !sequence_.is_gap && is_trifle(set_, nominal(), first_.unnamed)) {
+    // What images show by themselves is as certain as without it.
+    if (in_images && first_.unknown < 1.0) set_unknown(0.0, first_);
+    first_.none += std::exchange(first_.unknown, 0.0);
+  }
   if (!weighed_ && !sequence_.is_gap && !below_noise) move_imperfections_to_none();
   const NoiseAlone alone = noise_alone();
   Diagnosis diagnosis = verdict_of(set_, first_, std::move(images), by_air_ && sequence_.is_gap ? &alone : nullptr);
@@ -413,6 +441,8 @@ void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
   if (by_air_) {
     FallsThroughAir note{over_viscous_};
     if (diagnosis.remainder) note.gaps = gaps_of_fall(diagnosis.remainder->gap);
+    // A quadratic drag with what acts beside it leaves less still, named or not.
+    if (note.viscous_leaves_less() && !viscous_leaves_less()) note.gaps.reset();
     diagnosis.notes.emplace_back(note);
   }
   constexpr double kLeastRatio = 0.01;  // air has 0.001 of the density of what falls through it, or less

@@ -66,10 +66,4 @@ bool too_strong_for_air(const TrackSet& set, const Comparison& comparison) {
   return false;
 }
 
-void set_air_odds(const TrackSet& set, Comparison& comparison) {
-  comparison.air_odds.clear();
-  if (!set.through_air) return;
-  for (const MotionFit& fit : comparison.fits) comparison.air_odds.push_back(log_odds_without_air(set, fit));
-}
-
 }  // namespace glidelab::diagnose

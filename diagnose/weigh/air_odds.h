@@ -36,7 +36,4 @@ double log_odds_without_air(const TrackSet& set, const MotionFit& fit);
 /// tells.
 bool too_strong_for_air(const TrackSet& set, const Comparison& comparison);
 
-/// Sets Comparison::air_odds.
-void set_air_odds(const TrackSet& set, Comparison& comparison);
-
 }  // namespace glidelab::diagnose

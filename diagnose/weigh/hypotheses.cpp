@@ -11,7 +11,7 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/unnamed/unnamed.h"
-#include "diagnose/weigh/air_odds.h"
+#include "diagnose/weigh/fit_odds.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
 #include "diagnose/weigh/unknown_noise.h"
@@ -112,7 +112,7 @@ bool scatter_shows(const Comparison& comparison, std::size_t effect) {
 
 void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison& comparison) {
   const auto& list = effect_list();
-  set_air_odds(set, comparison);
+  set_fit_odds(set, comparison);
   double seen = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
     const bool tracked = list[e].search != Search::images && scatter_shows(comparison, e) &&
@@ -125,11 +125,11 @@ void weigh(const TrackSet& set, const std::set<std::size_t>& without, Comparison
   const double two = std::log(kPriorTwo / std::max(1.0, 0.5 * seen * (seen - 1.0)));
   std::vector<double> logs;
   for (const Hypothesis& hypothesis : comparison.all) {
-    const std::size_t many = hypothesis.effects.size();
+    const bool one_air = set.through_air && is_drag_with_its_air(hypothesis.effects);
+    const std::size_t many = hypothesis.effects.size() - (one_air ? 1 : 0);
     double prior = many == 0   ? std::log(kPriorNone)
                    : many == 1 ? one
                                : two + static_cast<double>(many - 2) * (two - one);
-    if (set.through_air && is_drag_with_its_air(hypothesis.effects)) prior = one;
     if (hypothesis.unnamed) prior += std::log(kPriorUnnamed / (1.0 - kPriorUnnamed));
     logs.push_back(prior + log_prior_odds(comparison, hypothesis) + hypothesis.log_evidence);
   }

@@ -12,11 +12,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kWorthFitting = 1.0;         // log likelihood that a scan must gain to be worth a full fit
-constexpr double kSameDirection = 1e-3;       // of sin²: above this it is another law, however small the effect
-constexpr double kSameGain = 0.5;             // log likelihood
-constexpr double kMovesAirAlong = 1.0 / 6.0;  // relative to the drag alone: with the odds of both effects, a third
-constexpr double kNoFit = 1e6;                // log evidence that an explanation without a fit lacks
+constexpr double kWorthFitting = 1.0;    // log likelihood that a scan must gain to be worth a full fit
+constexpr double kSameDirection = 1e-3;  // of sin²: above this it is another law, however small the effect
+constexpr double kSameGain = 0.5;        // log likelihood
+constexpr double kNoFit = 1e6;           // log evidence that an explanation without a fit lacks
 
 std::size_t alike_of(const Comparison& comparison, std::size_t effect, bool filmed) {
   return comparison.alike.empty() ? first_alike(effect, filmed) : comparison.alike[effect];
@@ -173,16 +172,15 @@ double probability_of_any(const Comparison& comparison, const std::vector<std::s
 }
 
 bool is_drag_with_its_air(const std::vector<std::size_t>& effects) {
-  return effects.size() == 2 && std::set(effects.begin(), effects.end()) ==
-                                    std::set{effect_index(ids::quadratic_drag), effect_index(ids::rotational_inertia)};
+  const std::set<std::size_t> all(effects.begin(), effects.end());
+  return all.contains(effect_index(ids::quadratic_drag)) && all.contains(effect_index(ids::rotational_inertia));
 }
 
 double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis) {
   double log = 0.0;
-  if (!comparison.air_odds.empty()) {  // an effect without a fit is one beside the nominal drag
-    log += comparison.air_odds[static_cast<std::size_t>(std::max(0, hypothesis.fit))];
+  if (!comparison.fit_odds.empty()) {  // an effect without a fit is one beside the nominal drag
+    log += comparison.fit_odds[static_cast<std::size_t>(std::max(0, hypothesis.fit))];
   }
-  if (!comparison.air_odds.empty() && is_drag_with_its_air(hypothesis.effects)) log += std::log(kMovesAirAlong);
   if (comparison.odds.empty()) return log;
   for (const std::size_t e : hypothesis.effects) log += std::log(comparison.odds[e]);
   return log;

@@ -44,7 +44,7 @@ struct Comparison {
   /// first_alike().
   std::vector<std::size_t> alike;
   std::vector<double> odds;      ///< of each of effect_list(), before the data (prior_odds()); empty: 1
-  std::vector<double> air_odds;  ///< of each of `fits`, log (air_odds.h); empty: 0
+  std::vector<double> fit_odds;  ///< of each of `fits`, log (fit_odds.h); empty: 0
 };
 
 /// How many fits run at a time, and a callback for the progress of the comparison; an exception from it ends the
@@ -95,12 +95,12 @@ bool has(const Hypothesis& hypothesis, std::size_t effect);
 /// without a name.
 double probability_of_any(const Comparison& comparison, const std::vector<std::size_t>& effects);
 
-/// Log of the prior odds of a hypothesis' effects, against as many others, and of its drag in a fall through air.
+/// Log of the prior odds of a hypothesis' effects, against as many others, and of what its fit holds (fit_odds.h).
 double log_prior_odds(const Comparison& comparison, const Hypothesis& hypothesis);
 
-/// Whether these effects are a quadratic drag and the inertia of air that moves along. In a fall through air both come
-/// from the same air, so they are one explanation rather than two that coincide, with a third of the odds of the drag
-/// alone, and always weighed.
+/// Whether a quadratic drag and the inertia of air that moves along are among these effects. In a fall through air both
+/// come from the same air, so they are one cause rather than two that coincide, with a third of the odds of the drag
+/// alone (fit_odds.h), and always weighed.
 bool is_drag_with_its_air(const std::vector<std::size_t>& effects);
 
 /// The fitted explanation by exactly these effects; null: none.

@@ -184,6 +184,10 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
     best_one = std::max(best_one, leader.log_evidence);
     add_seconds(set, leader, left_out, work, comparison);
   }
+  // A drag and its air are one cause, and a hand that opens slowly is beside them in many a fall.
+  const Hypothesis* with_air =
+      through_air != nullptr ? find(comparison, {air, effect_index(ids::rotational_inertia)}) : nullptr;
+  if (with_air != nullptr) add_seconds(set, Hypothesis(*with_air), left_out, work, comparison);
   std::size_t more = 0;
   for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
     if (more == kMostJointPairs || pair.log_evidence <= best_one) break;

@@ -31,7 +31,7 @@ EffectInfo scale_error() {
       .both_signs = true,
       .odds = nullptr,
       .log_odds_beside_remainder = 0.0,
-      .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7}},
+      .parameters = {{.key = "e", .absent = 0.0, .low = -0.3, .high = 0.3, .step = 1e-7, .usual = 0.1}},
       .law = {.seen_m = scale_seen, .seen_by = SeenBy::scale},
       .shapes = nullptr,
       .lines = {},

@@ -1,0 +1,39 @@
+#include "diagnose/weigh/fit_odds.h"
+
+#include <cmath>
+#include <cstddef>
+
+#include "diagnose/weigh/air_odds.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr double kMovesAirAlong = 1.0 / 6.0;  // relative to the drag alone: with the odds of both effects, a third
+
+}  // namespace
+
+double log_odds_of_sizes(const MotionFit& fit) {
+  if (!fit.layout) return 0.0;
+  double log = 0.0;
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    const EffectParameter* parameter = globals[g].parameter;
+    if (parameter == nullptr || !(parameter->usual > 0.0)) continue;
+    log -=
+        std::log1p(std::pow((fit.at.global[static_cast<Eigen::Index>(g)] - parameter->absent) / parameter->usual, 2));
+  }
+  return log;
+}
+
+void set_fit_odds(const TrackSet& set, Comparison& comparison) {
+  comparison.fit_odds.clear();
+  for (const MotionFit& fit : comparison.fits) {
+    double log = log_odds_of_sizes(fit);
+    if (set.through_air) {
+      log += log_odds_without_air(set, fit) + (is_drag_with_its_air(fit.effects) ? std::log(kMovesAirAlong) : 0.0);
+    }
+    comparison.fit_odds.push_back(log);
+  }
+}
+
+}  // namespace glidelab::diagnose

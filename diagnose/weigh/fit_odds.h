@@ -1,0 +1,16 @@
+/// The prior odds of explanations by what their fits hold.
+#pragma once
+
+#include "diagnose/weigh/hypothesis.h"
+
+namespace glidelab::diagnose {
+
+/// Log of the odds of a fit's sizes: -log(1 + (size/usual)²) for each parameter with a usual size (effect.h). A scale
+/// or a clock that is a quarter off can stand in for a hand or for the air that moves along, but such errors are rare.
+double log_odds_of_sizes(const MotionFit& fit);
+
+/// Sets Comparison::fit_odds: those of the sizes and, in a fall through air, those of the drag (air_odds.h). The
+/// inertia of air that moves along has a third of the odds of the drag alone that it belongs to.
+void set_fit_odds(const TrackSet& set, Comparison& comparison);
+
+}  // namespace glidelab::diagnose
