@@ -36,8 +36,8 @@ double start_direction(const FitMotion& motion) {
   return moves != motion.v_m_s.end() && *moves < 0.0 ? -1.0 : 1.0;
 }
 
-/// The pushes of a hand that lets go late, positive along the motion. Nine times in ten they are those of one hand,
-/// about equal and along the motion. Otherwise they have any size and sign.
+/// The pushes of a hand that lets go late, positive along the motion, in a fall against it. Nine times in ten they are
+/// those of one hand, about equal and positive. Otherwise they have any size and sign.
 struct Pushes {
   std::vector<double> along, sds;
 
@@ -108,13 +108,14 @@ double log_prior(const TrackSet& set, const MotionFit& fit, const RemainderSpace
     log += log_spread_prior(fitted(spread), solution.covariance(spread, spread), kind_of_spread);
   }
   const auto& own = fit.layout->own();
+  const double usual = only_falls(set) ? -1.0 : 1.0;  // a hand pushes what it launches, and holds what it lets fall
   Pushes pushes;
   for (std::size_t i = 0; i < fit.motions.size(); ++i) {
     for (Eigen::Index o = 2; o < fit.motions[i].own.cols(); ++o) {
       const double norm = fit.motions[i].own.col(o).norm();
       const double size = fit.at.own[i][o], seen = std::abs(size) * norm;
       if (own[static_cast<std::size_t>(o - 2)] == parameter_of(kPush)) {
-        if (norm > 0.0) pushes.add(size * start_direction(fit.motions[i]), 1.0 / norm);
+        if (norm > 0.0) pushes.add(usual * size * start_direction(fit.motions[i]), 1.0 / norm);
         continue;
       }
       if (is_phase(own[static_cast<std::size_t>(o - 2)])) {

@@ -141,7 +141,7 @@ EffectScan scan_waves(const ScoreSpace& space, std::size_t effect, const Wave& w
 namespace {
 
 constexpr double kShareOfAnyPushes = 0.1;  // of late releases: pushes of any size and sign, each motion its own
-constexpr double kShareOfDragging = 0.1;   // of those of one hand: it drags instead of pushing
+constexpr double kShareOfDragging = 0.1;   // of those of one hand: it drags instead of pushing; in falls, pushes
 constexpr double kPushStep_m_s2 = 1e-4;    // of the finite difference
 constexpr double kPushSpread = 0.5;  // sd of one hand's pushes about their common part, over that of the common part
 
@@ -234,8 +234,11 @@ EffectScan scan_pushes(const ScoreSpace& space, std::size_t effect) {
     Eigen::VectorXd push = base::product(sizes, evidence.mean);
     const Eigen::MatrixXd covariance = base::product(base::product(sizes, evidence.covariance), sizes.transpose());
     // A hand pushes what it launches. It seldom holds back what it lets go, or does so in one clip and not in the next.
+    // What it lets fall it holds back.
+    const double usual = only_falls(set) ? -1.0 : 1.0;
     const double one_sign =
-        log_one_sign(push.cwiseProduct(directions), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) - beforehand;
+        log_one_sign(usual * push.cwiseProduct(directions), covariance.diagonal().cwiseMax(0.0).cwiseSqrt()) -
+        beforehand;
     const double of_one_hand = std::log1p(-kShareOfAnyPushes) + evidence.log_evidence + one_sign;
     const double of_any = std::log(kShareOfAnyPushes) + any.log_evidence;
     logs.push_back(base::log_sum({of_one_hand, of_any}));

@@ -144,6 +144,24 @@ void exchange(const TrackSet& set, double best_one, const std::set<std::size_t>&
   }
 }
 
+/// A drag and its air are one cause, beside which others may act. A hand is in every fall, and is tried however others
+/// show.
+void add_to_drag_with_its_air(const TrackSet& set, const std::set<std::size_t>& without, const Work& work,
+                              Comparison& comparison) {
+  const std::set<std::size_t> drag_and_air = {effect_index(ids::quadratic_drag), effect_index(ids::rotational_inertia)};
+  const Hypothesis* found = find(comparison, drag_and_air);
+  if (found == nullptr) return;
+  const Hypothesis with_air = *found;
+  add_seconds(set, with_air, without, work, comparison);
+  const std::size_t hand = effect_index(ids::late_release);
+  std::set<std::size_t> with_hand = drag_and_air;
+  with_hand.insert(hand);
+  const MotionFit base = comparison.fits[static_cast<std::size_t>(with_air.fit)];
+  if (without.contains(hand) || !std::isfinite(base.cost) || find(comparison, with_hand) != nullptr) return;
+  const EffectScan scan = scan_effect(ScoreSpace(set, base), hand);
+  if (scan.visible) add(comparison, fit_more(set, base, scan, with_air));
+}
+
 }  // namespace
 
 void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<std::size_t>& without, const Work& work,
@@ -184,10 +202,7 @@ void add_pairs(const TrackSet& set, const ScoreSpace& nominal, const std::set<st
     best_one = std::max(best_one, leader.log_evidence);
     add_seconds(set, leader, left_out, work, comparison);
   }
-  // A drag and its air are one cause, and a hand that opens slowly is beside them in many a fall.
-  const Hypothesis* with_air =
-      through_air != nullptr ? find(comparison, {air, effect_index(ids::rotational_inertia)}) : nullptr;
-  if (with_air != nullptr) add_seconds(set, Hypothesis(*with_air), left_out, work, comparison);
+  if (through_air != nullptr) add_to_drag_with_its_air(set, left_out, work, comparison);
   std::size_t more = 0;
   for (const PairScan& pair : scan_pairs(nominal, comparison.scans)) {
     if (more == kMostJointPairs || pair.log_evidence <= best_one) break;

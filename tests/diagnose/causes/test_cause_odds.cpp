@@ -77,6 +77,28 @@ TEST_CASE("the gap of a fall without drag is a measure of the quadratic drag alo
         100.0 * probability_of(after, diagnose::ids::track_bow));  // 12.5 (0.9 - 0.0009) in log odds, and more for E
 }
 
+TEST_CASE("beside the drag of air a further cause counts by what the drag leaves of the gap") {
+  // Of a fall without drag both leave next to nothing. The drag alone leaves 50, the drag with the bow `left` of it.
+  const auto log_odds = [](double left) {
+    diagnose::Comparison comparison = comparison_of(-1000.0, 0.0, -1000.0);
+    diagnose::Hypothesis both = comparison.all[2];
+    both.effects.push_back(diagnose::effect_index(diagnose::ids::track_bow));
+    both.fit = 3;
+    comparison.fits.resize(4);
+    comparison.all.push_back(both);
+    diagnose::weigh_beside_remainder({{80.0, 50.0, 80.0, left}, kNotMeasured, 3e5}, comparison);
+    double of_both = 0.0, alone = 0.0;
+    for (const diagnose::Hypothesis& one : comparison.all) {
+      if (one.fit == 3) of_both = one.probability;
+      if (one.fit == 1) alone = one.probability;
+    }
+    return std::log(of_both / alone);
+  };
+  // 1.1 + 0.8 log E - 12.5 r with E at its limit of 10 (docs/reference/weighing.md).
+  for (const double left : {0.0, 5.0, 20.0})
+    CHECK(log_odds(left) == Approx(1.1 + 0.8 * std::log(10.0) - 12.5 * left / 50.0).margin(1e-6));
+}
+
 TEST_CASE("evidence beside a remainder gives no certainty") {
   // 60 more in log evidence: 1e26 to one by the noise alone.
   diagnose::Comparison comparison = comparison_of(-1000.0, 60.0, 0.0);

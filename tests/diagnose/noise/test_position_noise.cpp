@@ -5,9 +5,12 @@
 #include <functional>
 
 #include "base/math/dense.h"
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/whitening.h"
 #include "diagnose/verdict/diagnose.h"
+#include "diagnose/verdict/settled_motions.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 
@@ -22,14 +25,15 @@ constexpr double kMode = 1e-6;  // one error of the camera: a scale, by so much
 /// speed in px/s), besides white noise of 0.002 px; `sway_px` is how far the image is moved at a time.
 tests::MadeExperiment filmed(
     const std::function<double(double u_px, double v_px_s)>& off_px, unsigned seed,
-    const std::function<double(double t_s)>& sway_px = [](double) { return 0.0; }) {
+    const std::function<double(double t_s)>& sway_px = [](double) { return 0.0; }, const tests::MadeEffect& effect = {},
+    const std::vector<tests::MadeLaunch>& launches = tests::made_launches()) {
   constexpr std::size_t kFrames = 145;
   constexpr double kRate = 100.0;
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
-  tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, seed);
+  tests::MadeExperiment made = tests::made_experiment(launches, {}, seed);
   for (std::size_t c = 0; c < made.results.clips.size(); ++c) {
-    const std::vector<double> x_m = tests::made_motion({}, tests::made_launches()[c], {}, kFrames + 1, kRate);
+    const std::vector<double> x_m = tests::made_motion({}, launches[c], effect, kFrames + 1, kRate);
     core::TrackData track;
     track.frame_rate_hz = kRate;
     for (std::size_t k = 0; k < kFrames; ++k) {
@@ -69,11 +73,14 @@ std::function<double(double, double)> pixels_that_differ(double sd_px, unsigned 
 }
 
 /// chi² a point under the noise that was found.
-double chi2_of(const diagnose::TrackSet& set) {
-  const diagnose::MotionFit fit = diagnose::fit_nominal(set);
+double chi2_of_fit(const diagnose::TrackSet& set, const diagnose::MotionFit& fit) {
   double points = 0.0;
   for (const auto& motion : set.motions) points += static_cast<double>(motion.t_s.size());
   return fit.cost / points;
+}
+
+double chi2_of(const diagnose::TrackSet& set) {
+  return chi2_of_fit(set, diagnose::fit_nominal(set));
 }
 
 }  // namespace
@@ -182,6 +189,35 @@ TEST_CASE("a camera that sways strongly makes no noise") {
   diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
   for (const auto& motion : set.motions) CHECK(std::abs(motion.sd_of(70) / motion.m_per_px / 0.002 - 1.0) < 0.25);
+}
+
+TEST_CASE("what an effect makes of the motion is no noise once the effect explains it") {
+  // A soft bumper, which turns every launch back within some 50 frames.
+  constexpr double kStiffness_n_m = 15.0, kPlace_m = 0.0;
+  tests::MadeEffect bumper;
+  bumper.force = [](double, double x, double, double) { return x > kPlace_m ? -kStiffness_n_m * (x - kPlace_m) : 0.0; };
+  std::vector<tests::MadeLaunch> launches;
+  for (const double mass_kg : {0.335, 0.535}) {
+    launches.push_back({mass_kg, 0.0, -0.5, 1.2});
+    launches.push_back({mass_kg, 4.0, -0.6, 1.0});
+    launches.push_back({mass_kg, 4.0, 0.2, -0.9});
+  }
+  const tests::MadeExperiment made =
+      filmed([](double, double) { return 0.0; }, 16, [](double) { return 0.0; }, bumper, launches);
+  diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  set.images = true;
+  REQUIRE(diagnose::find_position_noise(set, diagnose::fit_nominal(set)));
+  const std::size_t stop = diagnose::effect_index(diagnose::ids::end_stop);
+  const auto explained = [&] {
+    const diagnose::MotionFit without = diagnose::fit_nominal(set);
+    return diagnose::fit_with_effect(set, without, stop,
+                                     diagnose::with_effect(set, without, stop, {kStiffness_n_m, kPlace_m}, {}));
+  };
+  REQUIRE(chi2_of_fit(set, explained()) < 0.5);  // the bounce passed for noise
+  REQUIRE(diagnose::settle_noise_again(explained(), set));
+  CHECK(std::abs(chi2_of_fit(set, explained()) - 1.0) < 0.2);  // of 870 positions 0.05, and as much for the noise
+  for (const auto& motion : set.motions) CHECK(std::abs(motion.sd_of(70) / motion.m_per_px / 0.002 - 1.0) < 0.25);
+  CHECK_FALSE(diagnose::settle_noise_again(explained(), set));  // it is right now
 }
 
 TEST_CASE("errors of the camera are where each frame is, in frames that look like a stop as well") {

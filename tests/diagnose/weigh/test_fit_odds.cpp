@@ -1,0 +1,32 @@
+#include "diagnose/weigh/fit_odds.h"
+
+#include <cmath>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/fit/nominal_fit.h"
+#include "diagnose/tracks/track_set.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+TEST_CASE("a scale or a clock that is far off is rarer than one that is nearly right, and other sizes are not") {
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 3);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  CHECK(diagnose::log_odds_of_sizes(nominal) == 0.0);
+  const auto log_odds = [&](std::string_view id, double size) {
+    const std::size_t effect = diagnose::effect_index(id);
+    diagnose::MotionFit fit =
+        diagnose::fit_with_effect(set, nominal, effect, diagnose::with_effect(set, nominal, effect, {1e-4}, {}));
+    fit.at.global[static_cast<Eigen::Index>(fit.layout->first_of(effect))] = size;
+    return diagnose::log_odds_of_sizes(fit);
+  };
+  for (const std::string_view id : {diagnose::ids::scale_error, diagnose::ids::frame_rate_error}) {
+    CHECK(log_odds(id, 0.0) == 0.0);
+    CHECK(log_odds(id, 0.1) == Approx(-std::log(2.0)));  // a tenth is the usual size
+    CHECK(log_odds(id, -0.3) == Approx(-std::log(10.0)));
+  }
+  CHECK(log_odds(diagnose::ids::quadratic_drag, 0.3) == 0.0);
+}
