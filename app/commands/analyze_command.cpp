@@ -168,8 +168,9 @@ std::string estimator_help() {
 
 void add_analyze(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<AnalyzeOptions>();
-  CLI::App* command = app.add_subcommand(
-      "analyze", "Analyse experiment folders: find the glider, smooth its motion, recover K/m, mu, alpha and v_lim");
+  CLI::App* command = app.add_subcommand("analyze",
+                                         "Analyse recordings: find the marker, smooth its motion, and recover K/m, mu, "
+                                         "alpha and v_lim with uncertainties");
   command
       ->add_option(
           "EXPERIMENT", options->experiments,

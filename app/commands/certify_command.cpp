@@ -86,8 +86,8 @@ void add_certify(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CertifyCommand>();
   CLI::App* command = app.add_subcommand(
       "certify",
-      "Find out whether the results of a recording can be trusted: do its intervals hold in twins of it, what limits "
-      "them, what would help");
+      "Find out whether a recording's results can be trusted: whether its intervals hold in simulated twins, what "
+      "limits them, and what would help");
   command
       ->add_option("EXPERIMENT", options->experiments,
                    "Folders that hold an experiment.toml; several must share the glider and the track. Or files with a "

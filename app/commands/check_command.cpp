@@ -56,7 +56,8 @@ void check(const CheckOptions& options) {
 void add_check(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand(
-      "check", "Check a recording before any analysis: pattern, marker, exposure, blur, frame times; with advice");
+      "check",
+      "Check a recording before the analysis (pattern, marker, exposure, blur, frame times) and say what to change");
   command
       ->add_option("RECORDING", options->input,
                    "A folder that holds an experiment.toml, or a track file, as analyze takes it")

@@ -62,8 +62,9 @@ void check_plan(const DiagnoseCommand& options) {
                         "with --plan, one scenario, or folders only"}));
   }
   if (!options.noise_m) {
-    throw CommandLineError(base::describe({options.experiments.front(), 0, "--noise-m", "nothing",
-                                           "the position noise in metres, which a scenario does not state"}));
+    throw CommandLineError(options.experiments.front() +
+                           ": --noise-m is missing: a scenario does not state the position noise (in metres, such as "
+                           "1.5e-5)");
   }
 }
 

@@ -110,7 +110,7 @@ void laws(const LawsOptions& options) {
 void add_laws(CLI::App& app, Command& chosen) {
   auto options = std::make_shared<LawsOptions>();
   CLI::App* command = app.add_subcommand(
-      "laws", "Make one page of friction laws: for each law a film, x(t), and a(v) with its equilibrium");
+      "laws", "Make one page of friction laws: each with a film, x(t), and a(v) with its equilibria");
   command->add_option("SCENARIO", options->scenarios, "Scenario files, or folders of them (scenarios/laws)")
       ->type_name("PATH")
       ->required();

@@ -76,7 +76,7 @@ void add_render(CLI::App& app, Command& chosen) {
       "render", "Film a scenario: write an experiment folder as a camera would, and the truth next to it (DIR.truth)");
   command->footer(
       "DIR and DIR.truth are replaced as a whole if they hold only what render wrote there. If they hold anything "
-      "else, or anything was changed, nothing is touched and the exit status is 1.");
+      "else, or a file was changed, render leaves them alone and ends with status 1.");
   command->add_option("SCENARIO", options->scenario, "A scenario file (docs/reference/scenario.md)")
       ->type_name("FILE")
       ->required();

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/shell/build_version.h"
@@ -173,6 +174,18 @@ std::string misspelt(const CLI::App& app, const std::vector<std::string>& argume
   return misspelt_value(*chosen, arguments);
 }
 
+/// Headings of the commands in the help.
+void group_commands(CLI::App& app) {
+  const std::vector<std::pair<const char*, std::vector<const char*>>> groups = {
+      {"A recording", {"new", "pattern", "check", "analyze", "certify", "diagnose", "characterize"}},
+      {"A rehearsal", {"simulate", "render", "validate", "sweep", "require"}},
+      {"A class", {"laws", "explore"}},
+      {"Tests of the methods", {"coverage", "blind", "challenge"}}};
+  for (const auto& [title, names] : groups) {
+    for (const char* const name : names) app.get_subcommand(name)->group(title);
+  }
+}
+
 /// "help COMMAND" is "COMMAND --help", and "help" alone "--help".
 std::vector<std::string> words_given(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
@@ -193,8 +206,8 @@ void hush_libraries() {
 int run_words(int argc, char** argv) {
   hush_libraries();
   CLI::App app(
-      "Glidelab rehearses and analyses video experiments on friction: it simulates a glider, films it with a synthetic "
-      "camera, analyses real and synthetic film alike, and finds what the simple law leaves out.",
+      "Glidelab plans, analyses and diagnoses video experiments on friction: it simulates and films a glider, analyses "
+      "real and synthetic clips alike, and finds what the simple law leaves out.",
       "glidelab");
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "Show this help");
@@ -231,6 +244,7 @@ int run_words(int argc, char** argv) {
   add_explore(app, command);
   add_blind(app, command);
   add_challenge(app, command);
+  group_commands(app);
   const std::vector<std::string> words = words_given(argc, argv);
   if (words.empty()) {
     fmt::print(stderr, "{}", app.help());

@@ -319,7 +319,9 @@ void check_bare_options(const core::TrackFileOptions& options, const std::vector
   const bool has_recorder = options.recorded_by != core::RecordedBy::unstated;
   if (options.column.empty() && !states && options.runs.empty() && !has_masses && !has_recorder) return;
   for (const std::string& input : inputs) {
-    if (core::is_bare_track(input)) continue;
+    std::error_code unreadable;
+    const bool readable = std::filesystem::exists(input, unreadable);
+    if (!readable || core::is_bare_track(input)) continue;  // the reader says that there is no such file
     throw base::InputError(base::Issue{
         input, 0, "--column, --mass, --incline, --incline-sd, --gravity, --gravity-sd, --runs, --masses, --recorded-by",
         "not a file with a track",

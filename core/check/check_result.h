@@ -43,6 +43,7 @@ struct MotionLook {
   double frame_s = 0.0;                     ///< mean time from one position to the next
   std::optional<double> acceleration_m_s2;  ///< typical size; none if noise hides it, or a force was recorded
   double acceleration_sd_m_s2 = 0.0;        ///< of one of the parabolas that it is the median of
+  double speeding_up_m_s2 = 0.0;            ///< the most by which it surely speeds up over a metre or more; 0: nowhere
   std::size_t turns = 0;
   bool oscillates = false;
   double bend = 0.0;           ///< of the path in the image: sagitta over length

@@ -15,9 +15,9 @@ namespace {
 
 std::string units_text(const BeyondGravity& of) {
   std::string units;
-  for (const LengthUnit unit : of.units) {
-    units += units.empty() ? "" : " or ";
-    units += name_of(unit).many;
+  for (std::size_t i = 0; i < of.units.size(); ++i) {
+    units += i == 0 ? "" : i + 1 < of.units.size() ? ", " : " or ";
+    units += name_of(of.units[i]).many;
   }
   if (units.empty()) units = "another unit";
   return of.fall ? units + " (this would be a free fall)" : units;

@@ -38,13 +38,15 @@ struct Subject {
   std::vector<std::string> clips = {};  ///< of Part::clips
 };
 
-enum class LengthUnit { feet, centimetres, millimetres };
+enum class LengthUnit { feet, inches, centimetres, millimetres };
 
 /// How many of a unit make a metre.
 constexpr double per_metre(LengthUnit unit) {
   switch (unit) {
     case LengthUnit::feet:
       return 1.0 / 0.3048;
+    case LengthUnit::inches:
+      return 1.0 / 0.0254;
     case LengthUnit::centimetres:
       return 100.0;
     case LengthUnit::millimetres:
@@ -62,6 +64,8 @@ inline LengthUnit likely_unit(double value, double usual_m) {
 
 /// Metres that a body covers: no track is longer, and what is usual.
 inline constexpr double kLongestRun_m = 20.0, kUsualRun_m = 1.0;
+/// Positions farther apart make a unit doubtful: in space on an incline of less than 60 degrees, in a fall, in time.
+inline constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0, kSlowFrames_s = 1.0;
 
 struct UnitName {
   const char *many, *one;
@@ -71,6 +75,8 @@ constexpr UnitName name_of(LengthUnit unit) {
   switch (unit) {
     case LengthUnit::feet:
       return {"feet", "foot"};
+    case LengthUnit::inches:
+      return {"inches", "inch"};
     case LengthUnit::centimetres:
       return {"centimetres", "centimetre"};
     case LengthUnit::millimetres:
@@ -343,6 +349,11 @@ FaultWords fault_words(const MotionFault& fault);
 
 // Other remarks on a motion.
 
+/// A fall somewhat above gravity: x is too long by acceleration / gravity, or the times too short by its square root.
+struct FallAboveGravity {
+  double acceleration_m_s2 = 0.0, gravity_m_s2 = 0.0;
+};
+
 struct LongRun {
   double distance_m = 0.0;
 };
@@ -378,8 +389,8 @@ using AnyFound =
                  found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart,
                  found::MarkerSizeOff, found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch,
                  found::LengthInUnit, found::ScaleInUnit, found::MassInGrams, found::TrackInUnit,
-                 found::InclineInRadians, found::WrongFrameRate, found::MotionFault, found::LongRun, found::SlowFrames,
-                 found::FallsSlowly, found::Gaps, found::Smoothed>;
+                 found::InclineInRadians, found::WrongFrameRate, found::MotionFault, found::FallAboveGravity,
+                 found::LongRun, found::SlowFrames, found::FallsSlowly, found::Gaps, found::Smoothed>;
 
 /// What was found; a Note if the analysis notes the same. What copies, moves and destroys it is compiled once
 /// (finding.cpp), as of Note.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -25,17 +26,25 @@ constexpr double kOverNoise = 5.0;            // a typical a must exceed this ma
 constexpr double kTurnOverNoise = 20.0;       // a turn comes back by this many standard deviations of a position,
 constexpr double kTurnOverRange = 0.05;       // and by this part of the range of x
 constexpr std::size_t kManyTurns = 6;
-constexpr double kHarmonic = 0.8;                         // of the variance of a
-constexpr double kSmoothPart = 1e-7;                      // of the range of x
-constexpr double kAboveGravity = 1.05;                    // of g: a fall has 1
-constexpr double kMedian = 2.0;                           // parabolas' sds by which the median of |a| is certain
-constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;    // of g, on an incline of less than 60 degrees
-constexpr double kSameGravity = 0.1;                      // of g
-constexpr double kMostBend = 0.08;                        // a wide lens bends a straight path by half of that
-constexpr double kLongRange_m = 8.0, kLongFall_m = 20.0;  // on an incline of less than 60 degrees, and of more
-constexpr double kSlowFrames_s = 1.0;                     // from one to the next
-constexpr double kGapSteps = 3.0;                         // median steps: a longer one is a gap
-constexpr double kMostUnseen = 0.2;                       // of the time
+constexpr double kHarmonic = 0.8;                       // of the variance of a
+constexpr double kSmoothPart = 1e-7;                    // of the range of x
+constexpr double kAboveGravity = 1.05;                  // of g: a fall has 1
+constexpr double kFarAboveGravity = 2.0;                // of g: no scale or frame rate is measured that badly
+constexpr double kMedian = 2.0;                         // parabolas' sds by which the median of |a| is certain
+constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;  // of g, on an incline of less than 60 degrees
+constexpr double kSameGravity = 0.1;                    // of g
+constexpr double kMostBend = 0.08;                      // a wide lens bends a straight path by half of that
+constexpr double kGapSteps = 3.0;                       // median steps: a longer one is a gap
+constexpr double kMostUnseen = 0.2;                     // of the time
+constexpr double kLongestPush_m = 1.0;                  // at 2 g it would give 6 m/s
+constexpr double kOffStretch = 0.05;                    // of the distance that a stretch covers
+constexpr double kSureSds = 3.0;                        // of the acceleration of a stretch
+constexpr double kKeepsSpeed = 0.75;                    // of the speed at its end
+
+/// Standard deviation of a by n even points over a time T: its variance is 720 s²/(n T⁴).
+double sd_of_a(double noise_m, std::size_t points, double span_s) {
+  return noise_m * std::sqrt(720.0 / static_cast<double>(points)) / (span_s * span_s);
+}
 
 /// The median of |a| of parabolas through `size` points each, where it is above their noise.
 void find_acceleration(std::span<const double> t_s, std::span<const double> x_m, std::size_t size, double noise_m,
@@ -44,9 +53,7 @@ void find_acceleration(std::span<const double> t_s, std::span<const double> x_m,
   double sd_m_s2 = 0.0;
   for (std::size_t from = 0; from + size <= x_m.size(); from += std::max<std::size_t>(1, size / 2)) {
     sizes.push_back(std::abs(parabola_through(t_s.subspan(from, size), x_m.subspan(from, size)).a));
-    const double span = t_s[from + size - 1] - t_s[from];
-    // Variance of a by n even points over a time T: 720 s²/(n T⁴).
-    sd_m_s2 = std::max(sd_m_s2, noise_m * std::sqrt(720.0 / static_cast<double>(size)) / (span * span));
+    sd_m_s2 = std::max(sd_m_s2, sd_of_a(noise_m, size, t_s[from + size - 1] - t_s[from]));
   }
   const double typical = quantile(sizes, 0.5);
   if (!(typical > kOverNoise * sd_m_s2)) return;
@@ -73,6 +80,29 @@ bool is_parabola(std::span<const double> t_s, std::span<const double> x_m, doubl
     if (!(std::abs(x_m[i] - parabola.at(t_s[i])) < off_m)) return false;
   }
   return true;
+}
+
+/// The most by which the body surely speeds up all along a stretch that is longer than a hand's or a spring's push, and
+/// after which it keeps its speed. A sensor that drifts to another object comes to rest there.
+double most_speeding_up(std::span<const double> t_s, std::span<const double> x_m, double noise_m) {
+  double most = 0.0;
+  for (std::size_t size = kFewestOfParabola; size <= x_m.size(); size += std::max<std::size_t>(1, size / 3)) {
+    for (std::size_t from = 0; from + size <= x_m.size(); from += std::max<std::size_t>(1, size / 8)) {
+      const auto t = t_s.subspan(from, size), x = x_m.subspan(from, size);
+      const double distance = std::abs(x.back() - x.front()), span = t.back() - t.front();
+      if (distance < kLongestPush_m) continue;
+      const Parabola parabola = parabola_through(t, x);
+      const double sure = std::abs(parabola.a) - kSureSds * sd_of_a(noise_m, size, span);
+      const double at_start = parabola.v - 0.5 * parabola.a * span, at_end = parabola.v + 0.5 * parabola.a * span;
+      const bool speeds_up = at_end * parabola.a > 0.0 && at_start * parabola.a > -0.1 * std::abs(at_end * parabola.a);
+      if (!(sure > most) || !speeds_up || !is_parabola(t, x, kOffStretch * distance)) continue;
+      const std::size_t after = std::min(from + 2 * size, x_m.size()) - 1, last = from + size - 1;
+      if (after < last + size / 2) continue;
+      const double kept = (x_m[after] - x_m[last]) / (t_s[after] - t_s[last]);
+      if (kept * at_end > kKeepsSpeed * at_end * at_end) most = sure;
+    }
+  }
+  return most;
 }
 
 std::size_t turns_in(std::span<const double> x_m, double back_m) {
@@ -157,6 +187,7 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   if (!look.acceleration_m_s2 && is_parabola(t_s, x_m, kOffWhole * look.distance_m)) {
     find_acceleration(t_s, x_m, x_m.size(), noise_m, look);
   }
+  look.speeding_up_m_s2 = most_speeding_up(t_s, x_m, noise_m);
   look.turns = turns_in(x_m, std::max(kTurnOverNoise * noise_m, kTurnOverRange * look.distance_m));
   // Fine enough for a swing: eight parabolas between turns.
   if (look.turns >= kManyTurns) {
@@ -174,18 +205,46 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
 
 namespace {
 
+bool may_fall(const ClipSetup& setup) {
+  return std::abs(setup.incline_rad) >= kShallow_rad;
+}
+
+/// Accelerations that a free motion on the stated incline may have, in g.
+struct PlausibleRange {
+  double least = 0.0, most = 0.0;
+};
+
+/// A fall: less than 1 because of drag, air that moves along, and a scale that is off. An incline: between a quarter
+/// and four times sin α, because of friction. Nearly level: friction, or a slope that nobody knows.
+PlausibleRange plausible(const ClipSetup& setup) {
+  constexpr double kLevel_rad = 0.01, kLeastOfLevel = 1e-3, kMostOfLevel = 0.3;
+  if (may_fall(setup)) return {0.4, 1.2};
+  if (setup.incline_assumed) return {kLeastOfLevel, 1.2};
+  const double sine = std::sin(std::abs(setup.incline_rad));
+  if (sine < kLevel_rad) return {kLeastOfLevel, kMostOfLevel};
+  return {0.25 * sine, std::min(1.0, 4.0 * sine)};
+}
+
 /// Accelerations that no incline has, with the units of x that would explain them.
-found::BeyondGravity beyond_gravity(double a, double gravity_m_s2) {
+found::BeyondGravity beyond_gravity(double a, double distance_m, const ClipSetup& setup, double gravity_m_s2) {
   found::BeyondGravity found{a, gravity_m_s2, {}, false};
-  for (const LengthUnit unit : {LengthUnit::feet, LengthUnit::centimetres, LengthUnit::millimetres}) {
+  constexpr std::array kUnits = {LengthUnit::centimetres, LengthUnit::millimetres, LengthUnit::inches,
+                                 LengthUnit::feet};
+  for (const LengthUnit unit : kUnits) {
     if (std::abs(a / per_metre(unit) / gravity_m_s2 - 1.0) < kSameGravity) {
       found.units = {unit};
       found.fall = true;
       return found;
     }
   }
-  if (a < 100.0 * gravity_m_s2) found.units.push_back(LengthUnit::centimetres);
-  if (a > 20.0 * gravity_m_s2 && a < 1000.0 * gravity_m_s2) found.units.push_back(LengthUnit::millimetres);
+  const PlausibleRange range = plausible(setup);
+  for (const LengthUnit unit : kUnits) {
+    const double of_gravity = a / per_metre(unit) / gravity_m_s2;
+    const bool too_long = distance_m / per_metre(unit) > kLongestRun_m;
+    if (!too_long && of_gravity > range.least && of_gravity < range.most) found.units.push_back(unit);
+  }
+  // The times may be wrong as well: then the distance alone tells.
+  if (found.units.empty() && distance_m > kLongestRun_m) found.units = {likely_unit(distance_m, kUsualRun_m)};
   return found;
 }
 
@@ -194,15 +253,20 @@ found::BeyondGravity beyond_gravity(double a, double gravity_m_s2) {
 std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2) {
   std::vector<Finding> findings;
   FindingBook book(findings, {Subject::Part::clips, {setup.name}});
-  const double a = look.acceleration_m_s2.value_or(0.0);
+  const double a = look.acceleration_m_s2.value_or(0.0), sure = a - kMedian * look.acceleration_sd_m_s2;
+  const bool falls = may_fall(setup);
+  const double most = (falls ? kFarAboveGravity : kAboveGravity) * gravity_m_s2;
   if (look.oscillates) {
     book.add(Severity::unusable, found::Oscillation{look.turns});
-  } else if (a - kMedian * look.acceleration_sd_m_s2 > kAboveGravity * gravity_m_s2) {
-    book.add(Severity::unusable, beyond_gravity(a, gravity_m_s2), Topic::length);
-  } else if (a > kFreeFall * gravity_m_s2 && std::abs(setup.incline_rad) < kShallow_rad) {
+  } else if (sure > most || look.speeding_up_m_s2 > kFarAboveGravity * gravity_m_s2) {
+    book.add(Severity::unusable,
+             beyond_gravity(std::max(a, look.speeding_up_m_s2), look.distance_m, setup, gravity_m_s2), Topic::length);
+  } else if (a > kFreeFall * gravity_m_s2 && !falls) {
     book.add(Severity::unusable, found::FreeFall{a / gravity_m_s2, setup.incline_rad * base::kDegreesPerRad},
              Topic::incline);
-  } else if (look.distance_m > (std::abs(setup.incline_rad) < kShallow_rad ? kLongRange_m : kLongFall_m)) {
+  } else if (sure > kAboveGravity * gravity_m_s2) {
+    book.add(Severity::change, found::FallAboveGravity{a, gravity_m_s2}, Topic::length);
+  } else if (look.distance_m > (falls ? kLongFall_m : kLongRange_m)) {
     book.add(Severity::change, found::LongRun{look.distance_m}, Topic::length);
   }
   if (look.frame_s > kSlowFrames_s) book.add(Severity::change, found::SlowFrames{look.frame_s});

@@ -246,7 +246,7 @@ constexpr double kLargestSquare_m = 0.5, kUsualSquare_m = 0.03;
 constexpr double kLargestMarker_m = 0.5, kUsualMarker_m = 0.02;
 constexpr double kLongestTrack_m = 20.0, kUsualTrack_m = 1.5;
 constexpr double kLeastScale_px_m = 20.0, kUsualScale_px_m = 500.0;
-constexpr double kMostOverGravity = 1.05;
+constexpr double kMostOverGravity = 1.05, kMostSpeedingUp = 2.0;
 constexpr double kSameAngle_deg = 0.5, kSameAngleShare = 0.15;
 
 /// One root cause and what it explains.
@@ -330,8 +330,9 @@ std::optional<Root> long_tracks(const Experiment& experiment, const RecordingChe
   std::vector<std::string> names;
   double distance_m = 0.0;
   for (const ClipCheck& clip : check.clips) {
-    const double a = clip.motion.acceleration_m_s2.value_or(0.0);
-    if (clip.images || clip.distance_m < kLongestRun_m || a < kMostOverGravity * experiment.gravity_m_s2) continue;
+    const bool beyond = clip.motion.acceleration_m_s2.value_or(0.0) > kMostOverGravity * experiment.gravity_m_s2 ||
+                        clip.motion.speeding_up_m_s2 > kMostSpeedingUp * experiment.gravity_m_s2;
+    if (clip.images || clip.distance_m < kLongestRun_m || !beyond) continue;
     names.push_back(clip.name);
     distance_m = std::max(distance_m, clip.distance_m);
   }

@@ -9,17 +9,17 @@ namespace {
 
 constexpr std::string_view kToml =
     R"(# Lengths are in metres, times in seconds, angles in degrees, masses in kilograms.
-# A line "#key = value" is a key that you may use: take the # away. A misspelt key is an error, not ignored.
+# A line "#key = value" is an optional key: remove the # to use it. A misspelt key is an error.
 
-#gravity_m_s2 = 9.8123             # at your place: 9.78 (equator) to 9.83 (poles); without it 9.80665 ± 0.015
+#gravity_m_s2 = 9.8123             # local value: 9.78 (equator) to 9.83 (poles); default 9.80665 ± 0.015
 #gravity_sd_m_s2 = 0.0001          # its standard deviation; by default that of the last digit
-#recorded_by = "camera"            # "sensor" if all positions are a motion sensor's: then nothing is put down to a camera
+#recorded_by = "camera"            # "sensor" if all positions are a motion sensor's: then no effect of a camera is considered
 
-# ---- The camera: what it was told to do, or what its data sheet says.
+# ---- The camera: as it was set, or as its data sheet says.
 [camera]
 frame_rate_hz = 240.0              # what it filmed at; the file may play at another rate
 #exposure_s = 0.001                # exposure time of one frame; a short one keeps the marker sharp
-#shutter = "global"                # or "rolling" (phones, webcams): then line_readout_s says how slowly it rolls
+#shutter = "global"                # or "rolling" (phones, webcams): then state line_readout_s
 #line_readout_s = 0.00002          # rolling only: time from one row to the next
 #first_row = "top"                 # rolling only: the row that is read first, "top" or "bottom" (camera upside down)
 #bit_depth = 8                     # 8 to 16

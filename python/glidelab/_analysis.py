@@ -129,7 +129,7 @@ class Clip(Brief):
     notes: tuple[str, ...]
 
     def plot(self, ax: Any = None) -> Any:
-        """The phase diagram: a over v, the points of the lines dark, the others light, and the lines.
+        """The phase diagram: a against v, the points of the lines dark, the others light, and the lines.
 
         Returns
         -------

@@ -96,7 +96,7 @@ class Simulation(Result):
         return frame_of(columns)
 
     def plot(self) -> list[Any]:
-        """x(t), and the phase diagram a over v.
+        """x(t), and the phase diagram a against v.
 
         Returns
         -------

@@ -321,7 +321,7 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
   const bool in_doubt = !doubts_about(results).empty();
   const bool few = results.configurations.size() <= kFew;
   body += in_doubt || few ? meaning_of(results) : fits_sentence(results);
-  body += answer_html(results) + fmt::format("<p class=\"soft\">By the {}, from {}.</p>\n",
+  body += answer_html(results) + fmt::format("<p class=\"soft\">From the {}, {}.</p>\n",
                                              escape(estimator_name(results.estimator)), size_words(results));
   body += answer_plot(results) + recovered_section(results) + with_causes;
   if (!in_doubt) body += bent_lines_note(results);

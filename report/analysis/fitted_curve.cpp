@@ -109,7 +109,7 @@ Plot fitted_plot(const core::ClipResult& clip, const std::vector<FittedCurve>& c
       kGrey, kColors[4], kColors[1]);
   return {
       Drawing{script, {never_empty(used), never_empty(others), never_empty(law)}},
-      fmt::format("{}: x(t) by K/m, µ and α of the table, over the measured positions; they lie {} off it (rms), and "
+      fmt::format("{}: x(t) with K/m, µ and α of the table, and the measured positions, which lie {} (rms) from it; "
                   "their noise is {}",
                   clip.name, base::size_text(std::sqrt(square / count), 2, "m"),
                   base::size_text(clip.position_noise_m, 2, "m")),

@@ -452,7 +452,7 @@ Plot whole_plot(const core::AnalysisResults& results, const PhaseGroup& group, c
       Drawing{script, whole.data},
       "Phase diagram: measured and smoothed points, and the lines fitted for v < 0 and v > 0 with their 95 % bands; "
       "bars: 95 % intervals of some points",
-      "Acceleration over velocity with fitted lines"};
+      "Acceleration against velocity with fitted lines"};
 }
 
 }  // namespace
@@ -466,10 +466,10 @@ std::optional<Plot> phase_overview(const core::AnalysisResults& results) {
   const bool both = std::ranges::any_of(results.configurations,
                                         [](const core::ConfigurationResult& one) { return one.lines.size() == 2; });
   plot.caption = fmt::format(
-      "Acceleration over velocity. The slope of the lines is −K/m{}. Bands: 95 % of each line; bars: 95 % intervals of "
-      "some points",
+      "Acceleration against velocity. The slope of the lines is −K/m{}. Bands: 95 % of each line; bars: 95 % intervals "
+      "of some points",
       both ? "; half of the step between the two lines of a glider at v = 0 is µ g cos α" : "");
-  plot.description = "Acceleration over velocity of all configurations";
+  plot.description = "Acceleration against velocity of all configurations";
   if (all.size() > kColors.size()) plot.drawing.script.insert(plot.drawing.script.find("plot "), "unset key\n");
   return plot;
 }

@@ -443,10 +443,11 @@ struct ChoiceSentence {
   std::string operator()(std::monostate) const { return ""; }
   std::string operator()(const core::chosen_by::User&) const { return "given"; }
   std::string operator()(const core::chosen_by::LinesRule& of) const {
-    std::string text = fmt::format("smallest mean squared error of the lines ({:.1f} ms)", 1e3 * of.line_s);
+    std::string text = fmt::format("least mean squared error of the lines ({:.1f} ms)", 1e3 * of.line_s);
     if (of.raised) {
       text += fmt::format(
-          ", raised for quieter points (the noise of a is {} % of its spread; the lines are biased by {} %)",
+          ", widened so that the points are less noisy (the noise of a is {} % of its spread; the lines are biased by "
+          "{} %)",
           base::digits_text(100.0 * of.raised->noise_share, 2), base::digits_text(100.0 * of.raised->bias_share, 2));
     }
     return text;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <tuple>
 #include <utility>
@@ -304,6 +305,15 @@ struct FindingSentence {
   FindingWords operator()(const found::MotionFault& of) const {
     found::FaultWords words = found::fault_words(of);
     return {std::move(words.found), std::move(words.advice)};
+  }
+  FindingWords operator()(const found::FallAboveGravity& of) const {
+    const double ratio = of.acceleration_m_s2 / of.gravity_m_s2;
+    return {fmt::format("it falls at about {:.3g} m/s², {:.0f} % above gravity: x is {:.0f} % too long, or the frames "
+                        "are {:.0f} % longer than stated",
+                        of.acceleration_m_s2, 100.0 * (ratio - 1.0), 100.0 * (ratio - 1.0),
+                        100.0 * (std::sqrt(ratio) - 1.0)),
+            "measure the scale again, with a known length where the body falls, and the frame rate, with a clock in "
+            "the image"};
   }
   FindingWords operator()(const found::LongRun& of) const {
     return {fmt::format("x covers {:.3g} m", of.distance_m),

@@ -111,13 +111,12 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
       "title 'two standard deviations', $curve using 1:2 with lines lw 2 lc rgb '{}' title 'likeliest', 0 with lines "
       "lw 1 lc rgb '{}' notitle\n",
       kColors[0], kColors[0], kGrey);
-  return {
-      Drawing{script, std::vector{data}},
-      fmt::format("{} {} over {} that would explain the gap, with two standard deviations{}",
-                  alternatives > 1 ? "A smooth" : "The smooth", to_text(curve.what), axis_of(curve.variable),
-                  alternatives > 1 ? fmt::format(": any one of these {} curves alone, not all of them", alternatives)
-                                   : std::string()),
-      fmt::format("Curve of the {} over {}", to_text(curve.what), axis_of(curve.variable))};
+  return {Drawing{script, std::vector{data}},
+          fmt::format("{} {} over {} that would explain the gap, with two standard deviations{}",
+                      alternatives > 1 ? "A smooth" : "The smooth", to_text(curve.what), axis_of(curve.variable),
+                      alternatives > 1 ? fmt::format(": each of these {} curves would do so alone", alternatives)
+                                       : std::string()),
+          fmt::format("Curve of the {} over {}", to_text(curve.what), axis_of(curve.variable))};
 }
 
 Plot residual_plot(const diagnose::Diagnosis& diagnosis, diagnose::GapVariable variable) {

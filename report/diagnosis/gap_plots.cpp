@@ -27,7 +27,7 @@ std::string domain_name(diagnose::GapDomainKind domain) {
     case diagnose::GapDomainKind::positions:
       return "positions of held-out clips";
     case diagnose::GapDomainKind::phase_plane:
-      return "phase plane: a over v";
+      return "phase plane: a against v";
     case diagnose::GapDomainKind::parameters:
       return "parameters: K, µ, α";
     case diagnose::GapDomainKind::images:
@@ -163,8 +163,8 @@ std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis) {
   script += "\n";
   return {
       {Drawing{script, std::vector{before, after}, {620, std::max(240, 110 + 48 * static_cast<int>(domains.size()))}},
-       one ? "The gap in each domain, as a multiple of what the noise alone would make (line at 1)"
-           : "The gap in each domain, as a multiple of what the noise alone would make (line at 1): before, with the "
+       one ? "The gap in each domain, as a multiple of the gap from noise alone (line at 1)"
+           : "The gap in each domain, as a multiple of the gap from noise alone (line at 1): before, with the "
              "nominal model, and after, with what is missing. Where there is no bar, it cannot be determined",
        one ? "Bars of the gap in each domain" : "Bars of the gap in each domain, before and after"}};
 }

@@ -119,10 +119,15 @@ std::vector<std::string> sentences_of(const core::AnalysisResults& results, cons
   return sentences;
 }
 
+std::string heading_of(const diagnose::GivenCauses& given) {
+  const std::vector<std::string> names = names_of(given);
+  return fmt::format("With {} in the model: {}", names.size() == 1 ? "this effect" : "these effects", list_of(names));
+}
+
 }  // namespace
 
 Html given_causes_section(const core::AnalysisResults& results, const diagnose::GivenCauses& given) {
-  std::string text = fmt::format("<h2 id=\"with\">With {} in the model</h2>\n<ul>\n", escape(list_of(names_of(given))));
+  std::string text = fmt::format("<h2 id=\"with\">{}</h2>\n<ul>\n", escape(heading_of(given)));
   for (const std::string& line : size_lines(given)) text += fmt::format("<li>{}</li>\n", escape(line));
   text += "</ul>\n<p>";
   for (const std::string& sentence : sentences_of(results, given)) text += escape(sentence) + " ";
@@ -144,7 +149,7 @@ Html given_causes_section(const core::AnalysisResults& results, const diagnose::
 }
 
 std::string given_causes_text(const core::AnalysisResults& results, const diagnose::GivenCauses& given) {
-  std::string text = fmt::format("\nWith {} in the model:\n", list_of(names_of(given)));
+  std::string text = fmt::format("\n{}\n", heading_of(given));
   for (const std::string& line : size_lines(given)) text += fmt::format("  {}\n", base::printable_text(line));
   const BothColumns both = both_columns(results, given);
   text += "\n" + text_table(both.rows, 2) + "\n";

@@ -127,7 +127,7 @@ std::string requirement_answer(const Requirement& requirement) {
       text += fmt::format(" {} cheaper {} may be good enough too: more runs would decide.", undecided,
                           undecided == 1 ? "one" : "ones");
     }
-    if (!first->price_class.empty()) text += " Prices are rough, and without the computer.";
+    if (!first->price_class.empty()) text += " Prices are rough, and exclude the computer.";
     return text;
   }
   const Candidate* const near = nearest(requirement);

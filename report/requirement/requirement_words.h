@@ -13,7 +13,7 @@ std::string candidate_verdict(const validate::Candidate& candidate);
 /// "fit of the whole motion": by whose errors the candidate is judged, of each target; "–" if nothing was run.
 std::string judging_estimators(const validate::Candidate& candidate);
 
-/// "µ: no answer by the fit of the whole motion in 1 of 8 runs", "; " between several; empty if all answered.
+/// "µ: no answer with the fit of the whole motion in 1 of 8 runs", "; " between several; empty if all answered.
 std::string unanswered_words(const validate::Requirement& requirement, const validate::Candidate& candidate);
 
 /// "light (no shot noise)": the limitation, and what the camera would have instead.

@@ -46,7 +46,7 @@ std::string estimator_name(std::string_view estimator) {
 
 std::string by_estimator(std::string_view estimator) {
   const std::string name = estimator_name(estimator);
-  return name == estimator ? fmt::format("by “{}”", name) : fmt::format("by the {}", name);
+  return name == estimator ? fmt::format("with “{}”", name) : fmt::format("with the {}", name);
 }
 
 std::array<NamedQuantity, kQuantities.size()> quantities_of(const core::ConfigurationResult& configuration) {

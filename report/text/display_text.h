@@ -37,7 +37,7 @@ std::string unit_suffix(std::string_view unit);
 
 /// "fit of the whole motion" for "trajectory"; any other name stays as it is.
 std::string estimator_name(std::string_view estimator);
-/// "by the fit of the whole motion"; "by “mine”" for an outside estimator.
+/// "with the fit of the whole motion"; "with “mine”" for an outside estimator.
 std::string by_estimator(std::string_view estimator);
 
 /// A recovered quantity with its names.

@@ -218,8 +218,7 @@ std::string agreement_of(const validate::Comparison& comparison) {
   const std::string failed = comparison.outside ? outside_failed(*comparison.outside) : std::string();
   std::string text = failed.empty() ? failed : failed + " ";
   if (compared == 0) return text + "No recovered value could be compared with a true one.";
-  text +=
-      fmt::format("{} of {} recovered values lie within two of their standard deviations of the truth", near, compared);
+  text += fmt::format("{} of {} recovered values lie within two standard deviations of the truth", near, compared);
   if (farthest != nullptr) {
     text += fmt::format("; the largest error: {} of {} {}, {} standard deviations", symbol_of(farthest->quantity),
                         farthest->configuration, by_estimator(farthest->estimator), base::digits_text(worst, 2));
@@ -386,7 +385,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   const validate::RestitutionComparison& restitution = comparison.restitution;
   Html body = question_heading(title, "How well are the true values recovered?") +
               "<p class=\"soft\">A rehearsal: simulated, filmed, analysed from the images alone by the lines "
-              "of the phase diagram and by the fit of the whole motion, and compared with the truth.</p>\n";
+              "of the phase diagram and with the fit of the whole motion, and compared with the truth.</p>\n";
   body += meaning_of(comparison);
   body += "<div class=\"tiles\">" +
           tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +

@@ -159,7 +159,7 @@ TEST_CASE("the first line of coverage is the answer: how often the intervals hol
   CHECK(text.substr(0, text.find('\n')) ==
         "The stated 95 % intervals contain the true value in 60.0 to 95.0 % of 200 replicates, less often than stated "
         "for 1 of "
-        "2: µ of m1 by the fit of the whole motion.");
+        "2: µ of m1 with the fit of the whole motion.");
 }
 
 TEST_CASE("the first line of coverage says how often an outside estimator failed, and names it as such") {
@@ -191,7 +191,7 @@ TEST_CASE("coverage names what scatters farther than it states, and the naive li
   coverage.rows = {row("phase-diagram", "mu", 0.0083, 0.0028), row("phase-diagram", "alpha_deg", 0.47, 0.15),
                    row("trajectory", "k_over_m_1_s", 0.0019, 0.001), row("naive-lines", "mu", 0.0083, 0.0026)};
   const std::string page = report::coverage_page("webcam", coverage).html;
-  CHECK(has(page, "for µ (3.0 times), α (3.1 times) of m1 by the lines of the phase diagram. A few"));
+  CHECK(has(page, "for µ (3.0 times), α (3.1 times) of m1 with the lines of the phase diagram. A few"));
   coverage.rows.erase(coverage.rows.begin(), coverage.rows.begin() + 2);
   CHECK_FALSE(has(report::coverage_page("webcam", coverage).html, "scatter more than"));
 }

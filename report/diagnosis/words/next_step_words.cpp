@@ -244,7 +244,7 @@ struct Words {
                                                      : base::NamedUnit{of.key, of.key == "K" ? "N s/m" : ""};
     const std::string weighed = weighed_words(of.weighed);
     std::string text = of.undecided.empty()
-                           ? "Nothing else is likely."
+                           ? "No other explanation is likely."
                            : fmt::format("None of {} would decide {}.", weighed, doubt_words(of.undecided));
     text += fmt::format(" The least well known parameter is {}{} ({}).", named.name,
                         of.effect.empty() ? "" : " of " + explanation_name({{of.effect}}),

@@ -11,6 +11,7 @@
 #include "report/diagnosis/words/cause_words.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/diagnosis/words/next_step_words.h"
+#include "report/diagnosis/words/unit_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -408,7 +409,9 @@ std::string verdict_words(const diagnose::Diagnosis& diagnosis) {
     if (!limits.driving.empty()) text += " " + sentences(limits.driving);
     if (!limits.contradicted.empty()) text += " " + contradicted_words(diagnosis);
   }
-  return limits.set_aside ? note_words(*limits.set_aside) + " " + text : text;
+  if (limits.set_aside) text = note_words(*limits.set_aside) + " " + text;
+  const std::string unit = unit_words(diagnosis);
+  return unit.empty() ? text : unit + " " + text;
 }
 
 std::string too_few_words(const diagnose::GapIntervals& intervals) {
@@ -428,10 +431,10 @@ std::string consequence(const diagnose::Diagnosis& diagnosis) {
                            diagnosis.effects.front().equivalent_to.empty();
     if (lost_only)
       return " An analysis of these data reports the losses that it finds, and corrects the times after them.";
-    const char* const below = diagnosis.recovered.empty() ? "" : " The table below gives them with it in the model.";
+    const char* const below = diagnosis.recovered.empty() ? "" : " The table below includes it.";
     return std::string(
-               " An analysis of these data leaves this out: its K/m, µ and inclination belong to a law without it, and "
-               "may be off by more than their stated errors.") +
+               " An analysis of these data (glidelab analyze) leaves this out: its K/m, µ and inclination are those of "
+               "a law without it, and may be wrong by more than their stated errors.") +
            below;
   }
   if (diagnosis.verdict == diagnose::Verdict::unknown) {

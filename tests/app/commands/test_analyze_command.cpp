@@ -64,7 +64,7 @@ TEST_CASE("analyze takes the bandwidth from the rule that is named, and says so"
   CHECK(clip_of("plug-in").at("bandwidth_method").get<std::string>().starts_with("plug-in"));
   CHECK(clip_of("ebbs").at("bandwidth_method").get<std::string>().starts_with("empirical bias"));
   CHECK(clip_of("0.05").at("bandwidth_s") == 0.05);
-  CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("smallest mean squared error"));
+  CHECK(clip_of("lines").at("bandwidth_method").get<std::string>().starts_with("least mean squared error"));
 }
 
 TEST_CASE("analyze smooths as it is asked to, says how strongly, and refuses what does not go together") {
@@ -140,7 +140,8 @@ TEST_CASE("analyze --with gives the numbers with an effect in the model beside i
   CHECK(std::abs(k.at("value").get<double>() - 2.768) < 4.0 * k.at("sd").get<double>());
   document.erase("with");
   CHECK(document == json::parse(plain.out));
-  CHECK(base::read_file(temp / "out/report.html").find("With quadratic drag in the model") != std::string::npos);
+  CHECK(base::read_file(temp / "out/report.html").find("With this effect in the model: quadratic drag") !=
+        std::string::npos);
   const tests::ProcessResult text =
       tests::glidelab({"analyze", folder, "--with", "quadratic_drag", "--out", (temp / "out").string()});
   CHECK(text.out.find("the law alone") != std::string::npos);

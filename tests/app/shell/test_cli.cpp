@@ -28,7 +28,11 @@ TEST_CASE("help lists the commands that exist and no others") {
   const tests::ProcessResult result = tests::glidelab({"--help"});
   CHECK(result.status == 0);
   CHECK(result.err.empty());
-  const std::string list = result.out.substr(result.out.find("Subcommands:"));
+  const std::size_t first = result.out.find("\nA recording:\n");
+  REQUIRE(first != std::string::npos);
+  const std::string list = result.out.substr(first);
+  CHECK(list.find("\nA rehearsal:\n") < list.find("\nA class:\n"));
+  CHECK(list.find("\nTests of the methods:\n") != std::string::npos);
   static const std::regex kCommand(R"(^  ([a-z-]+) )", std::regex::multiline);
   std::set<std::string> listed;
   for (auto match = std::sregex_iterator(list.begin(), list.end(), kCommand); match != std::sregex_iterator();
@@ -43,14 +47,20 @@ TEST_CASE("every command's help names the options that every command takes, and 
     const tests::ProcessResult result = tests::glidelab({command, "--help"});
     INFO(command);
     CHECK(result.status == 0);
-    for (const char* option : {"--help", "-o,--out DIR", "--jobs N", "--json", "-q,--quiet", "-v,--verbose"}) {
+    for (const char* option : {"--help", "--json", "-q,--quiet"}) {
       INFO(option);
       CHECK(result.out.find(option) != std::string::npos);
     }
+    static const std::set<std::string> kInstant = {"new", "pattern", "explore"};
+    for (const char* option : {"--jobs N", "-v,--verbose"}) {
+      INFO(option);
+      CHECK((result.out.find(option) != std::string::npos) != kInstant.contains(command));
+    }
+    CHECK((result.out.find("-o,--out DIR") != std::string::npos) == (command != "new"));
     static const std::set<std::string> kDrawNothing = {"new",     "pattern", "check",        "simulate",
                                                        "analyze", "explore", "characterize", "laws"};
     CHECK((result.out.find("--seed N") != std::string::npos) != kDrawNothing.contains(command));
-    CHECK(result.out.find(command == "new" ? "default: FOLDER" : "glidelab-out/" + command) != std::string::npos);
+    if (command != "new") CHECK(result.out.find("glidelab-out/" + command) != std::string::npos);
   }
 }
 
@@ -136,6 +146,17 @@ TEST_CASE("an input that is not there is status 1 and names the file, whatever t
     CHECK(result.err.find(name) != std::string::npos);
     CHECK(result.out.empty());
     CHECK_FALSE(std::filesystem::exists(temp / "glidelab-out"));
+  }
+}
+
+TEST_CASE("a file that is not there is told as that, whatever is stated of it") {
+  const tests::TempDir temp;
+  for (const char* const command : {"check", "analyze", "diagnose"}) {
+    const tests::ProcessResult result =
+        tests::glidelab({command, (temp / "nofile.csv").string(), "--mass", "0.01"}, temp.path());
+    INFO(command << ": " << result.err);
+    CHECK(result.status == 1);
+    CHECK(result.err.find("nofile.csv: found no file or folder of this name") != std::string::npos);
   }
 }
 
@@ -256,7 +277,7 @@ TEST_CASE("a plan of a scenario wants its noise on the command line") {
   base::write_file(temp / "tiny.toml", tests::tiny_scenario());
   const tests::ProcessResult result = tests::glidelab({"diagnose", "--plan", "tiny.toml"}, temp.path());
   CHECK(result.status == 2);
-  CHECK(result.err.find("--noise-m: found nothing") != std::string::npos);
+  CHECK(result.err.find("tiny.toml: --noise-m is missing") != std::string::npos);
 }
 
 TEST_CASE("a plan takes one scenario, or recordings without a noise of the command line") {

@@ -302,13 +302,15 @@ TEST_CASE("x of a fall is counted downwards, but not against a recorded force or
 
 TEST_CASE("a table that speeds up like a fall is suspected to be one where nobody states an inclination") {
   const tests::TempDir temp;
-  const auto suspected = [&](double a_m_s2, double until_s, std::optional<double> incline_deg) {
+  const auto suspected = [&](double a_m_s2, double until_s, std::optional<double> incline_deg, double braked_m_s2 = 0.0,
+                             double sign = 1.0) {
     std::ofstream out(temp / "table.csv");
     out << "Time (s),Position (m)\n";
     const double v = a_m_s2 * until_s;
-    for (int i = 0; i < 150; ++i) {  // it speeds up for some time, and keeps its speed
+    for (int i = 0; i < 150; ++i) {  // it speeds up for some time, and keeps its speed or is braked
       const double t = 0.01 * i, s = t - until_s;
-      out << fmt::format("{},{:.6f}\n", t, s < 0.0 ? 0.5 * a_m_s2 * t * t : 0.5 * v * until_s + v * s);
+      const double x = s < 0.0 ? 0.5 * a_m_s2 * t * t : 0.5 * v * until_s + v * s - 0.5 * braked_m_s2 * s * s;
+      out << fmt::format("{},{:.6f}\n", t, sign * x);
     }
     out.close();
     core::AnalysisOptions options;
@@ -320,4 +322,8 @@ TEST_CASE("a table that speeds up like a fall is suspected to be one where nobod
   CHECK_FALSE(suspected(7.0, 0.3, 0.0));   // somebody says that the track is level
   CHECK_FALSE(suspected(1.5, 0.3, {}));    // a gentle hand
   CHECK_FALSE(suspected(15.0, 0.15, {}));  // a push: nothing falls like this
+  // A plunger gives 0.6 m/s within 18 mm, and the cart goes on for half a metre: no fall slows down.
+  CHECK(suspected(8.0, 0.08, {}));
+  CHECK_FALSE(suspected(8.0, 0.08, {}, 0.25));
+  CHECK_FALSE(suspected(8.0, 0.08, {}, 0.25, -1.0));
 }

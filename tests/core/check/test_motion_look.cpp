@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "tests/catch.h"
@@ -174,6 +175,94 @@ TEST_CASE("a fall whose accelerations are above gravity by chance only is a fall
     }
     CHECK(findings(of, 90.0).empty());
   }
+}
+
+namespace {
+
+/// A body that falls through air from rest: x = (v²/g) ln cosh(g t/v), v its terminal speed.
+double fall_through_air(double t_s, double terminal_m_s = 1.5) {
+  return terminal_m_s * terminal_m_s / kGravity_m_s2 * std::log(std::cosh(kGravity_m_s2 * t_s / terminal_m_s));
+}
+
+}  // namespace
+
+TEST_CASE("a fall at its terminal speed in another unit is refused by what it gains at first") {
+  // Most of the 2 s are at the terminal speed, so that the median acceleration is small in any unit.
+  CHECK(findings(positions([](double t) { return fall_through_air(t); }, 1e-3), 90.0).empty());
+  for (const auto& [scale, unit] :
+       {std::pair(100.0, LengthUnit::centimetres), std::pair(1000.0, LengthUnit::millimetres)}) {
+    CAPTURE(scale);
+    const auto in_unit = [scale = scale](double t) { return scale * fall_through_air(t); };
+    CHECK(only_in(findings(positions(in_unit, 1e-3 * scale), 90.0), unit));
+    CHECK(only<BeyondGravity>(findings(positions(in_unit, 1e-3 * scale), 2.0)));
+    CHECK(only_in(findings(positions([&](double t) { return -in_unit(t); }, 1e-3 * scale), 90.0), unit));
+  }
+  // Played four times slower as well, a free fall is 100/16 g: no unit fits, and the distance tells.
+  Positions slow = positions([](double t) { return 100.0 * fall_through_air(t); }, 0.1);
+  for (double& t : slow.t_s) t *= 4.0;
+  CHECK(only_in(findings(slow, 90.0), LengthUnit::centimetres));
+}
+
+TEST_CASE("a push or a bumper above gravity makes no unit wrong") {
+  // 5 g for 0.06 s, then a = -0.25 m/s².
+  const auto pushed = [](double t) {
+    const double push = 5.0 * kGravity_m_s2, s = t - 0.3, v = push * 0.06;
+    if (s < 0.0) return 0.0;
+    return s < 0.06 ? 0.5 * push * s * s : 0.5 * push * 0.06 * 0.06 + v * (s - 0.06) - 0.125 * (s - 0.06) * (s - 0.06);
+  };
+  CHECK(tests::found_in<core::found::MotionFault>(findings(positions(pushed), 0.0)) == nullptr);
+  // From 2 m/s a spring turns it back within 0.1 s: up to 6 g.
+  const auto bumped = [](double t) {
+    const double pi = std::acos(-1.0), s = t - 1.0;
+    if (s < 0.0) return 2.0 * s;
+    return s < 0.1 ? 2.0 * 0.1 / pi * std::sin(pi * s / 0.1) : -2.0 * (s - 0.1);
+  };
+  CHECK(tests::found_in<core::found::MotionFault>(findings(positions(bumped), 0.0)) == nullptr);
+  // A sensor that drifts to the wall 2.5 m away within 0.16 s, and back.
+  const auto drifts = [](double t) {
+    return run(t) + 1.25 * (std::tanh((t - 1.0) / 0.02) - std::tanh((t - 1.5) / 0.02));
+  };
+  CHECK(tests::found_in<core::found::MotionFault>(findings(positions(drifts))) == nullptr);
+}
+
+TEST_CASE("a fall up to twice gravity has a scale or a frame rate that is off") {
+  for (const double scale : {1.1, 1.6}) {
+    CAPTURE(scale);
+    const auto found = findings(positions([&](double t) { return scale * 0.5 * kGravity_m_s2 * t * t; }, 1e-3), 90.0);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].severity == core::Severity::change);
+    const auto& above = tests::found_as<core::found::FallAboveGravity>(found[0]);
+    // The median of ten parabolas' a, each with a sd of 1e-3 sqrt(720/20)/0.19² = 0.17 m/s².
+    CHECK(above.acceleration_m_s2 == Approx(scale * kGravity_m_s2).margin(0.3));
+  }
+  CHECK(only<BeyondGravity>(findings(positions([](double t) { return 1.1 * kGravity_m_s2 * t * t; }, 1e-3), 90.0)));
+  // No incline below 60 degrees gives as much.
+  CHECK(only<BeyondGravity>(findings(positions([](double t) { return 0.6 * kGravity_m_s2 * t * t; }, 1e-3), 4.0)));
+}
+
+TEST_CASE("only units are named in which the acceleration is possible") {
+  const auto units = [](double a_m_s2, double incline_deg) {
+    const auto found = findings(positions([&](double t) { return 0.5 * a_m_s2 * t * t; }), incline_deg);
+    const auto* const fault = tests::found_in<core::found::MotionFault>(found);
+    REQUIRE(fault != nullptr);
+    return std::get<BeyondGravity>(*fault).units;
+  };
+  using Units = std::vector<LengthUnit>;
+  // A fall with drag, at 0.8 g.
+  CHECK(units(0.8 * kGravity_m_s2 * 100.0, 90.0) == Units{LengthUnit::centimetres});
+  CHECK(units(0.8 * kGravity_m_s2 * 1000.0, 90.0) == Units{LengthUnit::millimetres});
+  CHECK(units(0.8 * kGravity_m_s2 / 0.0254, 90.0) == Units{LengthUnit::inches});
+  CHECK(units(0.8 * kGravity_m_s2 / 0.3048, 90.0) == Units{LengthUnit::feet});
+  // 7 g on 4 degrees: 0.07 g in centimetres, of g sin 4° = 0.070 g.
+  CHECK(units(7.0 * kGravity_m_s2, 4.0).front() == LengthUnit::centimetres);
+  // 8 times gravity over 157 "m" is no unit alone: the distance tells.
+  CHECK(units(8.0 * kGravity_m_s2, 90.0) == Units{LengthUnit::centimetres});
+  Positions slow = positions([](double t) { return 100.0 * fall_through_air(t); }, 0.1);
+  for (double& t : slow.t_s) t *= 6.0;  // 100/36 g at first, over 280 "m"
+  const auto found = findings(slow, 90.0);
+  const auto* const fault = tests::found_in<core::found::MotionFault>(found);
+  REQUIRE(fault != nullptr);
+  CHECK(std::get<BeyondGravity>(*fault).units == Units{LengthUnit::centimetres});
 }
 
 TEST_CASE("gravity in feet is told as feet") {

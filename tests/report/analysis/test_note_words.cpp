@@ -168,9 +168,10 @@ TEST_CASE("every way to choose a bandwidth or a strength has words, with its num
   const std::vector<std::pair<core::StrengthChoice, std::string>> choices = {
       {std::monostate{}, ""},
       {by::User{}, "given"},
-      {by::LinesRule{0.0412}, "smallest mean squared error of the lines (41.2 ms)"},
+      {by::LinesRule{0.0412}, "least mean squared error of the lines (41.2 ms)"},
       {by::LinesRule{0.0412, by::LinesRule::Raised{0.01234, 0.0021}},
-       "smallest mean squared error of the lines (41.2 ms), raised for quieter points (the noise of a is 1.2 % of its "
+       "least mean squared error of the lines (41.2 ms), widened so that the points are less noisy (the noise of a is "
+       "1.2 % of its "
        "spread; the lines are biased by 0.21 %)"},
       {by::FirstSmoothing{}, "that of the first smoothing: no bandwidth gives a line"},
       {by::FirstSmoothing{"gcv"}, "that of the first smoothing: the motion is too short for the rule gcv"},

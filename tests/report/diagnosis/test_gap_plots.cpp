@@ -114,7 +114,7 @@ TEST_CASE("a diagnosis' page shows the gap by domain, the phase plane, and curve
   REQUIRE(phase.size() == 2);
   CHECK(phase.front().drawing.data.front().rows.front().at(2) == Approx(1.96 * 0.001).epsilon(1e-4));
   CHECK(phase.back().drawing.data.size() == 2);
-  CHECK(has(report::where_plots(diagnosis).front().caption, "any one of these 2"));
+  CHECK(has(report::where_plots(diagnosis).front().caption, "each of these 2 curves would do so alone"));
   diagnose::Diagnosis one = diagnosis;
   one.curves.pop_back();
   CHECK_FALSE(has(report::where_plots(one).front().caption, "any one"));

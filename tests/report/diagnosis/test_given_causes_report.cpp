@@ -38,7 +38,7 @@ core::AnalysisResults in_doubt() {
 TEST_CASE("the screen has both columns, the size of the effect, and what it does to the gap") {
   const std::string text = report::given_causes_text(tests::made_results(), made_given());
   INFO(text);
-  CHECK(has(text, "With quadratic drag in the model"));
+  CHECK(has(text, "With this effect in the model: quadratic drag"));
   CHECK(has(text, "c = 0.00310 ± 0.00020 kg/m"));
   CHECK(has(text, "falls from 5.30 to 1.02 times the noise"));
   CHECK(has(text, "2.7680 ± 0.0060"));  // by the law alone

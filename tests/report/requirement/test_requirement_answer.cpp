@@ -40,10 +40,10 @@ validate::Requirement cameras() {
 TEST_CASE("the first line of require says what to buy, how to set it and what to expect, on screen and page") {
   const std::string line =
       "Buy: board (OV5647), 8-25 EUR; set it to 640 x 480 pixels, 90 frames/s, exposure 2 ms, H.264 at 8 Mbit/s; "
-      "expect µ within 0.00006, at most 0.000078 (95 % of 20 rendered experiments, analysed by the fit of the whole "
+      "expect µ within 0.00006, at most 0.000078 (95 % of 20 rendered experiments, analysed with the fit of the whole "
       "motion; the target "
       "was "
-      "µ within 0.0001). Prices are rough, and without the computer.";
+      "µ within 0.0001). Prices are rough, and exclude the computer.";
   CHECK(report::requirement_answer(cameras()) == line);
   CHECK(report::requirement_text(cameras()).starts_with(line + "\n"));
   CHECK(report::enough_words(cameras()).empty());
@@ -107,7 +107,7 @@ TEST_CASE("each row of require names the estimator that judges it, and the runs 
   const std::string text = report::requirement_text(requirement);
   CHECK_THAT(text, Contains("missed, by clips   lines of the phase diagram"));
   CHECK_THAT(text, Contains("reached, by clips  fit of the whole motion"));
-  const std::string told = "µ: no answer by the fit of the whole motion in 1 of 8 runs";
+  const std::string told = "µ: no answer with the fit of the whole motion in 1 of 8 runs";
   CHECK_THAT(text, Contains("webcam, 640x480 at 30 fps: " + told));
   const std::string html = report::requirement_report(requirement).html;
   CHECK_THAT(html, Contains(">lines of the phase diagram</td>"));

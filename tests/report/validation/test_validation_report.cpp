@@ -46,16 +46,16 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(first.find("0.007120 ± 0.000020 (0.007100)") != std::string::npos);
   CHECK(first.find("2.780") == std::string::npos);  // the lines' value is below
   CHECK(first.find("α (°)") == std::string::npos);  // of which nothing is known here
-  CHECK(first.find("3 of 4 recovered values lie within two of their standard deviations of the truth; the largest "
-                   "error is that of K/m of m1 by the lines of the phase diagram: 3.0 standard deviations.") !=
-        std::string::npos);
+  CHECK(first.find(
+            "3 of 4 recovered values lie within two standard deviations of the truth; the largest error: K/m of m1 "
+            "with the lines of the phase diagram, 3.0 standard deviations.") != std::string::npos);
   CHECK(text.find("marker found in 39 of 40 frames") != std::string::npos);
 }
 
 TEST_CASE("a comparison begins with an outside estimator's failure, and calls it by its name") {
   validate::Comparison comparison = made_comparison();
   comparison.quantities.push_back(quantity("m1", "mine", "mu", 0.0071, 0.0171, 0.0001));
-  CHECK(report::comparison_text(comparison).find("that of µ of m1 by “mine”: 100 standard deviations") !=
+  CHECK(report::comparison_text(comparison).find("the largest error: µ of m1 with “mine”, 100 standard deviations") !=
         std::string::npos);
   comparison.outside = fit::tally_of("mine", "", {{fit::OutsideFailure::exit_status, "exit status 7", 1.0}});
   CHECK(report::comparison_text(comparison)

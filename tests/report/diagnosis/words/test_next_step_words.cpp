@@ -125,7 +125,7 @@ TEST_CASE("the least well known parameter is named with its size, of the nominal
   diagnose::SharpenParameter step{"c_kg_m", "quadratic_drag", 0.1, 0.01, {}, {62, {}}, 0.0};
   const std::string drag = report::explanation_name({{"quadratic_drag"}});
   const std::string least = " The least well known parameter is c of " + drag + " (0.100 ± 0.010 kg/m). None of ";
-  CHECK(report::next_step_words(step).starts_with("Nothing else is likely." + least + "the 62"));
+  CHECK(report::next_step_words(step).starts_with("No other explanation is likely." + least + "the 62"));
   step.undecided = {{{{"end_stop"}}, {}}};
   CHECK(report::next_step_words(step).starts_with("None of the 62 changes considered () would decide whether “" +
                                                   report::explanation_name({{"end_stop"}}) + "” acts." + least +
