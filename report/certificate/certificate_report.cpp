@@ -141,12 +141,12 @@ std::string micrometres(double length_m) {
 
 /// How the twins were made.
 std::string twin_words(const Certificate& certificate) {
-  std::string text =
-      fmt::format("{} twins of this recording ({} clip{}), {}, were analysed by the {}. They repeat the fitted motions",
-                  certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
-                  certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
-                                     : "simulated at its frame times with its noise and rounding",
-                  estimator_name(certificate.estimator));
+  std::string text = fmt::format(
+      "{} twins of this recording ({} clip{}), {}, were analysed with the {}. They repeat the fitted motions",
+      certificate.runs, certificate.clips, certificate.clips == 1 ? "" : "s",
+      certificate.filmed ? "filmed by its camera and tracked, each with its own calibration"
+                         : "simulated at its frame times with its noise and rounding",
+      estimator_name(certificate.estimator));
   std::string causes;
   for (const std::string& cause : certificate.causes) causes += (causes.empty() ? "" : ", ") + effect_name(cause);
   text += causes.empty() ? ", with no cause besides the nominal law." : fmt::format(", with {} as diagnosed.", causes);

@@ -73,7 +73,7 @@ std::string judged_words(const Requirement& requirement, const Candidate& candid
   if (candidate.judged_by == validate::Confirm::none) return "judged by the bound alone; nothing was run";
   const std::string part = requirement.targets.front().measure == Target::Measure::error95 ? "95 % of " : "";
   const std::string by =
-      first.estimator.empty() ? "" : fmt::format(", analysed by the {}", estimator_name(first.estimator));
+      first.estimator.empty() ? "" : fmt::format(", analysed with the {}", estimator_name(first.estimator));
   return candidate.judged_by == validate::Confirm::clips
              ? fmt::format("{}{} rendered experiments{}", part, first.runs, by)
              : fmt::format("{}{} experiments as tracks, without lens, codec and calibration{}", part, first.runs, by);

@@ -177,7 +177,7 @@ TEST_CASE("the first line of coverage says how often an outside estimator failed
   coverage.rows[1].levels = {{0.95, 120, 0.6, 0.53, 0.67, 1e-40}};
   const std::string text = report::coverage_text(coverage);
   CHECK(text.starts_with(failed + " The stated 95 % intervals"));
-  CHECK(has(text.substr(0, text.find('\n')), "less often than stated for 1 of 2: µ of m1 by “mine”."));
+  CHECK(has(text.substr(0, text.find('\n')), "less often than stated for 1 of 2: µ of m1 with “mine”."));
   CHECK(has(text,
             "mine: 2 of 3 runs failed (1 was ended by a signal, the first: signal 11 (SIGSEGV); 1 left no "
             "results.json in {out})"));

@@ -96,7 +96,7 @@ TEST_CASE("a page needs nothing but itself, says its values, and stays small for
   CHECK(page.find("href=\"http") == std::string::npos);
   CHECK(page.find("src=\"data:image/svg+xml;base64,") != std::string::npos);
   CHECK(std::any_of(made.files.begin(), made.files.end(), [](const auto& file) {
-    return file.first.ends_with("-acceleration-over-velocity-with-fitted-lines.svg");
+    return file.first.ends_with("-acceleration-against-velocity-with-fitted-lines.svg");
   }));
   CHECK(page.size() < 3'000'000);  // 10 MB allow twelve clips of a quarter of this each
 }
