@@ -368,7 +368,8 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
   }
   doubt_by_share(in_images);
   const bool by_name = first_.unknown < kUnknownIfLess;
-  if (!by_name && !sequence_.is_gap && is_trifle(set_, nominal(), first_.unnamed)) {
+  const bool at_floor = sequence_.gap_before < 1.0 + sequence_.standard_error;
+  if (!by_name && at_floor && is_trifle(set_, nominal(), first_.unnamed)) {
     // What images show by themselves is as certain as without it.
     if (in_images && first_.unknown < 1.0) set_unknown(0.0, first_);
     first_.none += std::exchange(first_.unknown, 0.0);

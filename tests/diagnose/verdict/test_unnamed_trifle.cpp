@@ -14,10 +14,10 @@ using namespace glidelab;
 
 namespace {
 
-/// Positions that an uneven scale displaces by a third of their noise, with 0.1 m from crest to crest.
+/// Positions that an uneven scale displaces by a quarter of their noise, with 0.1 m from crest to crest.
 tests::MadeEffect uneven_scale() {
   tests::MadeEffect effect;
-  effect.seen = [](double x, double) { return x + 1e-5 * std::sin(2.0 * std::numbers::pi * x / 0.1); };
+  effect.seen = [](double x, double) { return x + 8e-6 * std::sin(2.0 * std::numbers::pi * x / 0.1); };
   return effect;
 }
 
