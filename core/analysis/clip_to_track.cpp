@@ -420,6 +420,16 @@ ImageResults tracks_of(const Experiment& experiment, int jobs, const base::Progr
     }
     measure_alike(seen);
   }
+  for (const std::size_t i : images) {
+    if (!is_seen(seen[i])) continue;
+    const std::optional<NoMarker> rough = far_rougher(seen, i, experiment.clips[i]);
+    if (!rough) continue;
+    if (without == WithoutMarker::an_error) throw NoMarker(*rough);
+    results.without_marker[i] = *rough;
+  }
+  for (const std::size_t i : images) {
+    if (results.without_marker[i]) seen[i] = {};
+  }
   const bool is_disc = body_of(experiment, setting, seen) == MarkerBody::disc;
   for (auto& [name, restitution] : setting.restitutions) {
     if (is_disc) restitution.take_for_disc();

@@ -12,6 +12,7 @@
 #include "base/long_work.h"
 #include "base/text/number_text.h"
 #include "core/math/even_times.h"
+#include "core/math/quantile.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/marker/second_look.h"
 #include "core/pictures/marker/sphere/still_background.h"
@@ -68,8 +69,19 @@ void put_even(SeenClip& seen) {
   seen.frame_t_s = std::move(even->t_s);
 }
 
-/// Completes the record of a clip that was read to the end.
-void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
+/// The looks of fits to the inverse of the codes, in codes: the amplitude of a dark marker is negative.
+void turn_back(std::vector<MarkerLook>& looks, double full_code) {
+  for (MarkerLook& look : looks) {
+    look.amplitude = -look.amplitude;
+    look.background = full_code - look.background;
+    look.slope_u = -look.slope_u;
+    look.slope_v = -look.slope_v;
+  }
+}
+
+/// Completes the record of a clip that was read to the end. `inverse`: the marker was fitted to the inverse of the
+/// codes.
+void finish_record(const FileFacts& facts, bool inverse, SceneWatch& scene, SeenClip& seen) {
   ImageRecord& record = *seen.images;
   record.width_px = seen.size.width;
   record.height_px = seen.size.height;
@@ -77,6 +89,7 @@ void finish_record(const FileFacts& facts, SceneWatch& scene, SeenClip& seen) {
   record.lossy = facts.lossy;
   record.stamps_missing = facts.stamps_missing;
   record.marker = looks_of(seen.marker, seen.frame_t_s);
+  if (inverse) turn_back(record.marker, record.full_code);
   scene.finish(record);
 }
 
@@ -171,7 +184,7 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
   seen.notes = source->notes();
   seen.predicted = source->facts().predicts;
   if (experiment.camera->time == TimeSource::container) put_even(seen);
-  if (scene) finish_record(source->facts(), *scene, seen);
+  if (scene) finish_record(source->facts(), signal_kind(marker) == SignalKind::dark, *scene, seen);
   return {std::move(seen)};
 }
 
@@ -404,6 +417,30 @@ std::optional<NoMarker> not_from_start(const SeenClip& seen, const MarkerSetup& 
                   from_end),
       "one thing of the stated diameter that stands out from its surroundings in every frame, as a plain disc does, or "
       "another start_px"});
+}
+
+std::optional<NoMarker> far_rougher(const std::vector<SeenClip>& clips, std::size_t which, const ClipSetup& clip) {
+  constexpr double kTimesRougher = 10.0, kLeastRough_px = 0.3;
+  constexpr std::size_t kFewestOthers = 2;
+  std::optional<double> mine;
+  std::vector<double> others;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const auto roughness = roughness_of(places_of(clips[i].marker));
+    if (i == which) {
+      mine = roughness;
+    } else if (roughness) {
+      others.push_back(*roughness);
+    }
+  }
+  if (!mine || *mine < kLeastRough_px || others.size() < kFewestOthers) return std::nullopt;
+  const double usual = median_of(std::move(others));
+  if (*mine < kTimesRougher * usual) return std::nullopt;
+  return NoMarker(
+      base::Issue{clip.file.string(), 0, "marker",
+                  fmt::format("no marker that can be followed: what is followed scatters by {} px from frame "
+                              "to frame, the marker of the other clips by {} px",
+                              base::number_text(*mine, 2), base::number_text(usual, 2)),
+                  "one thing of the stated diameter that stands out from its surroundings in every frame"});
 }
 
 MarkerMethod measured_by(const SeenClip& clip) {

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstddef>
+#include <numbers>
+#include <set>
 #include <vector>
 
+#include "core/math/lost_frames.h"
 #include "core/math/quantile.h"
 #include "core/pictures/marker/marker_template.h"
 #include "core/pictures/marker/sphere/sphere_window.h"
@@ -22,6 +26,7 @@ constexpr double kTimesOff = 8.0;         // plus so many times the usual distan
 constexpr double kRoughestPath_px = 0.3;  // from frame to frame
 constexpr double kMostResidual = 0.35;    // relative to the contrast of the look
 constexpr double kLeastAtOutline = 0.2;   // of the look's edges: less is an object of another size
+constexpr double kLatticeSd_px = 0.05;    // of places about a lattice of whole pixels: they move with the pixels
 constexpr double kSlackRadii = 1.0, kLostSlackRadii = 3.0;  // margin of a window, if the marker was seen or lost
 constexpr double kSlack_px = 6.0;
 
@@ -29,6 +34,35 @@ constexpr double kSlack_px = 6.0;
 cv::Point2d pixels_of(const cv::Vec3d& shape, cv::Point2d q) {
   const double determinant = shape[0] * shape[2] - shape[1] * shape[1];
   return cv::Point2d(shape[2] * q.x - shape[1] * q.y, shape[0] * q.y - shape[1] * q.x) / determinant;
+}
+
+/// Whether places lie on a lattice of whole pixels although the object moves: what is matched is then a pattern of the
+/// pixels (the blocks of a codec), not the object. Only places beside a step by a pixel or more count, so that an
+/// object may rest; and their steps must differ, for an object may also move by one pixel in every frame.
+bool is_on_lattice(const std::vector<PlaceInFrame>& places, double cv::Point2d::*axis) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const auto mean_phase = [&](const std::vector<double>& along) {
+    std::complex<double> sum;
+    for (const double at : along) sum += std::polar(1.0 / static_cast<double>(along.size()), kTurn * at);
+    return sum;
+  };
+  std::vector<double> all, moving;
+  for (const PlaceInFrame& place : places) all.push_back(place.at.*axis);
+  const double phase = std::arg(mean_phase(all)) / kTurn;
+  std::vector<double> steps;  // before each place, in whole pixels
+  for (std::size_t k = 1; k < all.size(); ++k)
+    steps.push_back(std::round(all[k] - phase) - std::round(all[k - 1] - phase));
+  std::set<double> lengths;
+  for (std::size_t k = 1; k + 1 < all.size(); ++k) {
+    if (steps[k - 1] == 0.0 && steps[k] == 0.0) continue;
+    moving.push_back(all[k]);
+    lengths.insert({steps[k - 1], steps[k]});
+  }
+  if (moving.size() < kFewestSeen || lengths.size() < 2) return false;
+  // About the lattice: a slow object is half a pixel from it where it steps. exp(-(2 pi sd)^2 / 2) of normal
+  // deviations.
+  const double together = std::real(mean_phase(moving) * std::polar(1.0, -kTurn * phase));
+  return together > std::exp(-0.5 * std::pow(kTurn * kLatticeSd_px, 2));
 }
 
 class TemplateLook {
@@ -55,6 +89,7 @@ class TemplateLook {
   bool put_at_own_centre();
   void fit_lost();
   void drop_strays();
+  void put_on_clock();
   std::vector<PlaceInFrame> places() const;
   std::optional<TrackedMarker> tracked() const;
   std::size_t seen() const {
@@ -71,6 +106,7 @@ class TemplateLook {
   const TrackedMarker& rough_;
   const ShapeAt& shape_at_;
   std::vector<std::size_t> frames_;  ///< of the windows, in order
+  std::vector<std::size_t> clock_;   ///< the same with the frames that the camera lost
   std::vector<TemplateWindow> windows_;
   std::vector<std::optional<TemplateFit>> fits_;
   std::optional<MarkerTemplate> look_;
@@ -89,6 +125,7 @@ void TemplateLook::take_windows(const std::vector<FrameWindow>& windows) {
                           of.part;
     if (part.empty()) continue;
     frames_.push_back(of.frame);
+    clock_.push_back(of.frame);
     windows_.push_back({of.codes(part - of.part.tl()), part.tl(), *shape, of.expected});
     fits_.emplace_back();
     if (of.seen) fits_.back() = TemplateFit{of.expected};
@@ -156,20 +193,36 @@ bool TemplateLook::put_at_own_centre() {
 std::vector<PlaceInFrame> TemplateLook::places() const {
   std::vector<PlaceInFrame> places;
   for (std::size_t k = 0; k < fits_.size(); ++k) {
-    if (fits_[k]) places.push_back({frames_[k], fits_[k]->centre});
+    if (fits_[k]) places.push_back({clock_[k], fits_[k]->centre});
   }
   return places;
+}
+
+/// Counts the frames that the camera lost. A window without a fit has the clock of the fit before it.
+void TemplateLook::put_on_clock() {
+  constexpr double kLeastSum_px2 = 1e-6;
+  std::vector<PlaceAtFrame> fitted;
+  for (std::size_t k = 0; k < fits_.size(); ++k) {
+    if (fits_[k]) fitted.push_back({frames_[k], {fits_[k]->centre.x, fits_[k]->centre.y}});
+  }
+  const std::vector<std::size_t> lost = lost_before(std::move(fitted), kLeastSum_px2);
+  std::size_t next = 0, before = 0;
+  for (std::size_t k = 0; k < fits_.size(); ++k) {
+    if (fits_[k]) before = lost[next++];
+    clock_[k] = frames_[k] + before;
+  }
 }
 
 /// Fits the lost frames outwards from their fitted neighbours.
 void TemplateLook::fit_lost() {
   for (bool any = true; any;) {
     any = false;
+    put_on_clock();
     for (std::size_t step = 0; step < 2 * fits_.size(); ++step) {  // forwards, then backwards
       const std::size_t k = step < fits_.size() ? step : 2 * fits_.size() - 1 - step;
       const bool beside = (k > 0 && fits_[k - 1]) || (k + 1 < fits_.size() && fits_[k + 1]);
       if (fits_[k] || !beside) continue;
-      const auto expected = place_by_neighbours(places(), frames_[k], true);
+      const auto expected = place_by_neighbours(places(), clock_[k], true);
       if (!expected) continue;
       const auto found = fit_from(k, *expected);
       if (!found || !is_good(*found)) continue;
@@ -180,12 +233,13 @@ void TemplateLook::fit_lost() {
 }
 
 void TemplateLook::drop_strays() {
+  put_on_clock();
   const std::vector<PlaceInFrame> all = places();
   std::vector<std::pair<std::size_t, double>> off;
   std::vector<double> distances;
   for (std::size_t k = 0; k < fits_.size(); ++k) {
     if (!fits_[k]) continue;
-    const auto expected = place_by_neighbours(all, frames_[k], true);
+    const auto expected = place_by_neighbours(all, clock_[k], true);
     if (!expected) continue;
     off.emplace_back(k, cv::norm(*expected - fits_[k]->centre));
     distances.push_back(off.back().second);
@@ -203,6 +257,7 @@ std::optional<TrackedMarker> TemplateLook::tracked() const {
   const auto roughness = roughness_of(by_frame);
   if (!roughness || *roughness > kRoughestPath_px || usual_rms_ > kMostResidual * look_->contrast())
     return std::nullopt;
+  if (is_on_lattice(places(), &cv::Point2d::x) || is_on_lattice(places(), &cv::Point2d::y)) return std::nullopt;
   if (look_->share_at_outline() < kLeastAtOutline) return std::nullopt;
   TrackedMarker tracked;
   tracked.method = MarkerMethod::centroid;

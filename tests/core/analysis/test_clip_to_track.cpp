@@ -161,6 +161,24 @@ TEST_CASE("a marker whose colour is not stated is found bright on dark and dark 
   CHECK(worst_px(bright, {0.0, 0.0}) < 0.03);
 }
 
+TEST_CASE("the brightness of a dark marker and of what is behind it are those of the image") {
+  const tests::TempDir dir;
+  const std::vector<std::pair<double, double>> cards{{190.0, 20.0}, {30.0, 200.0}};
+  for (const auto& [card, marker] : cards) {
+    CAPTURE(card);
+    const core::Experiment experiment = experiment_of(card_clip(dir, card, {{{0.0, 0.0}, marker}}), 0.0);
+    const core::ImageResults results = core::tracks_of(experiment, 1, base::no_progress, core::open_frames, true);
+    REQUIRE(results.tracks[0].images);
+    const std::vector<core::MarkerLook>& looks = results.tracks[0].images->marker;
+    REQUIRE(looks.size() >= 40);
+    // The noise of a code over a hundred pixels, and the disc's edge of half a pixel: two codes.
+    for (const core::MarkerLook& look : looks) {
+      CHECK(std::abs(look.background - card) < 2.0);
+      CHECK(std::abs(look.background + look.amplitude - marker) < 2.0);
+    }
+  }
+}
+
 TEST_CASE("spots that jump about are not taken for a marker") {
   const tests::TempDir dir;
   std::vector<cv::Mat> frames;

@@ -150,6 +150,22 @@ TEST_CASE("a track that does not come from start_px is refused, wherever it begi
   CHECK_FALSE(not_from_start(track(42, scene), marker, clip));
 }
 
+TEST_CASE("a track far rougher than those of the other clips is not the marker's, and one somewhat rougher is") {
+  using enum core::MarkerMethod;
+  const auto of = [](double scatter_px) { return clip_of(scattered(uniform, scatter_px, false)); };
+  core::ClipSetup clip;
+  clip.file = "u1.mkv";
+  // A scatter over d px has the standard deviation d / sqrt(12): 0.9, 0.2 and 0.03 px.
+  const std::vector<core::SeenClip> clips{of(0.1), of(3.0), of(0.1), of(0.7)};
+  const auto refused = core::far_rougher(clips, 1, clip);
+  REQUIRE(refused);
+  CHECK_THAT(refused->what(), Contains("u1.mkv") && Contains("the other clips"));
+  CHECK_FALSE(core::far_rougher(clips, 0, clip));
+  CHECK_FALSE(core::far_rougher(clips, 3, clip));
+  CHECK_FALSE(core::far_rougher({of(0.1), of(3.0)}, 1, clip));  // one other may be the one that is wrong
+  CHECK_FALSE(core::far_rougher({of(3.0), of(3.0), of(3.1)}, 2, clip));
+}
+
 TEST_CASE("the clips of a marker with a hue agree on the method of most frames") {
   using Method = core::MarkerMethod;
   const auto by = [](Method method) { return clip_of(scattered(method, 0.1, false)); };

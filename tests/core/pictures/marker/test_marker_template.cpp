@@ -195,6 +195,63 @@ TEST_CASE("Rough positions on one end of the plate in some frames and on the mar
     CHECK(cv::norm(cv::Point2d(sighting.u_px, sighting.v_px) - place(sighting.frame)) < 0.1);  // as above
 }
 
+namespace {
+
+constexpr std::size_t kMany = 90;
+
+/// A bull's eye at these places, and where a search finds it, off by `wrong_px` from frame to frame.
+struct SlowFilm {
+  std::vector<cv::Mat> frames;
+  core::TrackedMarker rough;
+
+  void add(cv::Point2d at, double wrong_px, bool found = true) {
+    const auto light = [&](double u, double v) {
+      const double own = bulls_eye((u - at.x) / kRadius, (v - at.y) / kRadius);
+      return own >= 0.0 ? own : 0.2;
+    };
+    const std::size_t k = frames.size();
+    frames.push_back(tests::expose_light(kSize, light, true, kNoise, 8100 + k));
+    if (!found) return;
+    const double shake = wrong_px * std::sin(11.0 * static_cast<double>(k * k));
+    core::MarkerFit fit;
+    fit.centre = at + cv::Point2d(0.2 + shake, -0.3 - 0.7 * shake);
+    rough.sightings.push_back({k, fit.centre.x, fit.centre.y, 0.5, kRadius});
+    rough.fits.push_back(fit);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Frames that the camera lost close together are steps of the path, and every other frame is found") {
+  // It slows down from 1.9 px per frame. Two frames are lost with six between them, and two in a row.
+  SlowFilm film;
+  std::vector<cv::Point2d> places;
+  for (std::size_t k = 0; k < kMany; ++k) {
+    if (k == 31 || k == 38 || k == 60 || k == 61) continue;
+    const double t = static_cast<double>(k);
+    places.emplace_back(40.3 + 1.9 * t - 0.004 * t * t, 36.2 + 0.02 * t);
+    film.add(places.back(), 0.1);
+  }
+  const auto found = by_template(film.frames, film.rough);
+  REQUIRE(found);
+  CHECK(found->sightings.size() + 1 >= film.frames.size());  // as above
+  for (const core::MarkerSighting& sighting : found->sightings)
+    CHECK(cv::norm(cv::Point2d(sighting.u_px, sighting.v_px) - places[sighting.frame]) < 0.1);  // as above
+}
+
+TEST_CASE("A path on a lattice of whole pixels is that of a pattern of the pixels, not of a glider") {
+  // It slows down from 0.25 px per frame to rest; the search finds it in every second frame.
+  for (const bool whole : {false, true}) {
+    CAPTURE(whole);
+    SlowFilm film;
+    for (std::size_t k = 0; k < kMany; ++k) {
+      const double left = 1.0 - static_cast<double>(k) / kMany, u = 60.3 + 11.25 * (1.0 - left * left);
+      film.add({whole ? std::floor(u) + 0.3 : u, 36.2}, 0.1, k % 2 == 0);
+    }
+    CHECK(by_template(film.frames, film.rough).has_value() == !whole);
+  }
+}
+
 TEST_CASE("No look is found where nothing moves along the path") {
   const auto nothing = [](double, double) { return -1.0; };
   CHECK_FALSE(by_template(film_look(nothing, false), rough_path(0.5)));
