@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/math/quantile.h"
+#include "core/pictures/image/disc_search.h"
 
 namespace glidelab::core {
 namespace {
@@ -17,6 +18,7 @@ constexpr double kMostRadiiOfMarker = 1.6;              // of the radius: pixels
 constexpr double kSmallest_px = 1.5;                    // the marker's pixels are sought at least as far out
 constexpr std::size_t kFewestOfRim = 8;                 // pixels
 constexpr double kFloorOfPeak = 0.2;                    // of the peak
+constexpr int kClearOfEdge_px = 2;  // between the marker's pixels and the image's edge, which may cut off others
 constexpr double kFlatFrom = 0.25;  // weight above which all pixels count alike in the second centroid
 
 /// The background by the median of the rim of the box, the peak by the brightest tenth near the guess.
@@ -137,6 +139,8 @@ std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGu
   const double floor = peak->floor();
   const std::optional<Spot> spot = spot_in(values, near, floor);
   if (!spot) return std::nullopt;
+  const cv::Rect needed = with_border(spot->part + box.tl(), kClearOfEdge_px);
+  if ((needed & cv::Rect({}, signal.values.size())) != needed) return std::nullopt;
 
   double sum = 0.0, sum_u = 0.0, sum_v = 0.0, area = 0.0;
   double flat_sum = 0.0, flat_u = 0.0, flat_v = 0.0;

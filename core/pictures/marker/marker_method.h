@@ -15,7 +15,8 @@ namespace glidelab::core {
 /// brightest one near the guess. Each counts in proportion to its height above that floor, so that a pixel that comes
 /// or goes at the edge does not matter. Unlike the fit of marker_fit.h, a centroid follows the slope of the background.
 ///
-/// sd_px is not estimated (0). Empty if nothing stands out, or if its radius is off by more than a factor of 2.
+/// sd_px is not estimated (0). Empty if nothing stands out, if these pixels come within 2 px of the image's edge, which
+/// may cut off others, or if its radius is off by more than a factor of 2.
 std::optional<MarkerFit> centroid_of_marker(const Signal& signal, const MarkerGuess& guess);
 
 /// The object by one method. Empty if it cannot be measured in this way, or if its contrast is too low. `undecided` is

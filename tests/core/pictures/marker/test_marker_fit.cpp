@@ -247,6 +247,20 @@ TEST_CASE("the centroid of an object of any shape moves with it") {
   }
 }
 
+TEST_CASE("an object that the edge of the image cuts, or may cut, has no centroid") {
+  // A disc of 7 px radius: its outermost pixel is 7 px off. Two pixels beyond it must be in the image.
+  for (const auto& [clear_px, measured] : {std::pair(2.6, true), {1.4, false}, {-3.0, false}}) {
+    CAPTURE(clear_px);
+    const cv::Point2d from_left(7.0 + clear_px - 0.5, 24.0), from_top(24.0, 7.0 + clear_px - 0.5);
+    for (const cv::Point2d centre : {from_left, from_top, cv::Point2d(48.0, 48.0) - from_left}) {
+      const auto image = tests::paint(
+          {49, 49}, [&](double u, double v) { return cv::norm(cv::Point2d(u, v) - centre) < 7.0 ? 180.0 : 5.0; }, 8,
+          0.4);
+      CHECK(core::centroid_of_marker(exact(image), guess_of(centre, 7.0, 0.5)).has_value() == measured);
+    }
+  }
+}
+
 namespace {
 
 /// The centroid as its description in marker_method.h says, by loops over lists of pixels.
@@ -292,6 +306,9 @@ std::optional<core::MarkerFit> centroid_by_loops(const core::Signal& signal, con
     sum += weight;
     fit.centre += weight * cv::Point2d(p);
     area += std::min(2.0 * weight, 1.0);
+  }
+  for (const cv::Point p : spot) {
+    if (p.x < 2 || p.y < 2 || p.x + 2 >= signal.values.cols || p.y + 2 >= signal.values.rows) return std::nullopt;
   }
   fit.centre /= sum;
   fit.radius_px = std::sqrt(area / std::numbers::pi);
