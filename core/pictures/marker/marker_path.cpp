@@ -362,26 +362,6 @@ std::size_t Choice::choose_path(std::vector<Note>& notes) const {
     brightest = std::max(brightest, path.amplitude);
     longest = std::max(longest, static_cast<double>(path.seen.size()));
   }
-  if (std::getenv("GDBG") != nullptr) {
-    for (std::size_t i = 0; i < paths_.size(); ++i) {
-      const MarkerPath& p = paths_[i];
-      fmt::print(stderr,
-                 "PATH {} n={} frames {}..{} travel {:.1f} r {:.2f} ratio {:.2f} amp {:.1f} method {} at "
-                 "({:.0f},{:.0f})->({:.0f},{:.0f}) asleep {} lit {} mover {} steady {:.1f}\n",
-                 i, p.seen.size(), p.seen.front().frame, p.seen.back().frame, p.travel_px, p.radius_px, p.size_ratio(),
-                 p.amplitude, static_cast<int>(p.method), p.seen.front().fit.centre.x, p.seen.front().fit.centre.y,
-                 p.seen.back().fit.centre.x, p.seen.back().fit.centre.y, p.asleep, p.lit,
-                 !(p.seen.size() < fewest || p.travel_px < least_travel(p.radius_px)), steady_travel(p));
-    }
-  }
-  if (std::getenv("GDBG2") != nullptr) {
-    for (const MarkerPath& p : paths_) {
-      fmt::print(stderr, "\nPOS ");
-      for (const MarkerSeen& q : p.seen)
-        fmt::print(stderr, "{}:({:.1f},{:.1f};{:.1f},{:.0f}) ", q.frame, q.fit.centre.x, q.fit.centre.y,
-                   q.fit.radius_px, q.fit.amplitude);
-    }
-  }
   if (movers.empty()) return resting_path(notes);
   // Squared deviations from a typical marker, each in units of its spread.
   const auto cost = [&](std::size_t i) {
