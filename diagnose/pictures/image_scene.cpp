@@ -118,7 +118,8 @@ std::optional<image::LightAlong::Pull> pull_of_light(const std::vector<FilmedCli
 
 }  // namespace
 
-/// Light along the path from the marker's brightness: ln(brightness) = a + g s + q s² about the image's middle.
+/// Light along the path from the brightness of the marker or, if that is dark, of what is behind it, for glare, a codec
+/// and the black level act on a dark one: ln(brightness) = a + g s + q s² about the image's middle.
 void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   const auto columns = static_cast<Eigen::Index>(clips.size() + 2);
   std::vector<Eigen::VectorXd> rows;
@@ -127,7 +128,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence)
   for (std::size_t c = 0; c < clips.size(); ++c) {
     px_per_m += clips[c].px_per_m / static_cast<double>(clips.size());
     for (const core::MarkerLook& look : clips[c].record->marker) {
-      const double code = look.amplitude + look.background;
+      const double code = look.background + std::max(0.0, look.amplitude);
       if (!(code > 0.0) || code > kSaturatedCode * clips[c].record->full_code) continue;
       Eigen::VectorXd row = Eigen::VectorXd::Zero(columns);
       const double along_px =
@@ -138,7 +139,7 @@ void add_gradient(const std::vector<FilmedClip>& clips, ImageEvidence& evidence)
       row[columns - 1] = s * s;
       reach = std::max(reach, std::abs(s));
       rows.push_back(std::move(row));
-      values.push_back(std::log(look.amplitude + look.background));
+      values.push_back(std::log(code));
     }
   }
   if (!(px_per_m > 0.0) || rows.size() < 40 || reach < 0.05) return;

@@ -12,6 +12,10 @@ namespace {
 
 namespace image = diagnose::image;
 
+/// The pixels' codes are compared, and no file tells its tone curve. That of sRGB is a power of 2.2 on average.
+constexpr const char* kOfCodes =
+    " Brightness is that of the image, in codes; with the usual tone curve (sRGB) the light changes 2.2 times as much.";
+
 /// A sentence for every kind; a kind without one does not compile.
 struct ImageSentence {
   std::string operator()(const image::Smear& of) const {
@@ -25,16 +29,17 @@ struct ImageSentence {
                        of.stated_s == 0.0 ? "(a global shutter) is stated" : "is stated");
   }
   std::string operator()(const image::LightAlong& of) const {
-    std::string text = fmt::format("The light on the marker changes by {} % per metre {}; {:.0f} % is usual in a room.",
-                                   base::value_and_sd_text(100.0 * of.gradient_1_m, 100.0 * of.sd_1_m),
-                                   of.down ? "down the image" : "to the right", 100.0 * of.usual_1_m);
+    std::string text =
+        fmt::format("The image of the marker changes its brightness by {} % per metre {}; {:.0f} % is usual in a room.",
+                    base::value_and_sd_text(100.0 * of.gradient_1_m, 100.0 * of.sd_1_m),
+                    of.down ? "down the image" : "to the right", 100.0 * of.usual_1_m);
     if (of.pull) {
       text += fmt::format(
           " The centroid of the marker's light lies {:.2g} px from the centre of its outline, which is what is "
           "fitted; this offset changes by ±{:.2g} px along the path.",
           of.pull->size_px, of.pull->change_px);
     }
-    return text;
+    return text + kOfCodes;
   }
   std::string operator()(const image::Flicker& of) const {
     if (!of.flickers) {
@@ -42,8 +47,10 @@ struct ImageSentence {
                          100.0 * of.amplitude);
     }
     return fmt::format(
-        "The brightness of the fixed scene varies by ±{:.2g} % at {:.4g} Hz{}.", 100.0 * of.amplitude, of.seen_hz,
-        of.f_hz != of.seen_hz ? fmt::format(" ({:.0f} Hz looks like this at this frame rate)", of.f_hz) : "");
+               "The brightness of the fixed scene varies by ±{:.2g} % at {:.4g} Hz{}.", 100.0 * of.amplitude,
+               of.seen_hz,
+               of.f_hz != of.seen_hz ? fmt::format(" ({:.0f} Hz looks like this at this frame rate)", of.f_hz) : "") +
+           kOfCodes;
   }
   std::string operator()(const image::Sway& of) const {
     switch (of.how) {

@@ -389,6 +389,41 @@ TEST_CASE("light from one side is told with how far it draws the centroid of the
   CHECK(pull->change_px == Approx(0.2));
 }
 
+TEST_CASE("light along the path is that on the brighter of a marker and what is behind it", "[pictures]") {
+  // A dark marker on a card under light of exp(-0.6 s), with glare that lifts its black towards the other side.
+  auto dark = filmed({0.006, 0.0, 0.0, 0.0}, 0.006, 4);
+  for (diagnose::FilmedClip& clip : dark) {
+    auto record = std::make_shared<core::ImageRecord>(*clip.record);
+    for (core::MarkerLook& look : record->marker) {
+      const double s = (look.u_px - 240.0) / clip.px_per_m;
+      look.background = 150.0 * std::exp(-0.6 * s);
+      look.amplitude = 20.0 + 15.0 * s - look.background;
+    }
+    clip.record = record;
+  }
+  const diagnose::image::LightAlong light = light_of(diagnose::image_evidence(dark));
+  CHECK(std::abs(light.gradient_1_m + 0.6) < 1e-6);  // exact data; the normal equations have a ridge of 1e-9
+}
+
+TEST_CASE("what a lossy codec adds to a moving marker is no exposure, and a long exposure beside it is", "[pictures]") {
+  const auto seen = [](double exposure_s, bool lossy, std::size_t every) {
+    auto clips = filmed({exposure_s, 0.0, 0.0, 0.0}, 0.001, 7);
+    for (diagnose::FilmedClip& clip : clips) {
+      auto record = std::make_shared<core::ImageRecord>(*clip.record);
+      record->lossy = lossy;
+      std::erase_if(record->marker, [&](const core::MarkerLook& look) { return look.frame % every != 0; });
+      for (core::MarkerLook& look : record->marker) look.frame /= every;
+      clip.record = record;
+      clip.camera.frame_rate_hz /= static_cast<double>(every);
+    }
+    return finding(diagnose::image_evidence(clips), "exposure_blur").seen;
+  };
+  // At 400 px/s, 5 ms are 2 px: a second moment of 0.33 px², as a codec may add. 12 ms, at 60 Hz, are 1.9 px².
+  CHECK(seen(0.005, false, 1));
+  CHECK_FALSE(seen(0.005, true, 1));
+  CHECK(seen(0.012, true, 2));
+}
+
 TEST_CASE("a motion down the image tells exposure and light as the same motion across it does", "[pictures]") {
   const auto across = with_gradient(filmed({0.006, 0.0, 0.0, 0.0}, 0.006, 4), 1.5);
   const auto down = turned(across);

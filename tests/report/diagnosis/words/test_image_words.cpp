@@ -23,9 +23,12 @@ TEST_CASE("whatever images show of an effect has words, with its data in the uni
        "by 50.0 ± 2.0 % per metre down the image; 20 % is usual in a room."},
       {image::LightAlong{0.5, 0.02, 0.2, false, {{0.6, 0.2}}},
        "to the right; 20 % is usual in a room. The centroid of the marker's light lies 0.6 px from the centre of its "
-       "outline, which is what is fitted; this offset changes by ±0.2 px along the path."},
+       "outline, which is what is fitted; this offset changes by ±0.2 px along the path. Brightness is that of the "
+       "image, in codes"},
       {image::Flicker{true, 0.02, 20.0, 100.0}, "by ±2 % at 20 Hz (100 Hz looks like this at this frame rate)."},
-      {image::Flicker{true, 0.02, 20.0, 20.0}, "by ±2 % at 20 Hz."},
+      {image::Flicker{true, 0.02, 20.0, 20.0},
+       "by ±2 % at 20 Hz. Brightness is that of the image, in codes; with the usual tone curve (sRGB) the light "
+       "changes 2.2 times"},
       {image::Flicker{false, 0.001, 20.0, 20.0}, "does not flicker: no wave above 0.1 %"},
       {image::Sway{How::shakes, 0.4, 7.0}, "sways in the image by ±0.4 px at 7 Hz: the camera shakes."},
       {image::Sway{How::drifts, 0.4, 0.0}, "drifts in the image by 0.4 px within a clip"},
