@@ -108,6 +108,31 @@ Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, d
   return {part[0], part[1], rho, (design * part - seen).squaredNorm()};
 }
 
+/// The step of counts that were written with few decimals: an encoder's counts, times a length. `about` is one of the
+/// changes, with the error of its last decimal, which the larger distances make smaller; 0 if these are no counts.
+double step_of_counts(std::span<const double> x_m, double about) {
+  constexpr double kOff = 0.02;  // of a count
+  constexpr std::size_t kFewestFar =
+      20;  // positions, ten counts or more from the first: each fits once in 25 by chance
+  std::vector<double> distances;
+  for (const double x : x_m) distances.push_back(std::abs(x - x_m[0]));
+  std::sort(distances.begin(), distances.end());
+  double step = about, counts2 = 0.0, products = 0.0;
+  std::size_t far = 0;
+  for (const double distance : distances) {
+    const double count = std::round(distance / step);
+    if (std::abs(distance / step - count) > 2.0 * kOff) return 0.0;
+    counts2 += count * count;
+    products += count * distance;
+    if (counts2 > 0.0) step = products / counts2;
+    if (count >= 10.0) ++far;
+  }
+  const bool all_fit = std::all_of(distances.begin(), distances.end(), [&](double distance) {
+    return std::abs(distance / step - std::round(distance / step)) <= kOff;
+  });
+  return all_fit && far >= kFewestFar ? step : 0.0;
+}
+
 }  // namespace
 
 double rounding_step(std::span<const double> x_m) {
@@ -134,6 +159,9 @@ double rounding_step(std::span<const double> x_m) {
   const int most = x_m.size() < kFewestForParts ? 1 : kMostParts;
   for (int parts = 1; parts <= most; ++parts) {
     if (fits(least / parts)) return least / parts;
+  }
+  for (int parts = 1; parts <= most; ++parts) {
+    if (const double step = step_of_counts(x_m, least / parts); step > 0.0) return step;
   }
   // If the motion is never slow, the last decimal place is seen in the numbers themselves.
   constexpr int kMostPlaces = 9;

@@ -15,7 +15,8 @@ namespace glidelab::core {
 /// estimate is never below q / sqrt(12): between two multiples a rounded position carries no information.
 double pilot_noise(std::span<const double> t_s, std::span<const double> x_m);
 
-/// The step q if all positions differ from the first by whole multiples of it (a rounded file), 0 otherwise.
+/// The step q if all positions differ from the first by whole multiples of it (a rounded file, or counts times a length
+/// that were written with few decimals), 0 otherwise.
 double rounding_step(std::span<const double> x_m);
 
 /// Noise as a stationary process: white, or white plus a part that is correlated as c rho^|lag| (a codec's, or that of

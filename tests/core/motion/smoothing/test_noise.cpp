@@ -105,6 +105,18 @@ TEST_CASE("marks at even distances, passed at measured times, are no rounded pos
   CHECK(rounding_step(x) == Approx(0.25));
 }
 
+TEST_CASE("counts of an encoder are rounded positions, with however few decimals their length was written") {
+  constexpr double kCount_m = 5.47777e-4;
+  std::vector<double> x;
+  for (int i = 0; i < 214; ++i) {
+    const double t = 0.005 * i, at = 0.1358 * (t - (1.0 - std::exp(-7.2 * t)) / 7.2);  // a motor that starts
+    x.push_back(std::round(1e6 * kCount_m * std::floor(at / kCount_m)) / 1e6);
+  }
+  CHECK(rounding_step(x) == Approx(kCount_m).epsilon(1e-4));
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::round(1e6 * (x[i] + 1e-4 * (i * i % 7))) / 1e6;
+  CHECK(rounding_step(x) < 2e-6);  // micrometres, and no counts
+}
+
 TEST_CASE("outliers and impacts do not inflate the first figure of the noise") {
   const auto t = times(1000, 0.005);
   std::mt19937_64 random(3);
