@@ -95,7 +95,6 @@ constexpr double kOutlier = 7.0;            // median deviations
 constexpr double kLeastScatter_px2 = 1e-9;  // so that exact data have one
 constexpr double kSlowest_px_s = 1.0;       // of the fastest sample: slower, nothing smears
 constexpr double kLongestSmear = 3.0;       // radii
-constexpr double kCodecSmear_px2 = 0.3;     // second moment that a lossy codec adds to what moves, along its way
 
 struct Sample {
   double place = 0.0;  ///< u, -1 to 1 over the image
@@ -295,35 +294,20 @@ void leave_outliers(const Solved& last, std::vector<Sample>& samples, double& sh
   shear_weight = stretch / shear;
 }
 
-struct Moments {
-  double mean = 0.0, variance = 0.0;
-};
-
-/// Of `of(exposure)` over the likelihood of the exposures tried, each weighted with its step.
-template <class Of>
-Moments over_exposures(const Scan& scan, double variance, const Of& of) {
+/// Mean and spread over the likelihood of the exposures tried, each weighted with its step.
+void tell_exposure(const Scan& scan, double variance, ShapeFit& result) {
   double sum = 0.0, mean = 0.0, square = 0.0;
   for (std::size_t i = 0; i < scan.tried_s.size(); ++i) {
     const double t = scan.tried_s[i];
     const double step = i == 0 ? kShortest_s : t * (kFinest - 1.0);
     const double w = step * std::exp(-0.5 * (scan.chi2[i] - scan.best.chi2) / variance);
     sum += w;
-    mean += w * of(t);
-    square += w * of(t) * of(t);
+    mean += w * t;
+    square += w * t * t;
   }
-  mean /= sum;
-  return {mean, std::max(0.0, square / sum - mean * mean)};
-}
-
-/// `added_px2`: standard deviation of what the fastest image has besides its smear, as part of its second moment.
-void tell_exposure(const Scan& scan, double variance, double added_px2, ShapeFit& result) {
-  const auto lengthened = [&](double t) { return smear(result.fastest_px_s * t); };
-  const double step_px2 = smear(result.fastest_px_s * kShortest_s);
-  const double known_px2 = std::max(over_exposures(scan, variance, lengthened).variance, step_px2 * step_px2);
-  const Moments exposure =
-      over_exposures(scan, variance * (1.0 + added_px2 * added_px2 / known_px2), [](double t) { return t; });
-  result.exposure_s = exposure.mean;
-  result.exposure_sd_s = std::sqrt(std::max(exposure.variance, std::pow(scan.best_s * (kFinest - 1.0) / 3.0, 2)));
+  result.exposure_s = mean / sum;
+  result.exposure_sd_s = std::sqrt(
+      std::max(square / sum - result.exposure_s * result.exposure_s, std::pow(scan.best_s * (kFinest - 1.0) / 3.0, 2)));
 }
 
 }  // namespace
@@ -355,9 +339,7 @@ ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
   const double memory = std::max(memory_of(best.rest.head(n)), memory_of(best.rest.tail(n)));
   const double variance = memory * best.chi2 / static_cast<double>(2 * n);
   result.known = true;
-  const bool lossy =
-      std::ranges::any_of(clips, [](const FilmedClip& clip) { return core::through_lossy_codec(*clip.record); });
-  tell_exposure(scan, variance, lossy ? kCodecSmear_px2 : 0.0, result);
+  tell_exposure(scan, variance, result);
   result.line_s = best.line;
   result.line_sd_s = std::sqrt(best.line_variance * variance);
   result.curves.push_back(lengthening(samples, best.rest, scan.best_s, clips.front().camera.exposure_s));

@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "core/math/lost_frames.h"
 #include "core/math/quantile.h"
+#include "core/math/skipped_frames.h"
 #include "core/pictures/marker/marker_template.h"
 #include "core/pictures/marker/sphere/sphere_window.h"
 

@@ -14,7 +14,7 @@ namespace glidelab::core {
 /// Finds the look and the positions in all windows around a rough track alternately, eight times. Frames in which the
 /// marker was lost are fitted outwards from their neighbours. If the guesses lie on different parts of the object in
 /// different frames, their common look is none of it: the look of a short stretch then spreads to the other frames, and
-/// counts if it has a centre of its own. Frames that the camera lost are steps of the path (lost_frames.h). Empty if
+/// counts if it has a centre of its own. Frames that the camera lost are steps of the path (skipped_frames.h). Empty if
 /// the residuals or the roughness of the path are too large, if the path lies on a lattice of whole pixels although the
 /// object moves, if the look has no edge at the expected outline, or if the marker is seen in fewer frames than before
 /// (or in fewer than eight).

@@ -405,25 +405,6 @@ TEST_CASE("light along the path is that on the brighter of a marker and what is 
   CHECK(std::abs(light.gradient_1_m + 0.6) < 1e-6);  // exact data; the normal equations have a ridge of 1e-9
 }
 
-TEST_CASE("what a lossy codec adds to a moving marker is no exposure, and a long exposure beside it is", "[pictures]") {
-  const auto seen = [](double exposure_s, bool lossy, std::size_t every) {
-    auto clips = filmed({exposure_s, 0.0, 0.0, 0.0}, 0.001, 7);
-    for (diagnose::FilmedClip& clip : clips) {
-      auto record = std::make_shared<core::ImageRecord>(*clip.record);
-      record->lossy = lossy;
-      std::erase_if(record->marker, [&](const core::MarkerLook& look) { return look.frame % every != 0; });
-      for (core::MarkerLook& look : record->marker) look.frame /= every;
-      clip.record = record;
-      clip.camera.frame_rate_hz /= static_cast<double>(every);
-    }
-    return finding(diagnose::image_evidence(clips), "exposure_blur").seen;
-  };
-  // At 400 px/s, 5 ms are 2 px: a second moment of 0.33 px², as a codec may add. 12 ms, at 60 Hz, are 1.9 px².
-  CHECK(seen(0.005, false, 1));
-  CHECK_FALSE(seen(0.005, true, 1));
-  CHECK(seen(0.012, true, 2));
-}
-
 TEST_CASE("a motion down the image tells exposure and light as the same motion across it does", "[pictures]") {
   const auto across = with_gradient(filmed({0.006, 0.0, 0.0, 0.0}, 0.006, 4), 1.5);
   const auto down = turned(across);

@@ -1,4 +1,4 @@
-#include "core/math/lost_frames.h"
+#include "core/math/skipped_frames.h"
 
 #include <algorithm>
 #include <array>
