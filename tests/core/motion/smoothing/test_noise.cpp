@@ -113,7 +113,8 @@ TEST_CASE("counts of an encoder are rounded positions, with however few decimals
     x.push_back(std::round(1e6 * kCount_m * std::floor(at / kCount_m)) / 1e6);
   }
   CHECK(rounding_step(x) == Approx(kCount_m).epsilon(1e-4));
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::round(1e6 * (x[i] + 1e-4 * (i * i % 7))) / 1e6;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = std::round(1e6 * (x[i] + 1e-4 * static_cast<double>(i * i % 7))) / 1e6;
   CHECK(rounding_step(x) < 2e-6);  // micrometres, and no counts
 }
 
