@@ -6,6 +6,11 @@
 #include "diagnose/gap/held_out.h"
 
 namespace glidelab::diagnose {
+namespace {
+
+constexpr double kMostGain = 0.08;  // log likelihood a position: half the square of four tenths of its noise
+
+}  // namespace
 
 bool is_trifle(const TrackSet& set, const MotionFit& nominal, const std::vector<UnnamedFamily>& families) {
   using Kind = ParameterLayout::Global::Kind;
@@ -15,6 +20,7 @@ bool is_trifle(const TrackSet& set, const MotionFit& nominal, const std::vector<
   const auto& globals = nominal.layout->globals();
   for (const UnnamedFamily* family : {shared, of_clips}) {
     if (family == nullptr) continue;
+    if (family->gain > kMostGain * static_cast<double>(points_of(set))) return false;
     const MotionFit with = with_unnamed(set, nominal, *family);
     for (std::size_t g = 0; g < globals.size(); ++g) {
       if (globals[g].kind != Kind::k && globals[g].kind != Kind::mu && globals[g].kind != Kind::alpha) continue;
