@@ -262,7 +262,8 @@ TEST_CASE("analyze without --json prints a table, and the same files for any num
     const std::filesystem::path name = std::filesystem::relative(entry.path(), temp / "1");
     CAPTURE(name);
     CHECK(base::read_file(entry.path()) == base::read_file(temp / "2" / name));
-    if (name.stem().string().ends_with("acceleration-against-velocity-with-fitted-lines")) sorts.insert(name.extension());
+    if (name.stem().string().ends_with("acceleration-against-velocity-with-fitted-lines"))
+      sorts.insert(name.extension());
     ++files;
   }
   CHECK(sorts == std::set<std::string>{".csv", ".gp", ".pdf", ".svg"});
