@@ -118,6 +118,10 @@ WithCauses fits_of(TrackSet set, const ImageEvidence& images, const std::vector<
   settle_noise(images, set);
   MotionFit nominal = nominal_of(set);
   MotionFit fit = best_fit(set, nominal, effects, option, progress);
+  if (settle_noise_again(fit, set)) {
+    nominal = nominal_of(set);
+    fit = best_fit(set, nominal, effects, option, progress);
+  }
   return {std::move(set), std::move(nominal), std::move(fit)};
 }
 

@@ -148,12 +148,6 @@ void coarsen_forces(TrackSet& set, const MotionFit& nominal) {
   }
 }
 
-void whiten_all(TrackSet& set) {
-  for (TrackedMotion& motion : set.motions) {
-    whiten(motion, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
-  }
-}
-
 /// Finds the noise of every position from single frames. Missing frames are corrected first: a jump is neither noise
 /// nor an outlier.
 void settle(TrackSet& set) {
@@ -177,7 +171,9 @@ void settle(TrackSet& set) {
     refit();
     set_tails_aside(set, missing.fit);
     note_lasting_noise(set);
-    whiten_all(set);
+    for (TrackedMotion& motion : set.motions) {
+      whiten(motion, set.position_noise->shape, set.clips[motion.clip].frame_rate_hz);
+    }
     return;
   }
   if (give_fast_positions_their_noise(set, missing.fit.late)) {
@@ -243,9 +239,7 @@ bool settle_noise_again(const MotionFit& explanation, TrackSet& set) {
   constexpr double kMostOfNoise = 0.5;  // of its variance: no explanation of hundreds of positions leaves less
   if (!set.images || !set.position_noise || !std::isfinite(explanation.cost)) return false;
   if (explanation.cost > kMostOfNoise * static_cast<double>(points_of(set))) return false;
-  if (!find_position_noise(set, explanation)) return false;
-  whiten_all(set);
-  return true;
+  return find_position_noise(set, explanation);
 }
 
 }  // namespace glidelab::diagnose

@@ -110,8 +110,8 @@ Sized sized_of(const TrackSet& set, const MotionFit& named) {
   return sized;
 }
 
-/// The log evidence by which the positions alone prefer an explanation of a fall, a quadratic drag with or without the
-/// inertia of the air, to a viscous drag with or without the same. Empty for other explanations.
+/// The log evidence by which the positions alone prefer an explanation of a fall, a quadratic drag alone or with the
+/// inertia of the air and what acts beside them, to a viscous drag with the same. Empty for other explanations.
 std::optional<double> evidence_over_viscous(const Comparison& comparison, const Hypothesis& best) {
   const std::size_t drag = effect_index(ids::quadratic_drag);
   std::set<std::size_t> effects(best.effects.begin(), best.effects.end());

@@ -111,9 +111,8 @@ Mixture mixture(const Residuals& residuals, const std::vector<double>& passed, d
 /// The step of counts that were written with few decimals: an encoder's counts, times a length. `about` is one of the
 /// changes, with the error of its last decimal, which the larger distances make smaller; 0 if these are no counts.
 double step_of_counts(std::span<const double> x_m, double about) {
-  constexpr double kOff = 0.02;  // of a count
-  constexpr std::size_t kFewestFar =
-      20;  // positions, ten counts or more from the first: each fits once in 25 by chance
+  constexpr double kOff = 0.02;           // of a count: a position fits once in 25 by chance
+  constexpr std::size_t kFewestFar = 20;  // positions ten counts or more from the first
   std::vector<double> distances;
   for (const double x : x_m) distances.push_back(std::abs(x - x_m[0]));
   std::sort(distances.begin(), distances.end());
