@@ -10,9 +10,10 @@
 #include "base/long_work.h"
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/causes/cause_sequence.h"
+#include "diagnose/causes/chosen_explanations.h"
 #include "diagnose/causes/explanation_profile.h"
+#include "diagnose/causes/further_causes.h"
 #include "diagnose/causes/remainder.h"
-#include "diagnose/causes/spread_prior.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/nominal_fit.h"
@@ -28,10 +29,7 @@ constexpr std::size_t kFirst =
 constexpr double kCostOfTakingTheBest = 3.0;  // ln 20: the likeliest of some twenty functions without a name is taken
 constexpr std::size_t kProfiled = 14;         // explanations that get a remainder of their own
 constexpr double kRemainderCost = 3.0;        // log evidence that a remainder costs, its sizes being unknown
-constexpr double kNearlyAsLikely = 0.1;       // relative to the probability of the likeliest explanation
-constexpr std::size_t kMostBeside = 8;        // explanations beside which a function without a name is weighed
-constexpr std::size_t kWithScatter = 3;       // laws that are weighed together with clip scatter
-constexpr double kMuchLeft = 0.1;             // of the excess: a law that leaves less needs no clip scatter beside it
+constexpr std::size_t kWithHand = 4;          // explanations that are weighed together with a hand
 constexpr double kNotWeighed = 1e3;           // log evidence by which an explanation without a fit is behind
 
 /// The columns of a family in units of the noise alone: undoes the part of the whitening that the remainder caused.
@@ -66,21 +64,6 @@ std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with,
     log = std::max(log.value_or(-std::numeric_limits<double>::infinity()), profile.log_evidence - kCostOfTakingTheBest);
   }
   return log;
-}
-
-/// The hypothesis that consists of the effects of a fit and nothing else; null if there is none.
-const Hypothesis* pure_of(const Comparison& comparison, int fit) {
-  for (const Hypothesis& one : comparison.all) {
-    if (one.fit != fit || one.unnamed) continue;
-    std::vector<std::size_t> a = one.effects, b = comparison.fits[static_cast<std::size_t>(fit)].effects;
-    std::sort(a.begin(), a.end());
-    std::sort(b.begin(), b.end());
-    // Missing frames are in a fit's times, not among its effects.
-    std::erase(a, effect_index(ids::dropped_frames));
-    std::erase(b, effect_index(ids::dropped_frames));
-    if (a == b) return &one;
-  }
-  return nullptr;
 }
 
 /// Indices of the fits that are weighed anew: the nominal fit and those of the likeliest explanations.
@@ -126,56 +109,6 @@ std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) 
   return joined;
 }
 
-/// The explanations beside which a function without a name is weighed: the nominal model, the two single effects and
-/// the pair with the most evidence, and those that are nearly as likely as the likeliest. Of two explanations that do
-/// equally well, both must get the evidence of such a function, or the other falls behind. Scatter of single positions
-/// makes no gap, so a function beside it would only repeat the one beside the nominal model.
-std::vector<Hypothesis> beside(const Comparison& comparison, const LeftExcess& excess) {
-  std::vector<Hypothesis> result = {*pure_of(comparison, 0)};
-  for (const std::size_t many : {2, 1}) {
-    std::size_t left = many;
-    for (const Hypothesis& one : leaders_of(comparison, 3 - many, comparison.all.size())) {
-      if (left == 0 || std::any_of(one.effects.begin(), one.effects.end(), is_scatter)) continue;
-      result.push_back(one);
-      --left;
-    }
-  }
-  Comparison so_far;
-  so_far.all = comparison.all;
-  so_far.odds = comparison.odds;
-  so_far.fit_odds = comparison.fit_odds;
-  weigh_beside_remainder(excess, so_far);
-  double likeliest = 0.0;
-  for (const Hypothesis& one : so_far.all) {  // by falling probability
-    if (one.fit <= 0 || one.unnamed || std::any_of(one.effects.begin(), one.effects.end(), is_scatter)) continue;
-    likeliest = std::max(likeliest, one.probability);
-    if (one.probability < kNearlyAsLikely * likeliest || result.size() >= kMostBeside) break;
-    const bool known =
-        std::any_of(result.begin(), result.end(), [&](const auto& other) { return other.fit == one.fit; });
-    const Hypothesis* pure = known ? nullptr : pure_of(comparison, one.fit);
-    if (pure != nullptr) result.push_back(*pure);
-  }
-  return result;
-}
-
-/// Laws that all clips have in common and that leave much of the excess, by falling probability.
-std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const LeftExcess& excess) {
-  Comparison so_far;
-  so_far.all = comparison.all;
-  so_far.odds = comparison.odds;
-  so_far.fit_odds = comparison.fit_odds;
-  weigh_beside_remainder(excess, so_far);
-  std::vector<Hypothesis> laws;
-  for (const Hypothesis& one : so_far.all) {  // by falling probability
-    if (laws.size() == kWithScatter) break;
-    if (one.fit <= 0 || one.unnamed || one.effects.size() != 1) continue;
-    if (!(one.left.value_or(0.0) >= kMuchLeft)) continue;
-    if (!shows_in_motion(effect_list()[one.effects.front()].search) || follows_each_clip(one.effects.front())) continue;
-    if (const Hypothesis* pure = pure_of(comparison, one.fit)) laws.push_back(*pure);
-  }
-  return laws;
-}
-
 /// The excess that the likeliest function without a name leaves on its own; NaN if there is none.
 double unnamed_excess(const TrackSet& set, const Comparison& by_noise) {
   const UnnamedFamily* family = likeliest_shared(by_noise.unnamed);
@@ -206,11 +139,12 @@ std::vector<std::size_t> likeliest_fits(const Comparison& first) {
   return fits;
 }
 
-/// A law that is fitted together with clip scatter.
-struct LawWithScatter {
-  Hypothesis law;
+/// An explanation that is fitted together with a further cause.
+struct WithFurther {
+  Hypothesis of;
   MotionFit both;
   double chi2_without = 0.0;  ///< by the noise alone, of the fit to which the other of the two was added
+  std::size_t further = 0;    ///< the effect
 };
 
 /// One weighing: what its steps share, and the steps in the order in which run() takes them.
@@ -234,6 +168,7 @@ class CauseWeighing {
     done(0.9);
     take_own_evidence();
     if (searched_ && !without_.contains(scatter_)) add_laws_with_clip_scatter();
+    if (searched_ && !without_.contains(hand_)) add_all(with_hands());
     add_functions_without_name();
     weigh_beside_remainder(excess_, comparison());
     done(1.0);
@@ -256,13 +191,15 @@ class CauseWeighing {
   void measure_excess();
   void take_own_evidence();
   void add_laws_with_clip_scatter();
-  std::vector<LawWithScatter> scatter_beside(const std::vector<Hypothesis>& laws) const;
-  std::vector<LawWithScatter> beside_scatter_alone(const std::vector<Hypothesis>& laws);
-  void add(LawWithScatter with, Settled settled);
+  std::vector<WithFurther> scatter_beside(const std::vector<Hypothesis>& laws) const;
+  std::vector<WithFurther> beside_scatter_alone(const std::vector<Hypothesis>& laws);
+  std::vector<WithFurther> with_hands() const;
+  void add_all(std::vector<WithFurther> found);
+  void add(WithFurther with, Settled settled);
   void add_functions_without_name();
   WeighedCauses finished();
 
-  const std::size_t scatter_ = effect_index(ids::clip_scatter);
+  const std::size_t scatter_ = effect_index(ids::clip_scatter), hand_ = effect_index(ids::late_release);
   const TrackSet& set_;      // the noise alone
   const Comparison& first_;  // by the noise alone
   const std::set<std::size_t>& without_;
@@ -369,12 +306,16 @@ void CauseWeighing::take_own_evidence() {
 /// The likeliest laws that leave much of the gap, each together with clip scatter.
 void CauseWeighing::add_laws_with_clip_scatter() {
   const std::vector<Hypothesis> laws = laws_that_leave_much(comparison(), excess_);
-  std::vector<LawWithScatter> pairs = scatter_beside(laws);
-  for (LawWithScatter& pair : beside_scatter_alone(laws)) pairs.push_back(std::move(pair));
-  std::vector<Settled> found(pairs.size());
-  base::for_each_parallel(pairs.size(), jobs_,
-                          [&](std::size_t k) { found[k] = settled(set_, pairs[k].both, sizes_of(pairs[k].law)); });
-  for (std::size_t k = 0; k < pairs.size(); ++k) add(std::move(pairs[k]), std::move(found[k]));
+  std::vector<WithFurther> pairs = scatter_beside(laws);
+  for (WithFurther& pair : beside_scatter_alone(laws)) pairs.push_back(std::move(pair));
+  add_all(std::move(pairs));
+}
+
+void CauseWeighing::add_all(std::vector<WithFurther> found) {
+  std::vector<Settled> own(found.size());
+  base::for_each_parallel(found.size(), jobs_,
+                          [&](std::size_t k) { own[k] = settled(set_, found[k].both, sizes_of(found[k].of)); });
+  for (std::size_t k = 0; k < found.size(); ++k) add(std::move(found[k]), std::move(own[k]));
   set_fit_odds(weighed_.set, comparison());  // of the fits that were added
 }
 
@@ -383,38 +324,59 @@ MotionFit by_noise(const TrackSet& set, const MotionFit& of) {
   return fit_motions(set, of.effects, of.at, of.late);
 }
 
-std::vector<LawWithScatter> CauseWeighing::scatter_beside(const std::vector<Hypothesis>& laws) const {
-  std::vector<std::optional<LawWithScatter>> found(laws.size());
+std::vector<WithFurther> CauseWeighing::scatter_beside(const std::vector<Hypothesis>& laws) const {
+  std::vector<std::optional<WithFurther>> found(laws.size());
   base::for_each_parallel(laws.size(), jobs_, [&](std::size_t k) {
     const MotionFit law = by_noise(set_, noise_alone_[static_cast<std::size_t>(laws[k].fit)]);
     if (!std::isfinite(law.cost)) return;
-    if (std::optional<MotionFit> both = with_clip_scatter(set_, law)) found[k] = {laws[k], std::move(*both), law.cost};
+    if (std::optional<MotionFit> both = with_clip_scatter(set_, law))
+      found[k] = {laws[k], std::move(*both), law.cost, scatter_};
   });
-  std::vector<LawWithScatter> pairs;
-  for (std::optional<LawWithScatter>& one : found) {
+  std::vector<WithFurther> pairs;
+  for (std::optional<WithFurther>& one : found) {
     if (one) pairs.push_back(std::move(*one));
   }
   return pairs;
 }
 
+/// The likeliest explanations with a hand.
+std::vector<WithFurther> CauseWeighing::with_hands() const {
+  std::vector<Hypothesis> likeliest;
+  for (const Hypothesis& one : likeliest_laws(weighed_.comparison, excess_)) {
+    std::set<std::size_t> effects(one.effects.begin(), one.effects.end());
+    if (!effects.insert(hand_).second || !is_weighed(one.fit)) continue;
+    if (likeliest.size() < kWithHand && find(weighed_.comparison, effects) == nullptr) likeliest.push_back(one);
+  }
+  std::vector<std::optional<WithFurther>> found(likeliest.size());
+  base::for_each_parallel(likeliest.size(), jobs_, [&](std::size_t k) {
+    const MotionFit law = by_noise(set_, noise_alone_[static_cast<std::size_t>(likeliest[k].fit)]);
+    std::optional<MotionFit> both = with_hand(set_, law, sizes_of(likeliest[k]));
+    if (both) found[k] = {likeliest[k], std::move(*both), law.cost, hand_};
+  });
+  std::erase_if(found, [](const auto& one) { return !one; });
+  std::vector<WithFurther> with;
+  for (std::optional<WithFurther>& one : found) with.push_back(std::move(*one));
+  return with;
+}
+
 /// Where clips scatter most of all, other laws than `laws` show beside the scatter alone.
-std::vector<LawWithScatter> CauseWeighing::beside_scatter_alone(const std::vector<Hypothesis>& laws) {
+std::vector<WithFurther> CauseWeighing::beside_scatter_alone(const std::vector<Hypothesis>& laws) {
   const Hypothesis* alone = find(comparison(), {scatter_});
   if (alone == nullptr || !is_weighed(alone->fit)) return {};
   std::set<std::size_t> others = without_;
   for (const Hypothesis& law : laws) others.insert(law.effects.front());
   const MotionFit clips = by_noise(set_, noise_alone_[static_cast<std::size_t>(alone->fit)]);
-  std::vector<LawWithScatter> pairs;
+  std::vector<WithFurther> pairs;
   for (MotionFit& both : laws_beside_scatter(set_, clips, sizes_of(*alone), others)) {
     Hypothesis law = *alone;
     law.effects = {both.effects.back()};
-    pairs.push_back({std::move(law), std::move(both), clips.cost});
+    pairs.push_back({std::move(law), std::move(both), clips.cost, scatter_});
   }
   return pairs;
 }
 
-/// Adds a law with clip scatter to the comparison, in place of what it has for the same effects.
-void CauseWeighing::add(LawWithScatter with, Settled settled) {
+/// Adds an explanation with a further cause to the comparison, in place of what it has for the same effects.
+void CauseWeighing::add(WithFurther with, Settled settled) {
   excess_.of_fits.push_back(std::min(held_out_excess(set_, with.both), held_out_excess(set_, settled.noise_alone)));
   noise_alone_.push_back(std::move(settled.noise_alone));
   profiles_.push_back(std::move(settled.profile));
@@ -422,8 +384,8 @@ void CauseWeighing::add(LawWithScatter with, Settled settled) {
   const auto fit = static_cast<int>(comparison().fits.size());
   comparison().fits.push_back(linearise_again(weighed_.set, with.both));
   worth_.push_back(static_cast<std::size_t>(fit));
-  Hypothesis both = std::move(with.law);
-  both.effects.push_back(scatter_);
+  Hypothesis both = std::move(with.of);
+  both.effects.push_back(with.further);
   both.fit = fit;
   both.converged = with.both.converged;
   both.gain += std::max(0.0, 0.5 * (with.chi2_without - with.both.cost));
@@ -436,7 +398,7 @@ void CauseWeighing::add(LawWithScatter with, Settled settled) {
 
 /// Functions without a name alone and beside the likeliest explanations, each with a remainder of its own.
 void CauseWeighing::add_functions_without_name() {
-  const std::vector<Hypothesis> leaders = beside(comparison(), excess_);
+  const std::vector<Hypothesis> leaders = worth_a_function(comparison(), excess_);
   std::vector<std::vector<UnnamedFamily>> found(leaders.size());
   std::vector<std::optional<double>> logs(leaders.size());
   base::for_each_parallel(leaders.size(), jobs_, [&](std::size_t k) {

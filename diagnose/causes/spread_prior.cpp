@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 #include "base/math/dense.h"
 #include "base/math/log_sum.h"
-#include "diagnose/effects/effect_library.h"
-#include "diagnose/scan/effect_scan.h"
 
 namespace glidelab::diagnose {
 
@@ -18,8 +15,6 @@ constexpr int kWidthsTried = 13;        // three per decade, over four decades
 constexpr double kLeastWidth_sd = 2.0;  // standard deviations: a smaller width cannot be told from none
 constexpr double kRoundingOfSum = 1e-13;
 constexpr int kRoundsOfWidths = 4;
-constexpr double kShowsBeside = 3.0;           // log evidence beside the scatter, above which a law is fitted
-constexpr std::size_t kMostBesideScatter = 3;  // laws
 
 class Density {
  public:
@@ -95,45 +90,6 @@ double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& cov
   double log = best;
   for (const std::vector<double>& of : logs) log += base::log_mean(of) - best;
   return log;
-}
-
-std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit& law) {
-  const std::size_t scatter = effect_index(ids::clip_scatter);
-  const EffectScan scan = scan_effect(ScoreSpace(set, law), scatter);
-  if (!scan.visible || scan.values.empty()) return {};
-  std::vector<std::size_t> effects = law.effects;
-  effects.push_back(scatter);
-  MotionFit fit = no_worse_than(
-      set, law, scatter, fit_motions(set, effects, with_effect(set, law, scatter, scan.values, scan.own), law.late));
-  if (!std::isfinite(fit.cost)) return {};
-  return fit;
-}
-
-std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit& scatter, const RemainderSizes& sizes,
-                                           const std::set<std::size_t>& without) {
-  std::set<std::size_t> others = without;
-  for (std::size_t e = 0; e < effect_list().size(); ++e) {
-    const bool is_law = !differs_between_clips(e) && !follows_each_clip(e);
-    if (!is_law || !shows_in_motion(effect_list()[e].search)) others.insert(e);
-  }
-  if (!std::isfinite(scatter.cost)) return {};
-  TrackSet with = set;
-  add_remainder(scatter, sizes, with);
-  const MotionFit beside = linearise_again(with, scatter);
-  if (!std::isfinite(beside.cost)) return {};
-  std::vector<EffectScan> scans = scan_effects(ScoreSpace(with, beside), others, 1);
-  std::erase_if(scans, [](const EffectScan& scan) {
-    return !scan.visible || scan.values.empty() || !(scan.log_evidence > kShowsBeside);
-  });
-  std::sort(scans.begin(), scans.end(), [](const auto& a, const auto& b) { return a.log_evidence > b.log_evidence; });
-  if (scans.size() > kMostBesideScatter) scans.resize(kMostBesideScatter);
-  std::vector<MotionFit> fits;
-  for (const EffectScan& scan : scans) {
-    MotionFit fit =
-        fit_with_effect(set, scatter, scan.effect, with_effect(set, scatter, scan.effect, scan.values, scan.own));
-    if (std::isfinite(fit.cost)) fits.push_back(std::move(fit));
-  }
-  return fits;
 }
 
 }  // namespace glidelab::diagnose

@@ -3,11 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <optional>
-#include <set>
 #include <vector>
-#include "diagnose/causes/remainder.h"
-#include "diagnose/fit/motion_fit.h"
 
 namespace glidelab::diagnose {
 
@@ -25,23 +21,5 @@ namespace glidelab::diagnose {
 /// size, counted from 0.
 double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
                         const std::vector<std::size_t>& kinds);
-
-/// Clips that scatter, in addition to a law that all clips have in common.
-///
-/// The search for pairs (weigh/hypothesis_pairs.h) leaves out effects that differ from clip to clip. Beside a wrong law
-/// they absorb whatever that law leaves, and a remainder that scatters from clip to clip hides them. If a law is
-/// missing and friction scatters as well, neither name alone is then enough. The likeliest laws are therefore fitted
-/// once more together with clips that scatter, by the noise alone, and these pairs are weighed like every other
-/// explanation.
-///
-/// The fit of `law` together with clip_scatter, by the noise of `set` alone. Empty if these clips cannot show it, or if
-/// the fit fails.
-std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit& law);
-
-/// The laws that show best beside clips that scatter, whose fit is `scatter` and whose remainder is `sizes`, each
-/// fitted together with them by the noise alone. A law that takes less than the scatter does hardly shows by itself, so
-/// the likeliest laws by themselves may be others. `without` are indices of effects that are left out.
-std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit& scatter, const RemainderSizes& sizes,
-                                           const std::set<std::size_t>& without);
 
 }  // namespace glidelab::diagnose

@@ -228,7 +228,7 @@ struct EffectParameter {
   /// Standard deviation of a normal prior about 0, for parameters of which the data determine only combinations: the
   /// deviations of clips, configurations or places from a mean that is fitted too. 0: no prior.
   double held_sd = 0.0;
-  /// Larger sizes are rarer: the density of sizes falls by the factor 1 + (size/usual)². 0: as likely as smaller ones.
+  /// Larger sizes are rarer: density falls by 1 + (size/usual)²; 0: not. Of a place, in ranges of x from its middle.
   double usual = 0.0;
   EffectSlot slot = {};  ///< where its value is stored; set by the list
 };

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/check/finding.h"
 #include "core/result/analysis_note.h"
 #include "diagnose/result/explanation.h"
 #include "diagnose/result/gap_place.h"
@@ -129,6 +130,12 @@ struct NegativeLoss {
   double value = 0.0, sd = 0.0;  ///< N s/m of drag
 };
 
+/// A unit of lengths or times, or a scale, that the positions of a clip make doubtful (core/check/motion_look.h).
+struct DoubtfulUnit {
+  std::string clip;
+  core::Found found;  ///< LongRun, SlowFrames or FallAboveGravity
+};
+
 /// A stated inclination that the motion contradicts.
 struct ContradictedIncline {
   std::string group;
@@ -186,11 +193,12 @@ struct TableOfLines {
   std::size_t lines = 0;
 };
 
-using AnyNote = std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, HandExplained,
-                             SetAside, PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination,
-                             SplitSetUps, OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading,
-                             BeyondGravity, MeanIncline, TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike,
-                             FitsCutOff, NoMassStated, OfCamera, SensorPositions, OneOrigin, SuspectedFall, OfReading>;
+using AnyNote =
+    std::variant<NoFreeMotion, ThinnedPositions, CutAtTurns, SomePieces, HandLeftOut, HandExplained, SetAside,
+                 PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps,
+                 OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity, MeanIncline,
+                 TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike, FitsCutOff, NoMassStated, OfCamera,
+                 SensorPositions, OneOrigin, SuspectedFall, OfReading, DoubtfulUnit>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

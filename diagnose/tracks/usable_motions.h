@@ -1,15 +1,18 @@
-/// Motions that no diagnosis can judge.
+/// Motions that no diagnosis can judge, and those whose units have to be checked first.
 #pragma once
 
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
 #include "core/result/results.h"
+#include "diagnose/result/note.h"
 
 namespace glidelab::diagnose {
 
-/// InputError, with an issue for each clip whose positions cannot be those of a body on a straight incline, as the
-/// check of a recording finds (core/check/motion_look.h): an unusable motion gets no verdict.
-void require_usable_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups);
+/// What the check of a recording finds in the motions (core/check/motion_look.h). InputError, with an issue for each
+/// clip whose positions cannot be those of a body on a straight incline: an unusable motion gets no verdict. Otherwise
+/// the clips that make a unit of lengths or times, or a scale, doubtful.
+std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
+                                         const std::vector<core::ClipSetup>& setups);
 
 }  // namespace glidelab::diagnose

@@ -26,6 +26,16 @@ double probability_of(const Comparison& comparison, const Hypothesis& best, std:
   return probability_of_any(comparison, any);
 }
 
+/// The same without the other causes of the explanation, and only with those that no track can tell from it: what else
+/// could stand beside those other causes does not make it likelier alone.
+double probability_alone(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
+  std::vector<std::size_t> any = {effect};
+  for (std::size_t e = 0; e < effect_list().size(); ++e) {
+    if (!has(best, e) && are_alike(comparison, e, effect, filmed)) any.push_back(e);
+  }
+  return probability_of_any(comparison, any);
+}
+
 }  // namespace
 
 bool shows_in_images_alone(const Hypothesis& explanation) {
@@ -94,6 +104,12 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
 
 namespace {
 
+/// Whether an explanation leaves about as little of the gap as another: what it lacks is no cause of the gap.
+bool leaves_no_more(const Hypothesis& without, const Hypothesis& with) {
+  constexpr double kPartOfCause = 0.1;  // of the excess
+  return !without.left || !with.left || *without.left < *with.left + kPartOfCause;
+}
+
 /// The likeliest explanation in which another effect, one that the data cannot tell from it, has a certain size in
 /// place of an effect without one, if it is about as likely; null if there is none.
 const Hypothesis* with_size_by_another_name(const TrackSet& set, const Comparison& comparison, const Hypothesis& best,
@@ -138,7 +154,7 @@ const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comp
   std::set<std::size_t> certain(named.effects.begin(), named.effects.end());
   for (const std::size_t e : uncertain) certain.erase(e);
   const Hypothesis* others = find(comparison, certain);
-  return others != nullptr && others->fit > 0 ? others : renamed;
+  return others != nullptr && others->fit > 0 && leaves_no_more(*others, named) ? others : renamed;
 }
 
 const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
@@ -149,7 +165,7 @@ const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, 
   double most = 0.0, of_named = 0.0;
   for (const std::size_t e : best.effects) {
     const bool keeps = std::find(named.begin(), named.end(), e) != named.end();
-    const double probability = probability_of(comparison, best, e, filmed);
+    const double probability = probability_alone(comparison, best, e, filmed);
     if (keeps) of_named = std::max(of_named, probability);
     if (keeps || probability <= most) continue;
     likeliest = e;

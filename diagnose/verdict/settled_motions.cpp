@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -206,8 +207,9 @@ void note_loss(const ImageEvidence& images, TrackSet& set) {
 }  // namespace
 
 TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups) {
-  require_usable_motions(results, setups);
+  std::vector<DoubtfulUnit> doubtful = doubtful_units(results, setups);
   TrackSet set = track_set(results, setups, true);
+  set.notes.insert(set.notes.end(), std::make_move_iterator(doubtful.begin()), std::make_move_iterator(doubtful.end()));
   check(setups, set);
   note_limits(setups, set);
   note_readings(results, set);

@@ -19,8 +19,11 @@ double log_odds_of_sizes(const MotionFit& fit) {
   for (std::size_t g = 0; g < globals.size(); ++g) {
     const EffectParameter* parameter = globals[g].parameter;
     if (parameter == nullptr || !(parameter->usual > 0.0)) continue;
-    log -=
-        std::log1p(std::pow((fit.at.global[static_cast<Eigen::Index>(g)] - parameter->absent) / parameter->usual, 2));
+    const ParameterRange& range = globals[g].range;
+    const bool is_place = parameter->reach == Reach::places;
+    const double middle = is_place ? 0.5 * (range.low + range.high) : parameter->absent;
+    const double usual = parameter->usual * (is_place ? range.high - range.low : 1.0);
+    log -= std::log1p(std::pow((fit.at.global[static_cast<Eigen::Index>(g)] - middle) / usual, 2));
   }
   return log;
 }

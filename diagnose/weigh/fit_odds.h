@@ -6,7 +6,9 @@
 namespace glidelab::diagnose {
 
 /// Log of the odds of a fit's sizes: -log(1 + (size/usual)²) for each parameter with a usual size (effect.h). A scale
-/// or a clock that is a quarter off can stand in for a hand or for the air that moves along, but such errors are rare.
+/// or a clock that is a quarter off can stand in for a hand or for the air that moves along, a hand that pushes for
+/// half a second for any force, and a lens whose axis lies at an end of the motion for a pattern off the plane; but
+/// such errors are rare.
 double log_odds_of_sizes(const MotionFit& fit);
 
 /// Sets Comparison::fit_odds: those of the sizes and, in a fall through air, those of the drag (air_odds.h). The

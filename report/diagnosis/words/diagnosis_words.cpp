@@ -10,6 +10,7 @@
 #include "base/text/number_text.h"
 #include "diagnose/result/joined_ids.h"
 #include "report/analysis/note_words.h"
+#include "report/diagnosis/words/unit_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -217,6 +218,7 @@ struct Sentence {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",
                        ups(of.groups));
   }
+  std::string operator()(const diagnose::DoubtfulUnit& of) const { return unit_words(of); }
   std::string operator()(const diagnose::OppositeLaunch& of) const {
     return fmt::format("Clip {} is stated as launched {}, but starts in the opposite direction.", of.clip,
                        of.stated_up ? "up" : "down");

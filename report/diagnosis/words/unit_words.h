@@ -7,8 +7,9 @@
 
 namespace glidelab::report {
 
-/// Of the clips whose positions are unusually far apart, in space or in time (core/check/motion_look.h), or that fall
-/// faster than gravity, the first; empty if none is, and for a table of lines.
+std::string unit_words(const diagnose::DoubtfulUnit& of);
+
+/// Of the clips that make a unit or the scale doubtful, the first; empty if none does.
 std::string unit_words(const diagnose::Diagnosis& diagnosis);
 
 }  // namespace glidelab::report

@@ -262,3 +262,30 @@ TEST_CASE("a law beside clips that scatter is weighed as one explanation of both
       diagnose::weigh_causes(set, diagnose::compare_hypotheses(set, {scatter}), {scatter}, 2, nullptr, [](double) {});
   for (const diagnose::Hypothesis& one : without.comparison.all) CHECK_FALSE(diagnose::has(one, scatter));
 }
+
+TEST_CASE("a hand beside clips that scatter is weighed as one explanation of both") {
+  const double part[] = {0.7, -0.6, 0.2, -0.7, 0.6, 0.5, -0.5, -0.3};
+  const double push_m_s2[] = {1.5, -0.8, 2.0, -1.2, 0.9, -1.7, 1.1, 0.4};
+  std::size_t clip = 0;
+  double before = 1.0;
+  tests::MadeEffect both;
+  both.force = [&](double m, double, double v, double t) {
+    if (t < before - 0.1) ++clip;
+    before = t;
+    const double friction = part[(clip - 1) % 8] * 0.006 * m * 9.80665;
+    return (t < 0.12 ? 0.4 * m * push_m_s2[(clip - 1) % 8] : 0.0) - (v > 0.0 ? friction : v < 0.0 ? -friction : 0.0);
+  };
+  const auto made = tests::made_experiment(tests::made_launches(), both, 6, 3e-4, 100, 60.0);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::WeighedCauses weighed =
+      diagnose::weigh_causes(set, diagnose::compare_hypotheses(set), {}, 2, nullptr, [](double) {});
+  const std::size_t hand = diagnose::effect_index("late_release"), scatter = diagnose::effect_index("clip_scatter");
+  const diagnose::Hypothesis* pair = diagnose::find(weighed.comparison, {hand, scatter});
+  const diagnose::Hypothesis* alone = diagnose::find(weighed.comparison, {hand});
+  REQUIRE(pair != nullptr);
+  REQUIRE(alone != nullptr);
+  REQUIRE(pair->left);
+  CHECK(*pair->left < 0.1);
+  CHECK(*alone->left > 0.15);
+  CHECK(pair->probability > alone->probability);
+}

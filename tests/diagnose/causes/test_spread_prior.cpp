@@ -4,14 +4,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <vector>
 
-#include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/nominal_fit.h"
-#include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
-#include "tests/diagnose/made_motions.h"
 
 using namespace glidelab;
 
@@ -81,34 +76,4 @@ TEST_CASE("a friction and a drag of each clip that are only known together cost 
   // An open difference has the width of its prior: N(0, open²/2) at 0, for each.
   const double of_open = -static_cast<double>(clips) * 0.5 * std::log(open * open / 2.0);
   CHECK(std::abs(pairs - (alone + of_open)) < 0.2);
-}
-
-TEST_CASE("a law that is lost among clips that scatter shows beside their scatter") {
-  // Friction that differs by a fifth, and a track that is bowed.
-  const double part[] = {0.2, -0.25, 0.1, -0.15, 0.25, 0.05, -0.2, -0.1};
-  std::size_t clip = 0;
-  double before = 1.0;
-  tests::MadeEffect both;
-  both.force = [&](double m, double x, double v, double t) {
-    if (t < before - 0.1) ++clip;
-    before = t;
-    const double friction = part[(clip - 1) % 8] * 0.02 * m * 9.80665;
-    return 0.06 * m * x - (v > 0.0 ? friction : v < 0.0 ? -friction : 0.0);
-  };
-  const auto made = tests::made_experiment(tests::made_launches(), both, 5, 5e-5, 100, 60.0, 0.05, 0.0, {.mu = 0.02});
-  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
-  const std::size_t bow = diagnose::effect_index("track_bow"), scatter = diagnose::effect_index("clip_scatter");
-  const std::optional<diagnose::MotionFit> clips = diagnose::with_clip_scatter(set, diagnose::fit_nominal(set));
-  REQUIRE(clips);
-  const diagnose::RemainderSizes sizes = diagnose::RemainderSpace(set, *clips).likeliest().sizes;
-  const std::vector<diagnose::MotionFit> found = diagnose::laws_beside_scatter(set, *clips, sizes, {});
-  REQUIRE_FALSE(found.empty());
-  CHECK(found.size() <= 3);
-  CHECK(found.front().effects == std::vector<std::size_t>{scatter, bow});
-  // By the noise alone the pair fits far better than the scatter: 100 in log likelihood.
-  CHECK(found.front().cost < clips->cost - 200.0);
-  // What is left out is not looked for.
-  for (const diagnose::MotionFit& other : diagnose::laws_beside_scatter(set, *clips, sizes, {bow})) {
-    CHECK(other.effects.back() != bow);
-  }
 }

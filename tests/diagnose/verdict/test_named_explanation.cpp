@@ -96,3 +96,35 @@ TEST_CASE("where no equal has a certain size the others of an explanation stand 
   certain.add({"quadratic_drag"}, true, 0.5);
   CHECK(certain.instead().empty());
 }
+
+TEST_CASE("an effect without a certain size is no cause only if the others leave no more of the gap") {
+  Named named;
+  named.add({"quadratic_drag", "load_independent_friction"}, false, 0.5);
+  named.add({"quadratic_drag"}, true, 0.4);
+  named.comparison.all[0].left = 0.05;
+  named.comparison.all[1].left = 0.1;
+  CHECK(named.instead() == std::vector{kDrag});
+  named.comparison.all[1].left = 0.3;
+  CHECK(named.instead().empty());
+}
+
+TEST_CASE("of two causes of which one takes the part of both, the likelier by its own name keeps it") {
+  const std::size_t pattern = diagnose::effect_index(diagnose::ids::perspective_error);
+  Named named;
+  named.add({"quadratic_drag", "perspective_error"}, true, 0.3);
+  named.add({"perspective_error"}, true, 0.1);
+  named.add({"quadratic_drag"}, true, 0.1);
+  named.add({"perspective_error", "friction_drift"}, true,
+            0.3);  // as likely: it stands for the drag beside the pattern
+  diagnose::CauseSequence sequence;
+  sequence.is_gap = true;
+  sequence.named.effects = {kDrag};
+  const auto keeps = [&]() -> std::vector<std::size_t> {
+    const diagnose::Hypothesis* alone =
+        diagnose::without_the_lesser(named.comparison, false, named.comparison.all.front(), sequence);
+    return alone != nullptr ? alone->effects : std::vector<std::size_t>();
+  };
+  CHECK(keeps() == std::vector{pattern});
+  named.comparison.all[3].probability = 0.05;  // hardly likelier
+  CHECK(keeps().empty());
+}

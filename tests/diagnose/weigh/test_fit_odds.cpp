@@ -1,5 +1,6 @@
 #include "diagnose/weigh/fit_odds.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "diagnose/effects/effect_library.h"
@@ -28,5 +29,25 @@ TEST_CASE("a scale or a clock that is far off is rarer than one that is nearly r
     CHECK(log_odds(id, 0.1) == Approx(-std::log(2.0)));  // a tenth is the usual size
     CHECK(log_odds(id, -0.3) == Approx(-std::log(10.0)));
   }
+  CHECK(log_odds(diagnose::ids::late_release, 0.1) == Approx(-std::log(1.25)));  // two tenths of a second are usual
+  CHECK(log_odds(diagnose::ids::late_release, 0.4) == Approx(-std::log(5.0)));
   CHECK(log_odds(diagnose::ids::quadratic_drag, 0.3) == 0.0);
+}
+
+TEST_CASE("the axis of a lens is rarer at an end of the motion than in its middle") {
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 3);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  double low = 1e9, high = -1e9;
+  for (const diagnose::TrackedMotion& motion : set.motions) {
+    for (const double x : motion.x_m) low = std::min(low, x), high = std::max(high, x);
+  }
+  const std::size_t lens = diagnose::effect_index(diagnose::ids::lens_distortion);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  const auto log_odds = [&](double axis_m) {
+    diagnose::FitPoint at = diagnose::with_effect(set, nominal, lens, {0.01, axis_m}, {});
+    return diagnose::log_odds_of_sizes(diagnose::linearise_at(set, {lens}, at));
+  };
+  CHECK(log_odds(0.5 * (low + high)) == Approx(0.0).margin(1e-12));
+  CHECK(log_odds(low + 0.25 * (high - low)) == Approx(-std::log(2.0)));
+  CHECK(log_odds(high) == Approx(-std::log(5.0)));
 }

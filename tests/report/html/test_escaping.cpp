@@ -114,6 +114,7 @@ diagnose::Diagnosis evil_diagnosis() {
               diagnose::NoInclination{{kEvil, kEvil}},
               diagnose::SplitSetUps{{kEvil}},
               diagnose::OppositeLaunch{kEvil, true},
+              diagnose::DoubtfulUnit{kEvil, core::found::LongRun{9.0}},
               diagnose::ContradictedReading{0.3, {}},
               of.limits.contradicted.front()};
   of.images = {{kEvil,

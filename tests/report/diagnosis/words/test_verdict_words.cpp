@@ -29,43 +29,23 @@ diagnose::Diagnosis with_incline(double before) {
 
 }  // namespace
 
-TEST_CASE("a diagnosis of positions unusually far apart begins with the unit to check") {
+TEST_CASE(
+    "a diagnosis of positions unusually far apart begins with the unit to check, of one above gravity with the scale") {
   diagnose::Diagnosis of;
   of.verdict = diagnose::Verdict::none;
   of.none = 0.99;
-  const auto words = [&](double distance_m, double step_s) {
-    of.measured = {{}};
-    of.measured[0].clip = "cup";
-    of.measured[0].t_s = {0.0, step_s, 2.0 * step_s};
-    of.measured[0].x_m = {0.0, distance_m, 0.5 * distance_m};
+  CHECK_FALSE(contains(report::verdict_words(of), "First"));
+  const auto words = [&](const core::Found& found) {
+    of.notes = {diagnose::OnlyFalls{}, diagnose::DoubtfulUnit{"cup", found}};
     return report::verdict_words(of);
   };
-  CHECK_FALSE(contains(words(7.0, 0.1), "unit"));
-  CHECK(words(9.0, 0.1).starts_with("First check the unit of x"));
-  CHECK(contains(words(9.0, 0.1), "(cup: x covers 9 m). In another unit, nothing below holds. As far as"));
-  CHECK(words(1.0, 1.5).starts_with("First check the unit of the times"));
-  of.notes.emplace_back(diagnose::OnlyFalls{});
-  CHECK_FALSE(contains(words(19.0, 0.1), "unit"));
-  CHECK(words(168.0, 0.1).starts_with("First check the unit of x"));
-}
-
-TEST_CASE("a diagnosis of a fall above gravity begins with the scale") {
-  diagnose::Diagnosis of;
-  of.verdict = diagnose::Verdict::none;
-  of.measured = {{}};
-  of.measured[0].clip = "ball";
-  const auto words = [&](std::vector<double> a_m_s2) {
-    of.measured[0].a_m_s2 = std::move(a_m_s2);
-    return report::verdict_words(of);
-  };
-  const std::vector<double> tenth = {10.4, 10.7, 10.79, 10.9, 11.1};
-  CHECK_FALSE(contains(words(tenth), "scale"));  // a track may be driven
-  of.notes.emplace_back(diagnose::OnlyFalls{});
-  CHECK(words(tenth).starts_with("First measure the scale again"));
-  CHECK(contains(words(tenth),
-                 "10 % above gravity: x is 10 % too long, or the frames are 5 % longer than stated). Drag"));
-  CHECK_FALSE(contains(words({9.0, 9.5, 10.5, 11.0, 11.5}), "scale"));
-  CHECK_FALSE(contains(words({9.7, 9.8, 9.8, 9.9, 10.0}), "scale"));
+  CHECK(words(core::found::LongRun{9.0}).starts_with("First check the unit of x"));
+  CHECK(contains(words(core::found::LongRun{9.0}),
+                 "(cup: x covers 9 m). In another unit, nothing below holds. As far as"));
+  CHECK(words(core::found::SlowFrames{1.5}).starts_with("First check the unit of the times"));
+  const std::string above = words(core::found::FallAboveGravity{1.1 * 9.80665, 9.80665});
+  CHECK(above.starts_with("First measure the scale again"));
+  CHECK(contains(above, "10 % above gravity: x is 10 % too long, or the frames are 5 % longer than stated). Drag"));
 }
 
 TEST_CASE("what is not ruled out is neither claimed nor called explained") {

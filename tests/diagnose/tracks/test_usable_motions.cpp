@@ -1,0 +1,53 @@
+#include "diagnose/tracks/usable_motions.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <variant>
+
+#include "base/errors.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// One clip of 200 positions, 10 ms apart, of a fall.
+std::vector<diagnose::DoubtfulUnit> doubts_of(const std::function<double(double)>& x_m, double step_s = 0.01) {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = 9.81;
+  core::ClipResult clip;
+  clip.name = "ball";
+  for (int i = 0; i < 200; ++i) {
+    core::MotionPoint point;
+    point.t_s = step_s * i;
+    point.measured_m = x_m(0.01 * i);
+    clip.motion.push_back(point);
+  }
+  results.clips.push_back(clip);
+  core::ClipSetup setup;
+  setup.name = "ball";
+  setup.incline_rad = 0.5 * std::numbers::pi;
+  return diagnose::doubtful_units(results, {setup});
+}
+
+}  // namespace
+
+TEST_CASE("a diagnosis doubts the units and the scale that the check doubts, and no others") {
+  const auto fall = [](double g, double t) { return 0.5 * g * t * t; };
+  CHECK(doubts_of([&](double t) { return fall(9.81, t); }).empty());
+  const auto above = doubts_of([&](double t) { return fall(1.1 * 9.81, t); });
+  REQUIRE(above.size() == 1);
+  CHECK(above[0].clip == "ball");
+  CHECK(std::get<core::found::FallAboveGravity>(above[0].found).acceleration_m_s2 == Approx(1.1 * 9.81).epsilon(1e-6));
+  const auto far = doubts_of([](double t) { return 15.0 * t; });  // a steady fall over 30 m
+  REQUIRE(far.size() == 1);
+  CHECK(std::holds_alternative<core::found::LongRun>(far[0].found));
+  const auto slow = doubts_of([](double t) { return t; }, 1.5);
+  REQUIRE(slow.size() == 1);
+  CHECK(std::holds_alternative<core::found::SlowFrames>(slow[0].found));
+}
+
+TEST_CASE("a motion that no incline gives is refused, with its clip") {
+  CHECK_THROWS_AS(doubts_of([](double t) { return 0.1 * std::sin(30.0 * t); }), base::InputError);
+}
