@@ -82,13 +82,51 @@ struct RecoveredSet {
   Recovered k_over_m_1_s, mu, alpha_rad, v_lim_m_s;
 };
 
-/// The first motion of each configuration.
-std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_motions(const TrackSet& set) {
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> configurations;
+const EffectSlot kOwnFriction{effect_index(ids::clip_scatter), 0}, kOwnDrag{effect_index(ids::clip_scatter), 1};
+
+/// The motions of each configuration, the first of each clip.
+std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> motions_of_configurations(const TrackSet& set) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> configurations;
   for (std::size_t i = 0; i < set.motions.size(); ++i) {
-    configurations.emplace(std::pair(set.motions[i].group, set.motions[i].mass), i);
+    std::vector<std::size_t>& of = configurations[{set.motions[i].group, set.motions[i].mass}];
+    const bool is_new = std::none_of(of.begin(), of.end(),
+                                     [&](std::size_t other) { return set.motions[other].clip == set.motions[i].clip; });
+    if (is_new) of.push_back(i);
   }
   return configurations;
+}
+
+/// The model of a configuration, with the mean friction and drag of its clips where each has its own. The mean of their
+/// deviations and the common friction or drag are known together alone.
+TrackModel model_of_all(const TrackSet& set, const ParameterLayout& layout, const FitPoint& at,
+                        const std::vector<std::size_t>& motions) {
+  TrackModel model = model_of(set, layout, at, motions.front());
+  double more_mu = 0.0, more_drag = 0.0;
+  for (const std::size_t i : motions) {
+    const TrackModel one = model_of(set, layout, at, i);
+    more_mu += one.effects[kOwnFriction] / static_cast<double>(motions.size());
+    more_drag += one.effects[kOwnDrag] / static_cast<double>(motions.size());
+  }
+  model.mu += more_mu;
+  model.k_n_s_m *= 1.0 + more_drag;
+  model.effects[kOwnFriction] = model.effects[kOwnDrag] = 0.0;
+  return model;
+}
+
+/// The variance with which clips differ in one of their own parameters, beyond what their fits leave open.
+double variance_between(const ParameterLayout& layout, const EffectSlot& slot, const Eigen::VectorXd& at,
+                        const Eigen::MatrixXd& covariance) {
+  std::vector<Eigen::Index> of;
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const ParameterLayout::Global& global = layout.globals()[g];
+    if (global.parameter != nullptr && global.parameter->slot == slot) of.push_back(static_cast<Eigen::Index>(g));
+  }
+  const auto n = static_cast<double>(of.size());
+  if (of.size() < 2) return 0.0;
+  const Eigen::VectorXd own = at(of);
+  const Eigen::MatrixXd open = covariance(of, of);
+  const double squares = (own.array() - own.mean()).square().sum();
+  return std::max(0.0, (squares - (open.trace() - open.sum() / n)) / (n - 1.0));
 }
 
 /// Whether a common parameter stopped at the edge of its range.
@@ -131,13 +169,22 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     return std::sqrt(std::max(0.0, by.dot(along)));
   };
   const auto& globals = fit.layout->globals();
+  // The mean of clips that differ is that of the configuration to within their scatter over the root of their number.
+  Eigen::VectorXd between_own = Eigen::VectorXd::Zero(at.global.size());
+  for (const EffectSlot& slot : {kOwnFriction, kOwnDrag}) {
+    const double variance = variance_between(*fit.layout, slot, at.global, solution.covariance);
+    for (std::size_t g = 0; g < globals.size(); ++g) {
+      const bool is_own = globals[g].parameter != nullptr && globals[g].parameter->slot == slot;
+      if (is_own) between_own[static_cast<Eigen::Index>(g)] = variance;
+    }
+  }
   std::vector<RecoveredSet> all;
-  for (const auto& [of, motion] : first_motions(set)) {
+  for (const auto& [of, motions] : motions_of_configurations(set)) {
     // The derivatives of a quantity with respect to the common parameters, by finite differences.
-    const auto gradient = [&, i = motion](const auto& value) {
+    const auto gradient = [&, &motions = motions](const auto& value) {
       Eigen::VectorXd by = Eigen::VectorXd::Zero(at.global.size());
       for (std::size_t g = 0; g < globals.size(); ++g) {
-        if (!touches(set, globals[g], i)) continue;
+        if (std::none_of(motions.begin(), motions.end(), [&](auto i) { return touches(set, globals[g], i); })) continue;
         const auto k = static_cast<Eigen::Index>(g);
         const double step = std::max(1e-9, 0.01 * std::sqrt(std::max(0.0, solution.covariance(k, k))));
         FitPoint near = at;
@@ -151,13 +198,16 @@ std::vector<RecoveredSet> recovered_under(const TrackSet& set, const MotionFit& 
     const auto found = [&](double value, const Eigen::VectorXd& by, double scale) {
       Recovered one;
       const double model = root_of(solution.covariance, by), between = root_of(solution.between_clips, by);
+      const double own = std::sqrt(by.cwiseAbs2().dot(between_own));
       one.value = value;
-      one.sd = std::max(model, between) * scale;
-      one.degrees = std::min(between > model ? of_clips : of_motions, of_noise);
+      one.sd = std::hypot(std::max(model, between), own) * scale;
+      one.degrees = std::min(std::max(between, own) > model ? of_clips : of_motions, of_noise);
       one.known = std::isfinite(one.value) && std::isfinite(one.sd);
       return one;
     };
-    const auto model_at = [&, i = motion](const FitPoint& point) { return model_of(set, *fit.layout, point, i); };
+    const auto model_at = [&, &motions = motions](const FitPoint& point) {
+      return model_of_all(set, *fit.layout, point, motions);
+    };
     const auto rate = [&](const FitPoint& point) {
       const TrackModel model = model_at(point);
       return own_law(model).k_n_s_m / model.mass_kg;

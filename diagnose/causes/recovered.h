@@ -13,6 +13,10 @@
 /// with a distribution of its own (Student's t). Where gravity is no parameter of the fit, alpha and mu contain its
 /// standard deviation: the motions determine g sin(alpha) and mu g.
 ///
+/// Where each clip has a friction and a drag of its own (clip_scatter), those of a configuration are the means of its
+/// clips. With v the variance by which clips differ beyond what their fits leave open, and n the clips of the
+/// configuration, v/n is added to the variance of a mean: other clips would have another one.
+///
 /// The terminal velocity is the speed at which the force vanishes, m g sin(alpha) = drag(v) + friction(v) with all
 /// causes included, in the middle of the set-up's positions. Its standard deviation follows from the parameters'
 /// covariance by finite differences. Effects that act only at some positions, times or clips (EffectLaw::passing) are

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "base/math/angles.h"
 #include "base/math/distributions.h"
+#include "diagnose/causes/further_causes.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/scan/effect_scan.h"
@@ -282,4 +284,49 @@ TEST_CASE("nothing is recovered from an explanation whose fit stopped before its
     REQUIRE(quantity.why);
     CHECK(std::holds_alternative<core::unknown::NoMinimum>(quantity.why->reason));
   }
+}
+
+TEST_CASE("where clips scatter, friction and drag are the means of the clips, to within their scatter over its root") {
+  // The friction of eight clips of one configuration differs by 5 % (rms, one degree of freedom less).
+  const double part[] = {0.05, -0.07, 0.02, -0.03, 0.06, 0.01, -0.06, 0.04};
+  constexpr double kMu = 0.02, kDrag = 0.93, kMass = 0.4;
+  double mean = 0.0, squares = 0.0;
+  for (const double one : part) mean += one / 8.0;
+  for (const double one : part) squares += (one - mean) * (one - mean);
+  const double sd_of_mean = kMu * std::sqrt(squares / 7.0 / 8.0);
+  std::size_t clip = 0;
+  double before = 1.0;
+  tests::MadeEffect scatter;
+  scatter.force = [&](double m, double, double v, double t) {
+    if (t < before - 0.1) ++clip;
+    before = t;
+    const double friction = part[(clip - 1) % 8] * kMu * m * 9.80665 * std::cos(4.0 * std::acos(-1.0) / 180.0);
+    return v > 0.0 ? -friction : v < 0.0 ? friction : 0.0;
+  };
+  std::vector<tests::MadeLaunch> launches;
+  for (int i = 0; i < 4; ++i) {
+    launches.push_back({kMass, 4.0, 0.3, -1.1 - 0.05 * i});
+    launches.push_back({kMass, 4.0, -0.6, 1.2 - 0.05 * i});
+  }
+  const auto made = tests::made_experiment(launches, scatter, 5, 5e-5, 100, 60.0, 0.05, 0.0, {.mu = kMu});
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const std::optional<diagnose::MotionFit> fit = diagnose::with_clip_scatter(set, diagnose::fit_nominal(set));
+  REQUIRE(fit);
+  const auto recovered = diagnose::recovered_of(set, {{&*fit, {}, 1.0}});
+  REQUIRE(recovered.size() == 1);
+  REQUIRE(recovered[0].mu.estimate);
+  REQUIRE(recovered[0].k_over_m_1_s.estimate);
+  REQUIRE(recovered[0].v_lim_m_s.estimate);
+  const core::Estimate& mu = *recovered[0].mu.estimate;
+  CHECK(mu.sd > 0.8 * sd_of_mean);
+  CHECK(mu.sd < 1.5 * sd_of_mean);  // not the 0.02/sqrt(8) of the prior that holds the deviations
+  CHECK(std::abs(mu.value - kMu * (1.0 + mean)) < 0.5 * sd_of_mean);
+  CHECK(std::abs(recovered[0].k_over_m_1_s.estimate->value - kDrag / kMass) <
+        3.0 * recovered[0].k_over_m_1_s.estimate->sd);
+  CHECK(recovered[0].k_over_m_1_s.estimate->sd < 0.01 * kDrag / kMass);
+  // m g (sin(alpha) - mu cos(alpha)) = K v, with the clips' mean friction.
+  const double alpha = 4.0 * std::acos(-1.0) / 180.0;
+  const double v = kMass * 9.80665 * (std::sin(alpha) - kMu * (1.0 + mean) * std::cos(alpha)) / kDrag;
+  CHECK(std::abs(recovered[0].v_lim_m_s.estimate->value - v) < 3.0 * recovered[0].v_lim_m_s.estimate->sd);
+  CHECK(recovered[0].v_lim_m_s.estimate->sd < 0.02 * v);
 }
