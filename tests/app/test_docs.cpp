@@ -291,11 +291,13 @@ TEST_CASE("seeds that were run, commits and dates stand in docs/evidence only") 
   CHECK(dated_lines(pages_of_repository()) == std::vector<std::string>{});
 }
 
-TEST_CASE("the README has at most 100 lines, says that it runs on Linux, and names the paper") {
+TEST_CASE("the README has at most 100 lines and 800 words, says that it runs on Linux, and names the paper") {
   const std::vector<Page> pages = pages_of_repository();
   const auto readme = std::ranges::find(pages, "README.md", &Page::path);
   REQUIRE(readme != pages.end());
   CHECK(readme->lines.size() <= 100);
+  std::istringstream words(text_of(*readme));
+  CHECK(std::distance(std::istream_iterator<std::string>(words), {}) <= 800);
   const std::string text = std::regex_replace(text_of(*readme), std::regex(R"(\s+)"), " ");
   CHECK(text.find("Linux") != std::string::npos);
   CHECK(text.find("Experimental study of viscous friction in undergraduate physics laboratory. Introduction of phase "
