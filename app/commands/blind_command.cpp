@@ -95,7 +95,7 @@ void add_blind(CLI::App& app, Command& chosen) {
                    "Give every case this effect; default: none, one, two, or one that is not on the list")
       ->type_name("EFFECT");
   CLI::Option* images = command->add_flag(
-      "--pictures", options->blind.images,
+      "--films,--pictures", options->blind.images,
       "Film the experiments as rendered clips instead of tracks; their effects are those that images show");
   CLI::Option* leave_out =
       command->add_flag("--leave-out", options->blind.leave_out,

@@ -69,7 +69,7 @@ constexpr double kMostBlur = 0.5, kUnusableBlur = 2.0;                        //
 constexpr double kUnusableMissingShare = 0.01, kUnusableRepeatedShare = 0.1;  // shares of the frames
 constexpr double kMostDriftFrames = 0.75;                                     // frames
 
-/// Of x264: 0.4 at its default rate factor of 23, 0.7 at 26 (docs/evidence/side-light.md).
+/// Of x264: 0.4 at its default rate factor of 23, 0.7 at 26 (docs/evidence/other-renderers.md).
 constexpr double kMostBlockSteps = 0.5;
 
 void judge_codec(const ClipCheck& clip, FindingBook& book) {

@@ -64,7 +64,7 @@ class Result(_Holder, Brief):
         object.__setattr__(self, "_made", made)
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON that the command of this name writes, as a dict (docs/reference/json.md)."""
+        """The JSON that the command of this name writes, as a dict (docs/reference/result-files.md)."""
         document: dict[str, Any] = json.loads(self._made.json)
         return document
 
@@ -153,7 +153,7 @@ def rounded(value: float, sd: Optional[float]) -> str:
 
 
 def quantity_of(holder: Mapping[str, Any], key: str, unit: str) -> Quantity:
-    """`holder[key]` as docs/reference/json.md has it: {value, sd, interval95}, or null with the reason in "why"."""
+    """`holder[key]` as docs/reference/result-files.md has it: {value, sd, interval95}, or null with the reason in "why"."""
     found = holder.get(key)
     if found is None:
         return Quantity(why=holder.get("why", {}).get(key, "not stated"), unit=unit)

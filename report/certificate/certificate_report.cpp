@@ -88,8 +88,8 @@ std::string bias_words(const Certificate& certificate) {
 
 /// Values of one twin alone have no standard deviation.
 std::string bias_text(const CertifiedQuantity& quantity) {
-  const std::string value = fmt::format("{:.2f}", quantity.bias_sds.value);
-  return std::isfinite(quantity.bias_sds.sd) ? value + fmt::format(" ± {:.2f}", quantity.bias_sds.sd) : value;
+  const auto& [value, sd] = quantity.bias_sds;
+  return std::isfinite(sd) && sd > 0.0 ? base::value_and_sd_text(value, sd) : fmt::format("{:.2f}", value);
 }
 
 std::vector<std::string> cells_of(const CertifiedQuantity& quantity) {
@@ -275,7 +275,7 @@ Plot certificate_plot(const Certificate& certificate) {
       std::string(kFrame) +
       fmt::format(
           "unset offsets\nunset key\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
-          "set xlabel '95 % intervals that contain the true value  (%)'\n"
+          "set xlabel '95 % intervals that contain the true value (%)'\n"
           "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\n"
           "plot $q using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}'",
           lowest, row + 0.7, tics, color(0));
@@ -415,6 +415,7 @@ std::string limits_table(const Certificate& certificate) {
   for (const CertifiedQuantity& quantity : certificate.quantities)
     header.push_back(escape(symbol_of(quantity.quantity)));
   HtmlTable table(header);
+  table.stack_when_narrow(1);
   for (const ChangedTwin& change : certificate.changes) {
     const std::string together = change.together ? fall_text(*change.together) : "–";
     std::vector<std::string> cells = {escape(change_name(change)),
@@ -437,6 +438,7 @@ std::string configurations_table(const Certificate& certificate) {
   std::vector<std::string> header = kHeader;
   header.insert(header.begin(), "configuration");
   HtmlTable table(header, 2);
+  table.stack_when_narrow(2);
   const std::vector<std::string> setups = setup_names(certificate);
   for (const CertifiedQuantity& quantity : certificate.configurations) {
     std::vector<std::string> cells = cells_of(quantity);
@@ -462,10 +464,10 @@ std::string explanations_table(const Certificate& certificate) {
 std::string how_judged(const Certificate& certificate) {
   return fmt::format(
       "<p>{}</p>\n<p>A twin's truth is known: K/m, µ, α and the terminal velocity of the fitted motions (with "
-      "a named cause, K/m and µ are those of the viscous and Coulomb friction in the law). Intervals that hold are "
-      "those of 95 % that "
-      "contain it; their share has the interval of Clopper and Pearson, for as many independent intervals as the "
-      "shares of single twins scatter like. Bias is the mean error over the stated standard deviation.</p>\n",
+      "a named cause, K/m and µ are those of the viscous and Coulomb friction in the law). A 95 % interval holds if it "
+      "contains the truth. The share that holds has the interval of Clopper and Pearson, for the number of independent "
+      "intervals that would scatter as much as the shares of single twins do. Bias is the mean error divided by the "
+      "stated standard deviation.</p>\n",
       escape(twin_words(certificate)));
 }
 
@@ -479,6 +481,7 @@ Page certificate_page(const std::string& name, const Certificate& certificate) {
   if (const std::string lacks = all_lacks(certificate); !lacks.empty())
     body += fmt::format("<p class=\"note\">{}</p>\n", escape(lacks));
   HtmlTable table(kHeader);
+  table.stack_when_narrow(1);
   for (const CertifiedQuantity& quantity : certificate.quantities) {
     std::vector<std::string> cells = cells_of(quantity);
     cells.front() = escape(cells.front());

@@ -33,7 +33,7 @@ struct LackWords {
            "scale, with its error)";
   }
   std::string operator()(const validate::lacking::ClipScatter&) const {
-    return "the scatter from clip to clip (filming alone would leave as much)";
+    return "the scatter from clip to clip (errors of filming may explain it)";
   }
   std::string operator()(const validate::lacking::Noise& of) const {
     return fmt::format(

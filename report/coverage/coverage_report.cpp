@@ -37,7 +37,7 @@ Plot coverage_plot(const validate::Coverage& coverage) {
   }
   script += fmt::format(
       "unset offsets\nset xrange [{:.4g}:100.5]\nset yrange [{:.4g}:0.3]\nset ytics ({})\n"
-      "set xlabel '95 % intervals that contain the true value  (%)'\nset key outside top center horizontal maxcols 1\n"
+      "set xlabel '95 % intervals that contain the true value (%)'\nset key outside top center horizontal maxcols 1\n"
       "set arrow from 95, graph 0 to 95, graph 1 nohead back lw 1 lc rgb '#888888'\nplot ",
       lowest, row_number + 0.7, tics);
   for (std::size_t e = 0; e < estimators.size(); ++e) {
@@ -68,8 +68,8 @@ Plot reliability_plot(const validate::Coverage& coverage) {
       std::string(kFrame) +
       fmt::format(
           "unset offsets\nset xrange [-0.5:{}]\nset yrange [-2:102]\nset key maxcols 2\nset xtics ({})\n"
-          "set xlabel 'level that the intervals state  (%)'\n"
-          "set ylabel 'intervals that contain the true value  (%)'\n"
+          "set xlabel 'stated level of the intervals (%)'\n"
+          "set ylabel 'intervals that contain the true value (%)'\n"
           "plot $band using 1:2:3:4:5:6 with boxxyerror fs solid noborder fc rgb '#dddddd' title 'chance (95 %)', "
           "$stated using 1:2:3 with xerrorbars pt 0 lw 1 lc rgb '#555555' title 'as stated'",
           static_cast<double>(coverage.levels.size()) - 0.5, tics);
@@ -122,6 +122,7 @@ std::string level_table(const validate::Coverage& coverage) {
   std::vector<std::string> header = {"quantity"};
   for (const double level : coverage.levels) header.push_back(level_text(level));
   HtmlTable table(header);
+  table.stack_when_narrow(1);
   std::vector<validate::CoverageFailure> failures = validate::too_narrow(coverage);
   for (validate::CoverageFailure& one : validate::too_wide(coverage)) failures.push_back(std::move(one));
   std::string before;
@@ -141,12 +142,12 @@ std::string level_table(const validate::Coverage& coverage) {
                one.row.estimator == row.estimator && one.row.quantity == row.quantity;
       });
       cells.push_back(fmt::format("{0}{1:.1f} % (p {2}){3}", fails ? "<b class=\"bad\">" : "", 100.0 * at.coverage,
-                                  at.p_value < 1e-4 ? "< 0.0001" : base::digits_text(at.p_value, 2),
+                                  at.p_value < 1e-4 ? "&lt; 0.0001" : "= " + base::digits_text(at.p_value, 2),
                                   fails ? "</b>" : ""));
     }
     table.row(cells);
   }
-  return "<h2 id=\"levels\">Every level</h2>\n" + table.str() +
+  return table.str() +
          "<p class=\"soft\">Fraction of the intervals of each level that contain the true value, and the probability "
          "that "
          "chance alone gives a count at least that far from the level (exact binomial test, two-sided). Marked: below "
@@ -162,7 +163,7 @@ std::string noise_text(const validate::Coverage& coverage) {
   return from == to ? base::number_text(*least * 1e6, 3) + " µm" : fmt::format("{} to {} µm", from, to);
 }
 
-/// "µ of m1 by the generalised lines: 41.0 % at 50 %, 88.0 % at 95 %": an item for each row, its levels together.
+/// "µ of m1 with the generalised lines: 41.0 % at 50 %, 88.0 % at 95 %": an item for each row, its levels together.
 std::string failures_html(const std::vector<validate::CoverageFailure>& failures) {
   std::string text;
   for (std::size_t i = 0; i < failures.size(); ++i) {
@@ -190,7 +191,7 @@ std::vector<validate::CoverageRow> scattered(const validate::Coverage& coverage)
   return rows;
 }
 
-/// "µ (3.0 times), α (3.1 times) of m1 by the generalised lines; …"
+/// "µ (3.0 times), α (3.1 times) of m1 with the generalised lines; …"
 std::string astray_list(const std::vector<validate::CoverageRow>& rows) {
   std::string text;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -210,31 +211,54 @@ std::string astray_list(const std::vector<validate::CoverageRow>& rows) {
   return text;
 }
 
+/// Rows that are judged: those with a value, the naive lines apart.
+std::vector<const validate::CoverageRow*> judged_rows(const validate::Coverage& coverage) {
+  std::vector<const validate::CoverageRow*> rows;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    if (row.determined > 0 && row.estimator != validate::kNaiveLines) rows.push_back(&row);
+  }
+  return rows;
+}
+
+/// "µ of m1 with the generalised lines": rows whose intervals hold less often than stated, at any level.
+std::set<std::string> failing_rows(const validate::Coverage& coverage) {
+  std::set<std::string> failing;
+  for (const validate::CoverageFailure& one : validate::too_narrow(coverage)) {
+    failing.insert(fmt::format("{} of {} {}", symbol_of(one.row.quantity), one.row.configuration,
+                               by_estimator(one.row.estimator)));
+  }
+  return failing;
+}
+
+/// "The stated 95 % intervals contain the true value in 93.5 to 95.0 % of 200 replicates, as often as stated, …" or
+/// "…, less often than stated for 1 of 2". `judged` is not empty.
+std::string holding_words(const validate::Coverage& coverage, const std::vector<const validate::CoverageRow*>& judged,
+                          std::size_t failing) {
+  const auto [least, most] = std::minmax_element(
+      judged.begin(), judged.end(), [](const auto* a, const auto* b) { return a->coverage < b->coverage; });
+  return fmt::format("The stated 95 % intervals contain the true value in {:.1f} to {:.1f} % of {} replicates, {}",
+                     100.0 * (*least)->coverage, 100.0 * (*most)->coverage, coverage.replicates,
+                     failing == 0 ? "as often as stated, as far as this many replicates can tell"
+                                  : fmt::format("less often than stated for {} of {}", failing, judged.size()));
+}
+
 std::string coverage_meaning(const validate::Coverage& coverage) {
   const auto narrow = validate::too_narrow(coverage), wide = validate::too_wide(coverage);
-  const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(), [](const validate::CoverageRow& row) {
-    return row.determined > 0 && row.estimator != validate::kNaiveLines;
-  });
+  const std::vector<const validate::CoverageRow*> judged = judged_rows(coverage);
   std::string text;
   if (coverage.outside && coverage.outside->failed() > 0) {
     text += fmt::format("<p><b>{}</b></p>\n", escape(outside_failed(*coverage.outside)));
   }
-  if (!any) {
+  if (judged.empty()) {
     return meaning_section(
         text +
         "<p>There is nothing to count: no estimator found a value whose truth is known. K/m and µ have a true value "
         "only for viscous drag with Coulomb friction; under another law only the inclination α has one, and the "
         "terminal velocity where the forces balance, and these motions do not determine them.</p>\n");
   }
-  if (narrow.empty()) {
-    text +=
-        "<p>The intervals of every estimator but the naive one contain the true value as often as stated, as far as "
-        "this "
-        "many replicates can tell.</p>\n";
-  } else {
-    text +=
-        "<p>These intervals contain the true value less often than stated (how often, at each stated level):</p>\n" +
-        failures_html(narrow);
+  text += fmt::format("<p><b>{}.</b></p>\n", escape(holding_words(coverage, judged, failing_rows(coverage).size())));
+  if (!narrow.empty()) {
+    text += "<p>These hold less often than stated (how often, at each stated level):</p>\n" + failures_html(narrow);
   }
   if (!wide.empty()) {
     text +=
@@ -300,26 +324,12 @@ std::string coverage_json(const validate::Coverage& coverage) {
 }
 
 std::string coverage_answer(const validate::Coverage& coverage) {
-  std::vector<const validate::CoverageRow*> counted;
-  for (const validate::CoverageRow& row : coverage.rows) {
-    if (row.determined > 0 && row.estimator != validate::kNaiveLines) counted.push_back(&row);
-  }
+  const std::vector<const validate::CoverageRow*> judged = judged_rows(coverage);
   const std::string failed = coverage.outside ? outside_failed(*coverage.outside) : std::string();
-  if (counted.empty()) return failed;
-  const auto [least, most] = std::minmax_element(
-      counted.begin(), counted.end(), [](const auto* a, const auto* b) { return a->coverage < b->coverage; });
-  std::string text =
-      (failed.empty() ? failed : failed + " ") +
-      fmt::format("The stated 95 % intervals contain the true value in {:.1f} to {:.1f} % of {} replicates, ",
-                  100.0 * (*least)->coverage, 100.0 * (*most)->coverage, coverage.replicates);
-  std::set<std::string> failing;
-  for (const validate::CoverageFailure& one : validate::too_narrow(coverage)) {
-    failing.insert(fmt::format("{} of {} {}", symbol_of(one.row.quantity), one.row.configuration,
-                               by_estimator(one.row.estimator)));
-  }
-  if (failing.empty()) return text + "as often as stated, as far as this many replicates can tell.";
-  return text + fmt::format("less often than stated for {} of {}: {}.", failing.size(), counted.size(),
-                            fmt::join(failing, "; "));
+  if (judged.empty()) return failed;
+  const std::set<std::string> failing = failing_rows(coverage);
+  return (failed.empty() ? failed : failed + " ") + holding_words(coverage, judged, failing.size()) +
+         (failing.empty() ? "" : fmt::format(": {}", fmt::join(failing, "; "))) + ".";
 }
 
 std::string coverage_text(const validate::Coverage& coverage) {
@@ -363,12 +373,7 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
   body += coverage_meaning(coverage);
   const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(),
                                [](const validate::CoverageRow& row) { return row.determined > 0; });
-  if (any) {
-    std::vector<Plot> plots = {coverage_plot(coverage)};
-    if (!coverage.levels.empty()) plots.push_back(reliability_plot(coverage));
-    body += figures(plots);
-  }
-  if (!coverage.levels.empty()) body += level_table(coverage);
+  if (any) body += figures({coverage_plot(coverage)});
   HtmlTable table({"quantity", "truth", "bias", "sd", "stated sd", "least sd", "efficiency", "coverage", "values"});
   table.stack_when_narrow(1);
   std::string configuration, estimator;
@@ -387,6 +392,11 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
       "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the fraction "
       "of 95 % intervals that contain the true value, with its own 95 % interval (Clopper and Pearson).</p>\n";
   if (coverage.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*coverage.outside)));
+  if (!coverage.levels.empty()) {
+    Html levels = any ? figures({reliability_plot(coverage)}) : Html();
+    levels += level_table(coverage);
+    body += folded("Every level, from the narrowest intervals to the widest", levels);
+  }
   return page(title, body);
 }
 

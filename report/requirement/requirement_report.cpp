@@ -84,9 +84,11 @@ std::string next_step(const Requirement& requirement) {
   const bool forbidden = std::ranges::all_of(requirement.candidates, [](const Candidate& candidate) {
     return candidate.verdict == Verdict::impossible || candidate.verdict == Verdict::refused;
   });
-  return fmt::format("{}: a lens, a codec, a rolling shutter and the calibration are not included.{}",
-                     ran ? "Judged by tracks, not by images" : "Judged by the bound alone, without a run",
-                     forbidden ? "" : " With --confirm clips every candidate that the bound allows is rendered.");
+  return fmt::format(
+      "{}: a lens, a codec, a rolling shutter and the calibration are not included.{}",
+      ran ? "Judged by tracks, not by images" : "Judged by the bound alone, without a run",
+      forbidden ? ""
+                : " With `--confirm clips` the candidates are filmed in this order, until one reaches the target.");
 }
 
 std::string found_text(const validate::TargetResult& result, double scale) {
@@ -155,9 +157,32 @@ std::string counts_text(const Requirement& requirement) {
   return text + ".";
 }
 
+/// "fit of the whole motion" where this estimator judges all that were judged; otherwise empty, and the table has a
+/// column for it.
+std::string common_judge(const Requirement& requirement) {
+  std::string common;
+  for (const Candidate& candidate : requirement.candidates) {
+    const bool none =
+        std::ranges::all_of(candidate.results, [](const auto& result) { return result.estimator.empty(); });
+    const std::string judge = judging_estimators(candidate);
+    if (none || judge == common) continue;
+    if (!common.empty()) return {};
+    common = judge;
+  }
+  return common;
+}
+
+/// "All were judged with the fit of the whole motion."; empty if they differ or nothing was run.
+std::string judge_sentence(const Requirement& requirement) {
+  const std::string common = common_judge(requirement);
+  return common.empty() ? common : fmt::format("All were judged with the {}.", common);
+}
+
 /// All of them, the cheapest first.
 std::string candidate_table(const Requirement& requirement) {
-  std::vector<std::string> header = {"no.", "camera", "cost", "verdict", "judged by"};
+  const bool judge_column = common_judge(requirement).empty();
+  std::vector<std::string> header = {"no.", "camera", "cost", "verdict"};
+  if (judge_column) header.emplace_back("judged by");
   const std::size_t first_number = header.size();
   for (const Target& target : requirement.targets) {
     header.push_back(escape(target_name(target, scale_of(target).factor)));
@@ -171,9 +196,10 @@ std::string candidate_table(const Requirement& requirement) {
   for (std::size_t i = 0; i < requirement.candidates.size(); ++i) {
     const Candidate& candidate = requirement.candidates[i];
     const std::string verdict = escape(candidate_verdict(candidate));
-    std::vector<std::string> row = {
-        std::to_string(i + 1), escape(candidate.name), escape(cost_text(requirement, candidate)),
-        reached(candidate) ? "<b>" + verdict + "</b>" : verdict, escape(judging_estimators(candidate))};
+    std::vector<std::string> row = {std::to_string(i + 1), escape(candidate.name),
+                                    escape(cost_text(requirement, candidate)),
+                                    reached(candidate) ? "<b>" + verdict + "</b>" : verdict};
+    if (judge_column) row.push_back(escape(judging_estimators(candidate)));
     for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
     row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
     table.row(row);
@@ -257,10 +283,11 @@ std::string how_judged(const Requirement& requirement) {
 Page requirement_report(const Requirement& requirement) {
   const std::string question = fmt::format("Which of these is good enough: {}?", targets_text(requirement));
   Html body = question_heading(requirement.name, question);
-  body += fmt::format("<p><b>{}</b> {}</p>\n<p>{}</p>\n", escape(requirement_answer(requirement)),
-                      escape(enough_words(requirement)), escape(counts_text(requirement)));
+  body += fmt::format("<p><b>{}</b> {}</p>\n<p>{} {}</p>\n", escape(requirement_answer(requirement)),
+                      escape(enough_words(requirement)), escape(counts_text(requirement)),
+                      escape(judge_sentence(requirement)));
   const std::string next = next_step(requirement);
-  if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape(next));
+  if (!next.empty()) body += fmt::format("<p class=\"note\">{}</p>\n", escape_with_code(next));
   body += figures({requirement_plot(requirement)});
   body += candidate_table(requirement) + unanswered_list(requirement) + limits_list(requirement);
   body += folded("How this was judged", how_judged(requirement));
@@ -268,7 +295,10 @@ Page requirement_report(const Requirement& requirement) {
 }
 
 std::string requirement_text(const Requirement& requirement) {
-  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict", "judged by", "frames/s", "noise (µm)"}};
+  const bool judge_column = common_judge(requirement).empty();
+  std::vector<std::vector<std::string>> rows = {{"camera", "cost", "verdict"}};
+  if (judge_column) rows.front().emplace_back("judged by");
+  rows.front().insert(rows.front().end(), {"frames/s", "noise (µm)"});
   for (const Target& target : requirement.targets) {
     rows.front().push_back(target_name(target, scale_of(target).factor));
     rows.front().push_back("at most");
@@ -277,10 +307,11 @@ std::string requirement_text(const Requirement& requirement) {
   }
   std::string below, unanswered;
   for (const Candidate& candidate : requirement.candidates) {
-    rows.push_back({candidate.name, cost_text(requirement, candidate), candidate_verdict(candidate),
-                    judging_estimators(candidate), base::number_text(candidate.frame_rate_hz, 4),
-                    noise_cell(candidate)});
-    for (std::string& cell : result_cells(requirement, candidate)) rows.back().push_back(std::move(cell));
+    std::vector<std::string>& row = rows.emplace_back(
+        std::vector<std::string>{candidate.name, cost_text(requirement, candidate), candidate_verdict(candidate)});
+    if (judge_column) row.push_back(judging_estimators(candidate));
+    row.insert(row.end(), {base::number_text(candidate.frame_rate_hz, 4), noise_cell(candidate)});
+    for (std::string& cell : result_cells(requirement, candidate)) row.push_back(std::move(cell));
     if (const std::string words = unanswered_words(requirement, candidate); !words.empty()) {
       unanswered += fmt::format("{}: {}\n", candidate.name, words);
     }
@@ -290,9 +321,10 @@ std::string requirement_text(const Requirement& requirement) {
   }
   std::string text = requirement_answer(requirement) + "\n";
   if (const std::string enough = enough_words(requirement); !enough.empty()) text += enough + "\n";
-  text += fmt::format("\n{} on the worst configuration; {} first. {}\n\n", targets_text(requirement),
-                      order_text(requirement), counts_text(requirement)) +
-          text_table(rows, 4);
+  const std::string judge = judge_sentence(requirement);
+  text += fmt::format("\n{} on the worst configuration; {} first. {}{}{}\n\n", targets_text(requirement),
+                      order_text(requirement), counts_text(requirement), judge.empty() ? "" : " ", judge) +
+          text_table(rows, judge_column ? 4 : 3);
   if (!unanswered.empty()) text += "\n" + unanswered;
   if (!below.empty())
     text += "\nWhat limits the others (how many times smaller the bound, “by runs” the error, is without it)\n" + below;

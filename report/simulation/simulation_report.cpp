@@ -25,6 +25,13 @@ Json changes_json(const std::vector<sim::ModeChange>& changes, bool reversals_on
   return list;
 }
 
+/// "1.1246 stops", "0.6030 turns downhill", "0.2000 starts uphill".
+std::string change_words(const sim::ModeChange& change) {
+  if (change.to == sim::Mode::stick) return fmt::format("{:.4f} stops", change.t_s);
+  return fmt::format("{:.4f} {} {}", change.t_s, change.from == sim::Mode::stick ? "starts" : "turns",
+                     change.to == sim::Mode::slide_down ? "downhill" : "uphill");
+}
+
 }  // namespace
 
 std::string trajectory_csv(const sim::Trajectory& trajectory) {
@@ -53,11 +60,11 @@ std::string simulation_json(const std::vector<SimulatedClip>& clips) {
 
 std::string simulation_text(const std::vector<SimulatedClip>& clips) {
   std::vector<std::vector<std::string>> rows = {
-      {"clip", "configuration", "states", "from x (m)", "to x (m)", "last v (m/s)", "changes of mode at (s)"}};
+      {"clip", "configuration", "states", "from x (m)", "to x (m)", "last v (m/s)", "stops and turns at (s)"}};
   for (const SimulatedClip& clip : clips) {
     std::string changes;
     for (const sim::ModeChange& change : clip.trajectory.changes) {
-      changes += fmt::format("{}{:.4f} to {}", changes.empty() ? "" : ", ", change.t_s, sim::name_of(change.to));
+      changes += (changes.empty() ? "" : ", ") + change_words(change);
     }
     const std::vector<sim::State>& states = clip.trajectory.states;
     rows.push_back({clip.name, clip.configuration, fmt::format("{}", states.size()),

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -337,10 +338,10 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   script += error_range(data);
   if (!choice.rows.empty()) data.push_back(choice);
   return {Drawing{script + drawn, data, {480, 400}},
-          fmt::format("{}: error over the bandwidth. Total² is noise² + bias²; a dot on its line marks a bias of "
+          fmt::format("Error of {} against the bandwidth. Total² is noise² + bias²; a dot on its line marks a bias of "
                       "more than two standard errors",
                       symbol_of(quantity.key)),
-          fmt::format("Error of {} over the bandwidth", symbol_of(quantity.key))};
+          fmt::format("Error of {} against the bandwidth", symbol_of(quantity.key))};
 }
 
 }  // namespace
@@ -374,8 +375,15 @@ std::string bandwidth_table(const SweepSummary& summary) {
     }
     table.row(row);
   };
-  for (const double h : curves.bandwidths_s) {
-    add(base::number_text(h, 3), [h](const QuantityName&, const Curve& curve) { return curve.at(h); });
+  std::set<double> bandwidths_s;  // of any quantity: one that few runs determine there is a dash
+  for (const auto& [quantity, curve] : curves.of) {
+    for (const auto& [h, of] : curve) bandwidths_s.insert(h);
+  }
+  for (const double h : bandwidths_s) {
+    add(base::number_text(h, 3), [h](const QuantityName&, const Curve& curve) {
+      const auto found = curve.find(h);
+      return found == curve.end() ? nullptr : found->second;
+    });
   }
   const auto add_estimator = [&](const std::string& name, std::string_view estimator) {
     add(name, [&](const QuantityName& quantity, const Curve&) { return overall(summary, quantity.key, estimator); });

@@ -330,7 +330,7 @@ std::string changes_of(const SweepSummary& summary, const Series& best) {
                                : "no combination of the other keys has a result at every value"));
   }
   if (list.empty()) return {};
-  return fmt::format("<p>The rms error of {} by {} is:</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
+  return fmt::format("<p>The rms error of {} with {} is:</p>\n<ul>\n{}</ul>\n", symbol_of(best.quantity),
                      escape(best.estimator), list);
 }
 
@@ -340,7 +340,7 @@ struct Listed {
   double number = 0.0;
 };
 
-/// "K/m, µ by trajectory (80 to 88 %)": for each estimator its quantities; if there are many estimators, only the
+/// "K/m, µ with trajectory (80 to 88 %)": for each estimator its quantities; if there are many estimators, only the
 /// first.
 std::string series_text(std::vector<Listed> all, int digits, const char* unit) {
   std::stable_sort(all.begin(), all.end(),
@@ -359,7 +359,7 @@ std::string series_text(std::vector<Listed> all, int digits, const char* unit) {
     }
     if (++estimators > kMost) continue;
     const std::string from = base::number_text(least, digits), to = base::number_text(most, digits);
-    text += fmt::format("{}{} by {} ({}{})", text.empty() ? "" : "; ", quantities, escape(estimator),
+    text += fmt::format("{}{} with {} ({}{})", text.empty() ? "" : "; ", quantities, escape(estimator),
                         from == to ? from : fmt::format("{} to {}", from, to), unit);
   }
   if (estimators > kMost) text += fmt::format("; and {} more in the table", estimators - kMost);

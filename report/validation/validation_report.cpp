@@ -156,10 +156,10 @@ std::vector<Plot> restitution_plot(const core::AnalysisResults& results,
     }
     data.push_back(std::move(block));
   }
-  return {
-      {Drawing{script, data},
-       fmt::format("Error of the measured position over the field, one colour per clip{}", named ? "" : ", in turn"),
-       "Restitution error over the true position"}};
+  return {{Drawing{script, data},
+           fmt::format("Error of the measured position along the track, one colour for each clip{}",
+                       named ? "" : ", in turn"),
+           "Restitution error against the true position"}};
 }
 
 }  // namespace
@@ -251,7 +251,7 @@ std::string headline(const validate::Comparison& comparison) {
     for (std::size_t i = 0; i < column.size(); ++i) rows[i + 1].push_back(column[i]);
   }
   return fmt::format(
-      "{}\n\nRecovered from the images alone by the {}, ± one standard deviation, with the truth in "
+      "{}\n\nRecovered from the images alone with the {}, ± one standard deviation, with the truth in "
       "brackets:\n\n{}\n{}",
       base::printable_text(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
       no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
@@ -384,7 +384,7 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   for (const validate::LineComparison& line : comparison.lines) lowest_r2 = std::min(lowest_r2, line.r2);
   const validate::RestitutionComparison& restitution = comparison.restitution;
   Html body = question_heading(title, "How well are the true values recovered?") +
-              "<p class=\"soft\">A rehearsal: simulated, filmed, analysed from the images alone by the lines "
+              "<p class=\"soft\">A rehearsal: simulated, filmed, analysed from the images alone with the lines "
               "of the phase diagram and with the fit of the whole motion, and compared with the truth.</p>\n";
   body += meaning_of(comparison);
   body += "<div class=\"tiles\">" +

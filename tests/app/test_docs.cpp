@@ -7,6 +7,7 @@
 #include <cctype>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -221,6 +222,24 @@ std::string text_of(const Page& page) {
   return text;
 }
 
+/// The rows of the first table below a heading, without their links' targets.
+std::string table_below(const Page& page, const std::string& heading) {
+  std::string rows;
+  bool below = false;
+  for (const Line& line : page.lines) {
+    if (line.text == heading) below = true;
+    if (below && line.text.starts_with("|")) rows += line.text + "\n";
+    if (!rows.empty() && !line.text.starts_with("|")) break;
+  }
+  return std::regex_replace(rows, std::regex(R"(\]\([^)]*\))"), "]");
+}
+
+std::set<std::string> figures_in(const std::string& rows) {
+  static const std::regex kFigure(R"(\b(\d+(?:\.\d+)?)\b)");
+  const std::vector<std::string> figures = matches(rows, kFigure);
+  return {figures.begin(), figures.end()};
+}
+
 }  // namespace
 
 TEST_CASE("every link of the documentation leads to a file and a heading that exist") {
@@ -272,11 +291,13 @@ TEST_CASE("seeds that were run, commits and dates stand in docs/evidence only") 
   CHECK(dated_lines(pages_of_repository()) == std::vector<std::string>{});
 }
 
-TEST_CASE("the README has at most 100 lines, says that it runs on Linux, and names the paper") {
+TEST_CASE("the README has at most 100 lines and 800 words, says that it runs on Linux, and names the paper") {
   const std::vector<Page> pages = pages_of_repository();
   const auto readme = std::ranges::find(pages, "README.md", &Page::path);
   REQUIRE(readme != pages.end());
   CHECK(readme->lines.size() <= 100);
+  std::istringstream words(text_of(*readme));
+  CHECK(std::distance(std::istream_iterator<std::string>(words), {}) <= 800);
   const std::string text = std::regex_replace(text_of(*readme), std::regex(R"(\s+)"), " ");
   CHECK(text.find("Linux") != std::string::npos);
   CHECK(text.find("Experimental study of viscous friction in undergraduate physics laboratory. Introduction of phase "
@@ -285,6 +306,28 @@ TEST_CASE("the README has at most 100 lines, says that it runs on Linux, and nam
     INFO(word);
     CHECK(text.find(word) == std::string::npos);
   }
+}
+
+TEST_CASE("the figures of results in the README and the guide are those of the summary") {
+  const std::vector<Page> pages = pages_of_repository();
+  const auto rows_of = [&](const std::string& path, const std::string& heading) {
+    const auto page = std::ranges::find(pages, path, &Page::path);
+    REQUIRE(page != pages.end());
+    return table_below(*page, heading);
+  };
+  const std::set<std::string> known = figures_in(rows_of("docs/evidence/summary.md", "# Summary"));
+  const auto unknown = [&](const std::string& rows) {
+    std::vector<std::string> found;
+    std::ranges::set_difference(figures_in(rows), known, std::back_inserter(found));
+    return found;
+  };
+  const std::string readme = rows_of("README.md", "## What to expect"),
+                    guide = rows_of("docs/guide/diagnosis.md", "## How far to trust it");
+  CHECK(figures_in(readme).size() > 10);
+  CHECK(figures_in(guide).size() > 20);
+  CHECK(unknown(readme) == std::vector<std::string>{});
+  CHECK(unknown(guide) == std::vector<std::string>{});
+  CHECK(unknown(readme + "| first | in 79 % of 181 |\n") == std::vector<std::string>{"79"});
 }
 
 TEST_CASE("the README says how many effects a diagnosis knows, and no other page repeats the number") {

@@ -1,4 +1,7 @@
 /// The pages of require and coverage: units, digits and names as a reader meets them.
+#include <regex>
+#include <string>
+
 #include "report/coverage/coverage_report.h"
 #include "report/diagnosis/plan_report.h"
 #include "report/html/html.h"
@@ -12,6 +15,11 @@ namespace {
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+/// A page's HTML with plain spaces for those that do not break.
+std::string plainly_spaced(const report::Page& page) {
+  return std::regex_replace(page.html, std::regex("\xC2\xA0"), " ");
 }
 
 validate::Requirement one_camera(const std::string& quantity, double target, double bound) {
@@ -153,6 +161,8 @@ TEST_CASE("the first line of coverage is the answer: how often the intervals hol
         "The stated 95 % intervals contain the true value in 93.5 to 95.0 % of 200 replicates, as often as stated, as "
         "far as "
         "this many replicates can tell.");
+  CHECK(has(plainly_spaced(report::coverage_page("x", coverage)),
+            "<b>The stated 95 % intervals contain the true value in 93.5 to 95.0 % of 200 replicates, as often as "));
   coverage.rows[1].coverage = 0.6;
   coverage.rows[1].levels = {{0.95, 120, 0.6, 0.53, 0.67, 1e-40}};
   const std::string text = report::coverage_text(coverage);
@@ -160,6 +170,15 @@ TEST_CASE("the first line of coverage is the answer: how often the intervals hol
         "The stated 95 % intervals contain the true value in 60.0 to 95.0 % of 200 replicates, less often than stated "
         "for 1 of "
         "2: µ of m1 with the fit of the whole motion.");
+  const std::string page = plainly_spaced(report::coverage_page("x", coverage));
+  CHECK(has(page, "in 60.0 to 95.0 % of 200 replicates, less often than stated for 1 of 2.</b>"));
+  CHECK(has(page, "<li>µ of m1 with the fit of the whole motion: 60.0 % at 95 %</li>"));
+  CHECK(has(page, "60.0 % (p &lt; 0.0001)"));
+  CHECK(has(page, "95.0 % (p = 1"));
+  const std::size_t folded = page.find("<details");
+  CHECK(page.find("Every quantity") < folded);
+  CHECK(page.find("(p = 1") > folded);
+  CHECK(folded != std::string::npos);
 }
 
 TEST_CASE("the first line of coverage says how often an outside estimator failed, and names it as such") {

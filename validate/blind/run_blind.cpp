@@ -29,7 +29,7 @@ void check(const BlindOptions& options) {
         base::Issue{"", 0, "--cases", fmt::format("{}", options.cases), fmt::format("1 to {}", kMostBlindCases)});
   }
   if (options.everyday && (options.images || options.leave_out)) {
-    throw base::InputError(base::Issue{"", 0, "--everyday", options.images ? "with --pictures" : "with --leave-out",
+    throw base::InputError(base::Issue{"", 0, "--everyday", options.images ? "with --films" : "with --leave-out",
                                        "everyday cases are tracks, diagnosed once"});
   }
   if (options.only.empty()) return;

@@ -168,6 +168,15 @@ TEST_CASE("a misspelt command or option is answered with the one that was meant"
   CHECK(tests::glidelab({"--versoin"}).err.find("did you mean \"--version\"?") != std::string::npos);
 }
 
+TEST_CASE("blind films its cases under both names of the option, and not everyday tracks") {
+  for (const char* name : {"--films", "--pictures"}) {
+    INFO(name);
+    const tests::ProcessResult result = tests::glidelab({"blind", "--cases", "1", name, "--everyday"});
+    CHECK(result.status == 2);
+    CHECK(result.err.find("excludes") != std::string::npos);
+  }
+}
+
 TEST_CASE("the version names the libraries that it was built with") {
   const std::string text = tests::glidelab({"--version"}).out;
   for (const char* library : {"Eigen 3", "SUNDIALS 6", "OpenCV 4", "SQLite 3", "OSMesa ", "libavcodec "}) {

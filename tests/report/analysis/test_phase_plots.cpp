@@ -169,7 +169,7 @@ TEST_CASE("colours that stand for clips are told by name where each clip has its
       comparison.restitution.points.push_back(point);
     }
     for (const report::Plot& plot : report::validation_plots(results, comparison)) {
-      if (plot.description != "Restitution error over the true position") continue;
+      if (plot.description != "Restitution error against the true position") continue;
       CHECK((plot.drawing.script.find("title 'run 1'") != std::string::npos) == (clips == 2));
       CHECK((plot.caption.find("in turn") != std::string::npos) == (clips != 2));
     }

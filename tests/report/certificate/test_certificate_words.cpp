@@ -108,6 +108,8 @@ TEST_CASE("a bias that one twin alone shows has no standard deviation") {
   CHECK(text.find("-0.32") != std::string::npos);
   CHECK(text.find("0.10 ± 0.10") != std::string::npos);
   CHECK(text.find("inf") == std::string::npos);
+  made.quantities[0].bias_sds = {10.8692, 0.0123};
+  CHECK(report::certificate_text(made).find("10.869 ± 0.012") != std::string::npos);
 }
 
 TEST_CASE("only changes that stand out are given as advice, three at most, and none is said in words") {
@@ -240,7 +242,7 @@ TEST_CASE("everything that twins may lack has words and a reason, an error of se
        "the calibration by a pattern (one folder has a pattern and another a scale: all twins are measured by the "
        "scale, "
        "with its error)"},
-      {lacking::ClipScatter{}, "the scatter from clip to clip (filming alone would leave as much)"},
+      {lacking::ClipScatter{}, "the scatter from clip to clip (errors of filming may explain it)"},
       {lacking::Noise{5e-4, 1.23456e-5},
        "noise as in the recording (its positions scatter by 0.0005 m, the twin's by 1.23e-05 m: something other than "
        "pixel noise is at work)"}};

@@ -53,6 +53,18 @@ TEST_CASE("the first line of require says what to buy, how to set it and what to
   CHECK(html.find("Buy: board (OV5647)") < html.find("<figure"));
 }
 
+TEST_CASE("an estimator that judges every camera is named once, otherwise beside each camera") {
+  validate::Requirement requirement = cameras();
+  const std::string once = "All were judged with the fit of the whole motion.";
+  CHECK_THAT(report::requirement_text(requirement), Contains(once) && !Contains("judged by  "));
+  CHECK_THAT(report::requirement_report(requirement).html, Contains(once) && !Contains(">judged by</th>"));
+  requirement.candidates[2].results[0].estimator = "phase-diagram";
+  CHECK_THAT(report::requirement_text(requirement), !Contains(once) && Contains("judged by  "));
+  CHECK_THAT(report::requirement_report(requirement).html, !Contains(once) && Contains(">judged by</th>"));
+  for (validate::Candidate& candidate : requirement.candidates) candidate.results[0].estimator.clear();
+  CHECK_THAT(report::requirement_text(requirement), !Contains("judged with"));
+}
+
 TEST_CASE("what is much better than needed is said to be so, with what would do") {
   validate::Requirement requirement = cameras();
   requirement.candidates[1].enough = validate::Enough{50.0, 11.25, 2.4e-4};

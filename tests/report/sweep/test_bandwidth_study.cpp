@@ -118,3 +118,15 @@ TEST_CASE("a bandwidth with which some clips have no line is not recommended, an
   summary.overall[2].groups[0].statistics.answered = 300;
   CHECK_THAT(report::bandwidth_answer(summary)->text, Contains(" and 0.04 s some clips have no line"));
 }
+
+TEST_CASE("the table of a bandwidth study keeps a bandwidth that one of its quantities does not have") {
+  validate::SweepSummary summary = study();
+  for (const double h : {0.01, 0.02, 0.03, 0.04, 0.05, 0.08}) {
+    summary.overall.push_back(series("alpha_deg", fmt::format("phase-diagram h={} s", h), 0.0, 1e-3, 1e-3, 0.95));
+  }
+  const std::string table = report::bandwidth_table(summary);
+  const std::size_t row = table.find(">0.16<");
+  REQUIRE(row != std::string::npos);
+  const std::string cells = table.substr(row, table.find("</tr>", row) - row);
+  CHECK_THAT(cells, Contains("0.00160") && Contains("–"));
+}

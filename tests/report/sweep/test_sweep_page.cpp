@@ -58,7 +58,7 @@ TEST_CASE("every sweep's page says first who errs least, along which key it chan
   CHECK(has(meaning, "turning: 0.00008; straight: 0.00016"));
   CHECK(has(meaning, "as often as stated"));
   of.overall[0].groups[0].statistics.coverage = 0.9;  // 4.6 binomial standard errors of 400
-  CHECK(has(report::sweep_meaning(of), "less often: µ by phase-diagram (90 %)"));
+  CHECK(has(report::sweep_meaning(of), "less often: µ with phase-diagram (90 %)"));
   of.overall.clear();
   CHECK(report::sweep_meaning(of).empty());
 }
@@ -128,8 +128,8 @@ TEST_CASE("a stated sd that is far from the rms error is named with its factor, 
   lines.sd = lines.rms / 3.0;
   fit.sd = 2.5 * fit.rms;
   const std::string meaning = report::sweep_meaning(of);
-  CHECK(has(meaning, "more than 2 times smaller than the rms error: µ by phase-diagram (3 times)."));
-  CHECK(has(meaning, "And larger than the rms error: µ by trajectory (2.5 times)."));
+  CHECK(has(meaning, "more than 2 times smaller than the rms error: µ with phase-diagram (3 times)."));
+  CHECK(has(meaning, "And larger than the rms error: µ with trajectory (2.5 times)."));
   fit.sd = 1.9 * fit.rms;
   lines.runs = lines.answered = 6;  // of which the rms error is known to 29 % (one standard error)
   CHECK_FALSE(has(report::sweep_meaning(of), "Stated standard deviations"));

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kRateHz = 120.0;  // of scenarios/diagnosis/filmed.toml
+constexpr double kRateHz = 120.0;  // of scenarios/rehearsals/filmed.toml
 
 struct Kind {
   const char* name;
@@ -43,7 +43,7 @@ struct Filmed {
   diagnose::Diagnosis diagnosis;
 };
 
-/// scenarios/diagnosis/filmed.toml before such a camera, with these forces besides.
+/// scenarios/rehearsals/filmed.toml before such a camera, with these forces besides.
 Filmed film(const Kind& kind, const std::string& forces, std::uint64_t seed) {
   const tests::TempDir temp;
   std::string text = base::read_file(fs::path(tests::kSourceDir) / "scenarios" / "diagnosis" / "filmed.toml");

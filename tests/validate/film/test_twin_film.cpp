@@ -22,7 +22,7 @@ void replace(std::string& text, const std::string& what, const std::string& by) 
   text.replace(at, what.size(), by);
 }
 
-/// scenarios/diagnosis/filmed.toml with a section more, of which experiment.toml tells nothing.
+/// scenarios/rehearsals/filmed.toml with a section more, of which experiment.toml tells nothing.
 diagnose::Diagnosis film(const std::string& section, std::uint64_t seed) {
   const tests::TempDir temp;
   std::string text = base::read_file(fs::path(tests::kSourceDir) / "scenarios" / "diagnosis" / "filmed.toml");

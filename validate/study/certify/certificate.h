@@ -97,7 +97,7 @@ struct Images {
 /// The pattern's calibration error: another folder has a scale, and all twins are measured by that.
 struct Pattern {};
 
-/// The scatter from clip to clip: filming leaves as much.
+/// The scatter from clip to clip: errors of filming may explain it.
 struct ClipScatter {};
 
 /// The scatter of positions: something other than pixel noise makes that of the recording.

@@ -180,7 +180,7 @@ TEST_CASE("half the noise halves the errors of a track, and the certificate says
 
 TEST_CASE("changes of a filmed recording are filmed five times, and ten times only where that leaves them open") {
   RecordingTwin twin;
-  twin.scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/diagnosis/filmed.toml");
+  twin.scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/rehearsals/filmed.toml");
   twin.scenario.motion.configurations.resize(1);
   twin.scenario.pattern.views = 4;
   twin.filmed = true;

@@ -190,7 +190,7 @@ TEST_CASE("half the noise of a sensor leaves its codes as they are") {
 
 TEST_CASE("a filmed twin is the same with a calibration and a stage that were kept as with its own") {
   RecordingTwin twin;
-  twin.scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/diagnosis/filmed.toml");
+  twin.scenario = render::read_scenario(std::string(tests::kSourceDir) + "/scenarios/rehearsals/filmed.toml");
   twin.scenario.motion.configurations.resize(1);
   twin.scenario.motion.configurations.front().motions.resize(1);
   twin.scenario.motion.configurations.front().motions.front().duration_s = 0.2;
