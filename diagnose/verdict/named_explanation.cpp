@@ -176,4 +176,10 @@ const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, 
   return alone != nullptr && alone->fit > 0 ? alone : nullptr;
 }
 
+const Hypothesis& named_by(const Comparison& comparison, const CauseSequence& sequence, const Hypothesis& best) {
+  const std::vector<std::size_t>& effects = sequence.named.effects;
+  const Hypothesis* named = effects.empty() ? nullptr : find(comparison, {effects.begin(), effects.end()});
+  return named != nullptr ? *named : best;
+}
+
 }  // namespace glidelab::diagnose

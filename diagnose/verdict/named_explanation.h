@@ -41,4 +41,7 @@ const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comp
 const Hypothesis* without_the_lesser(const Comparison& comparison, bool filmed, const Hypothesis& best,
                                      const CauseSequence& sequence);
 
+/// The explanation by the causes that keep their name in a sequence; `best` if it was not weighed by itself.
+const Hypothesis& named_by(const Comparison& comparison, const CauseSequence& sequence, const Hypothesis& best);
+
 }  // namespace glidelab::diagnose

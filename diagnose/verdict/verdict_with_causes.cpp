@@ -216,7 +216,6 @@ class VerdictWithCauses {
   void choose_explanation();
   void choose_measure_of_gap();
   void put_causes_in_order();
-  const Hypothesis& named_alone() const;
   void size_causes();
   bool settle_probabilities();
   Diagnosis verdict_beside_remainder(ImageEvidence images) const;
@@ -337,19 +336,12 @@ bool VerdictWithCauses::viscous_leaves_less() const {
       .viscous_leaves_less();
 }
 
-/// The explanation by the causes that keep their name; `best_` if it was not weighed by itself.
-const Hypothesis& VerdictWithCauses::named_alone() const {
-  const std::vector<std::size_t>& effects = sequence_.named.effects;
-  const Hypothesis* named = effects.empty() ? nullptr : find(by(), {effects.begin(), effects.end()});
-  return named != nullptr ? *named : best_;
-}
-
 /// The probabilities by what the named causes take of the gap. Whether they still make a verdict beside a remainder.
 bool VerdictWithCauses::settle_probabilities() {
   if (!is_settled()) return false;
   Comparison& comparison = weighed_->comparison;
   hold_to_share(sequence_, best_.effects, by_air_, comparison);
-  if (!is_likelier_than_not(with(), comparison, named_alone())) {
+  if (!is_likelier_than_not(with(), comparison, named_by(comparison, sequence_, best_))) {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   if (open_size_) set_unknown(std::max(comparison.unknown, kOpenSize), comparison);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "diagnose/effects/effect_library.h"
@@ -127,4 +128,22 @@ TEST_CASE("of two causes of which one takes the part of both, the likelier by it
   CHECK(keeps() == std::vector{pattern});
   named.comparison.all[3].probability = 0.05;  // hardly likelier
   CHECK(keeps().empty());
+}
+
+TEST_CASE("a cause that alone keeps its name has to be likelier than not by itself") {
+  Named named;
+  named.add({"quadratic_drag", "perspective_error"}, true, 0.4);
+  named.add({"perspective_error"}, true, 0.3);
+  named.add({"quadratic_drag"}, true, 0.05);
+  named.comparison.all[1].gain = 30.0;  // it follows the motions less well than the drag: no equal
+  const diagnose::Hypothesis& best = named.comparison.all.front();
+  CHECK(diagnose::is_likelier_than_not(named.set, named.comparison, best));
+  diagnose::CauseSequence sequence;
+  const auto by = [&](std::vector<std::size_t> effects) -> const diagnose::Hypothesis& {
+    sequence.named.effects = std::move(effects);
+    return diagnose::named_by(named.comparison, sequence, best);
+  };
+  CHECK(by({kDrag}).effects == std::vector{kDrag});
+  CHECK_FALSE(diagnose::is_likelier_than_not(named.set, named.comparison, by({kDrag})));
+  CHECK(&by({}) == &best);
 }
