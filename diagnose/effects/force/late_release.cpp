@@ -17,7 +17,7 @@ EffectInfo late_release() {
       .stage = Stage::dynamics,
       .of_camera = false,
       .words = "a hand that still pushes at the start of the clips",
-      .name = "hand that lets go late",
+      .name = "late release",
       .meaning = "the hand pushes until t_r",
       .search = Search::pushes,
       .both_signs = true,

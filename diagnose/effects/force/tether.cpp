@@ -28,7 +28,7 @@ EffectInfo tether() {
       .stage = Stage::dynamics,
       .of_camera = false,
       .words = "a cable or spring that pulls back beyond some point",
-      .name = "cable that tightens",
+      .name = "tightening cable",
       .meaning = "a force −k (x − x_t) beyond x_t",
       .search = Search::shape,
       .both_signs = false,

@@ -30,7 +30,7 @@ TEST_CASE("the waterfall names the gap before, each cause with its share, and wh
   REQUIRE(plots.size() == 1);
   const std::string& script = plots.front().drawing.script;
   for (const char* name : {"'nominal model: 5.3 times the noise'", "'quadratic drag: 91 % (86 to 95 %)'",
-                           "'inertia without weight: 6 %'", "'remainder: 3 %, 1.35 times the noise'"}) {
+                           "'added inertia: 6 %'", "'remainder: 3 %, 1.35 times the noise'"}) {
     INFO(name);
     CHECK(script.find(name) != std::string::npos);
   }

@@ -31,7 +31,7 @@ TEST_CASE(
   std::size_t at = 0;
   for (const char* part :
        {"<b>Quadratic drag", "What explains the gap", "Waterfall of the gap", "K/m, µ, α and terminal velocity",
-        "with quadratic drag and inertia without weight in the model", "Where the rest lies", "random acceleration",
+        "with quadratic drag and added inertia in the model", "Where the rest lies", "random acceleration",
         "What to record next"}) {
     INFO(part);
     const std::size_t found = open.find(part, at);

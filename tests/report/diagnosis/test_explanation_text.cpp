@@ -15,8 +15,8 @@ TEST_CASE("an explanation has the id that files have had: effects joined by plus
 
 TEST_CASE("an explanation of several effects has the short name of each, with its id beside them") {
   const Explanation both{{"quadratic_drag", "tether"}, true};
-  CHECK(report::explanation_name(both) == "quadratic drag + cable that tightens + an unnamed cause");
-  CHECK(report::explanation_html({{"tether"}}) == "cable that tightens <small><code>tether</code></small>");
+  CHECK(report::explanation_name(both) == "quadratic drag + tightening cable + an unnamed cause");
+  CHECK(report::explanation_html({{"tether"}}) == "tightening cable <small><code>tether</code></small>");
   CHECK(report::explanation_html({{"<b>"}}) == "&lt;b&gt;");
 }
 

@@ -192,9 +192,9 @@ TEST_CASE("a tile says that its effect may act with others, and the chart prints
   of.ranking[0].probability = 0.99;
   of.ranking[1].explanation.effects = {"rolling_shutter", "tether"};
   of.ranking[1].probability = 0.008;
-  CHECK(has(report::diagnosis_report("tile", of).html, "0.998</b><span>cable that tightens, alone or with another"));
+  CHECK(has(report::diagnosis_report("tile", of).html, "0.998</b><span>tightening cable, alone or with another"));
   const report::Plot chart = report::verdict_plots(of).front();
-  CHECK(has(chart.drawing.script, "cable that tightens: 0.990"));
+  CHECK(has(chart.drawing.script, "tightening cable: 0.990"));
   CHECK(has(chart.caption, "nothing else"));
   of.ranking.pop_back();
   CHECK_FALSE(has(report::diagnosis_report("tile", of).html, "alone or with another"));

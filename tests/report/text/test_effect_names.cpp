@@ -45,10 +45,10 @@ TEST_CASE("every effect with a size says what the letters of its size mean, on t
 }
 
 TEST_CASE("effects that act together are named together, and a cause without a name keeps its words") {
-  CHECK(report::effect_name("tether") == "cable that tightens");
+  CHECK(report::effect_name("tether") == "tightening cable");
   CHECK(report::effect_name("unknown: friction of each mass") == "unknown: friction of each mass");
   CHECK(report::effect_name("") == "");
-  CHECK(report::effect_html("tether") == "cable that tightens <small><code>tether</code></small>");
+  CHECK(report::effect_html("tether") == "tightening cable <small><code>tether</code></small>");
   CHECK(report::effect_html("<b>") == "&lt;b&gt;");
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("the page of a diagnosis tells an effect by its name, and its id besid
   const auto has = [&](const char* part) { return page.find(part) != std::string::npos; };
   CHECK(has("<b>0.900</b><span>load-independent friction, alone or with another</span>"));
   CHECK(has("load-independent friction <small><code>load_independent_friction</code></small>"));
-  CHECK(has("load-independent friction + cable that tightens"));
+  CHECK(has("load-independent friction + tightening cable"));
   // Both print alike; by how much the second is behind, and nothing at all, is told beside.
   CHECK(has("+1.235·10⁸</td><td class=\"n\">+0.0<"));
   CHECK(has("+1.235·10⁸</td><td class=\"n\">−5.8<"));

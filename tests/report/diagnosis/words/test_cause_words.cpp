@@ -34,11 +34,11 @@ TEST_CASE("the answer says how much each cause explains, with its size, and what
   // The gap that is left: g² = 1 + 0.03 (5.3² - 1) = 1.8127, g = 1.346.
   const std::string answer =
       "Quadratic drag, c = 0.00310 ± 0.00020 kg/m, explains 91 % (86 to 95 %) of the gap on clips that were held out; "
-      "inertia without weight, mass = 0.0123 ± 0.0014 kg, explains another 6 % (2 to 10 %); 3 % remains, 1.35 times "
+      "added inertia, mass = 0.0123 ± 0.0014 kg, explains another 6 % (2 to 10 %); 3 % remains, 1.35 times "
       "the noise.";
   CHECK(report::sequence_words(of) == answer);
   const std::string words = report::verdict_words(of);
-  CHECK(words.starts_with(answer + " Probability: quadratic drag 97 %, inertia without weight 81 %."));
+  CHECK(words.starts_with(answer + " Probability: quadratic drag 97 %, added inertia 81 %."));
   CHECK(says(words, "Held-out clips lie 5.30 times as far from the nominal model"));
   CHECK_FALSE(says(words, "with these effects in the model"));  // what is left is told once
   CHECK(says(report::diagnosis_meaning(of), "<p><b>Quadratic drag"));
@@ -52,7 +52,7 @@ TEST_CASE("beside a cause that takes all but a trifle, another is told by what i
   of.explained[1].share_interval95 = diagnose::GapInterval{-1e-4, 4e-4};
   of.explained[1].gap_after = 15.6;
   CHECK(says(report::sequence_words(of),
-             "; inertia without weight, mass = 0.0123 ± 0.0014 kg, reduces what is left from 19.3 to 15.6 times the "
+             "; added inertia, mass = 0.0123 ± 0.0014 kg, reduces what is left from 19.3 to 15.6 times the "
              "noise; "));
   CHECK(report::share_text(3e-4, of.explained[1].share_interval95) == "less than 0.1 %");
   of.explained[1].gap_after = 20.0;  // not less
@@ -111,8 +111,8 @@ TEST_CASE("the verb follows the name of the cause: several frame times explain, 
   };
   CHECK(begins("timestamp_jitter", "Uneven frame times explain 91 %"));
   CHECK(begins("heavy_tailed_noise", "Outliers explain 91 %"));
-  CHECK(begins("rotational_inertia", "Inertia without weight, mass = 0.0123 ± 0.0014 kg, explains 91 %"));
-  CHECK(begins("late_release", "Hand that lets go late explains 91 %"));
+  CHECK(begins("rotational_inertia", "Added inertia, mass = 0.0123 ± 0.0014 kg, explains 91 %"));
+  CHECK(begins("late_release", "Late release explains 91 %"));
   CHECK(begins("damping_gradient", "Drag that varies along x explains 91 %"));
   CHECK(begins("stribeck", "More friction at low speed explains 91 %"));
   CHECK(begins("smoothing_bias", "Smoothing bias explains 91 %"));
@@ -125,7 +125,7 @@ TEST_CASE("causes that look alike, and effects that have no share, are told behi
   of.explained.pop_back();
   CHECK(report::sureness_words(of) ==
         "These data cannot tell quadratic drag (68 %), power-law drag (30 %) and magnetic drag that falls off apart; "
-        "one of them acts with a probability of 98 %. Also likely: inertia without weight 81 %. Inertia without weight "
+        "one of them acts with a probability of 98 %. Also likely: added inertia 81 %. Added inertia "
         "contributes nothing to this gap.");
 }
 
@@ -245,7 +245,7 @@ TEST_CASE("recovered quantities stand under the causes that are in their model, 
   diagnose::Diagnosis of = tests::two_causes();
   auto tables = report::recovered_tables(of);
   REQUIRE(tables.size() == 1);
-  CHECK(report::with_words(tables[0].with) == "with quadratic drag and inertia without weight in the model");
+  CHECK(report::with_words(tables[0].with) == "with quadratic drag and added inertia in the model");
   REQUIRE(tables[0].rows.size() == 3);
   CHECK(tables[0].rows[1][0] == "0.335 kg, 4°");
   CHECK(tables[0].rows[1][1] == "2.7463 ± 0.0060");  // 0.92/0.335
