@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, frozen
-from ._brief import Brief
 from ._checks import optional_real, switch, text, texts
 from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_gravity, given_tracks, job_count, refuse,
                       refuse_of_arrays, source_of, stated_incline, teller)
 from ._recovered import QUANTITIES, WithEffects, with_effects_of
-from ._results import Made, Quantity, Result, frame_of, html_plot, html_table, new_axes, quantity_of
+from ._results import Made, Quantity, Result, frame_of, quantity_of
+from ._shown import Brief, html_plot, html_table, new_axes
 
 DEFAULT_ESTIMATOR = _glidelab.estimator_names()[0]
 

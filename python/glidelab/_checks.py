@@ -14,6 +14,12 @@ from ._errors import input_error, input_errors
 _LONGEST = 60  # characters of a value in a message
 
 
+def kind_of(value: object) -> str:
+    """"an int", "a list": what a value is."""
+    name = type(value).__name__
+    return f"{'an' if name[:1].lower() in tuple('aeiou') else 'a'} {name}"
+
+
 def shown(value: object) -> str:
     """A value in a message: itself where it is short, else what it is."""
     if isinstance(value, np.ma.MaskedArray) and value.ndim == 0:
@@ -24,7 +30,7 @@ def shown(value: object) -> str:
         text = repr(value.item() if isinstance(value, np.generic) else value)
         if len(text) <= _LONGEST:
             return text
-    return f"a {type(value).__name__}"
+    return kind_of(value)
 
 
 def real(key: str, value: Any, expected: str = "a number", file: str = "") -> float:
@@ -80,11 +86,19 @@ def pair(key: str, values: Any, expected: str = "two numbers") -> tuple[float, f
     return numbers[0], numbers[1]
 
 
+def _in_utf8(key: str, value: str, file: str = "") -> str:
+    try:
+        value.encode()
+    except UnicodeEncodeError:  # half of a surrogate pair; also a byte of a file's name that is no UTF-8
+        raise input_error(key, ascii(value), "characters of Unicode, which UTF-8 has", file) from None
+    return value
+
+
 def text(key: str, value: Any, expected: str = "text", file: str = "") -> str:
-    """A str."""
+    """A str that C++ can be given."""
     if not isinstance(value, str):
         raise input_error(key, shown(value), expected, file)
-    return value
+    return _in_utf8(key, value, file)
 
 
 def texts(key: str, values: Any, expected: str) -> list[str]:
@@ -105,7 +119,7 @@ def file_name(key: str, value: Any, expected: str = "the name of a file") -> str
     """The name of a file or a folder, as text."""
     if not isinstance(value, (str, os.PathLike)):
         raise input_error(key, shown(value), expected)
-    return str(os.fspath(value))
+    return _in_utf8(key, str(os.fspath(value)))
 
 
 def refuse_masked(name: str, values: Any, of: str = "") -> None:

@@ -11,14 +11,14 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._arrays import Vector, frozen
-from ._brief import Brief
 from ._checks import real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
                       given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, source_of,
                       stated_incline, teller)
 from ._recovered import Recovered, recovered_of
-from ._results import BY_ROW, Made, Result, frame_of, html_plot, html_table, new_axes
+from ._results import BY_ROW, Made, Result, frame_of
+from ._shown import Brief, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,19 @@ class Effect:
 
 @dataclass(frozen=True)
 class Cause:
-    """One cause in the sequence that explains the gap: its share, and the gap of held-out clips after it."""
+    """One cause in the sequence that explains the gap.
+
+    Attributes
+    ----------
+    id : str
+        As docs/reference/effects.md lists it.
+    share : float or None
+        The part of the gap that it explains, 0 to 1.
+    share_interval95 : (float, float) or None
+        Its 95 % interval.
+    gap_after : float or None
+        The gap of held-out clips with this cause and those before it in the model.
+    """
 
     id: str
     share: Optional[float]
@@ -310,7 +322,27 @@ class Plan(Result):
     def _repr_html_(self) -> str:
         rows = [[one.id, one.parameter, "" if one.seen_from is None else f"{one.seen_from:.3g}", ", ".join(one.alike)]
                 for one in self.effects if one.seen]
-        return html_table(["effect", "parameter", "smallest size that shows", "looks like"], rows)
+        return html_table(["effect", "parameter", "smallest size that shows", "looks like"], rows) + html_plot(self.plot)
+
+    def plot(self, ax: Any = None) -> Any:
+        """How alike the effects that would show are: the cosine between what they do to the motions, 1 where no size
+        tells them apart.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            `ax`, or new ones; an effect a row and a column.
+        """
+        ax = new_axes(1)[0] if ax is None else ax
+        alike = self.to_dict()["isolability"]
+        names = [name.replace("_", " ") for name in alike["effects"]]
+        ax.set_title("cosine between effects", fontsize=8)
+        if names:
+            shown_as = ax.imshow(alike["cosine"], vmin=0.0, vmax=1.0, cmap="Blues")
+            ax.figure.colorbar(shown_as, ax=ax)
+        ax.set_xticks(range(len(names)), names, rotation=90, fontsize=6)
+        ax.set_yticks(range(len(names)), names, fontsize=6)
+        return ax
 
 
 def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[float] = None,

@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
-import html
+import importlib
 import math
 import signal
 import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
 
 from . import _glidelab
-from ._brief import Brief
 from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._checks import real, whole
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
 from ._recovered import QUANTITIES
-from ._results import NORMAL95, Quantity, frame_of, html_table, plain, rounded, words_of
+from ._results import NORMAL95, Quantity
+from ._studies import Judged, Judgement
 
-Found = Union[float, Sequence[float], Mapping[str, Any], Quantity, None]
-Estimator = Callable[[list[Track]], Mapping[str, Found]]
+Estimator = Callable[[list[Track]], Mapping[str, object]]  # what it may answer, `estimator` says
 _Function = TypeVar("_Function", bound=Estimator)
 
 _registered: dict[str, Estimator] = {}
@@ -61,119 +60,6 @@ def estimator(function: _Function) -> _Function:
         raise input_error("estimator", f"the name \"{name}\"", "one that is not a built-in estimator's")
     _registered[name] = function
     return function
-
-
-@dataclass(frozen=True)
-class Judged:
-    """The errors of one estimator in one quantity of one configuration.
-
-    Attributes
-    ----------
-    configuration, estimator, quantity : str
-        Of what, by what.
-    truth : float
-        What the scenario put in.
-    answered, failed : int
-        Replicates with a value, and those in which the estimator failed: it raised something, gave no answer as
-        `estimator` describes it, or took too long.
-    bias, sd, rms_error : float or None
-        Mean error, standard deviation and root mean square of the errors; None without an answer. Also called `rms`.
-    stated : int
-        Answers with an interval.
-    coverage : float or None
-        The share of these whose 95 % interval contains the true value. Also called `covered`.
-    """
-
-    configuration: str
-    estimator: str
-    quantity: str
-    truth: float
-    answered: int
-    failed: int
-    bias: Optional[float]
-    sd: Optional[float]
-    rms: Optional[float]
-    stated: int
-    covered: Optional[float]
-
-    @property
-    def rms_error(self) -> Optional[float]:
-        """Root mean square of the errors."""
-        return self.rms
-
-    @property
-    def coverage(self) -> Optional[float]:
-        """The share of stated 95 % intervals that contain the true value."""
-        return self.covered
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Judgement(Brief):
-    """How estimators did on the same motions.
-
-    Attributes
-    ----------
-    replicates : int
-        How many experiments were made.
-    rows : tuple of Judged
-        Every quantity with a truth, of every configuration, by every estimator.
-    seconds : dict of str to float
-        Mean time that an estimator took for an experiment.
-    failures : dict of str to str
-        How an estimator failed first.
-    """
-
-    replicates: int
-    rows: tuple[Judged, ...]
-    seconds: Mapping[str, float]
-    failures: Mapping[str, str]
-
-    def failed(self, estimator_name: str) -> int:
-        """Replicates in which an estimator failed."""
-        return max((row.failed for row in self.rows if row.estimator == estimator_name), default=0)
-
-    def of(self, estimator_name: str, quantity: str) -> tuple[Judged, ...]:
-        """The rows of one estimator and one quantity, one per configuration."""
-        return tuple(row for row in self.rows if row.estimator == estimator_name and row.quantity == quantity)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
-        data: dict[str, Any] = plain(self)
-        return data
-
-    def to_frame(self) -> Any:
-        """A pandas.DataFrame, one row per quantity."""
-        return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
-            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered",
-            "rms_error", "coverage")}, ("truth", "bias", "sd", "rms", "rms_error"))
-
-    def _table(self) -> list[list[str]]:
-        def text(value: Optional[float]) -> str:
-            return "" if value is None else f"{value:.3g}"
-        return [[row.configuration, words_of(row.quantity), row.estimator, rounded(row.truth, None),
-                 f"{row.answered} of {self.replicates}" + (f", {row.failed} failed" if row.failed else ""),
-                 text(row.bias), text(row.rms),
-                 "" if row.covered is None else f"{100.0 * row.covered:.0f} %"] for row in self.rows]
-
-    def __str__(self) -> str:
-        rows = [list(_HEADER), *self._table()]
-        widths = [max(len(row[i]) for row in rows) for i in range(len(_HEADER))]
-        lines = self._failures()
-        lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
-        lines += [f"{name}: {1e3 * seconds:.2f} ms an experiment" for name, seconds in self.seconds.items()]
-        return "\n".join(lines) + "\n"
-
-    def _failures(self) -> list[str]:
-        """A line for each estimator that failed: what is below is not about these replicates."""
-        return [f"{name} failed in {self.failed(name)} of {self.replicates} replicates, first with: {what}"
-                for name, what in self.failures.items()]
-
-    def _repr_html_(self) -> str:
-        failed = "".join(f"<p><b>{html.escape(line)}</b></p>" for line in self._failures())
-        return failed + html_table(list(_HEADER), self._table())
-
-
-_HEADER = ("configuration", "quantity", "estimator", "truth", "answers", "mean error", "rms error", "95 % hold")
 
 
 class _Tally:
@@ -313,7 +199,7 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - begin), 1e-6), interval)
 
 
-def _said_by(error: Exception) -> str:
+def _said_by(error: BaseException) -> str:
     """Kind, text and place of an exception; no text where it cannot be had."""
     try:
         text = f"{type(error).__name__}: {error}"
@@ -340,8 +226,18 @@ def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]],
         return str(wrong)
     except _TooLong:
         return f"not done after {seconds:g} s"
-    except Exception as error:  # pylint: disable=broad-exception-caught  # whatever an estimator raises is its failure
+    except (KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as error:  # pylint: disable=broad-exception-caught  # whatever else it raises is its failure
         return _said_by(error)
+
+
+def _import_first() -> None:
+    """Imports what results need later: a call that is ended in the middle of its own first import of the same package
+    leaves this half done."""
+    for name in ("pandas", "matplotlib.pyplot"):
+        with suppress(ImportError):
+            importlib.import_module(name)
 
 
 def _built_in(name: str, tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float,
@@ -421,6 +317,8 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         named[name] = one
     replicates = whole("replicates", replicates, 2)
     _checked_seconds(seconds)
+    if seconds is not None:
+        _import_first()
     maker = _glidelab.TrackMaker(given_scenario(scenario), real("noise_m", noise_m, "a number of metres above 0"))
     first = checked_seed(seed)
     first = maker.seed if first is None else first

@@ -14,7 +14,15 @@ _MOST_MEGABYTES = 1e9  # as of the command's --estimator-megabytes: no computer 
 
 @dataclass(frozen=True)
 class OutsideFailures:
-    """Runs that failed in one way: how many, and what was said of the first."""
+    """Runs that failed in one way.
+
+    Attributes
+    ----------
+    count : int
+        How many.
+    first : str
+        What was said of the first.
+    """
 
     count: int
     first: str
@@ -67,5 +75,8 @@ def given_command(command: Optional[str], name: str, seconds: float,
         if name:
             raise input_error("estimator_name", repr(name), "estimator_command= as well")
         return None
+    if callable(command):
+        raise input_error("estimator_command", "a function", "a command, which runs in a process of its own, such as "
+                          "\"python3 mine.py {folder} {out}\"; glidelab.judge() takes a function")
     text("estimator_command", command, "a string such as \"python3 mine.py {folder} {out}\"")
     return _glidelab.EstimatorCommand(command, name, float(seconds), float(megabytes))

@@ -12,7 +12,8 @@ from ._checks import file_name, text, texts, whole
 from ._errors import input_error
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller
 from ._outside import OutsideRuns, given_command, outside_runs
-from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, unit_of, words_of
+from ._results import Made, Result, frame_of, unit_of, words_of
+from ._shown import html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,9 @@
 """judge(): an estimator of the user's own beside the built-in ones."""
 
+import asyncio
 import signal
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -8,7 +11,7 @@ import unittest
 import numpy as np
 
 import glidelab
-from tests.python.support import SOURCE
+from tests.python.support import SOURCE, needs
 
 SCENARIO = SOURCE / "scenarios" / "paper" / "inclined.toml"
 
@@ -89,6 +92,15 @@ class Judging(unittest.TestCase):
         self.assertIn("own failed in 2 of 2 replicates, first with: Own: of my own", str(judged).splitlines()[2])
         self.assertIn("0 of 2, 2 failed", str(judged))
         self.assertIn("own failed in 2 of 2 replicates", judged._repr_html_())
+
+    def test_an_estimator_of_coroutines_that_is_cancelled_has_failed(self):
+        for raised in (asyncio.CancelledError, GeneratorExit):
+            def cancelled(tracks, error=raised):
+                raise error
+
+            judged = glidelab.judge(SCENARIO, cancelled, noise_m=2e-5, replicates=2)
+            self.assertEqual({row.failed for row in judged.rows}, {2})
+            self.assertTrue(judged.failures["cancelled"].startswith(raised.__name__))
 
     def test_who_wants_to_stop_is_not_held(self):
         for wanted in (KeyboardInterrupt, SystemExit):
@@ -195,6 +207,14 @@ class Judging(unittest.TestCase):
 
 
 class Patience(unittest.TestCase):
+    @needs("pandas")
+    @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
+    def test_what_tables_need_is_imported_before_a_call_that_may_be_ended_within_its_import(self):
+        code = (f"import glidelab, sys\ndef mine(tracks):\n    print('pandas' in sys.modules)\n    return {{}}\n"
+                f"glidelab.judge({str(SCENARIO)!r}, mine, noise_m=2e-5, replicates=2, seconds=60.0)")
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        self.assertEqual(set(done.stdout.split()), {"True"})
+
     @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
     def test_a_call_that_takes_too_long_is_ended_and_counted(self):
         def endless(tracks):

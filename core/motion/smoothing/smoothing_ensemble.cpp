@@ -1,11 +1,14 @@
 #include "core/motion/smoothing/smoothing_ensemble.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "base/errors.h"
 #include "base/math/distributions.h"
 
 namespace glidelab::core {
@@ -72,8 +75,17 @@ double standard_deviation(const SmoothingEnsemble& ensemble, std::size_t p, std:
     return std::log(sum / 0.05);
   };
   if (!(high > low * (1.0 + 1e-6))) return low / base::kNormal95;
+  const double from = 0.999 * low, to = 1.001 * high;
+  const double at_from = outside(from), at_to = outside(to);
+  if (!(at_from >= 0.0 && at_to <= 0.0)) {
+    throw base::NumericalError(
+        fmt::format("the smoother's standard deviation at t = {:g} s cannot be computed: too wide a range of numbers "
+                    "(a gap of many "
+                    "times the smoothing time, or very large positions); smooth the parts of the motion one by one",
+                    ensemble.nodes[p][k].t_s));
+  }
   std::uintmax_t most = 30;
-  const auto found = boost::math::tools::toms748_solve(outside, 0.999 * low, 1.001 * high,
+  const auto found = boost::math::tools::toms748_solve(outside, from, to, at_from, at_to,
                                                        boost::math::tools::eps_tolerance<double>(10), most);
   return 0.5 * (found.first + found.second) / base::kNormal95;
 }
