@@ -7,11 +7,9 @@ import math
 import signal
 import threading
 import time
-import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
@@ -21,11 +19,11 @@ from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._checks import real, whole
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
+from ._outside import Estimator, WrongAnswer, checked_answer, said_by
 from ._recovered import QUANTITIES
-from ._results import NORMAL95, Quantity
+from ._results import Quantity
 from ._studies import Judged, Judgement
 
-Estimator = Callable[[list[Track]], Mapping[str, object]]  # what it may answer, `estimator` says
 _Function = TypeVar("_Function", bound=Estimator)
 
 _registered: dict[str, Estimator] = {}
@@ -81,84 +79,8 @@ class _Tally:
             self.held += quantity.interval95[0] <= truth <= quantity.interval95[1]
 
 
-class _Wrong(Exception):
-    """An answer that is none, in words."""
-
-
 class _TooLong(BaseException):
     """The time of a call is over. No Exception: an estimator that catches all of these does not catch this one."""
-
-
-def _number(said: Any, key: str) -> float:
-    """A finite number, NaN or an infinity; _Wrong if it is not a number; a string of digits is not one."""
-    if not isinstance(said, (str, bytes, bool)):
-        try:
-            return float(said)
-        except (TypeError, ValueError, OverflowError):
-            pass
-    raise _Wrong(f"{key}: found {said!r:.60}, expected a number, a pair of number and standard deviation, or None")
-
-
-def _sd(said: Any, key: str) -> float:
-    sd = _number(said, key)
-    if not (math.isfinite(sd) and sd >= 0.0):
-        raise _Wrong(f"{key}: found the standard deviation {sd:g}, expected a finite one of 0 or more")
-    return sd
-
-
-def _ends(stated: Any, key: str) -> tuple[float, float]:
-    try:
-        low, high = stated
-    except (TypeError, ValueError):
-        raise _Wrong(f"{key}: found the interval {stated!r:.60}, expected two numbers") from None
-    return _number(low, key), _number(high, key)
-
-
-def _quantity(found: Any, key: str) -> Quantity:
-    """An estimator's answer, checked; _Wrong if it is not a valid answer."""
-    if found is None or (isinstance(found, Quantity) and found.value is None):
-        return Quantity()
-    value: Any
-    sd: Any
-    stated: Any = None
-    if isinstance(found, Quantity):
-        value, sd, stated = found.value, found.sd, found.interval95
-    elif isinstance(found, Mapping):
-        if "value" not in found:
-            raise _Wrong(f"{key}: found {found!r:.60}, expected the key \"value\" in a dict")
-        value, sd, stated = found["value"], found.get("sd"), found.get("interval95")
-    elif isinstance(found, (tuple, list)) or (isinstance(found, np.ndarray) and found.shape == (2,)):
-        if len(found) != 2:
-            raise _Wrong(f"{key}: found {len(found)} numbers, expected a number, or a number and its standard deviation")
-        value, sd = found
-    else:
-        value, sd = found, None
-    value = _number(value, key)
-    answer = Quantity(value, None if sd is None else _sd(sd, key))
-    if math.isinf(value):
-        raise _Wrong(f"{key}: found {value:g}, expected a finite number, or None where it is not determined")
-    if math.isnan(value):
-        return Quantity(why="not a number")
-    if stated is not None:
-        low, high = _ends(stated, key)
-        if not low <= value <= high:
-            raise _Wrong(f"{key}: found an interval from {low:g} to {high:g}, expected one with the value in it")
-        return replace(answer, interval95=(low, high))
-    if answer.sd is None:
-        return answer
-    return replace(answer, interval95=(value - NORMAL95 * answer.sd, value + NORMAL95 * answer.sd))
-
-
-def _checked(found: Any) -> dict[str, Quantity]:
-    """The answer of a user's estimator for one configuration, checked; _Wrong if it is not a valid answer."""
-    if not isinstance(found, Mapping):
-        raise _Wrong(f"the answer: found {found!r:.60}, expected a dict of quantities")
-    if not all(key in found for key in QUANTITIES):  # then a key that is none may be a misspelt one
-        for key in found:
-            if key not in QUANTITIES:
-                raise _Wrong(f"found the quantity {key!r:.60}, expected one of {', '.join(QUANTITIES)}; further keys only "
-                             "beside all four" + _glidelab.did_you_mean(str(key), list(QUANTITIES)))
-    return {key: _quantity(found.get(key), key) for key in QUANTITIES}
 
 
 _MOST_SECONDS = 1e9  # thirty years; more than a timer of the system may take
@@ -199,16 +121,6 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - begin), 1e-6), interval)
 
 
-def _said_by(error: BaseException) -> str:
-    """Kind, text and place of an exception; no text where it cannot be had."""
-    try:
-        text = f"{type(error).__name__}: {error}"
-    except Exception:  # pylint: disable=broad-exception-caught  # __str__ is the estimator's own, too
-        text = type(error).__name__
-    last = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{text} ({Path(last.filename).name}, line {last.lineno})"
-
-
 def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float, jobs: int,
               seconds: Optional[float]) -> Union[dict[str, dict[str, Quantity]], str]:
     """What an estimator says of each configuration of an experiment, or how it failed. Its positions are its own."""
@@ -220,16 +132,16 @@ def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]],
         for configuration, of in tracks.items():
             with _at_most(seconds):
                 found = one([replace(track, t_s=np.array(track.t_s), x_m=np.array(track.x_m)) for track in of])
-            results[configuration] = _checked(found)
+            results[configuration] = checked_answer(found)
         return results
-    except _Wrong as wrong:
+    except WrongAnswer as wrong:
         return str(wrong)
     except _TooLong:
         return f"not done after {seconds:g} s"
     except (KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # pylint: disable=broad-exception-caught  # whatever else it raises is its failure
-        return _said_by(error)
+        return said_by(error)
 
 
 def _import_first() -> None:

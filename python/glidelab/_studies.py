@@ -7,12 +7,12 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, SupportsFloat
+from typing import Any, Optional, SupportsFloat, Union
 
 from . import _glidelab
 from ._checks import above_0, optional_real, reals, whole
 from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller
-from ._outside import OutsideRuns, given_command, outside_runs
+from ._outside import Estimator, OutsideRuns, given_command, outside_runs
 from ._results import NORMAL95, Made, Result, Written, frame_of, rounded, unit_of, words_of
 from ._shown import html_plot, html_table, new_axes
 
@@ -108,7 +108,7 @@ class Validation(Result):
                           rows) + html_plot(self.plot)
 
 
-def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, estimator_name: str = "",
+def validate(scenario: Scenario, *, estimator_command: Union[str, Estimator, None] = None, estimator_name: str = "",
              estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
              seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Validation:
     """Films a scenario, analyses the images, and compares the results with the truth.
@@ -117,13 +117,16 @@ def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, est
     ----------
     scenario : str, path or dict
         A scenario file (docs/reference/scenario.md), or what `load_scenario` makes of one.
-    estimator_command : str, optional
+    estimator_command : str or callable, optional
         Also judge an estimator of your own: a program that reads the experiment folder ``{folder}`` and writes
-        ``{out}/results.json``, such as ``"python3 mine.py {folder} {out}"`` (docs/reference/own-estimator.md).
+        ``{out}/results.json``, such as ``"python3 mine.py {folder} {out}"`` (docs/reference/own-estimator.md); or a
+        function as `estimator` describes it, which states a standard deviation with each value. A function is called in
+        this process, for one run at a time.
     estimator_name : str
-        Its name in results; the name of its file.
+        Its name in results; the name of its file, or the function's.
     estimator_seconds, estimator_megabytes : float
-        The longest time that a run of it may take, and the memory of each of its processes.
+        The longest time that a run of it may take, and the memory of each of its processes. A function's call that takes
+        longer counts as a failure and is not ended, and its memory is not bounded.
     seed : int, optional
         Of the camera's noise; the scenario's.
     jobs, progress
@@ -144,9 +147,9 @@ def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, est
     -----
     docs/guide/trust.md; the least standard deviation is the Cramér-Rao bound (Rao 1945) of these frames and this noise.
     """
-    command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
-    outcome, analysis = _glidelab.validate(given_scenario(scenario), command, checked_seed(seed), job_count(jobs),
-                                           teller(progress))
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
+        outcome, analysis = _glidelab.validate(given_scenario(scenario), command, checked_seed(seed), job_count(jobs),
+                                               teller(progress))
     made = Made(outcome)
     found = Result(made).to_dict()
     names = ("truth", "value", "sd", "error", "cramer_rao_sd")
@@ -263,7 +266,7 @@ class Coverage(Result):
 
 def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates: int = 1000,
              levels: Sequence[float] = (), bandwidth_s: Optional[SupportsFloat] = None,
-             estimator_command: Optional[str] = None, estimator_name: str = "",
+             estimator_command: Union[str, Estimator, None] = None, estimator_name: str = "",
              estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
              seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Coverage:
     """Analyses many replicates of a scenario's motions, and counts how often the intervals contain the true value.
@@ -299,12 +302,12 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
     -----
     docs/evidence/coverage.md. Intervals of a count are those of Clopper and Pearson (1934).
     """
-    command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
     bandwidth = None if bandwidth_s is None else above_0("bandwidth_s", bandwidth_s, "seconds, above 0")
     noise = optional_real("noise_m", noise_m, "a number of metres, or None")
-    made = Made(_glidelab.coverage(given_scenario(scenario), noise, whole("replicates", replicates, 1, 1000000),
-                                   reals("levels", levels, "a list of levels above 0 and below 1"), bandwidth,
-                                   command, checked_seed(seed), job_count(jobs), teller(progress)))
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
+        made = Made(_glidelab.coverage(given_scenario(scenario), noise, whole("replicates", replicates, 1, 1000000),
+                                       reals("levels", levels, "a list of levels above 0 and below 1"), bandwidth,
+                                       command, checked_seed(seed), job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     rows = []
     for one in found["quantities"]:

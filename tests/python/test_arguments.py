@@ -87,7 +87,6 @@ class WrongInput(InFolder):
                 ("confirm", "1", lambda: glidelab.require("none.toml", ["mu=1"], confirm=1)),
                 ("file", "3", lambda: glidelab.sweep(3, self.folder)),
                 ("source", "an int", lambda: glidelab.check(3)),
-                ("estimator_command", "a function", lambda: glidelab.validate(SCENARIO, estimator_command=lambda tracks: {})),
                 ("name", "'a\\udcff'", lambda: analyze(t, x, name="a\udcff")),
                 ("name", "'a\\udcff'", lambda: analyze(track(t, x, name="a\udcff"))),
                 ("source", "'a\\udcff'", lambda: analyze("a\udcff")),
