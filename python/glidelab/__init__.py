@@ -16,7 +16,7 @@ import numpy as _numpy
 
 from . import _glidelab
 from ._analysis import Analysis, Clip, Configuration, Line, Motion, analyze
-from ._arrays import refuse_numpy as _refuse_numpy
+from ._checks import refuse_numpy as _refuse_numpy
 from ._blind import Blind, BlindCase, BlindTarget, blind
 from ._camera import Camera, Marker, calibrate, fit_marker
 from ._certificate import Certificate, CertifiedExplanation, CertifiedQuantity, ChangedTwin, certify
@@ -30,6 +30,7 @@ from ._recording import Finding, RecordingCheck, check
 from ._recovered import Recovered, WithEffects
 from ._results import Quantity, Result
 from ._simulation import ModeChange, SimulatedClip, Simulation, simulate
+from ._sources import Film
 from ._smoothing import (Bandwidth, BandwidthRule, Smoothed, Strength, bandwidth_rules, choose_bandwidth,
                          position_noise, smooth)
 from ._studies import Coverage, CoverageRow, Judged, Judgement, Recovery, Validation, coverage, validate
@@ -68,7 +69,7 @@ def explain(result: _Union[Result, Judgement, Smoothed, Bandwidth]) -> Explanati
 __all__ = [
     "Analysis", "Bandwidth", "BandwidthRule", "Blind", "BlindCase", "BlindTarget", "Camera", "Candidate", "Cause",
     "Certificate", "CertifiedExplanation", "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage",
-    "CoverageRow", "Diagnosis", "Effect", "Error", "Explanation", "FilmedClip", "Finding", "Frame", "InputError",
+    "CoverageRow", "Diagnosis", "Effect", "Error", "Explanation", "Film", "FilmedClip", "Finding", "Frame", "InputError",
     "Issue", "Judged", "Judgement", "Line", "Marker", "ModeChange", "Motion", "NotMet", "NumericalError",
     "OutsideFailures", "OutsideRuns", "Plan", "PlannedEffect", "Quantity", "RecordingCheck", "Recovered",
     "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip", "Simulation", "Smoothed",

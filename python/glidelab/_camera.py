@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _glidelab
-from ._arrays import Vector, frozen
-from ._checks import above_0, file_name, pair, real, refuse_masked, shown, switch, whole
+from ._checks import Vector, above_0, file_name, frozen, pair, real, refuse_masked, shown, switch, whole
 from ._errors import input_error
 from ._inputs import PathLike, Progress, is_path, job_count, teller
 from ._shown import Brief

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR
 from ._checks import above_0, text, whole
-from ._inputs import (PathLike, Progress, Runs, Track, checked_seed, file_options, job_count, readable_source,
+from ._inputs import (PathLike, Progress, Runs, Track, checked_seed, file_options, job_count,
                       teller)
 from ._results import Made, Result, frame_of
 from ._shown import html_table
+from ._sources import Film, readable_source
 
 
 @dataclass(frozen=True)
@@ -181,7 +182,7 @@ def _change(found: Mapping[str, Any]) -> ChangedTwin:
                        _pair(fall.get("interval95")), found["stands_out"])
 
 
-def certify(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
+def certify(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Sequence[Film], Sequence[PathLike]],
             x_m: Optional[ArrayLike] = None, *, twins: int = 40, estimator: str = DEFAULT_ESTIMATOR,
             bandwidth_s: Optional[SupportsFloat] = None, seed: Optional[int] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
@@ -192,9 +193,9 @@ def certify(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
 
     Parameters
     ----------
-    source : array_like, Track, str or path, or a sequence of Tracks or of names
-        ``certify(t_s, x_m)``, as in `analyze`; a `Track` or several, each with its mass and how it was launched;
-        experiment folders that share the glider and the track, or files with a track.
+    source : array_like, Track, Film, str or path, or a sequence of tracks, of films or of names
+        ``certify(t_s, x_m)``, as in `analyze`; a `Track` or several, each with its mass and how it was launched; a
+        `Film` or several; experiment folders that share the glider and the track, or files with a track.
     x_m : array_like, shape (n,), optional
         With times as `source`: positions in metres, positive downhill.
     twins : int

@@ -10,15 +10,14 @@ from typing import Any, Optional, Union
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import Vector, frozen
-from ._checks import real, shown, text, texts
+from ._checks import Vector, frozen, real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
-                      given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, source_of,
-                      stated_incline, teller)
+                      given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, stated_incline, teller)
 from ._recovered import Recovered, recovered_of
 from ._results import BY_ROW, Made, Result, frame_of
 from ._shown import Brief, html_plot, html_table, new_axes
+from ._sources import Film, source_of
 
 
 @dataclass(frozen=True)
@@ -179,9 +178,10 @@ def _interval(found: Optional[Sequence[float]]) -> Optional[tuple[float, float]]
     return None if found is None else (found[0], found[1])
 
 
-def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, Any]], twin: str) -> Diagnosis:
+def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, Any]], twin: str,
+                 files: Any = None) -> Diagnosis:
     """The outcome of the C++ side as a result."""
-    made = Made(outcome)
+    made = Made(outcome, files)
     found = Result(made).to_dict()
     gap = found.get("gap") or {}
     return Diagnosis(
@@ -198,7 +198,7 @@ def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, An
         twin, tuple(found["notes"]))
 
 
-def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
+def diagnose(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Sequence[Film], Sequence[PathLike]],
              x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
              force_n: Optional[ArrayLike] = None, name: str = "", without: Sequence[str] = (),
              gravity_m_s2: Optional[float] = None, allow_outside: bool = False,
@@ -210,9 +210,9 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
 
     Parameters
     ----------
-    source : array_like, Track, str, path, or a sequence of tracks or of names
-        ``diagnose(t_s, x_m)``, a `Track` or several, which share the glider and the track; or names of experiment
-        folders, of files with a track, or of one ``.csv`` with a table of lines.
+    source : array_like, Track, Film, str, path, or a sequence of tracks, of films or of names
+        ``diagnose(t_s, x_m)``, a `Track` or several, which share the glider and the track; a `Film` or several; or names
+        of experiment folders, of files with a track, or of one ``.csv`` with a table of lines.
     x_m : array_like, shape (n,), optional
         With times as `source`: positions in metres, positive downhill.
     mass_kg, incline_deg, force_n : optional
@@ -254,8 +254,9 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg,
                              recorded_by=recorder(recorded_by))
-        return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), left_out, job_count(jobs), files,
-                                                      teller(progress)))
+        with given.told():
+            return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), left_out, job_count(jobs), files,
+                                                          teller(progress)), given.written)
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
                                        "most_megapixels": most_megapixels}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,

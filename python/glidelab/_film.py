@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _glidelab
-from ._arrays import frozen
 from ._shown import Brief
-from ._checks import file_name, switch
+from ._checks import file_name, frozen, switch
 from ._errors import input_error
 from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario, job_count, teller
 

@@ -5,12 +5,8 @@ from __future__ import annotations
 import importlib
 import math
 import os
-import shutil
-import tempfile
 import tomllib
-import weakref
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -19,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import Vector, stored, vector
-from ._checks import above_0, file_name, is_whole, kind_of, optional_real, real, shown, switch, text, whole
-from ._errors import InputError, input_error
+from ._checks import (Vector, above_0, file_name, is_whole, optional_real, real, shown, stored, switch, text,
+                      vector, whole)
+from ._errors import input_error
 from ._shown import Brief, html_plot, html_table, new_axes
 from ._toml import toml_text
 
@@ -128,89 +124,6 @@ def is_path(value: object) -> bool:
     return isinstance(value, (str, os.PathLike))
 
 
-@dataclass(frozen=True)
-class Source:
-    """A call's first arguments: tracks, or names of folders and files."""
-
-    tracks: tuple[Track, ...] = ()
-    paths: tuple[str, ...] = ()
-
-
-def source_of(source: Any, x_m: Optional[ArrayLike], **stated: Any) -> Source:
-    """What `analyze` and `diagnose` are given: (t, x), a Track, a name, or several tracks or names.
-
-    `stated` are fields of the Track that (t, x) makes.
-    """
-    if x_m is not None:
-        return Source(tracks=(Track(source, x_m, **stated),))
-    if is_path(source):
-        return Source(paths=(file_name("source", source),))
-    if isinstance(source, Track):
-        return Source(tracks=(source,))
-    if isinstance(source, Sequence) and len(source) > 0:
-        if all(isinstance(one, Track) for one in source):
-            return Source(tracks=tuple(source))
-        if all(is_path(one) for one in source):
-            return Source(paths=tuple(file_name("source", one) for one in source))
-    raise input_error("source", kind_of(source) + (" that is empty" if source is None or (
-        isinstance(source, Sequence) and not source) else ""),
-        "times and positions, a Track or a list of them, or names of folders or files")
-
-
-class WrittenTracks:
-    """Tracks as files in a folder of their own, for what reads files alone; it is there as long as this is."""
-
-    def __init__(self, source: Source, x_m: Optional[ArrayLike], gravity: Mapping[str, Optional[float]]) -> None:
-        self._folder = tempfile.mkdtemp(prefix="glidelab-")
-        weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
-        if x_m is not None:  # nothing but a motion: a file with a track, of which no launch need be known
-            self.path = str(self._table(source.tracks[0], Path(self._folder, "track.csv")))
-            return
-        self.path = os.path.join(self._folder, "tracks")
-        os.mkdir(self.path)
-        given_tracks(source.tracks)  # names everything that is wrong with a single value
-        document: dict[str, Any] = {"format": 1, "name": "tracks", **{key: real(key, value) for key, value in gravity.items()
-                                                                      if value is not None}}
-        document["clip"] = [self._clip(track, number) for number, track in enumerate(source.tracks, 1)]
-        Path(self.path, "experiment.toml").write_text(toml_text(document), encoding="utf-8")
-
-    def _clip(self, track: Track, number: int) -> dict[str, Any]:
-        name = track.name or f"track-{number}"
-        of = f'track "{name}"'
-        for key, value, wanted in (("mass_kg", track.mass_kg, "the mass in kilograms"),
-                                   ("launched", None if track.launched == "unknown" else track.launched,
-                                    "up, down or released")):
-            if value is None:
-                raise input_error(key, repr(getattr(track, key)), f"{wanted}: this function needs it", of)
-        self._table(track, Path(self.path, f"{number}.csv"))
-        stated = {"name": name, "track": f"{number}.csv", "mass_kg": track.mass_kg, "mass_sd_kg": track.mass_sd_kg,
-                  "incline_deg": float(track.incline_deg), "incline_sd_deg": track.incline_sd_deg,
-                  "launched": track.launched, "group": track.group}
-        return {key: value for key, value in stated.items() if value not in (None, "")}
-
-    @staticmethod
-    def _table(track: Track, file: Path) -> Path:
-        """With all digits."""
-        columns = {"t_s": track.t_s, "x_m": track.x_m, "force_n": track.force_n}
-        vectors = {name: vector(name, values).tolist() for name, values in columns.items() if values is not None}
-        for name, values in vectors.items():
-            if len(values) != len(vectors["t_s"]):
-                raise input_error(name, f"{len(values)} numbers", f"as many as times, {len(vectors['t_s'])}")
-        rows = [",".join(map(repr, row)) for row in zip(*vectors.values())]
-        file.write_text("\n".join([",".join(vectors), *rows, ""]), encoding="utf-8")
-        return file
-
-    @contextmanager
-    def told(self) -> Iterator[None]:
-        """Around what reads the files: it names them in messages, and these are none that the caller knows."""
-        try:
-            yield
-        except InputError as error:
-            folder = self._folder + os.sep
-            issues = [(one.file.replace(folder, ""), one.line, one.key, one.found, one.expected) for one in error.issues]
-            raise InputError(str(error).replace(folder, ""), issues) from None
-
-
 Runs = Union[str, Sequence[int], None]
 
 
@@ -306,33 +219,6 @@ def file_options(paths: Sequence[str], allow_outside: bool, most_megapixels: Opt
                                                                              "metres per second squared"),
                                  gravity_sd_m_s2, _runs_text(runs), [_positive("masses_kg", one) for one in masses],
                                  switch("allow_outside", allow_outside), _megapixels(most_megapixels), recorded_by)
-
-
-@dataclass(frozen=True)
-class Readable:
-    """What a function that reads files reads, and what is stated with it."""
-
-    paths: tuple[str, ...]
-    stated: dict[str, Any]
-    written: Optional[WrittenTracks] = None
-
-    def told(self) -> AbstractContextManager[None]:
-        """Around the call: files that were made for it are not named with their folder."""
-        return nullcontext() if self.written is None else self.written.told()
-
-
-def readable_source(source: Any, x_m: Optional[ArrayLike], of_files: Mapping[str, object], allow_outside: bool,
-                    of_motion: dict[str, Any], gravity: dict[str, Optional[float]]) -> Readable:
-    """Names as they are; arrays and Tracks as files that are made of them. (t, x) is a file of one motion, of which the
-    same is stated as of a file; Tracks are a folder, which states it itself."""
-    given = source_of(source, x_m)
-    if given.paths:
-        return Readable(given.paths, {**of_motion, **gravity})
-    refuse_of_arrays(x_m is not None, of_files, allow_outside, of_motion)
-    if gravity["gravity_sd_m_s2"] is not None and gravity["gravity_m_s2"] is None:
-        raise input_error("gravity_sd_m_s2", shown(gravity["gravity_sd_m_s2"]), "gravity_m_s2, whose uncertainty it is, as well")
-    written = WrittenTracks(given, x_m, gravity)
-    return Readable((written.path,), {**of_motion, **gravity} if x_m is not None else {}, written)
 
 
 def recorder(recorded_by: str) -> str:

@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike
 
 from . import _glidelab
 from ._errors import input_error
-from ._inputs import PathLike, Progress, Runs, Track, file_options, job_count, readable_source, teller
+from ._inputs import PathLike, Progress, Runs, Track, file_options, job_count, teller
 from ._results import Made, Result, frame_of
 from ._shown import html_table
+from ._sources import Film, readable_source
 
 
 @dataclass(frozen=True)
@@ -63,19 +64,20 @@ class RecordingCheck(Result):
         return html_table(["", "about", "found", "advice"], rows, "usable" if self.usable else "not usable as it is")
 
 
-def check(source: Union[ArrayLike, Track, PathLike, Sequence[Track]], x_m: Optional[ArrayLike] = None, *,
-          allow_outside: bool = False,
-          most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None, column: str = "",
-          mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None, masses_kg: Optional[Sequence[float]] = None,
+def check(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Sequence[Film]],
+          x_m: Optional[ArrayLike] = None, *, allow_outside: bool = False,
+          most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
+          column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
+          masses_kg: Optional[Sequence[float]] = None,
           incline_sd_deg: Optional[float] = None, gravity_m_s2: Optional[float] = None,
           gravity_sd_m_s2: Optional[float] = None) -> RecordingCheck:
     """A look at a recording before any analysis: pattern, marker, exposure, blur, frame times, statements.
 
     Parameters
     ----------
-    source : array_like, Track, str or path, or a sequence of Tracks
-        ``check(t_s, x_m)``, as in `analyze`; a `Track` or several, each with its mass and how it was launched; an
-        experiment folder, or a file with a track.
+    source : array_like, Track, Film, str or path, or a sequence of tracks or of films
+        ``check(t_s, x_m)``, as in `analyze`; a `Track` or several, each with its mass and how it was launched; a `Film`
+        or several; an experiment folder, or a file with a track.
     x_m : array_like, shape (n,), optional
         With times as `source`: positions in metres, positive downhill.
     allow_outside, most_megapixels, jobs, progress, column, mass_kg, incline_deg, runs, masses_kg

@@ -8,8 +8,7 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _glidelab
-from ._arrays import Vector, frozen
-from ._checks import optional_real
+from ._checks import Vector, frozen, optional_real
 from ._inputs import Progress, Scenario, Track, given_scenario, teller
 from ._results import Made, Result, frame_of
 from ._shown import Brief, html_plot, html_table, new_axes

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import Vector, vector
-from ._checks import optional_real, text, whole
+from ._checks import Vector, optional_real, text, vector, whole
 from ._errors import input_error, input_errors
 from ._results import NORMAL95, Written, frame_of
 from ._shown import Brief, html_plot, html_table, new_axes
