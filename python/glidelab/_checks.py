@@ -91,8 +91,10 @@ def pair(key: str, values: Any, expected: str = "two numbers") -> tuple[float, f
 def _in_utf8(key: str, value: str, file: str = "") -> str:
     try:
         value.encode()
-    except UnicodeEncodeError:  # half of a surrogate pair; also a byte of a file's name that is no UTF-8
-        raise input_error(key, ascii(value), "characters of Unicode, which UTF-8 has", file) from None
+    except UnicodeEncodeError as error:  # half of a surrogate pair; also a byte of a file's name that is no UTF-8
+        near = value[max(error.start - _LONGEST // 4, 0):error.start + 1]
+        raise input_error(key, ascii(value if len(value) <= _LONGEST else near), "characters of Unicode, which UTF-8 has",
+                          file) from None
     return value
 
 

@@ -231,7 +231,7 @@ def recorder(recorded_by: str) -> str:
 def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:
     """The file, or what a dict is called in messages and its text."""
     if isinstance(scenario, Mapping):
-        return "scenario", toml_text(scenario)
+        return "scenario", text("scenario", toml_text(scenario))
     return file_name("scenario", scenario, "the name of a file, or a dict"), None
 
 

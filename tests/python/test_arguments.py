@@ -109,6 +109,12 @@ class WrongInput(InFolder):
                 error = self.refused(call, key=key, found=found)
                 self.assertLess(len(str(error)), 300)
 
+    def test_a_scenario_s_text_that_is_no_unicode_is_shown_where_it_is(self):
+        scenario = {**glidelab.load_scenario(SCENARIO), "name": "one\udcfftwo"}
+        error = self.refused(lambda: glidelab.simulate(scenario), key="scenario")
+        self.assertRegex(error.found, r"one\\udcff'$")
+        self.assertLess(len(error.found), 60)
+
     def test_a_gap_across_which_nothing_is_known_is_told_in_glidelab_s_words(self):
         t, x = damped(duration_s=0.5)
         for smoother in ("kalman", "spline"):
