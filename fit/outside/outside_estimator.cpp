@@ -22,6 +22,20 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kFolder = "{folder}", kOut = "{out}";
 
+/// Everything that is wrong with a file, for a line of a report.
+std::string on_one_line(const std::vector<base::Issue>& issues) {
+  constexpr std::size_t kMost = 20;  // as of a message
+  std::vector<std::string> parts;
+  for (const base::Issue& issue : issues) {
+    if (parts.size() == kMost) {
+      parts.push_back(fmt::format("and {} more", issues.size() - kMost));
+      break;
+    }
+    parts.push_back(base::describe(issue));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
 [[noreturn]] void refuse(std::string found, std::string expected) {
   throw base::InputError(base::Issue{"", 0, "--estimator-command", std::move(found), std::move(expected)});
 }
@@ -162,7 +176,7 @@ OutsideOutcome run_outside(const OutsideEstimator& estimator, const fs::path& fo
       return outcome;
     } catch (const base::InputError& error) {
       outcome.run.failure = OutsideFailure::bad_output;
-      outcome.run.what = base::valid_utf8(error.what());
+      outcome.run.what = base::valid_utf8(on_one_line(error.issues()));
       outcome.json.clear();
     }
   }

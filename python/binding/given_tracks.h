@@ -16,7 +16,7 @@
 
 namespace glidelab::python {
 
-/// One dimension, contiguous: glidelab/_arrays.py converts it, and reports an error if it cannot.
+/// One dimension, contiguous: glidelab/_checks.py converts it, and reports an error if it cannot.
 using Vector = pybind11::array_t<double, pybind11::array::c_style>;
 
 inline std::span<const double> span_of(const Vector& vector) {

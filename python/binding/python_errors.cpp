@@ -2,7 +2,11 @@
 
 #include <pybind11/pybind11.h>
 
+#include <boost/math/policies/error_handling.hpp>
 #include <exception>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
 
 #include "base/errors.h"
 
@@ -34,6 +38,12 @@ void translate(std::exception_ptr thrown) {
     raise("NotMet", error.what());
   } catch (const base::Interrupted&) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
+  } catch (const std::filesystem::filesystem_error& error) {
+    raise("SystemFailure", error.what());
+  } catch (const boost::math::evaluation_error& error) {
+    raise("NumericalError", std::string("a computation broke down: ") + error.what());
+  } catch (const std::domain_error& error) {  // of boost as well
+    raise("NumericalError", std::string("a computation broke down: ") + error.what());
   }
 }
 

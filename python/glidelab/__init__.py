@@ -6,24 +6,22 @@
 
 Arguments and results are in SI units, with the unit in the name; angles are in degrees. Every `Result` has ``to_dict()``
 (the JSON that the command of its name writes) and ``write(folder)`` (its files and its page). `Judgement`, `Smoothed` and
-`Bandwidth` are of no command: they have ``to_dict()`` and no ``write()``. All show themselves in a notebook and on one
-line at a prompt, and `explain` puts them in words. docs/guide/python.md is the tutorial.
+`Bandwidth` are of no command: they write their data as JSON, their table as CSV, and a page. All show themselves in a
+notebook and on one line at a prompt, and `explain` puts them in words. docs/guide/python.md is the tutorial.
 """
 
-from __future__ import annotations
-
-from typing import Any, Union
+from typing import Any as _Any, Union as _Union
 
 import numpy as _numpy
 
 from . import _glidelab
 from ._analysis import Analysis, Clip, Configuration, Line, Motion, analyze
-from ._arrays import refuse_numpy as _refuse_numpy
+from ._checks import refuse_numpy as _refuse_numpy
 from ._blind import Blind, BlindCase, BlindTarget, blind
 from ._camera import Camera, Marker, calibrate, fit_marker
 from ._certificate import Certificate, CertifiedExplanation, CertifiedQuantity, ChangedTwin, certify
 from ._diagnosis import Cause, Diagnosis, Effect, Plan, PlannedEffect, Residuals, diagnose, plan
-from ._estimator import Judged, Judgement, estimator, judge
+from ._estimator import estimator, judge
 from ._errors import Error, InputError, Issue, NotMet, NumericalError, SystemFailure
 from ._film import FilmedClip, Frame, Rendered, render, render_folder
 from ._inputs import Track, load_scenario
@@ -32,9 +30,10 @@ from ._recording import Finding, RecordingCheck, check
 from ._recovered import Recovered, WithEffects
 from ._results import Quantity, Result
 from ._simulation import ModeChange, SimulatedClip, Simulation, simulate
+from ._sources import Film
 from ._smoothing import (Bandwidth, BandwidthRule, Smoothed, Strength, bandwidth_rules, choose_bandwidth,
                          position_noise, smooth)
-from ._studies import Coverage, CoverageRow, Recovery, Validation, coverage, validate
+from ._studies import Coverage, CoverageRow, Judged, Judgement, Recovery, Validation, coverage, validate
 from ._sweeps import Candidate, Requirement, Sweep, require, sweep
 
 _refuse_numpy(_glidelab.pybind11_version, _numpy.__version__)
@@ -47,11 +46,11 @@ class Explanation(str):
     def __repr__(self) -> str:
         return str(self)
 
-    def _repr_pretty_(self, printer: Any, _cycle: bool) -> None:
+    def _repr_pretty_(self, printer: _Any, _cycle: bool) -> None:
         printer.text(str(self))
 
 
-def explain(result: Union[Result, Judgement, Smoothed, Bandwidth]) -> Explanation:
+def explain(result: _Union[Result, Judgement, Smoothed, Bandwidth]) -> Explanation:
     """A result in words: of a command what it prints, the answer in sentences and its tables.
 
     Parameters
@@ -70,7 +69,7 @@ def explain(result: Union[Result, Judgement, Smoothed, Bandwidth]) -> Explanatio
 __all__ = [
     "Analysis", "Bandwidth", "BandwidthRule", "Blind", "BlindCase", "BlindTarget", "Camera", "Candidate", "Cause",
     "Certificate", "CertifiedExplanation", "CertifiedQuantity", "ChangedTwin", "Clip", "Configuration", "Coverage",
-    "CoverageRow", "Diagnosis", "Effect", "Error", "Explanation", "FilmedClip", "Finding", "Frame", "InputError",
+    "CoverageRow", "Diagnosis", "Effect", "Error", "Explanation", "Film", "FilmedClip", "Finding", "Frame", "InputError",
     "Issue", "Judged", "Judgement", "Line", "Marker", "ModeChange", "Motion", "NotMet", "NumericalError",
     "OutsideFailures", "OutsideRuns", "Plan", "PlannedEffect", "Quantity", "RecordingCheck", "Recovered",
     "Recovery", "Rendered", "Requirement", "Residuals", "Result", "SimulatedClip", "Simulation", "Smoothed",

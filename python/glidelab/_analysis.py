@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import Vector, frozen
-from ._brief import Brief
-from ._checks import optional_real, switch, text, texts
+from ._checks import Vector, frozen, optional_real, switch, text, texts
 from ._inputs import (PathLike, Progress, Runs, Track, file_options, given_gravity, given_tracks, job_count, refuse,
-                      refuse_of_arrays, source_of, stated_incline, teller)
+                      refuse_of_arrays, stated_incline, teller)
 from ._recovered import QUANTITIES, WithEffects, with_effects_of
-from ._results import Made, Quantity, Result, frame_of, html_plot, html_table, new_axes, quantity_of
+from ._results import Made, Quantity, Result, frame_of, quantity_of
+from ._shown import Brief, html_plot, html_table, new_axes
+from ._sources import Film, source_of
 
 DEFAULT_ESTIMATOR = _glidelab.estimator_names()[0]
 
@@ -287,9 +287,9 @@ def _configuration(found: Mapping[str, Any]) -> Configuration:
                          lines=tuple(_line(line) for line in found["lines"]), notes=tuple(found["notes"]), **quantities)
 
 
-def analysis_of(outcome: _glidelab.Outcome, motions: Sequence[Mapping[str, Any]]) -> Analysis:
+def analysis_of(outcome: _glidelab.Outcome, motions: Sequence[Mapping[str, Any]], files: Any = None) -> Analysis:
     """The outcome of the C++ side as a result."""
-    made = Made(outcome)
+    made = Made(outcome, files)
     document = Result(made).to_dict()
     return Analysis(made, document["estimator"],
                     tuple(_clip(clip, arrays) for clip, arrays in zip(document["clips"], motions)),
@@ -311,7 +311,7 @@ def _choices(bandwidth: Union[SupportsFloat, str, None], estimator: str, robust:
     return _glidelab.AnalysisChoices(seconds, rule, estimator, bool(robust), job_count(jobs), smoother, effects)
 
 
-def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
+def analyze(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Sequence[Film], Sequence[PathLike]],
             x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
             force_n: Optional[ArrayLike] = None, column: str = "", name: str = "",
             bandwidth: Union[SupportsFloat, str, None] = None, estimator: str = DEFAULT_ESTIMATOR, robust: bool = False,
@@ -324,9 +324,11 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
 
     Parameters
     ----------
-    source : array_like, Track, str, path, or a sequence of tracks or of names
+    source : array_like, Track, Film, str, path, or a sequence of tracks, of films or of names
         ``analyze(t_s, x_m)``: times in seconds, shape (n,), n >= 8, rising. A `Track` or several, which share the
-        glider and the track. Or names of experiment folders or of files with a track (docs/reference/commands.md).
+        glider and the track. A `Film` or several: frames in memory, which are written without loss to a temporary
+        folder, and read as those of a clip are. Or names of experiment folders or of files
+        with a track (docs/reference/commands.md).
     x_m : array_like, shape (n,), optional
         With times as `source`: positions in metres, positive downhill.
     mass_kg, incline_deg : float, optional
@@ -404,7 +406,8 @@ def analyze(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[
         files = file_options(given.paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
-        return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, files, teller(progress)))
+        with given.told():
+            return analysis_of(*_glidelab.analyze_files(list(given.paths), choices, files, teller(progress)), given.written)
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
                                        "most_megapixels": most_megapixels}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,

@@ -11,7 +11,8 @@ from . import _glidelab
 from ._apart import interpreter
 from ._checks import file_name, switch, text, whole
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller
-from ._results import Made, Result, frame_of, html_table
+from ._results import Made, Result, frame_of
+from ._shown import html_table
 
 MOST_CASES = 100000
 
@@ -126,6 +127,9 @@ def _target(found: Mapping[str, Any]) -> BlindTarget:
 def blind(cases: int, folder: PathLike, *, only: str = "", everyday: bool = False, pictures: bool = False,
           leave_out: bool = False, seed: int = 1, jobs: Optional[int] = None, progress: Progress = None) -> Blind:
     """Makes experiments whose cause is withheld, has another process diagnose each, and scores the diagnoses.
+
+    An estimator of your own cannot be scored here, for it finds values and names no cause: `judge` and ``glidelab
+    challenge make --level everyday``, which draws from the same experiments, are for estimators.
 
     Parameters
     ----------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, Union
@@ -12,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _glidelab
-from ._arrays import Vector, frozen
-from ._brief import Brief
-from ._checks import above_0, pair, real, refuse_masked, shown, switch, whole
+from ._checks import Vector, above_0, file_name, frozen, pair, real, refuse_masked, shown, switch, whole
 from ._errors import input_error
 from ._inputs import PathLike, Progress, is_path, job_count, teller
+from ._shown import Brief
 
 
 def _grey(image: Any, name: str) -> NDArray[Any]:
@@ -111,7 +109,7 @@ def calibrate(images: Sequence[Any], inner_corners: tuple[int, int], square_m: f
         raise input_error("images", shown(images), "a list of images, or of names of files")
     found: dict[str, Any]
     if len(images) > 0 and all(is_path(image) for image in images):
-        files = [os.fspath(image) for image in images]
+        files = [file_name(f"images[{i}]", image) for i, image in enumerate(images)]
         found = _glidelab.calibrate_files(files, board, square_m, job_count(jobs), teller(progress))
     else:
         arrays = [_grey(image, f"images[{i}]") for i, image in enumerate(images)]

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, SupportsFloat, Union
 
+from numpy.typing import ArrayLike
+
 from . import _glidelab
 from ._analysis import DEFAULT_ESTIMATOR
 from ._checks import above_0, text, whole
-from ._errors import input_error
-from ._inputs import PathLike, Progress, Runs, checked_seed, file_options, is_path, job_count, teller
-from ._results import Made, Result, frame_of, html_table
+from ._inputs import (PathLike, Progress, Runs, Track, checked_seed, file_options, job_count,
+                      teller)
+from ._results import Made, Result, frame_of
+from ._shown import html_table
+from ._sources import Film, readable_source
 
 
 @dataclass(frozen=True)
@@ -179,7 +182,8 @@ def _change(found: Mapping[str, Any]) -> ChangedTwin:
                        _pair(fall.get("interval95")), found["stands_out"])
 
 
-def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, estimator: str = DEFAULT_ESTIMATOR,
+def certify(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Sequence[Film], Sequence[PathLike]],
+            x_m: Optional[ArrayLike] = None, *, twins: int = 40, estimator: str = DEFAULT_ESTIMATOR,
             bandwidth_s: Optional[SupportsFloat] = None, seed: Optional[int] = None, allow_outside: bool = False,
             most_megapixels: Optional[float] = None, jobs: Optional[int] = None, progress: Progress = None,
             column: str = "", mass_kg: Optional[float] = None, incline_deg: Optional[float] = None, runs: Runs = None,
@@ -189,8 +193,11 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
 
     Parameters
     ----------
-    source : str or path, or a sequence of them
-        Experiment folders that share the glider and the track, or files with a track.
+    source : array_like, Track, Film, str or path, or a sequence of tracks, of films or of names
+        ``certify(t_s, x_m)``, as in `analyze`; a `Track` or several, each with its mass and how it was launched; a
+        `Film` or several; experiment folders that share the glider and the track, or files with a track.
+    x_m : array_like, shape (n,), optional
+        With times as `source`: positions in metres, positive downhill.
     twins : int
         20 to 200: how many are recorded.
     estimator : str
@@ -217,19 +224,19 @@ def certify(source: Union[PathLike, Sequence[PathLike]], *, twins: int = 40, est
     Notes
     -----
     docs/guide/trust.md describes the twins: a parametric bootstrap (Efron and Tibshirani 1993) of the whole analysis.
+    Arrays are written to a temporary folder, with all their digits, and read as a file or a folder is.
     """
-    names: list[PathLike] = [source] if isinstance(source, (str, os.PathLike)) else (
-        list(source) if isinstance(source, Sequence) else [])
-    if not names or not all(is_path(one) for one in names):
-        raise input_error("source", f"a {type(source).__name__}", "names of folders or files")
-    paths = [os.fspath(one) for one in names]
-    files = file_options(paths, allow_outside, most_megapixels, column=column, mass_kg=mass_kg,
-                         incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
-                         gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg)
+    given = readable_source(source, x_m, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
+                                          "most_megapixels": most_megapixels}, allow_outside,
+                            {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg},
+                            {"gravity_m_s2": gravity_m_s2, "gravity_sd_m_s2": gravity_sd_m_s2})
+    files = file_options(given.paths, allow_outside, most_megapixels, column=column, runs=runs, masses_kg=masses_kg,
+                         **given.stated)
     bandwidth = None if bandwidth_s is None else above_0("bandwidth_s", bandwidth_s, "seconds, above 0")
     text("estimator", estimator, f"one of {', '.join(_glidelab.estimator_names())}")
-    made = Made(_glidelab.certify(paths, whole("twins", twins, 20, 200), estimator, bandwidth, checked_seed(seed),
-                                  job_count(jobs), files, teller(progress)))
+    with given.told():
+        made = Made(_glidelab.certify(list(given.paths), whole("twins", twins, 20, 200), estimator, bandwidth,
+                                      checked_seed(seed), job_count(jobs), files, teller(progress)), given.written)
     found = Result(made).to_dict()
     return Certificate(made, found["answer"], found["holds"], found["twins"], found["estimator"], found["by"],
                        tuple(_quantity(one) for one in found["quantities"]),

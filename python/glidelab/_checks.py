@@ -1,4 +1,4 @@
-"""What single values are checked for before the C++ side sees them: one place, and one exception for all functions."""
+"""What values and arrays are checked for before the C++ side sees them: one place, and one exception for all functions."""
 
 from __future__ import annotations
 
@@ -8,10 +8,18 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Optional
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ._errors import input_error, input_errors
 
+Vector = NDArray[np.float64]  # one dimension, contiguous: as the C++ side takes it, without a copy where it is so
 _LONGEST = 60  # characters of a value in a message
+
+
+def kind_of(value: object) -> str:
+    """"an int", "a list": what a value is."""
+    name = type(value).__name__
+    return f"{'an' if name[:1].lower() in tuple('aeiou') else 'a'} {name}"
 
 
 def shown(value: object) -> str:
@@ -24,7 +32,7 @@ def shown(value: object) -> str:
         text = repr(value.item() if isinstance(value, np.generic) else value)
         if len(text) <= _LONGEST:
             return text
-    return f"a {type(value).__name__}"
+    return kind_of(value)
 
 
 def real(key: str, value: Any, expected: str = "a number", file: str = "") -> float:
@@ -80,11 +88,21 @@ def pair(key: str, values: Any, expected: str = "two numbers") -> tuple[float, f
     return numbers[0], numbers[1]
 
 
+def _in_utf8(key: str, value: str, file: str = "") -> str:
+    try:
+        value.encode()
+    except UnicodeEncodeError as error:  # half of a surrogate pair; also a byte of a file's name that is no UTF-8
+        near = value[max(error.start - _LONGEST // 4, 0):error.start + 1]
+        raise input_error(key, ascii(value if len(value) <= _LONGEST else near), "characters of Unicode, which UTF-8 has",
+                          file) from None
+    return value
+
+
 def text(key: str, value: Any, expected: str = "text", file: str = "") -> str:
-    """A str."""
+    """A str that C++ can be given."""
     if not isinstance(value, str):
         raise input_error(key, shown(value), expected, file)
-    return value
+    return _in_utf8(key, value, file)
 
 
 def texts(key: str, values: Any, expected: str) -> list[str]:
@@ -105,7 +123,7 @@ def file_name(key: str, value: Any, expected: str = "the name of a file") -> str
     """The name of a file or a folder, as text."""
     if not isinstance(value, (str, os.PathLike)):
         raise input_error(key, shown(value), expected)
-    return str(os.fspath(value))
+    return _in_utf8(key, str(os.fspath(value)))
 
 
 def refuse_masked(name: str, values: Any, of: str = "") -> None:
@@ -122,3 +140,46 @@ def refuse_masked(name: str, values: Any, of: str = "") -> None:
     places: Sequence[Any] = np.argwhere(masks.getmaskarray(masks.asarray(values))).tolist()
     raise input_errors([(of, 0, f"{name}[{', '.join(map(str, place))}]", "a masked value",
                          "a number: leave out what was not measured") for place in places])
+
+
+def vector(name: str, values: ArrayLike, of: str = "") -> Vector:
+    """`values` as a vector; `name` and `of` (its track) stand in messages.
+
+    Raises
+    ------
+    InputError
+        Not real numbers, masked ones among them, or not one dimension.
+    """
+    refuse_masked(name, values, of)
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise input_error(name, "rows of different lengths", "one dimension", of) from None
+    if array.dtype.kind not in "fiu":
+        raise input_error(name, f"values of type {array.dtype}", "real numbers", of)
+    if array.ndim != 1:
+        raise input_error(name, f"an array of shape {array.shape}", "one dimension", of)
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def stored(values: Any) -> Any:
+    """An array of real numbers of double precision, without a copy where it is one, masks included. What is none stays
+    as it is: `vector` refuses it, with all else that is wrong, where it is used."""
+    try:
+        array = np.asanyarray(values)
+    except ValueError:  # rows of different lengths
+        return values
+    return np.asanyarray(array, dtype=np.float64) if array.dtype.kind in "fiu" else array
+
+
+def frozen(array: Any) -> Any:
+    """The array, which can no longer be written to: results do not change."""
+    array.flags.writeable = False
+    return array
+
+
+def refuse_numpy(pybind11: tuple[int, int], numpy_version: str) -> None:
+    """ImportError where the module was made with a pybind11 that does not know this numpy: it would read arrays wrongly."""
+    if pybind11 < (2, 12) and int(numpy_version.split(".")[0]) >= 2:
+        raise ImportError(f"glidelab was built with pybind11 {pybind11[0]}.{pybind11[1]}, which knows numpy below 2, and "
+                          f"this is numpy {numpy_version}: install numpy<2, or build with pybind11 2.12 or later")

@@ -10,15 +10,14 @@ from typing import Any, Optional, Union
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import Vector, frozen
-from ._brief import Brief
-from ._checks import real, shown, text, texts
+from ._checks import Vector, frozen, real, shown, text, texts
 from ._errors import input_error
 from ._inputs import (PathLike, Progress, Runs, Scenario, Track, checked_seed, file_options, given_gravity,
-                      given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, source_of,
-                      stated_incline, teller)
+                      given_scenario, given_tracks, job_count, recorder, refuse, refuse_of_arrays, stated_incline, teller)
 from ._recovered import Recovered, recovered_of
-from ._results import BY_ROW, Made, Result, frame_of, html_plot, html_table, new_axes
+from ._results import BY_ROW, Made, Result, frame_of
+from ._shown import Brief, html_plot, html_table, new_axes
+from ._sources import Film, source_of
 
 
 @dataclass(frozen=True)
@@ -50,7 +49,19 @@ class Effect:
 
 @dataclass(frozen=True)
 class Cause:
-    """One cause in the sequence that explains the gap: its share, and the gap of held-out clips after it."""
+    """One cause in the sequence that explains the gap.
+
+    Attributes
+    ----------
+    id : str
+        As docs/reference/effects.md lists it.
+    share : float or None
+        The part of the gap that it explains, 0 to 1.
+    share_interval95 : (float, float) or None
+        Its 95 % interval.
+    gap_after : float or None
+        The gap of held-out clips with this cause and those before it in the model.
+    """
 
     id: str
     share: Optional[float]
@@ -167,9 +178,10 @@ def _interval(found: Optional[Sequence[float]]) -> Optional[tuple[float, float]]
     return None if found is None else (found[0], found[1])
 
 
-def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, Any]], twin: str) -> Diagnosis:
+def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, Any]], twin: str,
+                 files: Any = None) -> Diagnosis:
     """The outcome of the C++ side as a result."""
-    made = Made(outcome)
+    made = Made(outcome, files)
     found = Result(made).to_dict()
     gap = found.get("gap") or {}
     return Diagnosis(
@@ -186,7 +198,7 @@ def diagnosis_of(outcome: _glidelab.Outcome, residuals: Sequence[Mapping[str, An
         twin, tuple(found["notes"]))
 
 
-def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence[PathLike]],
+def diagnose(source: Union[ArrayLike, Track, Film, PathLike, Sequence[Track], Sequence[Film], Sequence[PathLike]],
              x_m: Optional[ArrayLike] = None, *, mass_kg: Optional[float] = None, incline_deg: Optional[float] = None,
              force_n: Optional[ArrayLike] = None, name: str = "", without: Sequence[str] = (),
              gravity_m_s2: Optional[float] = None, allow_outside: bool = False,
@@ -198,9 +210,9 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
 
     Parameters
     ----------
-    source : array_like, Track, str, path, or a sequence of tracks or of names
-        ``diagnose(t_s, x_m)``, a `Track` or several, which share the glider and the track; or names of experiment
-        folders, of files with a track, or of one ``.csv`` with a table of lines.
+    source : array_like, Track, Film, str, path, or a sequence of tracks, of films or of names
+        ``diagnose(t_s, x_m)``, a `Track` or several, which share the glider and the track; a `Film` or several; or names
+        of experiment folders, of files with a track, or of one ``.csv`` with a table of lines.
     x_m : array_like, shape (n,), optional
         With times as `source`: positions in metres, positive downhill.
     mass_kg, incline_deg, force_n : optional
@@ -242,8 +254,9 @@ def diagnose(source: Union[ArrayLike, Track, PathLike, Sequence[Track], Sequence
                              incline_deg=incline_deg, incline_sd_deg=incline_sd_deg, gravity_m_s2=gravity_m_s2,
                              gravity_sd_m_s2=gravity_sd_m_s2, runs=runs, masses_kg=masses_kg,
                              recorded_by=recorder(recorded_by))
-        return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), left_out, job_count(jobs), files,
-                                                      teller(progress)))
+        with given.told():
+            return diagnosis_of(*_glidelab.diagnose_files(list(given.paths), left_out, job_count(jobs), files,
+                                                          teller(progress)), given.written)
     refuse_of_arrays(x_m is not None, {"column": column or None, "runs": runs, "masses_kg": masses_kg,
                                        "most_megapixels": most_megapixels}, allow_outside,
                      {"mass_kg": mass_kg, "incline_deg": incline_deg, "incline_sd_deg": incline_sd_deg,
@@ -310,7 +323,27 @@ class Plan(Result):
     def _repr_html_(self) -> str:
         rows = [[one.id, one.parameter, "" if one.seen_from is None else f"{one.seen_from:.3g}", ", ".join(one.alike)]
                 for one in self.effects if one.seen]
-        return html_table(["effect", "parameter", "smallest size that shows", "looks like"], rows)
+        return html_table(["effect", "parameter", "smallest size that shows", "looks like"], rows) + html_plot(self.plot)
+
+    def plot(self, ax: Any = None) -> Any:
+        """How alike the effects that would show are: the cosine between what they do to the motions, 1 where no size
+        tells them apart.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            `ax`, or new ones; an effect a row and a column.
+        """
+        ax = new_axes(1)[0] if ax is None else ax
+        alike = self.to_dict()["isolability"]
+        names = [name.replace("_", " ") for name in alike["effects"]]
+        ax.set_title("cosine between effects", fontsize=8)
+        if names:
+            shown_as = ax.imshow(alike["cosine"], vmin=0.0, vmax=1.0, cmap="Blues")
+            ax.figure.colorbar(shown_as, ax=ax)
+        ax.set_xticks(range(len(names)), names, rotation=90, fontsize=6)
+        ax.set_yticks(range(len(names)), names, fontsize=6)
+        return ax
 
 
 def plan(source: Union[Scenario, Track, Sequence[Track]], *, noise_m: Optional[float] = None,

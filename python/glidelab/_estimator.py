@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import html
+import importlib
 import math
 import signal
 import threading
 import time
-import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from pathlib import Path
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
 
 from . import _glidelab
-from ._brief import Brief
 from ._analysis import DEFAULT_ESTIMATOR, analyze
 from ._checks import real, whole
 from ._errors import input_error
 from ._inputs import Progress, Scenario, Track, checked_seed, given_scenario, job_count, teller
+from ._outside import Estimator, WrongAnswer, checked_answer, said_by
 from ._recovered import QUANTITIES
-from ._results import NORMAL95, Quantity, frame_of, html_table, plain, rounded, words_of
+from ._results import Quantity
+from ._studies import Judged, Judgement
 
-Found = Union[float, Sequence[float], Mapping[str, Any], Quantity, None]
-Estimator = Callable[[list[Track]], Mapping[str, Found]]
 _Function = TypeVar("_Function", bound=Estimator)
 
 _registered: dict[str, Estimator] = {}
@@ -63,119 +60,6 @@ def estimator(function: _Function) -> _Function:
     return function
 
 
-@dataclass(frozen=True)
-class Judged:
-    """The errors of one estimator in one quantity of one configuration.
-
-    Attributes
-    ----------
-    configuration, estimator, quantity : str
-        Of what, by what.
-    truth : float
-        What the scenario put in.
-    answered, failed : int
-        Replicates with a value, and those in which the estimator failed: it raised something, gave no answer as
-        `estimator` describes it, or took too long.
-    bias, sd, rms_error : float or None
-        Mean error, standard deviation and root mean square of the errors; None without an answer. Also called `rms`.
-    stated : int
-        Answers with an interval.
-    coverage : float or None
-        The share of these whose 95 % interval contains the true value. Also called `covered`.
-    """
-
-    configuration: str
-    estimator: str
-    quantity: str
-    truth: float
-    answered: int
-    failed: int
-    bias: Optional[float]
-    sd: Optional[float]
-    rms: Optional[float]
-    stated: int
-    covered: Optional[float]
-
-    @property
-    def rms_error(self) -> Optional[float]:
-        """Root mean square of the errors."""
-        return self.rms
-
-    @property
-    def coverage(self) -> Optional[float]:
-        """The share of stated 95 % intervals that contain the true value."""
-        return self.covered
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Judgement(Brief):
-    """How estimators did on the same motions.
-
-    Attributes
-    ----------
-    replicates : int
-        How many experiments were made.
-    rows : tuple of Judged
-        Every quantity with a truth, of every configuration, by every estimator.
-    seconds : dict of str to float
-        Mean time that an estimator took for an experiment.
-    failures : dict of str to str
-        How an estimator failed first.
-    """
-
-    replicates: int
-    rows: tuple[Judged, ...]
-    seconds: Mapping[str, float]
-    failures: Mapping[str, str]
-
-    def failed(self, estimator_name: str) -> int:
-        """Replicates in which an estimator failed."""
-        return max((row.failed for row in self.rows if row.estimator == estimator_name), default=0)
-
-    def of(self, estimator_name: str, quantity: str) -> tuple[Judged, ...]:
-        """The rows of one estimator and one quantity, one per configuration."""
-        return tuple(row for row in self.rows if row.estimator == estimator_name and row.quantity == quantity)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
-        data: dict[str, Any] = plain(self)
-        return data
-
-    def to_frame(self) -> Any:
-        """A pandas.DataFrame, one row per quantity."""
-        return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
-            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered",
-            "rms_error", "coverage")}, ("truth", "bias", "sd", "rms", "rms_error"))
-
-    def _table(self) -> list[list[str]]:
-        def text(value: Optional[float]) -> str:
-            return "" if value is None else f"{value:.3g}"
-        return [[row.configuration, words_of(row.quantity), row.estimator, rounded(row.truth, None),
-                 f"{row.answered} of {self.replicates}" + (f", {row.failed} failed" if row.failed else ""),
-                 text(row.bias), text(row.rms),
-                 "" if row.covered is None else f"{100.0 * row.covered:.0f} %"] for row in self.rows]
-
-    def __str__(self) -> str:
-        rows = [list(_HEADER), *self._table()]
-        widths = [max(len(row[i]) for row in rows) for i in range(len(_HEADER))]
-        lines = self._failures()
-        lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
-        lines += [f"{name}: {1e3 * seconds:.2f} ms an experiment" for name, seconds in self.seconds.items()]
-        return "\n".join(lines) + "\n"
-
-    def _failures(self) -> list[str]:
-        """A line for each estimator that failed: what is below is not about these replicates."""
-        return [f"{name} failed in {self.failed(name)} of {self.replicates} replicates, first with: {what}"
-                for name, what in self.failures.items()]
-
-    def _repr_html_(self) -> str:
-        failed = "".join(f"<p><b>{html.escape(line)}</b></p>" for line in self._failures())
-        return failed + html_table(list(_HEADER), self._table())
-
-
-_HEADER = ("configuration", "quantity", "estimator", "truth", "answers", "mean error", "rms error", "95 % hold")
-
-
 class _Tally:
     """Errors of one estimator in one quantity of one configuration."""
 
@@ -195,84 +79,8 @@ class _Tally:
             self.held += quantity.interval95[0] <= truth <= quantity.interval95[1]
 
 
-class _Wrong(Exception):
-    """An answer that is none, in words."""
-
-
 class _TooLong(BaseException):
     """The time of a call is over. No Exception: an estimator that catches all of these does not catch this one."""
-
-
-def _number(said: Any, key: str) -> float:
-    """A finite number, NaN or an infinity; _Wrong if it is not a number; a string of digits is not one."""
-    if not isinstance(said, (str, bytes, bool)):
-        try:
-            return float(said)
-        except (TypeError, ValueError, OverflowError):
-            pass
-    raise _Wrong(f"{key}: found {said!r:.60}, expected a number, a pair of number and standard deviation, or None")
-
-
-def _sd(said: Any, key: str) -> float:
-    sd = _number(said, key)
-    if not (math.isfinite(sd) and sd >= 0.0):
-        raise _Wrong(f"{key}: found the standard deviation {sd:g}, expected a finite one of 0 or more")
-    return sd
-
-
-def _ends(stated: Any, key: str) -> tuple[float, float]:
-    try:
-        low, high = stated
-    except (TypeError, ValueError):
-        raise _Wrong(f"{key}: found the interval {stated!r:.60}, expected two numbers") from None
-    return _number(low, key), _number(high, key)
-
-
-def _quantity(found: Any, key: str) -> Quantity:
-    """An estimator's answer, checked; _Wrong if it is not a valid answer."""
-    if found is None or (isinstance(found, Quantity) and found.value is None):
-        return Quantity()
-    value: Any
-    sd: Any
-    stated: Any = None
-    if isinstance(found, Quantity):
-        value, sd, stated = found.value, found.sd, found.interval95
-    elif isinstance(found, Mapping):
-        if "value" not in found:
-            raise _Wrong(f"{key}: found {found!r:.60}, expected the key \"value\" in a dict")
-        value, sd, stated = found["value"], found.get("sd"), found.get("interval95")
-    elif isinstance(found, (tuple, list)) or (isinstance(found, np.ndarray) and found.shape == (2,)):
-        if len(found) != 2:
-            raise _Wrong(f"{key}: found {len(found)} numbers, expected a number, or a number and its standard deviation")
-        value, sd = found
-    else:
-        value, sd = found, None
-    value = _number(value, key)
-    answer = Quantity(value, None if sd is None else _sd(sd, key))
-    if math.isinf(value):
-        raise _Wrong(f"{key}: found {value:g}, expected a finite number, or None where it is not determined")
-    if math.isnan(value):
-        return Quantity(why="not a number")
-    if stated is not None:
-        low, high = _ends(stated, key)
-        if not low <= value <= high:
-            raise _Wrong(f"{key}: found an interval from {low:g} to {high:g}, expected one with the value in it")
-        return replace(answer, interval95=(low, high))
-    if answer.sd is None:
-        return answer
-    return replace(answer, interval95=(value - NORMAL95 * answer.sd, value + NORMAL95 * answer.sd))
-
-
-def _checked(found: Any) -> dict[str, Quantity]:
-    """The answer of a user's estimator for one configuration, checked; _Wrong if it is not a valid answer."""
-    if not isinstance(found, Mapping):
-        raise _Wrong(f"the answer: found {found!r:.60}, expected a dict of quantities")
-    if not all(key in found for key in QUANTITIES):  # then a key that is none may be a misspelt one
-        for key in found:
-            if key not in QUANTITIES:
-                raise _Wrong(f"found the quantity {key!r:.60}, expected one of {', '.join(QUANTITIES)}; further keys only "
-                             "beside all four" + _glidelab.did_you_mean(str(key), list(QUANTITIES)))
-    return {key: _quantity(found.get(key), key) for key in QUANTITIES}
 
 
 _MOST_SECONDS = 1e9  # thirty years; more than a timer of the system may take
@@ -313,16 +121,6 @@ def _at_most(seconds: Optional[float]) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - begin), 1e-6), interval)
 
 
-def _said_by(error: Exception) -> str:
-    """Kind, text and place of an exception; no text where it cannot be had."""
-    try:
-        text = f"{type(error).__name__}: {error}"
-    except Exception:  # pylint: disable=broad-exception-caught  # __str__ is the estimator's own, too
-        text = type(error).__name__
-    last = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{text} ({Path(last.filename).name}, line {last.lineno})"
-
-
 def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float, jobs: int,
               seconds: Optional[float]) -> Union[dict[str, dict[str, Quantity]], str]:
     """What an estimator says of each configuration of an experiment, or how it failed. Its positions are its own."""
@@ -334,14 +132,24 @@ def _answered(one: Union[Estimator, str], tracks: Mapping[str, Sequence[Track]],
         for configuration, of in tracks.items():
             with _at_most(seconds):
                 found = one([replace(track, t_s=np.array(track.t_s), x_m=np.array(track.x_m)) for track in of])
-            results[configuration] = _checked(found)
+            results[configuration] = checked_answer(found)
         return results
-    except _Wrong as wrong:
+    except WrongAnswer as wrong:
         return str(wrong)
     except _TooLong:
         return f"not done after {seconds:g} s"
-    except Exception as error:  # pylint: disable=broad-exception-caught  # whatever an estimator raises is its failure
-        return _said_by(error)
+    except (KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as error:  # pylint: disable=broad-exception-caught  # whatever else it raises is its failure
+        return said_by(error)
+
+
+def _import_first() -> None:
+    """Imports what results need later: a call that is ended in the middle of its own first import of the same package
+    leaves this half done."""
+    for name in ("pandas", "matplotlib.pyplot"):
+        with suppress(ImportError):
+            importlib.import_module(name)
 
 
 def _built_in(name: str, tracks: Mapping[str, Sequence[Track]], gravity_m_s2: float,
@@ -421,6 +229,8 @@ def judge(scenario: Scenario, *estimators: Union[Estimator, str], noise_m: float
         named[name] = one
     replicates = whole("replicates", replicates, 2)
     _checked_seconds(seconds)
+    if seconds is not None:
+        _import_first()
     maker = _glidelab.TrackMaker(given_scenario(scenario), real("noise_m", noise_m, "a number of metres above 0"))
     first = checked_seed(seed)
     first = maker.seed if first is None else first

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _glidelab
-from ._arrays import frozen
-from ._brief import Brief
-from ._checks import file_name, switch
+from ._shown import Brief
+from ._checks import file_name, frozen, switch
 from ._errors import input_error
 from ._inputs import PathLike, Progress, Scenario, checked_seed, given_scenario, job_count, teller
 
@@ -124,7 +123,15 @@ def render(scenario: Scenario, *, seed: Optional[int] = None, jobs: Optional[int
 
 @dataclass(frozen=True)
 class Rendered:
-    """Where an experiment folder and its truth were written, and how much is in them."""
+    """Where an experiment folder and its truth were written, and how much is in them.
+
+    Attributes
+    ----------
+    experiment, truth : str
+        The two folders.
+    clips, frames : int
+        How many there are, over all clips.
+    """
 
     experiment: str
     truth: str

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import Vector, stored, vector
-from ._brief import Brief
-from ._checks import above_0, file_name, is_whole, optional_real, real, shown, switch, text, whole
+from ._checks import (Vector, above_0, file_name, is_whole, optional_real, real, shown, stored, switch, text,
+                      vector, whole)
 from ._errors import input_error
+from ._shown import Brief, html_plot, html_table, new_axes
 from ._toml import toml_text
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -73,6 +73,33 @@ class Track(Brief):
         for key, value in given.items():
             object.__setattr__(self, key, value)
 
+    def plot(self, ax: Any = None) -> Any:
+        """x over t.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            `ax`, or new ones.
+        """
+        ax = new_axes(1)[0] if ax is None else ax
+        ax.plot(self.t_s, self.x_m, ".", markersize=3, label=self.name or None)
+        ax.set_xlabel("t (s)")
+        ax.set_ylabel("x (m)")
+        return ax
+
+    def _repr_html_(self) -> str:
+        stated = {"name": self.name, "mass (kg)": self.mass_kg, "stated α (°)": self.incline_deg,
+                  "its sd (°)": self.incline_sd_deg, "launched": self.launched, "group": self.group}
+        rows = [[words, f"{value:g}" if isinstance(value, (int, float)) else str(value)]
+                for words, value in stated.items() if value not in (None, "")]
+        try:
+            t, x = vector("t_s", self.t_s), vector("x_m", self.x_m)
+        except ValueError as error:  # what it holds is no motion, and it shows so
+            return html_table(["", ""], [*rows, ["", str(error)]])
+        rows += [["positions", str(len(x))]] + [
+            [words, f"{values[0]:.4g} to {values[-1]:.4g}"] for words, values in (("t (s)", t), ("x (m)", x)) if len(values)]
+        return html_table(["", ""], rows) + (html_plot(self.plot) if len(t) == len(x) else "")
+
 
 def given_tracks(tracks: Sequence[Track]) -> list[_glidelab.GivenTrack]:
     """As the C++ side takes them."""
@@ -95,35 +122,6 @@ def given_tracks(tracks: Sequence[Track]) -> list[_glidelab.GivenTrack]:
 def is_path(value: object) -> bool:
     """A file's or a folder's name."""
     return isinstance(value, (str, os.PathLike))
-
-
-@dataclass(frozen=True)
-class Source:
-    """A call's first arguments: tracks, or names of folders and files."""
-
-    tracks: tuple[Track, ...] = ()
-    paths: tuple[str, ...] = ()
-
-
-def source_of(source: Any, x_m: Optional[ArrayLike], **stated: Any) -> Source:
-    """What `analyze` and `diagnose` are given: (t, x), a Track, a name, or several tracks or names.
-
-    `stated` are fields of the Track that (t, x) makes.
-    """
-    if x_m is not None:
-        return Source(tracks=(Track(source, x_m, **stated),))
-    if is_path(source):
-        return Source(paths=(os.fspath(source),))
-    if isinstance(source, Track):
-        return Source(tracks=(source,))
-    if isinstance(source, Sequence) and len(source) > 0:
-        if all(isinstance(one, Track) for one in source):
-            return Source(tracks=tuple(source))
-        if all(is_path(one) for one in source):
-            return Source(paths=tuple(os.fspath(one) for one in source))
-    raise input_error("source", f"a {type(source).__name__}" + (" that is empty" if source is None or (
-        isinstance(source, Sequence) and not source) else ""),
-        "times and positions, a Track or a list of them, or names of folders or files")
 
 
 Runs = Union[str, Sequence[int], None]
@@ -233,7 +231,7 @@ def recorder(recorded_by: str) -> str:
 def given_scenario(scenario: Scenario) -> tuple[str, Optional[str]]:
     """The file, or what a dict is called in messages and its text."""
     if isinstance(scenario, Mapping):
-        return "scenario", toml_text(scenario)
+        return "scenario", text("scenario", toml_text(scenario))
     return file_name("scenario", scenario, "the name of a file, or a dict"), None
 
 

@@ -7,15 +7,27 @@ from dataclasses import dataclass
 from typing import Any, Optional
 
 from . import _glidelab
-from ._brief import Brief
 from ._results import Quantity, quantity_of
+from ._shown import Brief
 
 QUANTITIES = dict(_glidelab.quantities())  # keys and their units
 
 
 @dataclass(frozen=True)
 class Recovered:
-    """K/m, mu, alpha and the terminal velocity of one configuration, with the causes `with_causes` in the model."""
+    """What one configuration's motion shows, with causes in the model.
+
+    Attributes
+    ----------
+    group : str
+        Clips that share one set-up of the track.
+    mass_kg, incline_deg : float
+        As stated.
+    with_causes : tuple of str
+        Ids of the effects in the model.
+    k_over_m_1_s, mu, alpha_deg, v_lim_m_s : Quantity
+        With them.
+    """
 
     group: str
     mass_kg: float

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-import base64
+import csv
 import html
 import importlib
-import importlib.util
 import io
 import json
 import math
 import os
-from collections.abc import Callable, Mapping, Sequence
-from contextvars import ContextVar
+import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, dataclass, fields, is_dataclass
+from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
 
-from ._brief import Brief
+from ._checks import file_name
+from ._errors import SystemFailure
 from ._glidelab import Outcome
 from ._inputs import PathLike, Progress, teller
+from ._shown import Brief
 
 
 NORMAL95 = 1.959964  # the normal distribution's 97.5 % quantile
@@ -39,13 +41,14 @@ def plain(value: Any) -> Any:
 class Made:
     """The result on the C++ side. Pickling keeps its JSON and text."""
 
-    def __init__(self, outcome: Outcome) -> None:
+    def __init__(self, outcome: Outcome, files: Any = None) -> None:
+        self.files = files  # what it reads to write its page
         self.json: str = outcome.json
         self.text: str = outcome.text
         self.outcome: Optional[Outcome] = outcome
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"json": self.json, "text": self.text, "outcome": None}
+        return {"json": self.json, "text": self.text, "outcome": None, "files": None}
 
 
 class _Holder:  # pylint: disable=too-few-public-methods
@@ -95,10 +98,83 @@ class Result(_Holder, Brief):
         """
         if self._made.outcome is None:
             raise RuntimeError("a result that was pickled has its numbers and its text, but no page to write")
-        self._made.outcome.write(os.fspath(folder), teller(progress))
+        self._made.outcome.write(file_name("folder", folder, "the name of a folder"), teller(progress))
 
     def _repr_html_(self) -> str:
         return f"<pre>{html.escape(str(self))}</pre>"
+
+
+def _cell(value: Any) -> str:
+    """A value of a CSV table, all digits of a number; empty where there is none."""
+    if value is None or (isinstance(value, (float, np.floating)) and not math.isfinite(value)):
+        return ""
+    return repr(float(value)) if isinstance(value, (float, np.floating)) else str(value)
+
+
+def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
+    """Columns as a CSV file, a line for each row."""
+    said = io.StringIO()
+    lines = csv.writer(said, lineterminator="\n")
+    lines.writerow(columns)
+    lines.writerows([_cell(value) for value in row] for row in zip(*columns.values()))
+    return said.getvalue()
+
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{title}</title>
+<style>body{{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}table{{border-collapse:collapse}}
+th,td{{padding:.2em .8em;text-align:left;border-bottom:1px solid #ddd}}img{{max-width:100%}}</style></head>
+<body><h1>{title}</h1>
+{body}
+</body></html>
+"""
+
+
+class Written(Brief):
+    """A result of no command: it writes itself."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
+        data: dict[str, Any] = plain(self)
+        return data
+
+    def _columns(self) -> Mapping[str, Sequence[Any]]:
+        """Its table; without a column where it has none."""
+        return {}
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(str(self))}</pre>"
+
+    def write(self, folder: PathLike) -> None:
+        """Writes its data, its table if it has one, and a page with its tables and plots: ``NAME.json``, ``NAME.csv``
+        and ``report.html``, where NAME is the class's in small letters.
+
+        Parameters
+        ----------
+        folder : str or path
+            Made if it is missing. Files appear whole or not at all; others that lie there stay.
+
+        Raises
+        ------
+        SystemFailure
+            The folder cannot be written.
+        """
+        name = type(self).__name__
+        columns = self._columns()
+        files = {f"{name.lower()}.json": json.dumps(self.to_dict(), indent=1, allow_nan=False, ensure_ascii=False) + "\n"}
+        if columns:
+            files[f"{name.lower()}.csv"] = csv_text(columns)
+        files["report.html"] = _PAGE.format(title=name, body=self._repr_html_())
+        where = Path(file_name("folder", folder, "the name of a folder"))
+        try:
+            where.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryDirectory(prefix=".glidelab-", dir=where) as staged:
+                for file, text in files.items():
+                    Path(staged, file).write_text(text, encoding="utf-8")
+                for file in files:
+                    Path(staged, file).replace(where / file)
+        except OSError as error:
+            raise SystemFailure(f"{error.filename or where}: cannot be written: {error.strerror}") from None
 
 
 @dataclass(frozen=True)
@@ -211,53 +287,3 @@ def frame_of(columns: Mapping[str, Sequence[Any]], by_row: Sequence[str] = ()) -
     frame = pandas.DataFrame(table)
     frame.attrs["units"] = units
     return frame
-
-
-def html_table(header: Sequence[str], rows: Sequence[Sequence[str]], caption: str = "") -> str:
-    """A table; texts are escaped."""
-    cells = "".join(f"<th>{html.escape(one)}</th>" for one in header)
-    body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
-    head = f"<caption>{html.escape(caption)}</caption>" if caption else ""
-    return f"<table>{head}<thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
-
-
-_shown = ContextVar("_shown", default=True)  # whether figures are pyplot's, which shows them
-
-
-def new_axes(count: int) -> list[Any]:
-    """`count` axes of matplotlib, three in a row at most, in a figure of their own.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        matplotlib is not installed.
-    """
-    if count == 0:
-        return []
-    columns = max(1, min(count, 3))
-    rows = -(-count // columns)
-    width, height = (6.0, 4.0) if columns == 1 else (4.0, 3.2)
-    size = (width * columns, height * rows)
-    make = importlib.import_module("matplotlib.pyplot").figure if _shown.get() else importlib.import_module(
-        "matplotlib.figure").Figure
-    axes = list(make(figsize=size, layout="constrained").subplots(rows, columns, squeeze=False).flat)
-    for unused in axes[count:]:
-        unused.set_axis_off()
-    return axes[:count]
-
-
-def html_plot(plot: Callable[[], Any]) -> str:
-    """What `plot` draws, as an image for a notebook; empty without matplotlib. No window opens."""
-    if importlib.util.find_spec("matplotlib") is None:
-        return ""
-    before = _shown.set(False)
-    try:
-        drawn = plot()
-    finally:
-        _shown.reset(before)
-    axes = drawn if isinstance(drawn, list) else [drawn]
-    if not axes:
-        return ""
-    picture = io.BytesIO()
-    axes[0].figure.savefig(picture, format="png", dpi=90)
-    return f'<img alt="plot" src="data:image/png;base64,{base64.b64encode(picture.getvalue()).decode()}">'

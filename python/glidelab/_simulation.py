@@ -8,16 +8,23 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _glidelab
-from ._arrays import Vector, frozen
-from ._brief import Brief
-from ._checks import optional_real
+from ._checks import Vector, frozen, optional_real
 from ._inputs import Progress, Scenario, Track, given_scenario, teller
-from ._results import Made, Result, frame_of, html_plot, html_table, new_axes
+from ._results import Made, Result, frame_of
+from ._shown import Brief, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
 class ModeChange:
-    """When and where the glider changed between ``slide_up``, ``stick`` and ``slide_down``."""
+    """When and where the glider changed between ``slide_up``, ``stick`` and ``slide_down``.
+
+    Attributes
+    ----------
+    t_s, x_m : float
+        Time and place of the change.
+    before, after : {"slide_up", "stick", "slide_down"}
+        How it moved until then, and from then on.
+    """
 
     t_s: float
     x_m: float
@@ -63,10 +70,13 @@ class SimulatedClip(Brief):
         seed : int
             Of ``numpy.random.default_rng``.
         **stated
-            Fields of Track: mass_kg, incline_deg, launched, ...
+            Fields of Track: mass_kg, incline_deg, ... Without one, `launched` is as the motion begins, and `name` the
+            clip's.
         """
         noise = np.random.default_rng(seed).normal(0.0, 1.0, len(self.x_m)) * noise_m
-        fields: dict[str, Any] = {"name": self.name, **stated}
+        v_m_s = self.v_m_s[0] if len(self.v_m_s) > 0 else 0.0
+        launched = "up" if v_m_s < 0.0 else "down" if v_m_s > 0.0 else "released"
+        fields: dict[str, Any] = {"name": self.name, "launched": launched, **stated}
         return Track(self.t_s, self.x_m + noise, **fields)
 
     def to_frame(self) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional, SupportsFloat
 
@@ -9,11 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _glidelab
-from ._arrays import Vector, vector
-from ._brief import Brief
-from ._checks import optional_real, text, whole
+from ._checks import Vector, optional_real, text, vector, whole
 from ._errors import input_error, input_errors
-from ._results import NORMAL95, frame_of, html_plot, html_table, new_axes, plain
+from ._results import NORMAL95, Written, frame_of
+from ._shown import Brief, html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,7 +45,7 @@ class Strength(Brief):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Smoothed(Brief):
+class Smoothed(Written):
     """Position, velocity and acceleration; all arrays have one length, NaN where too few points lie within reach.
 
     Attributes
@@ -115,16 +115,14 @@ class Smoothed(Brief):
     def _repr_html_(self) -> str:
         return html_table(["", ""], self._rows()) + html_plot(self.plot)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
-        data: dict[str, Any] = plain(self)
-        return data
+    def _columns(self) -> Mapping[str, Sequence[Any]]:
+        names = ("t_s", "x_m", "sd_x_m", "v_m_s", "sd_v_m_s", "a_m_s2", "sd_a_m_s2")
+        columns = {name: getattr(self, name) for name in names}
+        return {name: values for name, values in columns.items() if values is not None}
 
     def to_frame(self) -> Any:
         """A pandas.DataFrame, one row per time, with units in ``attrs["units"]``."""
-        names = ("t_s", "x_m", "sd_x_m", "v_m_s", "sd_v_m_s", "a_m_s2", "sd_a_m_s2")
-        columns = {name: getattr(self, name) for name in names}
-        return frame_of({name: values for name, values in columns.items() if values is not None})
+        return frame_of(self._columns())
 
 
 def _span(values: Vector) -> str:
@@ -173,6 +171,8 @@ def smooth(t_s: ArrayLike, x_m: ArrayLike, bandwidth_s: Optional[SupportsFloat] 
     ------
     InputError
         Numbers that are not finite, times that do not rise, an option out of range.
+    NumericalError
+        ``kalman`` or ``spline``: a gap so long that the uncertainty across it cannot be computed.
 
     Notes
     -----
@@ -221,6 +221,9 @@ def _within(key: str, times: Vector, t: Vector) -> Vector:
     return times
 
 
+_LARGEST = 1e70  # its fourth power is finite with time steps in it
+
+
 def _smooth_by(smoother: str, t: Vector, x: Vector, bandwidth_s: Optional[float], order: int, kernel: str,
                noise_m: Optional[float], at_s: Optional[ArrayLike], breaks_s: Optional[ArrayLike]) -> Smoothed:
     if bandwidth_s is not None:
@@ -228,6 +231,8 @@ def _smooth_by(smoother: str, t: Vector, x: Vector, bandwidth_s: Optional[float]
     if (order, kernel) != (3, "gaussian"):
         raise input_error("order" if order != 3 else "kernel", repr(order if order != 3 else kernel),
                           f'the default with "{smoother}": others are for the local polynomial')
+    for i in np.flatnonzero(np.abs(x) > _LARGEST).tolist():
+        raise input_error(f"x_m[{i}]", f"{x[i]:g}", f"a number within ±{_LARGEST:g}: variances are computed of its square")
     at = None if at_s is None else _within("at_s", vector("at_s", at_s), t)
     rising, place = (None, None) if at is None else np.unique(at, return_inverse=True)
     rows, like_s, method, time_s, noise, breaks, jump, factor = _glidelab.smooth_by(
@@ -240,11 +245,34 @@ def _smooth_by(smoother: str, t: Vector, x: Vector, bandwidth_s: Optional[float]
 
 @dataclass(frozen=True)
 class BandwidthRule:
-    """A rule that chooses a bandwidth: its name, what it does, and what it assumes of the noise."""
+    """A rule that chooses a bandwidth.
+
+    Attributes
+    ----------
+    name : str
+        As `choose_bandwidth` and `analyze` take it.
+    words, assumes : str
+        What it does, and what it assumes of the noise.
+    """
 
     name: str
     words: str
     assumes: str
+
+    def _repr_html_(self) -> str:
+        return _rules_html([self])
+
+
+def _rules_html(rules: Sequence[BandwidthRule]) -> str:
+    return html_table(["rule", "what it does", "what it assumes of the noise"],
+                      [[one.name, one.words, one.assumes] for one in rules])
+
+
+class _Rules(tuple[BandwidthRule, ...]):
+    """The rules, which a notebook shows as a table."""
+
+    def _repr_html_(self) -> str:
+        return _rules_html(self)
 
 
 def bandwidth_rules() -> tuple[BandwidthRule, ...]:
@@ -253,17 +281,17 @@ def bandwidth_rules() -> tuple[BandwidthRule, ...]:
     Returns
     -------
     tuple of BandwidthRule
-        The default first.
+        The default first. A notebook shows them as a table.
 
     Notes
     -----
     docs/guide/bandwidth.md names the source of each.
     """
-    return tuple(BandwidthRule(*rule) for rule in _glidelab.bandwidth_rules())
+    return _Rules(BandwidthRule(*rule) for rule in _glidelab.bandwidth_rules())
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Bandwidth(Brief):
+class Bandwidth(Written):
     """A bandwidth that a rule chose.
 
     Attributes
@@ -281,10 +309,15 @@ class Bandwidth(Brief):
     at_s: Vector
     local_s: Vector
 
-    def to_dict(self) -> dict[str, Any]:
-        """Its data as JSON has them: arrays are lists, and what is not finite is None."""
-        data: dict[str, Any] = plain(self)
-        return data
+    def _columns(self) -> Mapping[str, Sequence[Any]]:
+        table: dict[str, Any] = {"t_s": self.at_s, "bandwidth_s": self.local_s}
+        return table if self.at_s.size > 0 else {}
+
+    def _repr_html_(self) -> str:
+        rows = [["bandwidth (s)", f"{self.bandwidth_s:.4g}"], ["chosen by", self.method]]
+        if self.local_s.size > 0:
+            rows.append(["from point to point (s)", _span(self.local_s)])
+        return html_table(["", ""], rows)
 
     def __float__(self) -> float:
         return self.bandwidth_s

@@ -1,18 +1,20 @@
-"""validate() and coverage(): estimates compared with the truth of a scenario."""
+"""validate() and coverage(), and what judge() finds: estimates compared with the truth of a scenario."""
 
 from __future__ import annotations
 
+import html
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, SupportsFloat
+from typing import Any, Optional, SupportsFloat, Union
 
 from . import _glidelab
 from ._checks import above_0, optional_real, reals, whole
 from ._inputs import Progress, Scenario, checked_seed, given_scenario, job_count, teller
-from ._outside import OutsideRuns, given_command, outside_runs
-from ._results import NORMAL95, Made, Result, frame_of, html_plot, html_table, new_axes, words_of
+from ._outside import Estimator, OutsideRuns, given_command, outside_runs
+from ._results import NORMAL95, Made, Result, Written, frame_of, rounded, unit_of, words_of
+from ._shown import html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,7 @@ class Validation(Result):
                           rows) + html_plot(self.plot)
 
 
-def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, estimator_name: str = "",
+def validate(scenario: Scenario, *, estimator_command: Union[str, Estimator, None] = None, estimator_name: str = "",
              estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
              seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Validation:
     """Films a scenario, analyses the images, and compares the results with the truth.
@@ -115,13 +117,16 @@ def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, est
     ----------
     scenario : str, path or dict
         A scenario file (docs/reference/scenario.md), or what `load_scenario` makes of one.
-    estimator_command : str, optional
+    estimator_command : str or callable, optional
         Also judge an estimator of your own: a program that reads the experiment folder ``{folder}`` and writes
-        ``{out}/results.json``, such as ``"python3 mine.py {folder} {out}"`` (docs/reference/own-estimator.md).
+        ``{out}/results.json``, such as ``"python3 mine.py {folder} {out}"`` (docs/reference/own-estimator.md); or a
+        function as `estimator` describes it, which states a standard deviation with each value. A function is called in
+        this process, for one run at a time.
     estimator_name : str
-        Its name in results; the name of its file.
+        Its name in results; the name of its file, or the function's.
     estimator_seconds, estimator_megabytes : float
-        The longest time that a run of it may take, and the memory of each of its processes.
+        The longest time that a run of it may take, and the memory of each of its processes. A function's call that takes
+        longer counts as a failure and is not ended, and its memory is not bounded.
     seed : int, optional
         Of the camera's noise; the scenario's.
     jobs, progress
@@ -142,9 +147,9 @@ def validate(scenario: Scenario, *, estimator_command: Optional[str] = None, est
     -----
     docs/guide/trust.md; the least standard deviation is the Cramér-Rao bound (Rao 1945) of these frames and this noise.
     """
-    command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
-    outcome, analysis = _glidelab.validate(given_scenario(scenario), command, checked_seed(seed), job_count(jobs),
-                                           teller(progress))
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
+        outcome, analysis = _glidelab.validate(given_scenario(scenario), command, checked_seed(seed), job_count(jobs),
+                                               teller(progress))
     made = Made(outcome)
     found = Result(made).to_dict()
     names = ("truth", "value", "sd", "error", "cramer_rao_sd")
@@ -261,7 +266,7 @@ class Coverage(Result):
 
 def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates: int = 1000,
              levels: Sequence[float] = (), bandwidth_s: Optional[SupportsFloat] = None,
-             estimator_command: Optional[str] = None, estimator_name: str = "",
+             estimator_command: Union[str, Estimator, None] = None, estimator_name: str = "",
              estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
              seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Coverage:
     """Analyses many replicates of a scenario's motions, and counts how often the intervals contain the true value.
@@ -297,12 +302,12 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
     -----
     docs/evidence/coverage.md. Intervals of a count are those of Clopper and Pearson (1934).
     """
-    command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
     bandwidth = None if bandwidth_s is None else above_0("bandwidth_s", bandwidth_s, "seconds, above 0")
     noise = optional_real("noise_m", noise_m, "a number of metres, or None")
-    made = Made(_glidelab.coverage(given_scenario(scenario), noise, whole("replicates", replicates, 1, 1000000),
-                                   reals("levels", levels, "a list of levels above 0 and below 1"), bandwidth,
-                                   command, checked_seed(seed), job_count(jobs), teller(progress)))
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
+        made = Made(_glidelab.coverage(given_scenario(scenario), noise, whole("replicates", replicates, 1, 1000000),
+                                       reals("levels", levels, "a list of levels above 0 and below 1"), bandwidth,
+                                       command, checked_seed(seed), job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     rows = []
     for one in found["quantities"]:
@@ -312,3 +317,144 @@ def coverage(scenario: Scenario, *, noise_m: Optional[float] = None, replicates:
             one["covered"], one.get("bias"), one.get("sd"), one.get("stated_sd"), one.get("coverage"),
             None if interval is None else (interval[0], interval[1]), one.get("p_value")))
     return Coverage(made, found["replicates"], tuple(rows), outside_runs(found))
+
+
+@dataclass(frozen=True)
+class Judged:
+    """The errors of one estimator in one quantity of one configuration.
+
+    Attributes
+    ----------
+    configuration, estimator, quantity : str
+        Of what, by what.
+    truth : float
+        What the scenario put in.
+    answered, failed : int
+        Replicates with a value, and those in which the estimator failed: it raised something, gave no answer as
+        `estimator` describes it, or took too long.
+    bias, sd, rms_error : float or None
+        Mean error, standard deviation and root mean square of the errors; None without an answer. Also called `rms`.
+    stated : int
+        Answers with an interval.
+    coverage : float or None
+        The share of these whose 95 % interval contains the true value. Also called `covered`.
+    """
+
+    configuration: str
+    estimator: str
+    quantity: str
+    truth: float
+    answered: int
+    failed: int
+    bias: Optional[float]
+    sd: Optional[float]
+    rms: Optional[float]
+    stated: int
+    covered: Optional[float]
+
+    @property
+    def rms_error(self) -> Optional[float]:
+        """Root mean square of the errors."""
+        return self.rms
+
+    @property
+    def coverage(self) -> Optional[float]:
+        """The share of stated 95 % intervals that contain the true value."""
+        return self.covered
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Judgement(Written):
+    """How estimators did on the same motions.
+
+    Attributes
+    ----------
+    replicates : int
+        How many experiments were made.
+    rows : tuple of Judged
+        Every quantity with a truth, of every configuration, by every estimator.
+    seconds : dict of str to float
+        Mean time that an estimator took for an experiment.
+    failures : dict of str to str
+        How an estimator failed first.
+    """
+
+    replicates: int
+    rows: tuple[Judged, ...]
+    seconds: Mapping[str, float]
+    failures: Mapping[str, str]
+
+    def failed(self, estimator_name: str) -> int:
+        """Replicates in which an estimator failed."""
+        return max((row.failed for row in self.rows if row.estimator == estimator_name), default=0)
+
+    def of(self, estimator_name: str, quantity: str) -> tuple[Judged, ...]:
+        """The rows of one estimator and one quantity, one per configuration."""
+        return tuple(row for row in self.rows if row.estimator == estimator_name and row.quantity == quantity)
+
+    def to_frame(self) -> Any:
+        """A pandas.DataFrame, one row per quantity."""
+        return frame_of({name: [getattr(row, name) for row in self.rows] for name in (
+            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms", "covered",
+            "rms_error", "coverage")}, ("truth", "bias", "sd", "rms", "rms_error"))
+
+    def _columns(self) -> Mapping[str, Sequence[Any]]:
+        table = {name: [getattr(row, name) for row in self.rows] for name in (
+            "configuration", "quantity", "estimator", "truth", "answered", "failed", "bias", "sd", "rms_error", "stated",
+            "coverage")}
+        return {**table, "unit": [unit_of(row.quantity) for row in self.rows]}
+
+    def plot(self) -> list[Any]:
+        """Mean errors with the standard deviation of the errors as bars, in the quantity's unit, an axis a quantity and
+        a colour an estimator.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            One for each quantity with an answer.
+        """
+        answered = [row for row in self.rows if row.bias is not None]
+        names = list(dict.fromkeys(row.quantity for row in answered))
+        estimators = list(dict.fromkeys(row.estimator for row in self.rows))
+        places = list(dict.fromkeys(row.configuration for row in self.rows))
+        axes = new_axes(len(names))
+        for axis, name in zip(axes, names):
+            for number, estimator in enumerate(estimators):
+                rows = [row for row in answered if (row.quantity, row.estimator) == (name, estimator)]
+                if rows:
+                    axis.errorbar([places.index(row.configuration) + 0.15 * number for row in rows],
+                                  [row.bias for row in rows], [row.sd or 0.0 for row in rows], fmt="o",
+                                  color=f"C{number}", label=estimator)
+            axis.axhline(0.0, color="0.8", zorder=0)
+            axis.set_xticks(range(len(places)), places)
+            axis.set_ylabel(words_of(name, "error of "))
+            axis.legend()
+        return axes
+
+    def _table(self) -> list[list[str]]:
+        def text(value: Optional[float]) -> str:
+            return "" if value is None else f"{value:.3g}"
+        return [[row.configuration, words_of(row.quantity), row.estimator, rounded(row.truth, None),
+                 f"{row.answered} of {self.replicates}" + (f", {row.failed} failed" if row.failed else ""),
+                 text(row.bias), text(row.rms),
+                 "" if row.covered is None else f"{100.0 * row.covered:.0f} %"] for row in self.rows]
+
+    def __str__(self) -> str:
+        rows = [list(_HEADER), *self._table()]
+        widths = [max(len(row[i]) for row in rows) for i in range(len(_HEADER))]
+        lines = self._failures()
+        lines += ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+        lines += [f"{name}: {1e3 * seconds:.2f} ms an experiment" for name, seconds in self.seconds.items()]
+        return "\n".join(lines) + "\n"
+
+    def _failures(self) -> list[str]:
+        """A line for each estimator that failed: what is below is not about these replicates."""
+        return [f"{name} failed in {self.failed(name)} of {self.replicates} replicates, first with: {what}"
+                for name, what in self.failures.items()]
+
+    def _repr_html_(self) -> str:
+        failed = "".join(f"<p><b>{html.escape(line)}</b></p>" for line in self._failures())
+        return failed + html_table(list(_HEADER), self._table()) + html_plot(self.plot)
+
+
+_HEADER = ("configuration", "quantity", "estimator", "truth", "answers", "mean error", "rms error", "95 % hold")

@@ -5,14 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from . import _glidelab
 from ._checks import file_name, text, texts, whole
 from ._errors import input_error
 from ._inputs import PathLike, Progress, checked_seed, job_count, teller
-from ._outside import OutsideRuns, given_command, outside_runs
-from ._results import Made, Result, frame_of, html_plot, html_table, new_axes, unit_of, words_of
+from ._outside import Estimator, OutsideRuns, given_command, outside_runs
+from ._results import Made, Result, frame_of, unit_of, words_of
+from ._shown import html_plot, html_table, new_axes
 
 
 @dataclass(frozen=True)
@@ -292,7 +293,7 @@ def _by_quantity(rows: Sequence[Mapping[str, Any]]) -> dict[str, list[Mapping[st
     return found
 
 
-def sweep(file: PathLike, folder: PathLike, *, estimator_command: Optional[str] = None, estimator_name: str = "",
+def sweep(file: PathLike, folder: PathLike, *, estimator_command: Union[str, Estimator, None] = None, estimator_name: str = "",
           estimator_seconds: float = 60.0, estimator_megabytes: float = 4096.0,
           seed: Optional[int] = None, jobs: Optional[int] = None, progress: Progress = None) -> Sweep:
     """Runs a scenario many times with varied values. Called again with the same folder, it resumes where it stopped.
@@ -322,9 +323,9 @@ def sweep(file: PathLike, folder: PathLike, *, estimator_command: Optional[str] 
     -----
     docs/reference/sweep.md. The least standard deviation is the Cramér-Rao bound (Rao 1945).
     """
-    command = given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes)
-    made = Made(_glidelab.sweep(file_name("file", file), file_name("folder", folder, "the name of a folder"), command, checked_seed(seed), job_count(jobs),
-                                teller(progress)))
+    with given_command(estimator_command, estimator_name, estimator_seconds, estimator_megabytes) as command:
+        made = Made(_glidelab.sweep(file_name("file", file), file_name("folder", folder, "the name of a folder"), command,
+                                    checked_seed(seed), job_count(jobs), teller(progress)))
     found = Result(made).to_dict()
     return Sweep(made, found["name"], found["runs"], found["failed"], os.path.join(os.fspath(folder), "sweep.sqlite"),
                  outside_runs(found))

@@ -86,7 +86,13 @@ class WrongInput(InFolder):
                 ("targets", "0.1", lambda: glidelab.require("none.toml", ("mu", 0.1))),
                 ("confirm", "1", lambda: glidelab.require("none.toml", ["mu=1"], confirm=1)),
                 ("file", "3", lambda: glidelab.sweep(3, self.folder)),
-                ("source", "3", lambda: glidelab.check(3)),
+                ("source", "an int", lambda: glidelab.check(3)),
+                ("name", "'a\\udcff'", lambda: analyze(t, x, name="a\udcff")),
+                ("name", "'a\\udcff'", lambda: analyze(track(t, x, name="a\udcff"))),
+                ("source", "'a\\udcff'", lambda: analyze("a\udcff")),
+                ("source", "'a\\udcff'", lambda: glidelab.certify(["a\udcff"])),
+                ("images[0]", "'a\\udcff'", lambda: glidelab.calibrate(["a\udcff"], (9, 6), 0.04)),
+                ("x_m[2]", "1e+200", lambda: glidelab.smooth(t, np.where(t == t[2], 1e200, x), smoother="kalman")),
                 ("only", "3", lambda: glidelab.blind(1, self.folder, only=3)),
                 ("inner_corners", "9", lambda: glidelab.calibrate([], 9, 0.04)),
                 ("inner_corners", "nan", lambda: glidelab.calibrate([], (math.nan, 6), 0.04)),
@@ -102,6 +108,35 @@ class WrongInput(InFolder):
             with self.subTest(key=key, found=found):
                 error = self.refused(call, key=key, found=found)
                 self.assertLess(len(str(error)), 300)
+
+    def test_a_scenario_s_text_that_is_no_unicode_is_shown_where_it_is(self):
+        scenario = {**glidelab.load_scenario(SCENARIO), "name": "one\udcfftwo"}
+        error = self.refused(lambda: glidelab.simulate(scenario), key="scenario")
+        self.assertRegex(error.found, r"one\\udcff'$")
+        self.assertLess(len(error.found), 60)
+
+    def test_a_gap_across_which_nothing_is_known_is_told_in_glidelab_s_words(self):
+        short = damped(duration_s=0.5)
+        t = np.arange(1000) * 0.005  # the two end at different places of the computation
+        for t, x in (short, (t, 0.5 * t - 0.1 * np.exp(-t) + np.random.default_rng(1).normal(0.0, 2e-5, len(t)))):
+            half = len(t) // 2
+            for smoother in ("kalman", "spline"):
+                with self.assertRaises((glidelab.NumericalError, glidelab.InputError)) as caught:
+                    glidelab.smooth(np.append(t[:half], t[half:] + 1e6), x, smoother=smoother)
+                self.assertRegex(str(caught.exception), "gap|neither motion nor noise")
+                self.assertNotIn("boost", str(caught.exception))
+
+    def test_tracks_for_what_reads_files(self):
+        t, x = damped()
+        self.refused(lambda: glidelab.check(glidelab.Track(t, x, launched="up")), file='track "track-1"', key="mass_kg")
+        self.refused(lambda: glidelab.check([glidelab.Track(t, x, mass_kg=0.3)]), key="launched", found="'unknown'")
+        self.refused(lambda: glidelab.check(glidelab.Track(t, x), mass_kg=1.0), key="mass_kg")
+        self.refused(lambda: glidelab.check(t, x, runs="all"), key="runs")
+        self.refused(lambda: glidelab.certify(t, x[:-1]), key="x_m", found=f"{len(t) - 1} numbers")
+        self.refused(lambda: glidelab.certify(t, x, gravity_sd_m_s2=0.1), key="gravity_sd_m_s2")
+        self.refused(lambda: glidelab.check(["a", "b"]), key="source", found="2 names")
+        error = self.refused(lambda: glidelab.certify(t[::-1], x), file="track.csv")
+        self.assertNotIn("/", str(error))  # no name of a temporary folder
 
     def test_masked_values_are_refused_where_nan_is(self):
         t, x = damped()

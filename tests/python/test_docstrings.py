@@ -1,6 +1,7 @@
 """Docstrings in numpydoc's form: every argument, what is returned, what is raised, and where it comes from."""
 
 import builtins
+import dataclasses
 import inspect
 import re
 import unittest
@@ -39,6 +40,15 @@ class Functions(unittest.TestCase):
                     for error in one.split(", "):
                         self.assertTrue(hasattr(glidelab, error) or hasattr(builtins, error), f"{name}: {error}")
             self.assertEqual(list(sections), [one for one in HEADINGS if one in sections], name)
+
+    def test_every_field_of_a_result_is_described(self):
+        for name in glidelab.__all__:
+            shown = getattr(glidelab, name)
+            if dataclasses.is_dataclass(shown):
+                said = {one for line in re.findall(r"^(\S.*?) : ", sections_of(shown.__doc__).get("Attributes", ""), re.MULTILINE)
+                        for one in line.split(", ")} | set(re.findall(r"`(\w+)`", shown.__doc__))
+                lacking = {field.name for field in dataclasses.fields(shown)} - said
+                self.assertEqual(lacking, set(), name)
 
     def test_a_method_has_its_source(self):
         for name, _, sections in self.functions():

@@ -1,6 +1,11 @@
 """judge(): an estimator of the user's own beside the built-in ones."""
 
+import asyncio
+import math
+import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -8,7 +13,8 @@ import unittest
 import numpy as np
 
 import glidelab
-from tests.python.support import SOURCE
+from tests.python.support import SOURCE, InFolder, needs
+from tests.python.test_parts import small_scenario
 
 SCENARIO = SOURCE / "scenarios" / "paper" / "inclined.toml"
 
@@ -89,6 +95,15 @@ class Judging(unittest.TestCase):
         self.assertIn("own failed in 2 of 2 replicates, first with: Own: of my own", str(judged).splitlines()[2])
         self.assertIn("0 of 2, 2 failed", str(judged))
         self.assertIn("own failed in 2 of 2 replicates", judged._repr_html_())
+
+    def test_an_estimator_of_coroutines_that_is_cancelled_has_failed(self):
+        for raised in (asyncio.CancelledError, GeneratorExit):
+            def cancelled(tracks, error=raised):
+                raise error
+
+            judged = glidelab.judge(SCENARIO, cancelled, noise_m=2e-5, replicates=2)
+            self.assertEqual({row.failed for row in judged.rows}, {2})
+            self.assertTrue(judged.failures["cancelled"].startswith(raised.__name__))
 
     def test_who_wants_to_stop_is_not_held(self):
         for wanted in (KeyboardInterrupt, SystemExit):
@@ -195,6 +210,14 @@ class Judging(unittest.TestCase):
 
 
 class Patience(unittest.TestCase):
+    @needs("pandas")
+    @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
+    def test_what_tables_need_is_imported_before_a_call_that_may_be_ended_within_its_import(self):
+        code = (f"import glidelab, sys\ndef mine(tracks):\n    print('pandas' in sys.modules)\n    return {{}}\n"
+                f"glidelab.judge({str(SCENARIO)!r}, mine, noise_m=2e-5, replicates=2, seconds=60.0)")
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        self.assertEqual(set(done.stdout.split()), {"True"})
+
     @unittest.skipUnless(hasattr(signal, "setitimer"), "skipped: no signal.setitimer")
     def test_a_call_that_takes_too_long_is_ended_and_counted(self):
         def endless(tracks):
@@ -249,3 +272,90 @@ class Patience(unittest.TestCase):
             with self.assertRaises(glidelab.InputError) as caught:
                 glidelab.judge(SCENARIO, lambda tracks: {}, noise_m=2e-5, replicates=2, seconds=seconds)
             self.assertEqual(caught.exception.key, "seconds")
+
+
+def scaled(tracks):
+    """Numbers of the positions, the masses and the launches: what another reader of the same folder finds as well."""
+    of = sum(float(track.x_m[0] + track.t_s[-1]) * track.mass_kg * (2.0 if track.launched == "up" else 1.0) for track in tracks)
+    return {"k_over_m_1_s": (of, 0.5), "mu": None, "alpha_deg": {"value": of, "sd": 1.0, "interval95": (of - 3.0, of + 1.0)},
+            "v_lim_m_s": math.nan, "why": {"mu": "not asked"}}
+
+
+PROGRAM = """
+import json, pathlib, sys, tomllib
+folder, out = map(pathlib.Path, sys.argv[1:])
+found = {}
+for clip in tomllib.loads((folder / "experiment.toml").read_text())["clip"]:
+    lines = (folder / "tracks" / (clip["name"] + ".csv")).read_text().split()[1:]
+    of = (float(lines[0].split(",")[1]) + float(lines[-1].split(",")[0])) * clip["mass_kg"] * (1 + (clip["launched"] == "up"))
+    names, sums = found.setdefault((clip["mass_kg"], clip["incline_deg"], clip.get("group")), ([], []))
+    names.append(clip["name"])
+    sums.append(of)
+configurations = [{"clips": names, "k_over_m_1_s": {"value": sum(of), "sd": 0.5}, "mu": None, "v_lim_m_s": None,
+                   "alpha_deg": {"value": sum(of), "sd": 1.0, "interval95": [sum(of) - 3.0, sum(of) + 1.0]}}
+                  for names, of in found.values()]
+(out / "results.json").write_text(json.dumps({"format": 1, "configurations": configurations}))
+"""
+
+
+class AsACommand(InFolder):
+    """A function in place of a program's command: the same folder, the same checks, the same results."""
+
+    def test_a_function_is_judged_as_the_program_that_does_the_same(self):
+        (self.folder / "mine.py").write_text(PROGRAM)
+        by_program = {"estimator_command": f"{sys.executable} {self.folder}/mine.py {{folder}} {{out}}",
+                      "estimator_name": "scaled"}
+        (self.folder / "sweep.toml").write_text(
+            f'format = 1\nname = "short"\nscenario = "{SCENARIO}"\nreplicates = 1\nseed = 2\nestimators = '
+            '["phase-diagram"]\n[tracks]\nnoise_m = 2e-5\n[[vary]]\nkey = "camera.frame_rate_hz"\nvalues = [100.0, 200.0]\n')
+        small = small_scenario()
+        for study in (lambda **mine: glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=3, seed=5, **mine),
+                      lambda **mine: glidelab.validate(small, **mine),
+                      lambda **mine: glidelab.sweep(self.folder / "sweep.toml", self.folder / str(len(mine)), **mine)):
+            of_function, of_program = study(estimator_command=scaled), study(**by_program)
+            self.assertEqual((of_function.outside.name, of_function.outside.failed), ("scaled", 0), of_function.outside)
+            one, other = ({key: value for key, value in found.to_dict().items() if key not in ("outside", "wall_s")}
+                          for found in (of_function, of_program))
+            self.assertEqual(one, other)
+        again = glidelab.sweep(self.folder / "sweep.toml", self.folder / "1", estimator_command=scaled)  # goes on
+        self.assertEqual(again.to_dict()["overall"], of_function.to_dict()["overall"])
+
+    def test_what_it_does_wrong_is_counted_and_told(self):
+        def raising(tracks):
+            raise ValueError("two\nlines")
+
+        def uncertain(tracks):
+            return {"mu": 0.1}
+
+        def leaving(tracks):
+            raise SystemExit(3)
+
+        for function, said in ((raising, r"ValueError: two lines \(test_estimator\.py, line \d+\)$"),
+                               (uncertain, "mu: found no standard deviation"), (leaving, "SystemExit: 3")):
+            with self.subTest(function.__name__):
+                outside = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, estimator_command=function).outside
+                self.assertEqual((outside.runs, outside.failed), (2, 2))
+                self.assertRegex(outside.failures["exit_status"].first, "^exit status 1: " + said)
+        released = threading.Event()
+        outside = glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, estimator_seconds=0.3,
+                                    estimator_command=lambda tracks: released.wait(60.0)).outside
+        released.set()
+        self.assertEqual((outside.name, outside.failures["time_out"].count), ("lambda", 2))
+
+    def test_it_is_not_judged_under_one_name_twice_at_once(self):
+        def inner(tracks):
+            return {}
+
+        seen = []
+
+        def nested(tracks):
+            inner.__name__ = "nested"
+            try:
+                glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, estimator_command=inner)
+            except glidelab.InputError as error:
+                seen.append(error.key)
+            return {}
+
+        glidelab.coverage(SCENARIO, noise_m=2e-5, replicates=2, estimator_command=nested)
+        self.assertEqual(set(seen), {"estimator_command"})
+        self.assertFalse([key for key in os.environ if key.startswith("GLIDELAB_FUNCTION")])

@@ -20,7 +20,7 @@ class Numpy(unittest.TestCase):
 
     def test_a_numpy_that_the_module_would_misread_is_refused(self):
         from glidelab import _glidelab
-        from glidelab._arrays import refuse_numpy
+        from glidelab._checks import refuse_numpy
         refuse_numpy((2, 10), "1.26.4")
         refuse_numpy((2, 12), "2.1.0")
         with self.assertRaises(ImportError):

@@ -2,6 +2,9 @@
 
 import json
 import math
+import struct
+import tomllib
+import zlib
 
 import numpy as np
 
@@ -19,6 +22,26 @@ def small_scenario():
     scenario["configuration"][0]["clip"] = scenario["configuration"][0]["clip"][:1]
     scenario["configuration"][0]["clip"][0]["duration_s"] = 0.34
     return scenario
+
+
+def read_toml(path):
+    return tomllib.loads(path.read_text())
+
+
+def decoded(data):
+    """The pixels of a PNG file whose lines have no filter, read by its specification."""
+    chunks, at = {}, 8
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        assert struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0] == zlib.crc32(kind + body)
+        chunks[kind], at = body, at + 12 + length
+    width, height, bits, colours, *rest = struct.unpack(">IIBBBBB", chunks[b"IHDR"])
+    assert rest == [0, 0, 0] and list(chunks)[-1] == b"IEND"
+    lines = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), np.uint8).reshape(height, -1)
+    assert not lines[:, 0].any()
+    shape = (height, width) if colours == 0 else (height, width, 3)
+    return np.ascontiguousarray(lines[:, 1:]).view(">u2" if bits == 16 else np.uint8).reshape(shape)
 
 
 class Smoothing(InFolder):
@@ -141,6 +164,53 @@ class Film(InFolder):
                 if "truth" not in suffix or name != "truth.json":  # which names the scenario's file
                     self.assertEqual((self.folder / f"mine{suffix}" / name).read_bytes(), (its / name).read_bytes(),
                                      name)
+
+    def test_frames_in_memory_are_analysed_as_those_of_the_file(self):
+        scenario = small_scenario()
+        glidelab.render_folder(scenario, self.folder / "made")
+        frames = glidelab.render(scenario)["m1-up"]
+        stated = read_toml(self.folder / "made" / "experiment.toml")["clip"][0]
+        stated = {key: value for key, value in stated.items() if key != "file"}
+        of_folder = glidelab.analyze(self.folder / "made")
+        for given in (frames, [frame.pixels for frame in frames]):
+            film = glidelab.Film(given, self.folder / "made", **stated)
+            of_film = glidelab.analyze(film)
+            self.assertEqual(of_film.clips[0].motion.measured_x_m.tolist(), of_folder.clips[0].motion.measured_x_m.tolist())
+            self.assertEqual(of_film.to_dict()["configurations"], of_folder.to_dict()["configurations"])
+        of_film.write(self.folder / "written")  # whose page shows the frames, which are still there
+        self.assertTrue((self.folder / "written" / "report.html").exists())
+        self.assertEqual(glidelab.check([film]).usable, glidelab.check(self.folder / "made").usable)
+
+    def test_frames_with_a_stated_scale_need_no_folder(self):
+        # A disc of 9 pixels' radius that moves by 1.5 pixels a frame: v = 1.5 * 100 / 500 m/s, by the stated scale.
+        v, u = np.mgrid[0:80, 0:240]
+        frames = [(40.0 + 180.0 / (1.0 + np.exp(2.0 * (np.hypot(u - 40.0 - 1.5 * k, v - 40.0) - 9.0)))).astype(np.uint8)
+                  for k in range(100)]
+        tables = {"camera": {"frame_rate_hz": 100.0}, "scale": {"px_per_m": 500.0}, "marker": {"diameter_m": 0.036},
+                  "track": {"downhill": "+X"}}
+        clip, = glidelab.analyze(glidelab.Film(frames, tables, 0.3, "down", 0.0)).clips
+        x = clip.motion.measured_x_m
+        self.assertEqual((clip.name, clip.detected), ("clip-1", 100))
+        self.assertAlmostEqual(np.polyfit(clip.motion.t_s, x, 1)[0], 0.3, places=3)
+        for wrong, key in (([], "frames"), ([np.zeros((9, 9))], "frames[0]"), ([frames[0], np.zeros(9, np.uint8)], "frames[1]")):
+            with self.assertRaises(glidelab.InputError) as caught:
+                glidelab.analyze(glidelab.Film(wrong, tables, 0.3, "down"))
+            self.assertEqual(caught.exception.key, key)
+        with self.assertRaises(glidelab.InputError) as caught:
+            glidelab.analyze([glidelab.Film(frames, tables, 0.3, "down"), glidelab.Film(frames, {}, 0.3, "down")])
+        self.assertEqual(caught.exception.key, "experiment")
+        with self.assertRaises(glidelab.InputError) as caught:
+            glidelab.analyze(glidelab.Film(frames[:3], {**tables, "marker": {}}, 0.3, "sideways"))
+        self.assertEqual({(one.file, one.key) for one in caught.exception.issues},
+                         {("film/experiment.toml", "marker.diameter_m"), ("film/experiment.toml", "clip[1].launched")})
+
+    def test_an_image_is_written_without_loss(self):
+        from glidelab._sources import png
+        random = np.random.default_rng(1)
+        for shape, kind in (((5, 7), np.uint8), ((5, 7), np.uint16), ((4, 3, 3), np.uint8), ((4, 3, 3), np.uint16)):
+            image = random.integers(0, np.iinfo(kind).max, shape, dtype=kind, endpoint=True)
+            for given in (image, np.asfortranarray(image), image.astype(image.dtype.newbyteorder(">"))):
+                np.testing.assert_array_equal(decoded(png("image", given)), image)
 
     def test_the_camera_is_recovered_from_its_views(self):
         scenario = small_scenario()

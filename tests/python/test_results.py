@@ -102,7 +102,7 @@ class AnalysisOfArrays(InFolder):
     def test_many_plots_stand_three_in_a_row(self):
         import matplotlib
         matplotlib.use("Agg")
-        from glidelab._results import new_axes
+        from glidelab._shown import new_axes
         axes = new_axes(7)
         self.assertEqual(len(axes), 7)
         places = [ax.get_subplotspec() for ax in axes]

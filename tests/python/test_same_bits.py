@@ -177,6 +177,32 @@ class SameBits(InFolder):
         self.assertTrue(certificate.holds)
         self.assertEqual(sum(one.twins for one in certificate.explanations), 20)
 
+    def test_certify_and_check_of_arrays_are_those_of_files(self):
+        tracks = made_tracks()
+        folder = self.write_experiment(tracks)
+        for function, more in ((glidelab.certify, {"twins": 20, "seed": 3}), (glidelab.check, {})):
+            with self.subTest(function.__name__):
+                of_folder, of_tracks = function(folder, **more).to_dict(), function(tracks, **more).to_dict()
+                for document in (of_folder, of_tracks):  # one was given a name
+                    document.pop("name", None)
+                self.assertEqual(of_tracks, of_folder)
+                t, x = tracks[0].t_s, tracks[0].x_m
+                file = self.folder / "track.csv"
+                file.write_text("t_s,x_m\n" + "".join(f"{a!r},{b!r}\n" for a, b in zip(t.tolist(), x.tolist())))
+                stated = {"mass_kg": 0.335, "incline_deg": 4.3, "gravity_m_s2": 9.8123}
+                of_arrays = function(t, x, **stated, **more)
+                self.assertEqual(of_arrays.to_json(), function(file, **stated, **more).to_json())
+                of_arrays.write(self.folder / function.__name__)
+                self.assertTrue((self.folder / function.__name__ / "report.html").exists())
+
+    def test_a_folder_of_simulated_tracks_is_read(self):
+        clips = glidelab.simulate(SCENARIO).clips
+        tracks = [clip.track(noise_m=2e-5, mass_kg=0.335, incline_deg=4.0) for clip in clips[:2]]
+        self.assertEqual([track.launched for track in tracks],
+                         ["up" if clip.v_m_s[0] < 0.0 else "down" if clip.v_m_s[0] > 0.0 else "released" for clip in clips[:2]])
+        self.assertEqual(glidelab.analyze(self.write_experiment(tracks)).to_json(), glidelab.analyze(tracks, name="made").to_json())
+        self.assertEqual(clips[0].track(launched="unknown").launched, "unknown")
+
     def test_files_with_several_runs(self):
         tracks = made_tracks()[:2]
         file = self.folder / "runs.csv"

@@ -1,5 +1,6 @@
 """What a notebook shows of a result: tables with its numbers, and plots where matplotlib is; and how columns are labelled."""
 
+import csv
 import json
 import re
 import unittest
@@ -8,8 +9,9 @@ from unittest import mock
 import numpy as np
 
 import glidelab
-from glidelab._results import BY_ROW, html_plot, unit_of
-from tests.python.support import SOURCE, InFolder, damped, needs
+from glidelab._results import BY_ROW, unit_of
+from glidelab._shown import html_plot
+from tests.python.support import SOURCE, InFolder, damped, needs, read_json
 
 SCENARIO = SOURCE / "scenarios" / "paper" / "inclined.toml"
 PLOT = '<img alt="plot" src="data:image/png;base64,'
@@ -78,6 +80,75 @@ class Shown(InFolder):
         self.assertEqual(judged.to_dict()["rows"][0]["bias"], judged.rows[0].bias)
         self.assertEqual(self.smooth.to_dict()["a_m_s2"], self.smooth.a_m_s2.tolist())
         self.assertEqual(set(order_1.to_dict()["a_m_s2"]), {None})
+
+    def test_what_is_of_no_command_writes_itself(self):
+        judged = glidelab.judge(SCENARIO, "phase-diagram", noise_m=2e-5, replicates=2)
+        t, x = damped(duration_s=0.5)
+        local = glidelab.choose_bandwidth(t, x, "ici")
+        for result, name, columns in (
+                (judged, "judgement", {"bias": [row.bias for row in judged.rows], "truth": [row.truth for row in judged.rows]}),
+                (self.smooth, "smoothed", {"a_m_s2": self.smooth.a_m_s2, "sd_a_m_s2": self.smooth.sd_a_m_s2}),
+                (glidelab.smooth(t, x, 0.02, order=1), "smoothed", {"t_s": t, "a_m_s2": [None] * len(t)}),
+                (local, "bandwidth", {"t_s": local.at_s, "bandwidth_s": local.local_s})):
+            with self.subTest(name):
+                folder = self.folder / "new" / name
+                result.write(folder)
+                self.assertEqual({one.name for one in folder.iterdir()}, {f"{name}.csv", f"{name}.json", "report.html"})
+                self.assertEqual(read_json(folder / f"{name}.json"), result.to_dict())
+                with open(folder / f"{name}.csv", newline="") as file:
+                    rows = list(csv.DictReader(file))
+                for column, values in columns.items():  # all digits
+                    self.assertEqual([float(row[column]) if row[column] else None for row in rows], list(values))
+                page = (folder / "report.html").read_text()
+                self.assertIn("<table>", page)
+                self.assertEqual((page.count("<html"), page.count("</html>")), (1, 1))
+        plain = glidelab.choose_bandwidth(t, x, "plug-in")  # one number: no table
+        plain.write(self.folder / "plain")
+        self.assertEqual(sorted(one.name for one in (self.folder / "plain").iterdir()), ["bandwidth.json", "report.html"])
+        (self.folder / "file").write_text("")
+        with self.assertRaises(glidelab.SystemFailure):
+            plain.write(self.folder / "file")
+        with self.assertRaises(glidelab.InputError):
+            plain.write(3)
+
+    def test_a_bandwidth_the_rules_and_a_track_are_tables_too(self):
+        t, x = damped(duration_s=0.5)
+        for rule in ("plug-in", "ici"):
+            pick = glidelab.choose_bandwidth(t, x, rule)
+            self.assertIn(f"<td>{float(pick):.4g}</td>", self.shown(pick))
+        rules = glidelab.bandwidth_rules()
+        said = self.shown(rules)
+        self.assertEqual(said.count("<tr>"), len(rules) + 1)
+        for rule in rules:
+            self.assertIn(f"<td>{rule.name}</td>", said)
+            self.assertEqual(self.shown(rule).count("<tr>"), 2)
+        said = self.shown(glidelab.Track(t, x, mass_kg=0.335, name="a < b", launched="up"))
+        for part in ("a &lt; b", "<td>0.335</td>", "<td>up</td>", f"<td>{len(t)}</td>"):
+            self.assertIn(part, said)
+        self.assertIn("one dimension", self.shown(glidelab.Track(t, np.outer(x, x))))
+        self.assertIn("<td>0</td>", self.shown(glidelab.Track([], [])))
+
+    @needs("matplotlib")
+    def test_a_judgement_s_points_and_a_plan_s_matrix_are_their_numbers(self):
+        import matplotlib
+        matplotlib.use("Agg")
+        judged = glidelab.judge(SCENARIO, "phase-diagram", "trajectory", noise_m=2e-5, replicates=3)
+        axes = judged.plot()
+        quantities = list(dict.fromkeys(row.quantity for row in judged.rows))
+        self.assertEqual(len(axes), len(quantities))
+        for ax, quantity in zip(axes, quantities):
+            for container, name in zip(ax.containers, ("phase-diagram", "trajectory")):
+                rows = judged.of(name, quantity)
+                self.assertEqual(list(container.lines[0].get_ydata()), [row.bias for row in rows])
+                for (low, high), row in zip(container.lines[2][0].get_segments(), rows):
+                    self.assertAlmostEqual((high[1] - low[1]) / (2.0 * row.sd), 1.0, places=6)
+        self.assertIn(PLOT, judged._repr_html_())
+        plan = glidelab.plan(SCENARIO, noise_m=2e-5)
+        ax = plan.plot()
+        self.assertEqual(ax.images[0].get_array().tolist(), plan.to_dict()["isolability"]["cosine"])
+        self.assertEqual([label.get_text() for label in ax.get_yticklabels()],
+                         [one.id.replace("_", " ") for one in plan.effects if one.seen])
+        self.assertIn(PLOT, plan._repr_html_())
 
     @needs("pandas")
     def test_true_motions_are_a_table(self):

@@ -1,6 +1,7 @@
 """The package and its stubs are clean under mypy --strict."""
 
 import dataclasses
+import inspect
 import os
 import re
 import subprocess
@@ -52,7 +53,14 @@ def mine(tracks: list[glidelab.Track]) -> dict[str, float]:
 def other(tracks: Sequence[glidelab.Track]) -> dict[str, tuple[float, float]]:
     return {"mu": (0.0, 1.0)}
 
-judged = glidelab.judge("scenario.toml", mine, other, noise_m=2e-5)
+@glidelab.estimator
+def third(tracks: list[glidelab.Track]) -> dict[str, object]:
+    return {"mu": {"value": 0.0, "sd": 1.0, "interval95": None}, "alpha_deg": None}
+
+judged = glidelab.judge("scenario.toml", mine, other, third, noise_m=2e-5)
+judged.write("folder")
+glidelab.check(track).write("folder")
+glidelab.certify(t, x, twins=20)
 print(glidelab.explain(judged), glidelab.explain(glidelab.smooth(t, x, 0.02)))
 ''')
         self.accepted(mine)
@@ -78,6 +86,10 @@ print(glidelab.explain(judged), glidelab.explain(glidelab.smooth(t, x, 0.02)))
             with self.assertRaises(glidelab.InputError) as caught:
                 glidelab.analyze(glidelab.Track(np.arange(9.0), wrong))
             self.assertEqual(caught.exception.key, "x_m")
+
+    def test_every_name_without_an_underscore_is_public(self):
+        names = {name for name, value in vars(glidelab).items() if not name.startswith("_") and not inspect.ismodule(value)}
+        self.assertEqual(names, set(glidelab.__all__))
 
     def test_every_public_name_has_a_docstring(self):
         for name in glidelab.__all__:

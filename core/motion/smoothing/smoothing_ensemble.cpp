@@ -1,11 +1,14 @@
 #include "core/motion/smoothing/smoothing_ensemble.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "base/errors.h"
 #include "base/math/distributions.h"
 
 namespace glidelab::core {
@@ -52,6 +55,22 @@ std::vector<EnsembleNode> nodes_of(const ChainPosterior<N>& posterior, double no
   return made;
 }
 
+/// Where a falling function is 0. NumericalError where it is no number at an end, or both have one sign: a variance
+/// that rounding has spoilt.
+template <typename Function>
+double zero_of(const Function& function, double from, double to, std::uintmax_t most, double t_s) {
+  const double at_from = function(from), at_to = function(to);
+  if (!(at_from >= 0.0 && at_to <= 0.0)) {
+    throw base::NumericalError(fmt::format(
+        "the smoother's uncertainty from t = {:g} s on cannot be computed: too wide a range of numbers (a gap "
+        "of many times the smoothing time, or very large positions); smooth the parts of the motion one by one",
+        t_s));
+  }
+  const auto found = boost::math::tools::toms748_solve(function, from, to, at_from, at_to,
+                                                       boost::math::tools::eps_tolerance<double>(10), most);
+  return 0.5 * (found.first + found.second);
+}
+
 /// The half width that holds 95 % of the members' mixture about the smoothed value, over base::kNormal95.
 double standard_deviation(const SmoothingEnsemble& ensemble, std::size_t p, std::size_t k, int d) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
@@ -72,10 +91,7 @@ double standard_deviation(const SmoothingEnsemble& ensemble, std::size_t p, std:
     return std::log(sum / 0.05);
   };
   if (!(high > low * (1.0 + 1e-6))) return low / base::kNormal95;
-  std::uintmax_t most = 30;
-  const auto found = boost::math::tools::toms748_solve(outside, 0.999 * low, 1.001 * high,
-                                                       boost::math::tools::eps_tolerance<double>(10), most);
-  return 0.5 * (found.first + found.second) / base::kNormal95;
+  return zero_of(outside, 0.999 * low, 1.001 * high, 30, ensemble.nodes[p][k].t_s) / base::kNormal95;
 }
 
 std::vector<std::vector<Eigen::Array3d>> standard_deviations(const SmoothingEnsemble& ensemble) {
@@ -130,10 +146,7 @@ double simultaneous_factor(const SmoothingEnsemble& ensemble, const std::vector<
   };
   double high = 4.0;
   while (excess(high) > 0.0) high *= 1.5;
-  std::uintmax_t most = 20;
-  const auto found =
-      boost::math::tools::toms748_solve(excess, 1.0, high, boost::math::tools::eps_tolerance<double>(10), most);
-  return 0.5 * (found.first + found.second);
+  return zero_of(excess, 1.0, high, 20, ensemble.nodes.front().front().t_s);
 }
 
 template std::vector<EnsembleNode> nodes_of(const ChainPosterior<3>&, double);

@@ -98,6 +98,15 @@ TEST_CASE("each way in which an estimator's program fails is told apart, with wh
   }
 }
 
+TEST_CASE("all that is wrong with an estimator's results is told on one line, parted by semicolons") {
+  const tests::TempDir temp;
+  const fit::OutsideOutcome outcome =
+      outcome_of(temp, "echo '{\"format\": 2, \"configurations\": 3}' > $2/results.json");
+  REQUIRE(outcome.run.failure == fit::OutsideFailure::bad_output);
+  CHECK(outcome.run.what.find('\n') == std::string::npos);
+  CHECK(outcome.run.what.find("; results.json: configurations: found 3") != std::string::npos);
+}
+
 TEST_CASE("what an estimator's program prints is UTF-8 in what is told of it, whatever bytes it wrote") {
   const tests::TempDir temp;
   // Latin-1, and 199 letters before a character of two bytes: the 200th byte is its first.

@@ -89,3 +89,20 @@ TEST_CASE("nothing but the experiment lies where an outside estimator is run, on
   CHECK(row.run.what == "exit status 5: 0.5,0.25");
   CHECK_FALSE(fs::exists(temp / "film/tracks/zenith.csv"));
 }
+
+TEST_CASE(
+    "an outside estimator is told how far the clock may be off, on tracks and on a film, and can read the folder") {
+  const tests::TempDir temp;
+  const fit::OutsideEstimator estimator = fit::outside_estimator(
+      "sh -c 'grep -A1 \"^.extra\" \"$1/experiment.toml\" | grep -o \"clock_sd_ppm = [0-9.]*\"; cp -r \"$1\" " +
+      (temp / "seen").string() + "; exit 5' look {folder} {out}");
+  const validate::MadeTracks made = noisy_tracks();
+  // A quartz crystal's 20 ppm (docs/reference/camera-sources.md, G1), of which coverage draws each replicate's clock.
+  CHECK(validate::run_outside_on_tracks(estimator, made).run.what == "exit status 5: clock_sd_ppm = 20.0");
+  CHECK(core::analyze({temp / "seen"}, {}).configurations.size() == 1);
+  fs::remove_all(temp / "seen");
+  validate::write_track_folder(made, temp / "film");
+  const std::string before = base::read_file(temp / "film/experiment.toml");
+  CHECK(validate::run_outside_on_film(estimator, temp / "film", {}).run.what == "exit status 5: clock_sd_ppm = 20.0");
+  CHECK(base::read_file(temp / "film/experiment.toml") == before);
+}
