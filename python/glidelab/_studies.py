@@ -41,6 +41,36 @@ class Recovery:
     cramer_rao_sd: Optional[float]
 
 
+@dataclass(frozen=True)
+class _Error:
+    quantity: str
+    estimator: str
+    configuration: str
+    error: Optional[float]
+    bar: float
+
+
+def _error_axes(rows: Sequence[_Error]) -> list[Any]:
+    """An axis a quantity with an error, the configurations along it, a colour an estimator."""
+    erring = [row for row in rows if row.error is not None]
+    names = list(dict.fromkeys(row.quantity for row in erring))
+    estimators = list(dict.fromkeys(row.estimator for row in rows))
+    places = list(dict.fromkeys(row.configuration for row in rows))
+    axes = new_axes(len(names))
+    for axis, name in zip(axes, names):
+        for number, estimator in enumerate(estimators):
+            of = [row for row in erring if (row.quantity, row.estimator) == (name, estimator)]
+            if of:
+                axis.errorbar([places.index(row.configuration) + 0.15 * number for row in of],
+                              [row.error for row in of], [row.bar for row in of], fmt="o", color=f"C{number}",
+                              label=estimator)
+        axis.axhline(0.0, color="0.8", zorder=0)
+        axis.set_xticks(range(len(places)), places)
+        axis.set_ylabel(words_of(name, "error of "))
+        axis.legend()
+    return axes
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Validation(Result):
     """A scenario filmed, analysed, and compared with its truth.
@@ -82,23 +112,8 @@ class Validation(Result):
         list of matplotlib.axes.Axes
             One for each quantity with an error.
         """
-        erring = [one for one in self.quantities if one.error is not None]
-        names = list(dict.fromkeys(one.quantity for one in erring))
-        estimators = list(dict.fromkeys(one.estimator for one in self.quantities))
-        places = list(dict.fromkeys(one.configuration for one in self.quantities))
-        axes = new_axes(len(names))
-        for axis, name in zip(axes, names):
-            for number, estimator in enumerate(estimators):
-                rows = [one for one in erring if (one.quantity, one.estimator) == (name, estimator)]
-                if rows:
-                    axis.errorbar([places.index(one.configuration) + 0.15 * number for one in rows],
-                                  [one.error for one in rows], [NORMAL95 * (one.sd or 0.0) for one in rows], fmt="o",
-                                  color=f"C{number}", label=estimator)
-            axis.axhline(0.0, color="0.8", zorder=0)
-            axis.set_xticks(range(len(places)), places)
-            axis.set_ylabel(words_of(name, "error of "))
-            axis.legend()
-        return axes
+        return _error_axes([_Error(one.quantity, one.estimator, one.configuration, one.error,
+                                   NORMAL95 * (one.sd or 0.0)) for one in self.quantities])
 
     def _repr_html_(self) -> str:
         rows = [[one.configuration, one.estimator, words_of(one.quantity),
@@ -413,23 +428,8 @@ class Judgement(Written):
         list of matplotlib.axes.Axes
             One for each quantity with an answer.
         """
-        answered = [row for row in self.rows if row.bias is not None]
-        names = list(dict.fromkeys(row.quantity for row in answered))
-        estimators = list(dict.fromkeys(row.estimator for row in self.rows))
-        places = list(dict.fromkeys(row.configuration for row in self.rows))
-        axes = new_axes(len(names))
-        for axis, name in zip(axes, names):
-            for number, estimator in enumerate(estimators):
-                rows = [row for row in answered if (row.quantity, row.estimator) == (name, estimator)]
-                if rows:
-                    axis.errorbar([places.index(row.configuration) + 0.15 * number for row in rows],
-                                  [row.bias for row in rows], [row.sd or 0.0 for row in rows], fmt="o",
-                                  color=f"C{number}", label=estimator)
-            axis.axhline(0.0, color="0.8", zorder=0)
-            axis.set_xticks(range(len(places)), places)
-            axis.set_ylabel(words_of(name, "error of "))
-            axis.legend()
-        return axes
+        return _error_axes([_Error(row.quantity, row.estimator, row.configuration, row.bias, row.sd or 0.0)
+                            for row in self.rows])
 
     def _table(self) -> list[list[str]]:
         def text(value: Optional[float]) -> str:

@@ -11,6 +11,7 @@
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
+#include "tests/diagnose/scattering_friction.h"
 
 using namespace glidelab;
 
@@ -220,16 +221,9 @@ TEST_CASE("of pairs that do equally well none has a function without a name to i
 
 TEST_CASE("a law beside clips that scatter is weighed as one explanation of both") {
   // A drag with the square of the speed, and a friction that is two thirds more or less in each clip.
-  const double part[] = {0.7, -0.6, 0.2, -0.7, 0.6, 0.5, -0.5, -0.3};
-  std::size_t clip = 0;
-  double before = 1.0;
+  tests::ScatteringFriction friction(0.006, {0.7, -0.6, 0.2, -0.7, 0.6, 0.5, -0.5, -0.3});
   tests::MadeEffect both;
-  both.force = [&](double m, double, double v, double t) {
-    if (t < before - 0.1) ++clip;
-    before = t;
-    const double friction = part[(clip - 1) % 8] * 0.006 * m * 9.80665;
-    return -0.25 * v * std::abs(v) - (v > 0.0 ? friction : v < 0.0 ? -friction : 0.0);
-  };
+  both.force = [&](double m, double, double v, double t) { return -0.25 * v * std::abs(v) + friction(m, v, t); };
   const auto made = tests::made_experiment(tests::made_launches(), both, 5, 1e-4, 100, 60.0);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const diagnose::WeighedCauses weighed =
@@ -264,16 +258,12 @@ TEST_CASE("a law beside clips that scatter is weighed as one explanation of both
 }
 
 TEST_CASE("a hand beside clips that scatter is weighed as one explanation of both") {
-  const double part[] = {0.7, -0.6, 0.2, -0.7, 0.6, 0.5, -0.5, -0.3};
-  const double push_m_s2[] = {1.5, -0.8, 2.0, -1.2, 0.9, -1.7, 1.1, 0.4};
-  std::size_t clip = 0;
-  double before = 1.0;
+  tests::ScatteringFriction friction(0.006, {0.7, -0.6, 0.2, -0.7, 0.6, 0.5, -0.5, -0.3});
+  const double push_m_s2[] = {0.6, -0.32, 0.8, -0.48, 0.36, -0.68, 0.44, 0.16};
   tests::MadeEffect both;
   both.force = [&](double m, double, double v, double t) {
-    if (t < before - 0.1) ++clip;
-    before = t;
-    const double friction = part[(clip - 1) % 8] * 0.006 * m * 9.80665;
-    return (t < 0.12 ? 0.4 * m * push_m_s2[(clip - 1) % 8] : 0.0) - (v > 0.0 ? friction : v < 0.0 ? -friction : 0.0);
+    const double of_clip = friction(m, v, t);
+    return of_clip + (t < 0.12 ? m * push_m_s2[friction.part()] : 0.0);
   };
   const auto made = tests::made_experiment(tests::made_launches(), both, 6, 3e-4, 100, 60.0);
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);

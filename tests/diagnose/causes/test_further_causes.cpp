@@ -9,21 +9,15 @@
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
+#include "tests/diagnose/scattering_friction.h"
 
 using namespace glidelab;
 
 TEST_CASE("a law that is lost among clips that scatter shows beside their scatter") {
   // Friction that differs by a fifth, and a track that is bowed.
-  const double part[] = {0.2, -0.25, 0.1, -0.15, 0.25, 0.05, -0.2, -0.1};
-  std::size_t clip = 0;
-  double before = 1.0;
+  tests::ScatteringFriction friction(0.02, {0.2, -0.25, 0.1, -0.15, 0.25, 0.05, -0.2, -0.1});
   tests::MadeEffect both;
-  both.force = [&](double m, double x, double v, double t) {
-    if (t < before - 0.1) ++clip;
-    before = t;
-    const double friction = part[(clip - 1) % 8] * 0.02 * m * 9.80665;
-    return 0.06 * m * x - (v > 0.0 ? friction : v < 0.0 ? -friction : 0.0);
-  };
+  both.force = [&](double m, double x, double v, double t) { return 0.06 * m * x + friction(m, v, t); };
   const auto made = tests::made_experiment(tests::made_launches(), both, 5, 5e-5, 100, 60.0, 0.05, 0.0, {.mu = 0.02});
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
   const std::size_t bow = diagnose::effect_index("track_bow"), scatter = diagnose::effect_index("clip_scatter");

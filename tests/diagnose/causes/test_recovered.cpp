@@ -16,6 +16,7 @@
 #include "diagnose/tracks/track_set.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
+#include "tests/diagnose/scattering_friction.h"
 
 using namespace glidelab;
 
@@ -288,21 +289,16 @@ TEST_CASE("nothing is recovered from an explanation whose fit stopped before its
 
 TEST_CASE("where clips scatter, friction and drag are the means of the clips, to within their scatter over its root") {
   // The friction of eight clips of one configuration differs by 5 % (rms, one degree of freedom less).
-  const double part[] = {0.05, -0.07, 0.02, -0.03, 0.06, 0.01, -0.06, 0.04};
+  const std::vector<double> part = {0.05, -0.07, 0.02, -0.03, 0.06, 0.01, -0.06, 0.04};
   constexpr double kMu = 0.02, kDrag = 0.93, kMass = 0.4;
   double mean = 0.0, squares = 0.0;
   for (const double one : part) mean += one / 8.0;
   for (const double one : part) squares += (one - mean) * (one - mean);
   const double sd_of_mean = kMu * std::sqrt(squares / 7.0 / 8.0);
-  std::size_t clip = 0;
-  double before = 1.0;
+  const double alpha = 4.0 * std::acos(-1.0) / 180.0;
+  tests::ScatteringFriction friction(kMu * std::cos(alpha), part);
   tests::MadeEffect scatter;
-  scatter.force = [&](double m, double, double v, double t) {
-    if (t < before - 0.1) ++clip;
-    before = t;
-    const double friction = part[(clip - 1) % 8] * kMu * m * 9.80665 * std::cos(4.0 * std::acos(-1.0) / 180.0);
-    return v > 0.0 ? -friction : v < 0.0 ? friction : 0.0;
-  };
+  scatter.force = [&](double m, double, double v, double t) { return friction(m, v, t); };
   std::vector<tests::MadeLaunch> launches;
   for (int i = 0; i < 4; ++i) {
     launches.push_back({kMass, 4.0, 0.3, -1.1 - 0.05 * i});
@@ -325,7 +321,6 @@ TEST_CASE("where clips scatter, friction and drag are the means of the clips, to
         3.0 * recovered[0].k_over_m_1_s.estimate->sd);
   CHECK(recovered[0].k_over_m_1_s.estimate->sd < 0.01 * kDrag / kMass);
   // m g (sin(alpha) - mu cos(alpha)) = K v, with the clips' mean friction.
-  const double alpha = 4.0 * std::acos(-1.0) / 180.0;
   const double v = kMass * 9.80665 * (std::sin(alpha) - kMu * (1.0 + mean) * std::cos(alpha)) / kDrag;
   CHECK(std::abs(recovered[0].v_lim_m_s.estimate->value - v) < 3.0 * recovered[0].v_lim_m_s.estimate->sd);
   CHECK(recovered[0].v_lim_m_s.estimate->sd < 0.02 * v);

@@ -8,21 +8,15 @@
 #include "diagnose/weigh/hypotheses.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
+#include "tests/diagnose/scattering_friction.h"
 
 using namespace glidelab;
 
 TEST_CASE("a scale that contradicts the stated inclination is weighed beside clips that scatter") {
   // Lengths are 4 % too long, which makes 4 degrees look like 4.16; friction differs by up to 1 % from clip to clip.
-  const double part[] = {0.01, -0.008, 0.005, -0.01, 0.008, 0.003, -0.005, -0.003};
-  std::size_t clip = 0;
-  double before = 1.0;
+  tests::ScatteringFriction friction(0.02, {0.01, -0.008, 0.005, -0.01, 0.008, 0.003, -0.005, -0.003});
   tests::MadeEffect both;
-  both.force = [&](double m, double, double v, double t) {
-    if (t < before - 0.1) ++clip;
-    before = t;
-    const double friction = part[(clip - 1) % 8] * 0.02 * m * 9.80665;
-    return v > 0.0 ? -friction : v < 0.0 ? friction : 0.0;
-  };
+  both.force = [&](double m, double, double v, double t) { return friction(m, v, t); };
   both.seen = [](double x, double) { return 1.04 * x; };
   const auto made = tests::made_experiment(tests::made_launches(), both, 5, 2e-4, 100, 60.0, 0.015, 0.0, {.mu = 0.02});
   const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
