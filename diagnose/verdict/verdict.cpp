@@ -171,6 +171,15 @@ std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone*
   return effects;
 }
 
+/// Whether the two act in the same explanations more often than one of them alone: then neither stands for the other.
+bool act_together(const Comparison& comparison, std::size_t one, std::size_t other) {
+  double both = 0.0;
+  for (const Hypothesis& of : comparison.all) {
+    if (!of.unnamed && has(of, one) && has(of, other)) both += of.probability;
+  }
+  return both > 0.5 * std::min(probability_of_any(comparison, {one}), probability_of_any(comparison, {other}));
+}
+
 }  // namespace
 
 std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypothesis& best, std::size_t effect,
@@ -182,6 +191,7 @@ std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypo
       others.push_back(e);  // whatever has become of its fit beside the other effects
       continue;
     }
+    if (act_together(comparison, e, effect)) continue;
     for (const Hypothesis& other : comparison.all) {
       if (other.unnamed || !same_but(best.effects, other.effects, effect, e)) continue;
       // The scatter of single positions is no other name for an effect that shifts them all.

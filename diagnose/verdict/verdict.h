@@ -20,6 +20,7 @@ struct NoiseAlone {
 };
 
 /// Effects that could replace one effect of an explanation: with as much evidence, and with as little left of the gap.
+/// Not one that acts together with it in most of the probability of either: then neither stands for the other.
 std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypothesis& best, std::size_t effect,
                                         bool filmed);
 

@@ -160,3 +160,22 @@ TEST_CASE("what one clip cannot support goes to the unknown, or from it, and the
   CHECK(open.none == 0.7);
   CHECK(open.unknown == 0.3);
 }
+
+TEST_CASE("an effect that acts beside another is no other name for it") {
+  diagnose::Comparison comparison;
+  const auto add = [&](const std::vector<std::string>& ids, double probability) {
+    diagnose::Hypothesis one = of(ids, probability);
+    one.gain = 40.0;
+    one.log_evidence = 30.0;
+    comparison.all.push_back(one);
+  };
+  add({"base_vibration", "perspective_error"}, 0.4);
+  add({"base_vibration", "late_release"}, 0.4);
+  const std::size_t pattern = diagnose::effect_index("perspective_error"),
+                    hand = diagnose::effect_index("late_release");
+  const auto others = [&] { return diagnose::not_told_apart(comparison, comparison.all.front(), pattern, false); };
+  CHECK(others() == std::vector{hand});
+  comparison.all[0].probability = comparison.all[1].probability = 0.05;
+  add({"base_vibration", "perspective_error", "late_release"}, 0.8);
+  CHECK(others().empty());
+}
