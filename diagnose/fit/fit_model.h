@@ -44,7 +44,8 @@ inline constexpr std::size_t kFewestScatter = 50;
 
 /// Timing jitter of filmed clips below this is taken as zero, for a marker that moves at up to this speed in the image:
 /// a hundredth of a short exposure, or the time in which it moves 0.015 px. A centre errs by up to 0.012 px with its
-/// place in the pixel (docs/evidence/other-renderers.md), slowly at low speed and like noise at high speed, as with jitter.
+/// place in the pixel (docs/evidence/other-renderers.md), slowly at low speed and like noise at high speed, as with
+/// jitter.
 double least_filmed_jitter_s(double top_px_s);
 
 struct ParameterRange {

@@ -29,10 +29,9 @@ TEST_CASE(
   REQUIRE(folds != std::string::npos);
   const std::string open = page.substr(0, folds);
   std::size_t at = 0;
-  for (const char* part :
-       {"<b>Quadratic drag", "What explains the gap", "Waterfall of the gap", "K/m, µ, α and terminal velocity",
-        "with quadratic drag and added inertia in the model", "Where the rest lies", "random acceleration",
-        "What to record next"}) {
+  for (const char* part : {"<b>Quadratic drag", "What explains the gap", "Waterfall of the gap",
+                           "K/m, µ, α and terminal velocity", "with quadratic drag and added inertia in the model",
+                           "Where the rest lies", "random acceleration", "What to record next"}) {
     INFO(part);
     const std::size_t found = open.find(part, at);
     CHECK(found != std::string::npos);
