@@ -46,7 +46,7 @@ struct Filmed {
 /// scenarios/rehearsals/filmed.toml before such a camera, with these forces besides.
 Filmed film(const Kind& kind, const std::string& forces, std::uint64_t seed) {
   const tests::TempDir temp;
-  std::string text = base::read_file(fs::path(tests::kSourceDir) / "scenarios" / "diagnosis" / "filmed.toml");
+  std::string text = base::read_file(fs::path(tests::kSourceDir) / "scenarios" / "rehearsals" / "filmed.toml");
   replace(text, "[camera]\n", std::string("[camera]\n") + kind.exposure);
   replace(text, "[calibration]\n", std::string(kind.sections) + "\n[calibration]\n");
   replace(text, "[[configuration.force]]\nlaw = \"coulomb\"\n",

@@ -25,7 +25,7 @@ void replace(std::string& text, const std::string& what, const std::string& by) 
 /// scenarios/rehearsals/filmed.toml with a section more, of which experiment.toml tells nothing.
 diagnose::Diagnosis film(const std::string& section, std::uint64_t seed) {
   const tests::TempDir temp;
-  std::string text = base::read_file(fs::path(tests::kSourceDir) / "scenarios" / "diagnosis" / "filmed.toml");
+  std::string text = base::read_file(fs::path(tests::kSourceDir) / "scenarios" / "rehearsals" / "filmed.toml");
   replace(text, "[calibration]\n", section + "\n[calibration]\n");
   base::write_file(temp / "scenario.toml", text);
   fs::create_directory(temp / "experiment");
