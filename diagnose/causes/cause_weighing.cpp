@@ -147,6 +147,15 @@ struct WithFurther {
   std::size_t further = 0;    ///< the effect
 };
 
+/// Those that were found.
+std::vector<WithFurther> found_of(std::vector<std::optional<WithFurther>> tried) {
+  std::vector<WithFurther> found;
+  for (std::optional<WithFurther>& one : tried) {
+    if (one) found.push_back(std::move(*one));
+  }
+  return found;
+}
+
 /// One weighing: what its steps share, and the steps in the order in which run() takes them.
 class CauseWeighing {
  public:
@@ -332,11 +341,7 @@ std::vector<WithFurther> CauseWeighing::scatter_beside(const std::vector<Hypothe
     if (std::optional<MotionFit> both = with_clip_scatter(set_, law))
       found[k] = {laws[k], std::move(*both), law.cost, scatter_};
   });
-  std::vector<WithFurther> pairs;
-  for (std::optional<WithFurther>& one : found) {
-    if (one) pairs.push_back(std::move(*one));
-  }
-  return pairs;
+  return found_of(std::move(found));
 }
 
 /// The likeliest explanations with a hand.
@@ -353,10 +358,7 @@ std::vector<WithFurther> CauseWeighing::with_hands() const {
     std::optional<MotionFit> both = with_hand(set_, law, sizes_of(likeliest[k]));
     if (both) found[k] = {likeliest[k], std::move(*both), law.cost, hand_};
   });
-  std::erase_if(found, [](const auto& one) { return !one; });
-  std::vector<WithFurther> with;
-  for (std::optional<WithFurther>& one : found) with.push_back(std::move(*one));
-  return with;
+  return found_of(std::move(found));
 }
 
 /// Where clips scatter most of all, other laws than `laws` show beside the scatter alone.

@@ -10,7 +10,7 @@
 #include "base/text/number_text.h"
 #include "diagnose/result/joined_ids.h"
 #include "report/analysis/note_words.h"
-#include "report/diagnosis/words/unit_words.h"
+#include "report/check/finding_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
 
@@ -218,7 +218,10 @@ struct Sentence {
     return fmt::format("Clips of set{} state different inclinations; each inclination counts as a separate set-up.",
                        ups(of.groups));
   }
-  std::string operator()(const diagnose::DoubtfulUnit& of) const { return unit_words(of); }
+  std::string operator()(const diagnose::DoubtfulUnit& of) const {
+    const FindingWords words = finding_words(of.found);
+    return fmt::format("In clip {}, {}: {}.", of.clip, words.found, words.advice);
+  }
   std::string operator()(const diagnose::OppositeLaunch& of) const {
     return fmt::format("Clip {} is stated as launched {}, but starts in the opposite direction.", of.clip,
                        of.stated_up ? "up" : "down");

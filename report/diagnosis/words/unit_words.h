@@ -7,8 +7,6 @@
 
 namespace glidelab::report {
 
-std::string unit_words(const diagnose::DoubtfulUnit& of);
-
 /// Of the clips that make a unit or the scale doubtful, the first; empty if none does.
 std::string unit_words(const diagnose::Diagnosis& diagnosis);
 

@@ -35,7 +35,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::NoInclination{{"level"}}, "Set-up \"level\" has neither"},
       {diagnose::SplitSetUps{{"flat"}}, "Clips of set-up \"flat\""},
       {diagnose::OppositeLaunch{"up_1", true}, "launched up"},
-      {diagnose::DoubtfulUnit{"cup", core::found::LongRun{9.0}}, "check the unit of x"},
+      {diagnose::DoubtfulUnit{"cup", core::found::LongRun{9.0}}, "In clip cup, x covers 9 m: check the unit of x"},
       {diagnose::NegativeLoss{diagnose::NegativeLoss::Of::drag, -0.279, 0.004},
        "The fitted drag is below zero (-0.2790 ± 0.0040 N"},
       {diagnose::ContradictedIncline{"flat", diagnose::Against::plumb, 0.1, 0.001, 0.2, 0.001, true, 70.0},
