@@ -108,7 +108,7 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
     if (of_drag && is_beside_drag_of_air(one)) {
       log += named(before(one)) - kLeftSlope * part_left(*of_drag, before(one));
       log += named(*of_drag) - kLeftSlope * part_left(left[static_cast<std::size_t>(one.fit)], *of_drag);
-    } else if (makes_a_gap(one)) {
+    } else if (claims_part_of_gap(comparison, one)) {
       log += named(before(one)) - kLeftSlope * *one.left;
     }
     if (one.unnamed && one.effects.empty()) {

@@ -23,6 +23,9 @@
 /// tell what a further cause does. It counts in two steps there: the drag by what it leaves of a fall without drag, and
 /// the further causes by what they leave of what the drag alone leaves, each with the terms above.
 ///
+/// A cause that is known by stated inclinations (Comparison::by_stated), such as a wrong scale, leaves the gap as it is.
+/// Only its evidence counts, and r is for what acts beside it.
+///
 /// The scatter of single positions makes no gap. Explanations that differ only in such scatter are one explanation of
 /// the gap. Its odds are those of the one without scatter, however strong the evidence of the scatter; they share its
 /// probability by their evidence.

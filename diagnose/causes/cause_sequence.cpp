@@ -116,6 +116,21 @@ std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, co
   return fit;
 }
 
+/// A step with those of `left` beside it that bring the motion to what is stated of its inclinations, whatever they
+/// take of the gap.
+Step with_causes_by_stated(const TrackSet& set, Step here, const MotionFit& named,
+                           const std::vector<std::size_t>& left) {
+  for (const std::size_t effect : left) {
+    std::vector<std::size_t> effects = here.fit.effects;
+    effects.push_back(effect);
+    std::optional<MotionFit> fit = fit_with(set, named, effects, here.fit.late);
+    if (!fit || gain_in_stated(here.fit, *fit) < kClearInStated) continue;
+    Step step = step_of(set, std::move(*fit));
+    if (step.gap < here.gap + here.standard_error) here = std::move(step);
+  }
+  return here;
+}
+
 /// The best further cause beside those of a step, or nothing.
 std::optional<std::pair<std::size_t, Step>> next_cause(const TrackSet& set, const TrackSet& with, const Step& here,
                                                        const std::set<std::size_t>& without) {
@@ -230,6 +245,10 @@ CauseSequence sequence_of(const TrackSet& set, const MotionFit& nominal, const T
       steps.back().second = here;
     }
   }
+  std::erase(left, dropped);
+  const std::size_t of_gap = here.fit.effects.size();
+  if (!left.empty()) here = with_causes_by_stated(set, std::move(here), named, left);
+  sequence.by_stated.insert(here.fit.effects.begin() + static_cast<std::ptrdiff_t>(of_gap), here.fit.effects.end());
   sequence.named = here.fit;
   const std::size_t named_steps = steps.size();
 

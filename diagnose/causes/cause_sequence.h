@@ -27,6 +27,8 @@ struct CauseSequence {
   double gap_after = 1.0;
   MotionFit named;  ///< fit by the noise alone, with the verdict's causes
   double named_share = 0.0;
+  /// Effects in `named` that are no causes of the gap: without them the motion contradicts stated inclinations.
+  std::set<std::size_t> by_stated;
 
   bool is_gap = false;  ///< has_gap()
 };

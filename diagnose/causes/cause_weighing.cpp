@@ -29,7 +29,8 @@ constexpr std::size_t kFirst =
 constexpr double kCostOfTakingTheBest = 3.0;  // ln 20: the likeliest of some twenty functions without a name is taken
 constexpr std::size_t kProfiled = 14;         // explanations that get a remainder of their own
 constexpr double kRemainderCost = 3.0;        // log evidence that a remainder costs, its sizes being unknown
-constexpr std::size_t kWithHand = 4;          // explanations that are weighed together with a hand
+constexpr std::size_t kWithHand = 4;          // explanations that are weighed together with a hand,
+constexpr std::size_t kWithStated = 2;        // and with each cause that is known by stated inclinations
 constexpr double kNotWeighed = 1e3;           // log evidence by which an explanation without a fit is behind
 
 /// The columns of a family in units of the noise alone: undoes the part of the whitening that the remainder caused.
@@ -174,10 +175,16 @@ class CauseWeighing {
     compare_again(images, done);
     profile_each();
     measure_excess();
+    find_causes_by_stated();
     done(0.9);
     take_own_evidence();
     if (searched_ && !without_.contains(scatter_)) add_laws_with_clip_scatter();
-    if (searched_ && !without_.contains(hand_)) add_all(with_hands());
+    if (searched_ && !without_.contains(hand_))
+      add_all(beside_likeliest({hand_}, kWithHand, [](const MotionFit&) { return true; }));
+    if (searched_) {
+      add_all(beside_likeliest(comparison().by_stated, kWithStated,
+                               [](const MotionFit& law) { return chi2_of_stated(law) > kClearInStated; }));
+    }
     add_functions_without_name();
     weigh_beside_remainder(excess_, comparison());
     done(1.0);
@@ -198,11 +205,13 @@ class CauseWeighing {
   void compare_again(const ImageEvidence* images, const std::function<void(double)>& done);
   void profile_each();
   void measure_excess();
+  void find_causes_by_stated();
   void take_own_evidence();
   void add_laws_with_clip_scatter();
   std::vector<WithFurther> scatter_beside(const std::vector<Hypothesis>& laws) const;
   std::vector<WithFurther> beside_scatter_alone(const std::vector<Hypothesis>& laws);
-  std::vector<WithFurther> with_hands() const;
+  std::vector<WithFurther> beside_likeliest(const std::set<std::size_t>& effects, std::size_t most,
+                                            bool (*lacks)(const MotionFit&)) const;
   void add_all(std::vector<WithFurther> found);
   void add(WithFurther with, Settled settled);
   void add_functions_without_name();
@@ -292,6 +301,19 @@ void CauseWeighing::measure_excess() {
   excess_.without_drag = excess_without_drag(set_, excess_.of_fits.front());
 }
 
+/// The effects that are known by stated inclinations and not by the gap.
+void CauseWeighing::find_causes_by_stated() {
+  constexpr double kAllOfExcess = 0.9;  // an effect that leaves more of it is no cause of the gap
+  const MotionFit& nominal = comparison().fits.front();
+  for (const Hypothesis& one : comparison().all) {
+    if (one.unnamed || one.effects.size() != 1 || one.fit <= 0) continue;
+    const auto fit = static_cast<std::size_t>(one.fit);
+    if (!(excess_.of_fits[fit] > kAllOfExcess * excess_.of_fits.front())) continue;
+    if (gain_in_stated(nominal, comparison().fits[fit]) > kClearInStated)
+      comparison().by_stated.insert(one.effects.front());
+  }
+}
+
 /// Log evidences beside each explanation's own remainder, over that of the nominal model. Functions without a name that
 /// the search found are dropped: they stand beside what was best with the common remainder.
 void CauseWeighing::take_own_evidence() {
@@ -344,19 +366,30 @@ std::vector<WithFurther> CauseWeighing::scatter_beside(const std::vector<Hypothe
   return found_of(std::move(found));
 }
 
-/// The likeliest explanations with a hand.
-std::vector<WithFurther> CauseWeighing::with_hands() const {
-  std::vector<Hypothesis> likeliest;
-  for (const Hypothesis& one : likeliest_laws(weighed_.comparison, excess_)) {
-    std::set<std::size_t> effects(one.effects.begin(), one.effects.end());
-    if (!effects.insert(hand_).second || !is_weighed(one.fit)) continue;
-    if (likeliest.size() < kWithHand && find(weighed_.comparison, effects) == nullptr) likeliest.push_back(one);
+/// The likeliest explanations that lack one of these effects, at most so many, each with each of them.
+std::vector<WithFurther> CauseWeighing::beside_likeliest(const std::set<std::size_t>& effects, std::size_t most,
+                                                         bool (*lacks)(const MotionFit&)) const {
+  struct Tried {
+    Hypothesis law;
+    std::size_t further = 0;
+  };
+  std::vector<Tried> tried;
+  for (const Hypothesis& one :
+       effects.empty() ? std::vector<Hypothesis>() : likeliest_laws(weighed_.comparison, excess_)) {
+    const bool has_one = std::any_of(effects.begin(), effects.end(), [&](std::size_t e) { return has(one, e); });
+    if (has_one || !is_weighed(one.fit) || !lacks(noise_alone_[static_cast<std::size_t>(one.fit)])) continue;
+    for (const std::size_t e : effects) {
+      std::set<std::size_t> both(one.effects.begin(), one.effects.end());
+      both.insert(e);
+      if (tried.size() < most * effects.size() && find(weighed_.comparison, both) == nullptr) tried.push_back({one, e});
+    }
   }
-  std::vector<std::optional<WithFurther>> found(likeliest.size());
-  base::for_each_parallel(likeliest.size(), jobs_, [&](std::size_t k) {
-    const MotionFit law = by_noise(set_, noise_alone_[static_cast<std::size_t>(likeliest[k].fit)]);
-    std::optional<MotionFit> both = with_hand(set_, law, sizes_of(likeliest[k]));
-    if (both) found[k] = {likeliest[k], std::move(*both), law.cost, hand_};
+  std::vector<std::optional<WithFurther>> found(tried.size());
+  base::for_each_parallel(tried.size(), jobs_, [&](std::size_t k) {
+    const auto& [of, further] = tried[k];
+    const MotionFit law = by_noise(set_, noise_alone_[static_cast<std::size_t>(of.fit)]);
+    std::optional<MotionFit> both = with_further(set_, law, further, sizes_of(of));
+    if (both) found[k] = {of, std::move(*both), law.cost, further};
   });
   return found_of(std::move(found));
 }

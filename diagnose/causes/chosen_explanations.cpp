@@ -19,6 +19,7 @@ std::vector<Hypothesis> weighed_so_far(const Comparison& comparison, const LeftE
   so_far.all = comparison.all;
   so_far.odds = comparison.odds;
   so_far.fit_odds = comparison.fit_odds;
+  so_far.by_stated = comparison.by_stated;
   weigh_beside_remainder(excess, so_far);
   return std::move(so_far.all);
 }

@@ -44,14 +44,14 @@ std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit&
   return fit;
 }
 
-std::optional<MotionFit> with_hand(const TrackSet& set, const MotionFit& law, const RemainderSizes& sizes) {
-  const std::size_t hand = effect_index(ids::late_release);
+std::optional<MotionFit> with_further(const TrackSet& set, const MotionFit& law, std::size_t effect,
+                                      const RemainderSizes& sizes) {
   if (!std::isfinite(law.cost)) return {};
   const BesideRemainder beside = beside_remainder(set, law, sizes);
   if (!std::isfinite(beside.fit.cost)) return {};
-  const EffectScan scan = scan_effect(ScoreSpace(beside.set, beside.fit), hand);
+  const EffectScan scan = scan_effect(ScoreSpace(beside.set, beside.fit), effect);
   if (!shows(scan)) return {};
-  MotionFit fit = fit_with_effect(set, law, hand, with_effect(set, law, hand, scan.values, scan.own));
+  MotionFit fit = fit_with_effect(set, law, effect, with_effect(set, law, effect, scan.values, scan.own));
   if (!std::isfinite(fit.cost)) return {};
   return fit;
 }

@@ -8,7 +8,8 @@
 ///
 /// It also ends with two causes. But nearly every recording begins in a hand, and what the hand does in the first tenth
 /// of a second is so far above the noise that one of the two is then the hand. The likeliest explanations are therefore
-/// fitted once more together with a hand.
+/// fitted once more together with a hand. A scale or a clock that is off is tried in the same way if the inclinations
+/// that are stated contradict the motion: what makes the gap does not tell of it.
 #pragma once
 
 #include <optional>
@@ -24,9 +25,10 @@ namespace glidelab::diagnose {
 /// the fit fails.
 std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit& law);
 
-/// The fit of `law` together with late_release, by the noise of `set` alone. Empty if a hand does not show beside the
-/// law and its remainder, whose sizes are `sizes`, or if the fit fails.
-std::optional<MotionFit> with_hand(const TrackSet& set, const MotionFit& law, const RemainderSizes& sizes);
+/// The fit of `law` together with one more effect, by the noise of `set` alone. Empty if the effect does not show beside
+/// the law and its remainder, whose sizes are `sizes`, or if the fit fails.
+std::optional<MotionFit> with_further(const TrackSet& set, const MotionFit& law, std::size_t effect,
+                                      const RemainderSizes& sizes);
 
 /// The laws that show best beside clips that scatter, whose fit is `scatter` and whose remainder is `sizes`, each
 /// fitted together with them by the noise alone. A law that takes less than the scatter does hardly shows by itself, so

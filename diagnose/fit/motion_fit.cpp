@@ -251,6 +251,18 @@ double drag_of_air_like(const MotionFit& fit, double least) {
 
 }  // namespace
 
+double chi2_of_stated(const MotionFit& fit) {
+  double chi2 = 0.0;
+  for (const FitStatement& one : fit.statements) {
+    if (one.against) chi2 += one.chi2(fit.at.global[static_cast<Eigen::Index>(one.global)]);
+  }
+  return chi2;
+}
+
+double gain_in_stated(const MotionFit& base, const MotionFit& fit) {
+  return std::isfinite(fit.cost) ? chi2_of_stated(base) - chi2_of_stated(fit) : 0.0;
+}
+
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late) {
   return finished(set, descended(set, effects, start, late, descent_options()));

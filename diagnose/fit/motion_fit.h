@@ -52,6 +52,15 @@ struct MotionFit {
   int iterations = 0;
 };
 
+/// What the inclinations that the experimenter states add to chi² at a fit.
+double chi2_of_stated(const MotionFit& fit);
+
+inline constexpr double kClearInStated = 20.0;  ///< of that chi²: some 4.5 standard deviations of one statement
+
+/// By how much less stated inclinations contradict `fit` than `base`, in chi². A scale or a clock that is off, or a
+/// friction that differs between the directions, shifts the inclination that the motion gives, and little else.
+double gain_in_stated(const MotionFit& base, const MotionFit& fit);
+
 /// Fits from a start in the layout of these effects.
 MotionFit fit_motions(const TrackSet& set, const std::vector<std::size_t>& effects, const FitPoint& start,
                       const Lateness& late = {});

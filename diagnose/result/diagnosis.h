@@ -42,6 +42,7 @@ struct DiagnosedEffect {
   double joint_probability = 0.0;  ///< that it or one of `equivalent_to` acts
   /// It and those, by decreasing probability; empty if it stands alone.
   std::vector<AlikeEffect> alike = {};
+  bool by_stated = false;  ///< known by the inclinations that are stated, not by a part of the gap
 };
 
 struct RankedExplanation {

@@ -55,6 +55,12 @@ bool may_displace(const CauseSequence& likelier, const CauseSequence& named) {
   return likelier.named_share >= kHalfOfGap || named.named_share < kHalfOfGap;
 }
 
+bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, const Comparison& comparison) {
+  const bool by_stated = std::any_of(named.effects.begin(), named.effects.end(),
+                                     [&](std::size_t e) { return comparison.by_stated.contains(e); });
+  return by_stated && !claims_part_of_gap(comparison, named) && sequence.gap_before * sequence.gap_before - 1.0 < 1.0;
+}
+
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
   for (Hypothesis& one : comparison.all) {
     if (one.unnamed || one.effects.empty() || !of(one)) continue;
@@ -77,9 +83,17 @@ void set_unknown(double unknown, Comparison& comparison) {
 
 void move_minorities_to_unknown(Comparison& comparison) {
   for (Hypothesis& one : comparison.all) {
-    if (one.unnamed || !shows_in_gap(one) || one.left.value_or(0.0) <= 1.0 - kHalfOfGap) continue;
-    for (const std::size_t e : one.effects) comparison.effect_probability[e] -= one.probability;
-    comparison.unknown += std::exchange(one.probability, 0.0);
+    if (one.unnamed || !claims_part_of_gap(comparison, one) || one.left.value_or(0.0) <= 1.0 - kHalfOfGap) continue;
+    std::set<std::size_t> kept(one.effects.begin(), one.effects.end());
+    std::erase_if(kept, [&](std::size_t e) { return !comparison.by_stated.contains(e); });
+    const Hypothesis* stated = kept.empty() ? nullptr : find(comparison, kept);
+    for (const std::size_t e : one.effects) {
+      if (stated == nullptr || !kept.contains(e)) comparison.effect_probability[e] -= one.probability;
+    }
+    double& to = stated == nullptr
+                     ? comparison.unknown
+                     : comparison.all[static_cast<std::size_t>(stated - comparison.all.data())].probability;
+    to += std::exchange(one.probability, 0.0);
   }
   sort_by_probability(comparison);
 }
@@ -88,7 +102,7 @@ void hold_to_share(const CauseSequence& sequence, const std::vector<std::size_t>
                    Comparison& comparison) {
   comparison.unknown += std::exchange(comparison.none, 0.0);
   const Hypothesis of{best};
-  if (sequence.named_share < kHalfOfGap && shows_in_gap(of)) {
+  if (sequence.named_share < kHalfOfGap && shows_in_gap(of) && !needs_no_share(sequence, of, comparison)) {
     // The probability of explanations that leave more than half is unknown already; now that of the best one is as
     // well.
     double of_best = 0.0;

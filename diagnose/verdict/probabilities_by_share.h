@@ -27,6 +27,10 @@ bool shows_in_gap(const Hypothesis& explanation);
 /// well. A name that explains the gap does not give way to one that would make the cause unknown.
 bool may_displace(const CauseSequence& likelier, const CauseSequence& named);
 
+/// Whether a name is known by stated inclinations alone, beside a gap that is less than the noise: it need not take half
+/// of that.
+bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, const Comparison& comparison);
+
 /// Moves the probability of the explanations for which `of` holds to `none`: what they would explain needs no cause.
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison);
 
@@ -35,6 +39,7 @@ void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison);
 void set_unknown(double unknown, Comparison& comparison);
 
 /// Moves the probability of explanations that leave more than half of the gap to `unknown`: they cannot name its cause.
+/// What is known by stated inclinations keeps it.
 void move_minorities_to_unknown(Comparison& comparison);
 
 /// The probabilities for a verdict on a gap above the noise floor. A gap that the remainder alone explains has an

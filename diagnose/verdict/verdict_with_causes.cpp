@@ -80,10 +80,20 @@ std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& 
 }
 
 /// Puts the effects that a verdict names in order of falling share, and then those that no motion shows. In a fall
-/// through air the drag comes first: the other shares are what is left beside it.
+/// through air the drag comes first: the other shares are what is left beside it. A cause that stated inclinations show
+/// has no share, and comes first if it is likelier than any that has one.
 void order_by_share(bool drag_first, Diagnosis& diagnosis) {
+  const auto probability = [](const DiagnosedEffect& effect) {
+    return std::max(effect.probability, effect.joint_probability);
+  };
+  double likeliest = 0.0;
+  for (const DiagnosedEffect& one : diagnosis.effects) {
+    if (!one.by_stated) likeliest = std::max(likeliest, probability(one));
+  }
   const auto share = [&](const DiagnosedEffect& effect) {
-    if (drag_first && effect.id == ids::quadratic_drag) return std::numeric_limits<double>::infinity();
+    const bool first =
+        effect.by_stated ? probability(effect) > likeliest : drag_first && effect.id == ids::quadratic_drag;
+    if (first) return std::numeric_limits<double>::infinity();
     const auto of = std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
                                  [&](const ExplainedCause& cause) { return cause.id == effect.id; });
     return of != diagnosis.explained.end() ? of->share : -std::numeric_limits<double>::infinity();
@@ -295,7 +305,9 @@ void VerdictWithCauses::put_causes_in_order() {
   const bool may_change = weighed_ && claims_;
   const Hypothesis* likely = names_ && may_change ? likely_part(set_, by(), best_) : nullptr;
   if (likely != nullptr) sequence_ = sequence_with(*likely);
-  if (likely != nullptr && sequence_.named_share >= kHalfOfGap && is_likelier_than_not(with(), by(), *likely)) {
+  const bool by_share =
+      likely != nullptr && (sequence_.named_share >= kHalfOfGap || needs_no_share(sequence_, *likely, by()));
+  if (by_share && is_likelier_than_not(with(), by(), *likely)) {
     best_ = *likely;
   } else {
     sequence_ = sequence_with(best_);
@@ -429,6 +441,9 @@ void VerdictWithCauses::add_shares(const Reported& reported, Diagnosis& diagnosi
   diagnosis.traces = traces_;
   if (noise_is_rounding(set_)) diagnosis.traces.emplace_back(ids::position_rounding);
   diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence_.causes) : sequence_.causes;
+  for (DiagnosedEffect& effect : diagnosis.effects) {
+    effect.by_stated = sequence_.by_stated.contains(effect_index(effect.id));
+  }
   order_by_share(by_air_, diagnosis);
   if (sequence_.is_gap) {
     diagnosis.remainder = remainder_of(sequence_.gap_before, diagnosis.explained, reported.sizes, reported.part_s);

@@ -45,6 +45,9 @@ struct Comparison {
   std::vector<std::size_t> alike;
   std::vector<double> odds;      ///< of each of effect_list(), before the data (prior_odds()); empty: 1
   std::vector<double> fit_odds;  ///< of each of `fits`, log (fit_odds.h); empty: 0
+  /// Effects that alone bring stated inclinations and the motion together (gain_in_stated()) and leave the gap as it
+  /// is. They are known by the statements, and are not measured by what they take of the gap.
+  std::set<std::size_t> by_stated;
 };
 
 /// How many fits run at a time, and a callback for the progress of the comparison; an exception from it ends the
@@ -87,6 +90,9 @@ void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<cons
 /// Sets `none`, `unknown` and the probability of each effect from those of the hypotheses, and sorts these by
 /// decreasing probability.
 void set_probabilities(Comparison& comparison);
+
+/// Whether any effect of a hypothesis would take part of the gap, beside those that are known by stated inclinations.
+bool claims_part_of_gap(const Comparison& comparison, const Hypothesis& hypothesis);
 
 /// Whether an effect is among a hypothesis' own.
 bool has(const Hypothesis& hypothesis, std::size_t effect);

@@ -162,23 +162,16 @@ void add_to_drag_with_its_air(const TrackSet& set, const std::set<std::size_t>& 
   if (scan.visible) add(comparison, fit_more(set, base, scan, with_air));
 }
 
-double chi2_of_statements(const MotionFit& fit) {
-  double chi2 = 0.0;
-  for (const FitStatement& one : fit.statements) chi2 += one.chi2(fit.at.global[static_cast<Eigen::Index>(one.global)]);
-  return chi2;
-}
-
 /// Clips that scatter beside a leader that shows mostly in what the experimenter states: a scale or a clock that is off
 /// shifts inclinations, which no scatter of the clips absorbs.
 void add_scatter_beside_statements(const TrackSet& set, const std::vector<Hypothesis>& leaders, const Work& work,
                                    Comparison& comparison) {
-  constexpr double kLeastInStatements = 20.0;  // of chi²
   const std::size_t scatter = effect_index(ids::clip_scatter);
   for (const Hypothesis& leader : leaders) {
     const MotionFit base = comparison.fits[static_cast<std::size_t>(leader.fit)];
     const MotionFit& nominal = comparison.fits.front();
-    const double stated = chi2_of_statements(nominal) - chi2_of_statements(base), all = nominal.cost - base.cost;
-    if (!std::isfinite(base.cost) || stated < std::max(kLeastInStatements, 0.5 * all)) continue;
+    const double stated = gain_in_stated(nominal, base);
+    if (stated < std::max(kClearInStated, 0.5 * (nominal.cost - base.cost))) continue;
     work.look();
     const EffectScan scan = scan_effect(ScoreSpace(set, base), scatter);
     if (scan.visible && !scan.values.empty()) add(comparison, fit_more(set, base, scan, leader));

@@ -296,13 +296,19 @@ std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
   }
   if (!alone.empty()) text = fmt::format(" Probability: {}.", list_of(alone, ", ")) + text;
   if (!alone_beside.empty()) text += fmt::format(" Also likely: {}.", list_of(alone_beside, ", "));
-  std::vector<std::string> besides;
+  std::vector<std::string> besides, by_stated;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-    if (!is_explained(diagnosis, effect.id)) besides.push_back(effect_name(effect.id));
+    if (!is_explained(diagnosis, effect.id)) (effect.by_stated ? by_stated : besides).push_back(effect_name(effect.id));
   }
-  if (!besides.empty() && besides.size() < diagnosis.effects.size()) {
-    text += fmt::format(" {} {} nothing to this gap.", capital(list_of(besides)),
-                        besides.size() > 1 || is_plural(besides.front()) ? "contribute" : "contributes");
+  const auto verb_of = [](const std::vector<std::string>& names, const char* verb) {
+    return std::string(verb) + (names.size() > 1 || is_plural(names.front()) ? "" : "s");
+  };
+  if (!by_stated.empty()) {
+    text += fmt::format(" {} {} only in the stated inclination, which the motion contradicts without it.",
+                        capital(list_of(by_stated)), verb_of(by_stated, "show"));
+  }
+  if (!besides.empty() && besides.size() + by_stated.size() < diagnosis.effects.size()) {
+    text += fmt::format(" {} {} nothing to this gap.", capital(list_of(besides)), verb_of(besides, "contribute"));
   }
   return text.empty() ? text : text.substr(1);
 }

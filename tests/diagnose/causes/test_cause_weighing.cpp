@@ -279,3 +279,27 @@ TEST_CASE("a hand beside clips that scatter is weighed as one explanation of bot
   CHECK(*alone->left > 0.15);
   CHECK(pair->probability > alone->probability);
 }
+
+TEST_CASE("a scale that the stated inclination shows is named beside friction that makes the gap") {
+  // Lengths are 4 % too long, which makes 4 degrees look like 4.16 ± 0.015; friction differs by 2 to 4 % between clips.
+  tests::ScatteringFriction friction(0.02, {0.03, -0.02, 0.04, -0.03, 0.02, -0.04, 0.035, -0.025});
+  tests::MadeEffect both;
+  both.force = [&](double m, double, double v, double t) { return friction(m, v, t); };
+  both.seen = [](double x, double) { return 1.04 * x; };
+  const auto made = tests::made_experiment(tests::made_launches(), both, 5, 2e-4, 100, 60.0, 0.015, 0.0, {.mu = 0.02});
+  const diagnose::Diagnosis found = diagnose::diagnose_results(made.results, made.setups, {});
+  REQUIRE(found.verdict == diagnose::Verdict::effect);
+  REQUIRE(!found.explained.empty());  // by what makes the gap, which is no scale
+  const auto scale = std::find_if(found.effects.begin(), found.effects.end(), [](const auto& one) {
+    return one.id == "scale_error" || one.id == "frame_rate_error" || one.id == "direction_asymmetry";
+  });
+  REQUIRE(scale != found.effects.end());
+  CHECK(scale->by_stated);
+  CHECK(std::max(scale->probability, scale->joint_probability) > 0.5);
+  CHECK(found.explained.front().id != scale->id);
+  const auto probability = [](const auto& one) { return std::max(one.probability, one.joint_probability); };
+  const auto likeliest =
+      std::max_element(found.effects.begin(), found.effects.end(),
+                       [&](const auto& a, const auto& b) { return probability(a) < probability(b); });
+  CHECK((likeliest == scale) == (found.effects.begin() == scale));
+}

@@ -56,7 +56,8 @@ TEST_CASE("a hand is fitted beside two causes where it shows, and nowhere else")
       pair = diagnose::fit_with_effect(set, pair, effect, diagnose::with_effect(set, pair, effect, {size}, {}));
     }
     const diagnose::RemainderSizes sizes = diagnose::RemainderSpace(set, pair).likeliest().sizes;
-    return std::pair(pair, diagnose::with_hand(set, pair, sizes));
+    return std::pair(pair,
+                     diagnose::with_further(set, pair, diagnose::effect_index(diagnose::ids::late_release), sizes));
   };
   const auto [pair, with_hand] = fits_of(true);
   REQUIRE(with_hand);

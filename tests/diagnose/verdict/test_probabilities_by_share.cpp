@@ -140,6 +140,30 @@ TEST_CASE("explanations that leave more than half of the gap give their probabil
   CHECK(comparison.all.front().effects == std::vector{kPlace});
 }
 
+TEST_CASE("what is known by stated inclinations keeps its probability, whatever part of the gap acts beside it") {
+  const std::size_t scale = effect_index(ids::scale_error);
+  Comparison comparison = comparison_of({{{scale, kDrag}, 0.6, 0.7}, {{kPlace}, 0.3, 0.2}, {{scale}, 0.05, 1.0}});
+  for (Hypothesis& one : comparison.all) one.fit = 0;
+  comparison.by_stated = {scale};
+  diagnose::move_minorities_to_unknown(comparison);
+  check_sums(comparison);
+  CHECK(probability_of(comparison, {scale}) == Approx(0.65));
+  CHECK(comparison.effect_probability[scale] == Approx(0.65));
+  CHECK(comparison.effect_probability[kDrag] == Approx(0.0));
+
+  // It need not take half of a gap that is less than the noise.
+  diagnose::CauseSequence sequence = sequence_of(ids::scale_error, 0.0, 1.3);
+  CHECK(diagnose::needs_no_share(sequence, {{scale}}, comparison));
+  CHECK(!diagnose::needs_no_share(sequence, {{scale, kDrag}}, comparison));
+  CHECK(!diagnose::needs_no_share(sequence, {{kDrag}}, comparison));
+  diagnose::hold_to_share(sequence, {scale}, false, comparison);
+  CHECK(comparison.unknown == Approx(0.05));
+  sequence.gap_before = 1.5;
+  CHECK(!diagnose::needs_no_share(sequence, {{scale}}, comparison));
+  diagnose::hold_to_share(sequence, {scale}, false, comparison);
+  CHECK(comparison.unknown > 0.5);
+}
+
 TEST_CASE("explanations that are not needed count as none") {
   Comparison comparison = comparison_of({{{kDrag}, 0.6}, {{kPlace}, 0.3}}, 0.05);
   diagnose::move_to_none([](const Hypothesis& one) { return one.effects.front() == kDrag; }, comparison);

@@ -127,6 +127,9 @@ TEST_CASE("causes that look alike, and effects that have no share, are told behi
         "These data cannot tell quadratic drag (68 %), power-law drag (30 %) and magnetic drag that falls off apart; "
         "one of them acts with a probability of 98 %. Also likely: added inertia 81 %. Added inertia "
         "contributes nothing to this gap.");
+  of.effects.back().by_stated = true;
+  CHECK(report::sureness_words(of).ends_with(
+      " Added inertia shows only in the stated inclination, which the motion contradicts without it."));
 }
 
 TEST_CASE("traces are no part of the verdict: nothing that matters is missing, whatever is likeliest") {
