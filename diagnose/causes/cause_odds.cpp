@@ -19,7 +19,8 @@ constexpr double kAgainstUnnamedBeside = 1.4;  // log odds against a function wi
 constexpr double kAgainstUnnamedAlone = 1.0;   // and alone
 constexpr double kImitatedPart = 0.08;         // part of a cause's probability that belongs to a cause off the list
 constexpr double kAgainstFurtherCause = 2.0;   // log odds against each further cause where the noise is negligible
-constexpr double kNoClipHeldOut = -1.0;        // the excess of a gap of 0: no clip was held out
+constexpr double kLeftPower = 0.5;  // of the part that is left, where the noise is negligible and that spans decades
+constexpr double kNoClipHeldOut = -1.0;                   // the excess of a gap of 0: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // limits of E in cause_odds.h
 
 bool makes_a_gap(const Hypothesis& hypothesis) {
@@ -104,7 +105,10 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
     const Hypothesis& one = all[group.plain];
     const double evidence = is_clip_scatter(one) ? std::max(one.log_evidence, 0.0) : one.log_evidence;
     double log = tempered(best - evidence);
-    if (no_noise) log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
+    if (no_noise) {
+      log = -kAgainstFurtherCause * std::max(0.0, static_cast<double>(one.effects.size()) - 1.0);
+      log -= kLeftPower * std::log(std::max(*one.left, 1.0 / kLargestExcess));
+    }
     if (of_drag && is_beside_drag_of_air(one)) {
       log += named(before(one)) - kLeftSlope * part_left(*of_drag, before(one));
       log += named(*of_drag) - kLeftSlope * part_left(left[static_cast<std::size_t>(one.fit)], *of_drag);

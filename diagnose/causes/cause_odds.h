@@ -23,8 +23,8 @@
 /// tell what a further cause does. It counts in two steps there: the drag by what it leaves of a fall without drag, and
 /// the further causes by what they leave of what the drag alone leaves, each with the terms above.
 ///
-/// A cause that is known by stated inclinations (Comparison::by_stated), such as a wrong scale, leaves the gap as it is.
-/// Only its evidence counts, and r is for what acts beside it.
+/// A cause that is known by stated inclinations (Comparison::by_stated), such as a wrong scale, leaves the gap as it
+/// is. Only its evidence counts, and r is for what acts beside it.
 ///
 /// The scatter of single positions makes no gap. Explanations that differ only in such scatter are one explanation of
 /// the gap. Its odds are those of the one without scatter, however strong the evidence of the scatter; they share its
@@ -43,7 +43,8 @@
 namespace glidelab::diagnose {
 
 /// The excess above which the noise is negligible. The evidence of any curve is a certainty there, so only what an
-/// explanation leaves counts, less a log odds of 2 for each further cause.
+/// explanation leaves counts, less a log odds of 2 for each further cause. What is left spans decades there: its root
+/// counts as well.
 inline constexpr double kLargestExcess = 1e6;
 
 /// What explanations leave of the held-out excess g² - 1.

@@ -59,6 +59,21 @@ TEST_CASE("log odds are linear in what is left") {
   CHECK(log_odds(3.0) == Approx(log_odds(1.0)).epsilon(1e-9));  // a cause that makes the gap worse leaves all of it
 }
 
+TEST_CASE("where the noise is negligible the odds count decades of what is left, and no evidence") {
+  const auto odds = [](double evidence, double first, double second) {
+    diagnose::Comparison comparison = comparison_of(0.0, 0.0, evidence);
+    constexpr double kBefore = 1e8;
+    diagnose::weigh_beside_remainder({{kBefore, first * kBefore, second * kBefore}, kNotMeasured}, comparison);
+    return probability_of(comparison, diagnose::ids::quadratic_drag) /
+           probability_of(comparison, diagnose::ids::track_bow);
+  };
+  CHECK(odds(0.0, 1e-4, 1e-4) == Approx(1.0));
+  CHECK(odds(1e4, 1e-4, 1e-4) == Approx(1.0));
+  // A hundred times less left: ten to one, beside what the parts themselves say (12.5 of 1e-2 and 1e-4).
+  CHECK(odds(0.0, 1e-4, 1e-2) == Approx(10.0 * std::exp(12.5 * (1e-2 - 1e-4))));
+  CHECK(odds(0.0, 1e-9, 1e-4) == Approx(odds(0.0, 1e-6, 1e-4)).epsilon(1e-4));  // the excess is a measure to 1e-6
+}
+
 TEST_CASE("the gap of a fall without drag is a measure of the quadratic drag alone") {
   // Both leave 0.9 of the nominal excess. That of a fall without drag is a thousand times as large.
   const auto weighed = [](std::optional<double> without_drag) {
