@@ -278,13 +278,14 @@ std::string sureness_words(const diagnose::Diagnosis& diagnosis) {
   std::vector<std::string> alone, alone_beside;
   std::string text;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-    if (effect.alike.empty()) {
+    const std::vector<diagnose::AlikeEffect> alike = told_alike(effect);
+    if (alike.empty()) {
       const bool explains = diagnosis.explained.empty() || is_explained(diagnosis, effect.id);
       (explains ? alone : alone_beside).push_back(effect_name(effect.id) + " " + percent(effect.probability));
       continue;
     }
     std::vector<std::string> members;
-    for (const diagnose::AlikeEffect& one : effect.alike) {
+    for (const diagnose::AlikeEffect& one : alike) {
       members.push_back(effect_name(one.id) + (one.probability ? fmt::format(" ({})", percent(*one.probability)) : ""));
     }
     text += fmt::format(" These data cannot tell {} apart; one of them acts with a probability of {}.",

@@ -52,10 +52,25 @@ std::string explanation_html(const diagnose::Explanation& explanation) {
   return fmt::format("{} <small><code>{}</code></small>", escape(name), escape(id));
 }
 
+namespace {
+
+constexpr double kLeastPercent = 0.005;  // a smaller probability is told as less than 1 %
+
+}  // namespace
+
 std::string percent(double probability) {
-  if (probability > 0.995) return "more than 99 %";
-  if (probability < 0.005) return "less than 1 %";
+  if (probability > 1.0 - kLeastPercent) return "more than 99 %";
+  if (probability < kLeastPercent) return "less than 1 %";
   return fmt::format("{:.0f} %", 100.0 * probability);
+}
+
+std::vector<diagnose::AlikeEffect> told_alike(const diagnose::DiagnosedEffect& effect) {
+  std::vector<diagnose::AlikeEffect> told = effect.alike;
+  std::erase_if(told, [&](const diagnose::AlikeEffect& one) {
+    return one.id != effect.id && one.probability && *one.probability < kLeastPercent;
+  });
+  if (told.size() < 2) told.clear();
+  return told;
 }
 
 namespace {

@@ -223,7 +223,8 @@ std::string count_in_words(std::size_t count) {
 
 /// One effect, or, before any of its members, the set that these data cannot distinguish.
 std::string claim(const diagnose::DiagnosedEffect& effect) {
-  if (effect.alike.empty()) {
+  const std::vector<diagnose::AlikeEffect> alike = told_alike(effect);
+  if (alike.empty()) {
     return fmt::format("{} ({}, {})", effect.words, effect.id, percent(effect.probability));
   }
   // A member that has nearly all of it is the answer.
@@ -233,7 +234,7 @@ std::string claim(const diagnose::DiagnosedEffect& effect) {
                        effect.id, percent(effect.probability), percent(effect.joint_probability));
   }
   std::vector<std::string> members;
-  for (const diagnose::AlikeEffect& one : effect.alike) {
+  for (const diagnose::AlikeEffect& one : alike) {
     members.push_back(one.probability ? fmt::format("{} ({}, {})", one.words, one.id, percent(*one.probability))
                                       : fmt::format("{} ({})", one.words, one.id));
   }
