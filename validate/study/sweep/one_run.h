@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/long_work.h"
+#include "core/result/why_unknown.h"
 #include "validate/film/film_studio.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/tracks/made_tracks.h"
@@ -23,8 +24,8 @@ struct QuantityRow {
   std::string estimator;  ///< Analysis::name()
   std::string quantity;   ///< a key of core::kQuantities
   std::optional<double> truth, value, sd, low95, high95;
-  std::optional<double> least_sd;  ///< Cramér-Rao bound; only for tracks, whose noise is known
-  std::string why;                 ///< why there is no value
+  std::optional<double> least_sd;       ///< Cramér-Rao bound; only for tracks, whose noise is known
+  std::optional<core::WhyUnknown> why;  ///< why there is no value
   /// The value including the smoothing's bias; empty if none was subtracted.
   std::optional<double> uncorrected = {};
 };
