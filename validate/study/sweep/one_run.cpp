@@ -6,11 +6,11 @@
 #include "core/result/quantity.h"
 #include "fit/estimators.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/oracle_bandwidth.h"
+#include "validate/made_tracks/outside_runs.h"
 #include "validate/study/coverage/naive_lines.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
-#include "validate/tracks/oracle_bandwidth.h"
-#include "validate/tracks/outside_runs.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
