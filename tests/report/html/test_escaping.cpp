@@ -376,7 +376,7 @@ TEST_CASE("the page of everyday cases has every name from a file as text") {
   outcome.everyday.emplace();
   outcome.everyday->shares = {0.8};
   outcome.everyday->equals = {{kEvil}};
-  outcome.everyday->dirt = {{kEvil, 0.1, kEvil, 0.6, {kEvil}}};
+  outcome.everyday->imperfections = {{kEvil, 0.1, kEvil, 0.6, {kEvil}}};
   report::BlindRun run;
   run.outcomes = {outcome};
   run.everyday.emplace();
