@@ -231,7 +231,7 @@ TEST_CASE("The error of a(t) beside the best possible one is given of each confi
       }
     }
     for (const char* name : {"m1", "m2"}) {
-      if (run > 0) record.quantities.push_back({name, "phase-diagram", "mu", 1.0, 1.0, {}, {}, {}, {}, ""});
+      if (run > 0) record.quantities.push_back({name, "phase-diagram", "mu", 1.0, 1.0, {}, {}, {}, {}, {}});
     }
     database.add(record, 0.1);
   }
