@@ -249,7 +249,7 @@ Plot error_plot(const AxisSummary& axis, const std::vector<Series>& all, std::st
   return {Drawing{script, frame.data, frame.size},
           fmt::format("Root mean square error ({}) and stated standard deviation ({}){}{}",
                       axis.words ? "filled" : "solid", sd, only, frame.note),
-          fmt::format("Error and standard deviation of {} against {}{}", symbol, axis.name, only)};
+          fmt::format("Error of {} against {}{}", symbol, axis.name, only)};
 }
 
 Plot bias_plot(const AxisSummary& axis, const Frame& frame, std::string_view quantity) {
