@@ -18,9 +18,9 @@
 #include "fit/trajectory/trajectory_results.h"
 #include "render/film/clip_renderer.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/made_tracks.h"
 #include "validate/study/coverage/interval_coverage.h"
 #include "validate/study/sweep/one_run.h"
-#include "validate/tracks/made_tracks.h"
 
 namespace {
 

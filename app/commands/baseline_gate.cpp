@@ -14,9 +14,9 @@
 #include "render/scenario/scenario.h"
 #include "report/text/display_text.h"
 #include "report/text/outside_text.h"
+#include "validate/made_tracks/outside_runs.h"
 #include "validate/study/baseline/baseline.h"
 #include "validate/study/baseline/baseline_comparison.h"
-#include "validate/tracks/outside_runs.h"
 
 namespace glidelab::app {
 namespace {

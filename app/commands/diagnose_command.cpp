@@ -25,7 +25,7 @@
 #include "report/html/gnuplot.h"
 #include "report/text/display_text.h"
 #include "validate/film/twin_motions.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::app {
 namespace {

@@ -15,6 +15,7 @@
 #include "report/html/gnuplot.h"
 #include "report/sweep/sweep_report.h"
 #include "report/text/json_numbers.h"
+#include "report/text/why_words.h"
 #include "validate/study/sweep/design/read_sweep.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
@@ -136,7 +137,7 @@ void dry_run(const SweepOptions& options, const validate::Sweep& sweep, const va
   const base::TemporaryFolder elsewhere("dry-run");
   const bool there = fs::exists(out / database_name(shard));
   validate::SweepDatabase database((there ? out : elsewhere.path()) / database_name(shard), sweep, build_version(),
-                                   shard);
+                                   shard, report::why_words);
   fs::path disk = out, made = out;  // the nearest existing folder, and what would be made in it
   for (; !fs::exists(disk) && disk.has_relative_path(); disk = disk.parent_path()) made = disk;
   if (disk == out) {
@@ -157,7 +158,7 @@ void merge(const SweepOptions& options, const validate::Sweep& sweep, const fs::
   const fs::path file = out / database_name({});
   const bool was_there = fs::exists(file);
   try {
-    validate::SweepDatabase(file, sweep, build_version(), {}).merge_runs_of(others);
+    validate::SweepDatabase(file, sweep, build_version(), {}, report::why_words).merge_runs_of(others);
   } catch (...) {
     std::error_code ignored;  // the error of the merge is the one to report
     if (!was_there) fs::remove(file, ignored);
@@ -214,7 +215,7 @@ void sweep_command(const SweepOptions& options) {
     progress("merging", 0.0);
     merge(options, sweep, out);
   }
-  validate::SweepDatabase database(out / database_name(shard), sweep, build_version(), shard);
+  validate::SweepDatabase database(out / database_name(shard), sweep, build_version(), shard, report::why_words);
   keep_on_interrupt([&] { fill(options, sweep, shard, database, out, progress, display); },
                     [&] {
                       return fmt::format("{} of {} runs are kept in {}; the same command continues with the rest",

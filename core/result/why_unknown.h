@@ -1,5 +1,5 @@
-/// Why the data do not determine a quantity: one struct for each reason, with its numbers, and the words for it
-/// (why_words()).
+/// Why the data do not determine a quantity: one struct for each reason, with its numbers. report/text/why_words.h puts
+/// it into words.
 #pragma once
 
 #include <optional>
@@ -125,14 +125,5 @@ struct WhyUnknown {
   AnyReason reason;
   std::vector<ClipAgainstLaunch> against_launch = {};  ///< of these clips, if that is why a line is missing
 };
-
-/// Why the data do not determine a quantity, in words. They are here and not in report/, because
-/// validate/ stores them in a sweep's database.
-///
-/// "no line for v > 0"; empty without a reason.
-std::string why_words(const std::optional<WhyUnknown>& why);
-
-/// "motion towards +x before 0.542 s is attributed to the hand and excluded, since the launch was towards -x"
-std::string launch_words(const AgainstLaunch& against);
 
 }  // namespace glidelab::core

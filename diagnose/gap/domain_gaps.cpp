@@ -11,8 +11,8 @@
 
 #include "core/motion/smoothing/local_polynomial.h"
 #include "diagnose/fit/fit_neighbourhood.h"
-#include "diagnose/frames/missing_frames.h"
 #include "diagnose/gap/held_out.h"
+#include "diagnose/single_frames/missing_frames.h"
 #include "diagnose/tracks/tracked_motions.h"
 #include "diagnose/tracks/whitening.h"
 

@@ -14,10 +14,10 @@
 #include "diagnose/causes/remainder.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
-#include "diagnose/frames/missing_frames.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/pictures/image_evidence.h"
 #include "diagnose/scan/effect_scan.h"
+#include "diagnose/single_frames/missing_frames.h"
 #include "diagnose/verdict/settled_motions.h"
 #include "diagnose/verdict/verdict_details.h"
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/frames/missing_frames.h"
 #include "diagnose/gap/gap_sizes.h"
 #include "diagnose/gap/held_out.h"
 #include "diagnose/result/diagnosis.h"
+#include "diagnose/single_frames/missing_frames.h"
 #include "diagnose/twin/twin.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/verdict/verdict_details.h"

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "diagnose/fit/motion_fit.h"
-#include "diagnose/frames/frame_effects.h"
 #include "diagnose/pictures/image_evidence.h"
 #include "diagnose/result/diagnosis.h"
+#include "diagnose/single_frames/frame_effects.h"
 #include "diagnose/tracks/track_set.h"
 #include "diagnose/unnamed/unnamed_family.h"
 

@@ -8,9 +8,9 @@
 #include <set>
 #include <vector>
 
-#include "diagnose/frames/frame_effects.h"
-#include "diagnose/frames/missing_frames.h"
 #include "diagnose/scan/effect_scan.h"
+#include "diagnose/single_frames/frame_effects.h"
+#include "diagnose/single_frames/missing_frames.h"
 #include "diagnose/unnamed/unnamed_family.h"
 
 namespace glidelab::diagnose {

@@ -8,8 +8,8 @@
 
 #include "base/long_work.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/frames/plain_losses.h"
 #include "diagnose/scan/effect_scan.h"
+#include "diagnose/single_frames/plain_losses.h"
 
 namespace glidelab::diagnose {
 namespace {

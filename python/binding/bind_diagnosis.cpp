@@ -24,7 +24,7 @@
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
 #include "report/text/display_text.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::python {
 

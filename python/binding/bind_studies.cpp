@@ -26,6 +26,7 @@
 #include "report/requirement/requirement_report.h"
 #include "report/sweep/sweep_report.h"
 #include "report/text/display_text.h"
+#include "report/text/why_words.h"
 #include "report/validation/validation_report.h"
 #include "validate/film/run_validation.h"
 #include "validate/study/certify/certify.h"
@@ -169,7 +170,7 @@ Outcome run_sweep(const std::string& file, const std::string& folder, const Judg
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) base::throw_system_error(folder, "cannot be made", error.value());
-    validate::SweepDatabase database(fs::path(folder) / "sweep.sqlite", sweep, GLIDELAB_VERSION, {});
+    validate::SweepDatabase database(fs::path(folder) / "sweep.sqlite", sweep, GLIDELAB_VERSION, {}, report::why_words);
     validate::run_sweep(sweep, database, {}, jobs, progress);
     return std::make_shared<const validate::SweepSummary>(validate::summarize(sweep, database.database()));
   });

@@ -13,7 +13,7 @@
 #include "python/binding/bindings.h"
 #include "python/binding/given_scenario.h"
 #include "python/binding/given_tracks.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::python {
 

@@ -82,7 +82,7 @@ Plot noise_plot(const diagnose::ImageCurve& curve) {
                       "line; a tone curve, a codec or in-camera smoothing bends it. The points deviate from it by {} "
                       "times their standard deviation",
                       base::number_text(curve_excess(curve), 2)),
-          "Noise of pixels over their brightness"};
+          "Pixel noise against brightness"};
 }
 
 namespace {
@@ -254,7 +254,7 @@ std::vector<Plot> pixel_phase_plot(const std::vector<PixelPhase>& points, bool f
                        "biased towards whole pixels shows a wave (pixel locking). First harmonic: {} px",
                        from_truth ? "against the truth" : "against the smoothed motion",
                        base::value_and_sd_text(locking->amplitude_px, locking->sd_px)),
-           "Error of the centre over the sub-pixel phase"}};
+           "Error of the centre against the sub-pixel phase"}};
 }
 
 }  // namespace glidelab::report

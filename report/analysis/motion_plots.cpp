@@ -385,7 +385,7 @@ Plot residual_plot(const core::AnalysisResults& results, const PhaseGroup& group
   return {Drawing{script, of.data},
           "Residuals: what the lines leave unexplained in a(v). Bands: 95 % of each line; bars: 95 % intervals of some "
           "points",
-          "Residuals of the fitted lines over v"};
+          "Residuals of the fitted lines against v"};
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "base/text/number_text.h"
 #include "core/result/results.h"
 #include "core/result/uphill.h"
-#include "core/result/why_unknown.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 
@@ -335,7 +335,7 @@ struct AnalysisSentence {
     return fmt::format("v {} 0: the generalised least squares did not converge; there is no line",
                        sign_of(of.direction));
   }
-  std::string operator()(const core::AgainstLaunch& of) const { return core::launch_words(of); }
+  std::string operator()(const core::AgainstLaunch& of) const { return launch_words(of); }
 
   std::string operator()(const core::MassInGrams& of) const {
     if (of.lightest_kg) {

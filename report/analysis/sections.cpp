@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "base/text/number_text.h"
-#include "core/result/why_unknown.h"
 #include "report/analysis/camera_plots.h"
 #include "report/analysis/doubts.h"
 #include "report/analysis/motion_plots.h"
@@ -16,13 +15,14 @@
 #include "report/analysis/result_files.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 namespace {
 
 /// "2.7791 ± 0.0062", or a dash that shows the reason as a tooltip. HTML.
 std::string quantity_html(const core::Quantity& quantity, std::string_view unit) {
-  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(core::why_words(quantity.why)));
+  if (!quantity.estimate) return fmt::format("<span title=\"{}\">–</span>", escape(why_words(quantity.why)));
   return base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) + unit_suffix(unit);
 }
 
@@ -223,7 +223,7 @@ Html camera_section(const core::AnalysisResults& results) {
     HtmlTable table({"group", "inclination against the plumb line"});
     for (const core::PlumbResult& plumb : results.plumbs) {
       std::string cell = quantity_html(plumb.plumb_deg, "°");
-      if (!plumb.plumb_deg.estimate) cell += fmt::format(" {}", escape(core::why_words(plumb.plumb_deg.why)));
+      if (!plumb.plumb_deg.estimate) cell += fmt::format(" {}", escape(why_words(plumb.plumb_deg.why)));
       table.row({escape(plumb.group), cell});
     }
     text += table.str();
@@ -266,7 +266,7 @@ std::vector<std::string> undetermined_words(const core::ConfigurationResult& con
   std::vector<std::pair<std::string, std::vector<std::string>>> reasons;  // and the quantities that each explains
   for (const auto& [name, quantity] : quantities_of(configuration)) {
     if (quantity->estimate) continue;
-    const std::string why = core::why_words(quantity->why);
+    const std::string why = why_words(quantity->why);
     auto found = std::ranges::find(reasons, why, [](const auto& one) { return one.first; });
     if (found == reasons.end()) found = reasons.insert(found, {why, {}});
     found->second.emplace_back(name.symbol);

@@ -203,7 +203,7 @@ Json case_json(const validate::BlindOutcome& outcome) {
         {{"id", outcome.causes[c].id}, {"share", truth.shares[c]}, {"parameters", outcome.causes[c].parameters}});
   }
   one["dirt"] = Json::array();
-  for (const auto& dirt : truth.dirt) one["dirt"].push_back(dirt.id);
+  for (const auto& imperfection : truth.imperfections) one["dirt"].push_back(imperfection.id);
   one["verdict"] = outcome.verdict.verdict;
   if (!outcome.verdict.why.empty()) one["why"] = outcome.verdict.why;
   one["named"] = Json::array();

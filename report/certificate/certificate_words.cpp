@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "base/math/angles.h"
-#include "core/result/why_unknown.h"
 #include "report/text/display_text.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 namespace {
@@ -84,7 +84,7 @@ std::string lack_words(const validate::NotInTwins& lack) {
 }
 
 std::string unanswered_words(const validate::CertifiedQuantity& quantity) {
-  return quantity.why ? core::why_words(quantity.why) : "none of its clips could be used";
+  return quantity.why ? why_words(quantity.why) : "none of its clips could be used";
 }
 
 std::vector<std::string> setup_names(const validate::Certificate& certificate) {

@@ -173,7 +173,7 @@ Json row_json(const ChallengeScore& score, const ChallengeRow& row) {
 
 /// Interval scores of all entrants for each quantity, over the lowest for that quantity.
 std::vector<Plot> score_plot(const ChallengeScore& score) {
-  PlotData data{"scores", {}, {"interval score over the lowest", "row", "low", "high"}};
+  PlotData data{"scores", {}, {"interval score relative to the lowest", "row", "low", "high"}};
   std::string tics;
   double row_number = 0.0;
   for (const ChallengeQuantity& of : score.quantities) {
@@ -197,12 +197,13 @@ std::vector<Plot> score_plot(const ChallengeScore& score) {
   const std::string script =
       std::string(kFrame) + fmt::format(
                                 "unset offsets\nset logscale x\nset format x '%g'\nset yrange [{:.4g}:0.3]\n"
-                                "set ytics ({})\nunset key\nset xlabel 'interval score over the lowest'\n"
+                                "set ytics ({})\nunset key\nset xlabel 'interval score relative to the lowest'\n"
                                 "plot $scores using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{}'\n",
                                 row_number + 0.7, tics, color(0));
   const int height = 120 + 18 * std::max(6, static_cast<int>(row_number));
   return {{Drawing{script, {data}, {720, height}},
-           "Interval score of each entrant over the lowest one of the quantity, with 95 % intervals; lower is better",
+           "Interval score of each entrant relative to the lowest one of the quantity, with 95 % intervals; lower is "
+           "better",
            "Interval scores of the entrants"}};
 }
 

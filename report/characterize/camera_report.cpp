@@ -150,10 +150,11 @@ Plot transfer_plot(const core::CameraMeasurement& camera) {
       0.7 * camera.saturation_dn, kGrey, color(1), color(0), tick_step(brightest_dn(camera), 6));
   const std::vector<PlotData> data = {line_of(camera), points_of(camera, "used", true),
                                       points_of(camera, "others", false)};
-  return {Drawing{script, data},
-          "Photon transfer: variance of the pixels from frame to frame, rounding subtracted, over the mean. The slope "
-          "is the gain. Bars: 2 sd; dashed: 70 % of saturation",
-          "Variance over mean of every level, with the fitted line"};
+  return {
+      Drawing{script, data},
+      "Photon transfer: variance of the pixels from frame to frame, rounding subtracted, against the mean. The slope "
+      "is the gain. Bars: 2 sd; dashed: 70 % of saturation",
+      "Variance against mean of every level, with the fitted line"};
 }
 
 /// If the levels were made by exposures: the mean as a function of exposure.
@@ -170,8 +171,8 @@ std::vector<Plot> linearity_plot(const core::CameraMeasurement& camera) {
       "key\nplot $levels using 1:2 with linespoints pt 7 ps 0.7 lc rgb '{}'\n",
       color(0));
   return {{Drawing{script, std::vector<PlotData>{data}},
-           "Linearity: the mean of every level over its exposure, a straight line up to saturation",
-           "Mean of every level over its exposure"}};
+           "Linearity: the mean of every level against its exposure, a straight line up to saturation",
+           "Mean of every level against its exposure"}};
 }
 
 std::string numbers_table(const core::CameraMeasurement& camera) {

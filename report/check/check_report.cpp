@@ -333,7 +333,7 @@ const std::vector<ClipColumn> kClipColumns = {
        return clip.contrast && clip.pixel_noise > 0.0 ? base::number_text(*clip.contrast / clip.pixel_noise, 3)
                                                       : std::string(kNothing);
      },
-     "the contrast over the noise of a pixel"},
+     "the contrast divided by the noise of a pixel"},
     {"white, black",
      [](const core::ClipCheck& clip) {
        return clip.images ? share_cell(clip.saturated) + ", " + share_cell(clip.dark) : std::string(kNothing);

@@ -12,8 +12,8 @@
 
 #include "core/result/results.h"
 #include "core/result/uphill.h"
-#include "core/result/why_unknown.h"
 #include "report/analysis/note_words.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 namespace {
@@ -259,7 +259,7 @@ struct FindingSentence {
         fmt::format("launched = \"{}\" and {}", of.launched,
                     of.downhill ? fmt::format("downhill = \"{}\"", *of.downhill) : "no stated downhill");
     using Stated = found::AgainstStatedLaunch::Stated;
-    return {fmt::format("{}{}, as {} say; that is {} of its free motion", whose, core::launch_words(of.motion), keys,
+    return {fmt::format("{}{}, as {} say; that is {} of its free motion", whose, launch_words(of.motion), keys,
                         percent_text(of.motion.share)),
             fmt::format("check which of the two is wrong: launched of {}, or downhill in {}; if neither is, state in "
                         "start_s when the hand lets go",

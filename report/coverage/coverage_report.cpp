@@ -93,7 +93,7 @@ Plot reliability_plot(const validate::Coverage& coverage) {
                   "estimators side by side; grey: the range that chance gives 95 times in 100, with {} replicates and "
                   "intervals that are right",
                   coverage.replicates),
-      "Reliability: actual over nominal coverage"};
+      "Reliability: actual against nominal coverage"};
 }
 
 namespace {

@@ -1,5 +1,6 @@
-/// The open part of a diagnosis' page, below its first paragraph: the waterfall, K/m, µ, α and terminal velocity with
-/// the causes in the model, where the remainder lies, and what to record next. Everything else on the page is folded.
+/// The open part of the page of a diagnosis, below its first paragraph: the waterfall, K/m, µ, α and terminal velocity
+/// with the causes in the model, where the remainder lies, and what to record next. Everything else on the page is
+/// folded.
 #pragma once
 
 #include "diagnose/result/diagnosis.h"

@@ -112,11 +112,11 @@ Plot curve_plot(const diagnose::GapCurve& curve, std::size_t alternatives) {
       "lw 1 lc rgb '{}' notitle\n",
       kColors[0], kColors[0], kGrey);
   return {Drawing{script, std::vector{data}},
-          fmt::format("{} {} over {} that would explain the gap, with two standard deviations{}",
+          fmt::format("{} {} as a function of {} that would explain the gap, with two standard deviations{}",
                       alternatives > 1 ? "A smooth" : "The smooth", to_text(curve.what), axis_of(curve.variable),
                       alternatives > 1 ? fmt::format(": each of these {} curves would do so alone", alternatives)
                                        : std::string()),
-          fmt::format("Curve of the {} over {}", to_text(curve.what), axis_of(curve.variable))};
+          fmt::format("Curve of the {} against {}", to_text(curve.what), axis_of(curve.variable))};
 }
 
 Plot residual_plot(const diagnose::Diagnosis& diagnosis, diagnose::GapVariable variable) {
@@ -184,7 +184,7 @@ Plot lengthening_plot(const diagnose::ImageCurve& curve) {
   }
   return {Drawing{script + "\n", std::vector{data}},
           "Lengthening of the marker's image with its speed: a long exposure smears it",
-          "Lengthening of the marker's image over its speed"};
+          "Lengthening of the marker's image against its speed"};
 }
 
 /// One quantity of the images over time: a block of rows for each clip that has it.

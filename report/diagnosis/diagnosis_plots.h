@@ -26,8 +26,8 @@ std::vector<Plot> verdict_plots(const diagnose::Diagnosis& diagnosis);
 /// The missing term as a function of position, speed or time; residuals before and after.
 std::vector<Plot> where_plots(const diagnose::Diagnosis& diagnosis);
 
-/// What the images show: the residuals of the calibration over the image, the marker's lengthening over its speed,
-/// pixels' noise over their brightness, the light and the scene's position over time. Empty for tracks.
+/// What the images show: the residuals of the calibration over the image, how the marker lengthens with its
+/// speed, pixel noise against brightness, the light and the scene's position against time. Empty for tracks.
 std::vector<Plot> image_plots(const diagnose::Diagnosis& diagnosis);
 
 /// Which effects look alike in these data. Empty if fewer than two can be seen.

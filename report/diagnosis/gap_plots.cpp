@@ -276,7 +276,7 @@ std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions) {
                    points("data", "twin"),
                std::vector{never_empty(data), never_empty(twin)}},
        "Acceleration against speed, of the data and of the twin, smoothed alike",
-       "Acceleration over speed of data and twin"}};
+       "Acceleration against speed of data and twin"}};
 }
 
 }  // namespace glidelab::report

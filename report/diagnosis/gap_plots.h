@@ -19,8 +19,8 @@ std::vector<Plot> domain_plots(const diagnose::Diagnosis& diagnosis);
 /// also each one. Empty if no motion was compared.
 std::vector<Plot> phase_gap_plots(const diagnose::Diagnosis& diagnosis);
 
-/// Residuals by clip (rows) over time, or over position or speed if the gap depends on that: colour is the sum of a
-/// cell's standardised residuals over sqrt(their number), before and after. Empty for lines.
+/// Residuals by clip (rows) against time, or against position or speed if the gap depends on that: colour is the sum of
+/// a cell's standardised residuals over sqrt(their number), before and after. Empty for lines.
 std::vector<Plot> residual_maps(const diagnose::Diagnosis& diagnosis);
 
 /// Rows of a map: one per clip, in the order of the curves; NaN if a cell contains no position.
@@ -34,7 +34,7 @@ struct ResidualMap {
 ResidualMap residual_map(const std::vector<diagnose::ResidualCurve>& curves, diagnose::GapVariable variable,
                          std::size_t cells);
 
-/// The deviation of the measured positions from the twin's over time, compared with noise alone; and a(v) of both.
+/// The deviation of the measured positions from the twin's against time, compared with noise alone; and a(v) of both.
 std::vector<Plot> twin_plots(const std::vector<validate::TwinMotion>& motions);
 
 }  // namespace glidelab::report

@@ -9,11 +9,11 @@
 #include "base/text/number_text.h"
 #include "base/text/readable_text.h"
 #include "core/result/quantity.h"
-#include "core/result/why_unknown.h"
 #include "report/analysis/doubts.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
 #include "report/text/found_json.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 namespace {
@@ -72,9 +72,9 @@ BothColumns both_columns(const core::AnalysisResults& results, const diagnose::G
       both.rows.push_back(
           {name, heading_of(quantity.key), value_of_quantity(before), value_of_quantity(after), interval_of(after)});
       if (after.estimate) continue;
-      both.why.push_back(fmt::format(
-          "{}: no {} with {}: {}", name, quantity.symbol, given.causes.size() == 1 ? "the effect" : "the effects",
-          with != nullptr ? core::why_words(after.why) : "its clips hold too little free motion"));
+      both.why.push_back(fmt::format("{}: no {} with {}: {}", name, quantity.symbol,
+                                     given.causes.size() == 1 ? "the effect" : "the effects",
+                                     with != nullptr ? why_words(after.why) : "its clips hold too little free motion"));
     }
   }
   return both;

@@ -69,7 +69,7 @@ Plot friction_plot(const diagnose::LineComparison& lines, bool over_mass) {
           over_mass ? "1/m" : "(K/m)²",
           over_mass ? "a load-independent force gives a straight line here"
                     : "the bias from smoothing gives a straight line here"),
-      over_mass ? "Friction left over 1/m" : "Friction left over (K/m)²"};
+      over_mass ? "Friction left against 1/m" : "Friction left against (K/m)²"};
 }
 
 }  // namespace

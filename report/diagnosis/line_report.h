@@ -12,8 +12,8 @@
 
 namespace glidelab::report {
 
-/// The friction that the nominal model leaves in each line's intercept, over 1/m and over (K/m)², with the prediction
-/// of each effect that acts on intercepts.
+/// The friction that the nominal model leaves in each line's intercept, against 1/m and against (K/m)², with the
+/// prediction of each effect that acts on intercepts.
 std::vector<Plot> line_plots(const diagnose::LineComparison& lines);
 
 /// A whole page; `diagnosis.lines` must be set. EnvironmentError if gnuplot fails.

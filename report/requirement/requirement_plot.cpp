@@ -181,7 +181,7 @@ Plot requirement_plot(const Requirement& requirement) {
   return {Drawing{script, data, {620, 420}},
           "Error of each camera (numbered as in the tables) against its price, with one standard deviation where runs "
           "were made; the line joins those that no cheaper one beats",
-          "Accuracy reached over cost"};
+          "Accuracy reached against cost"};
 }
 
 }  // namespace glidelab::report

@@ -1,5 +1,5 @@
 /// The outcome of a sweep over bandwidths: which h to use, how much others lose, where the stated intervals fail; and
-/// the plot of it, error over h.
+/// its plot, error against h.
 ///
 /// Over the runs of one h and quantity, with errors e:
 ///
@@ -37,8 +37,8 @@ struct BandwidthAnswer {
 /// For a sweep with lines at three or more bandwidths; empty for any other.
 std::optional<BandwidthAnswer> bandwidth_answer(const validate::SweepSummary& summary);
 
-/// For each quantity: total, noise, bias and stated sd over h; the smallest total; the default rule's choice; the fit
-/// of the whole motion; the Cramér-Rao bound if known. Empty if there is no bandwidth_answer().
+/// For each quantity: total, noise, bias and stated sd against h; the smallest total; the default rule's choice; the
+/// fit of the whole motion; the Cramér-Rao bound if known. Empty if there is no bandwidth_answer().
 std::vector<Plot> bandwidth_plots(const validate::SweepSummary& summary);
 
 /// Each bandwidth's total error of each quantity, compared with that of the default rule and of the fit of the whole

@@ -249,7 +249,7 @@ Plot error_plot(const AxisSummary& axis, const std::vector<Series>& all, std::st
   return {Drawing{script, frame.data, frame.size},
           fmt::format("Root mean square error ({}) and stated standard deviation ({}){}{}",
                       axis.words ? "filled" : "solid", sd, only, frame.note),
-          fmt::format("Error and standard deviation of {} over {}{}", symbol, axis.name, only)};
+          fmt::format("Error of {} against {}{}", symbol, axis.name, only)};
 }
 
 Plot bias_plot(const AxisSummary& axis, const Frame& frame, std::string_view quantity) {
@@ -275,7 +275,7 @@ Plot bias_plot(const AxisSummary& axis, const Frame& frame, std::string_view qua
         i == 0 ? "" : ", ", frame.data[i].name, frame.line, color(i), gnuplot_quoted(frame.titles[i]), shape_of(i));
   }
   return {Drawing{script, frame.data, frame.size}, "Mean error with two standard errors" + frame.note,
-          fmt::format("Bias of {} over {}", symbol, axis.name)};
+          fmt::format("Bias of {} against {}", symbol, axis.name)};
 }
 
 Plot coverage_plot(const AxisSummary& axis, const Frame& frame, std::string_view quantity) {
@@ -293,7 +293,7 @@ Plot coverage_plot(const AxisSummary& axis, const Frame& frame, std::string_view
   }
   return {Drawing{script, frame.data, frame.size},
           "Coverage of the stated intervals, with its own 95 % interval" + frame.note,
-          fmt::format("Coverage of {} over {}", symbol_of(quantity), axis.name)};
+          fmt::format("Coverage of {} against {}", symbol_of(quantity), axis.name)};
 }
 
 }  // namespace

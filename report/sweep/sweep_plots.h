@@ -1,4 +1,4 @@
-/// Plots of a sweep: of one quantity over one varied key.
+/// Plots of a sweep: of one quantity against one varied key.
 #pragma once
 
 #include <span>

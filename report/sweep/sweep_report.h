@@ -1,5 +1,5 @@
-/// report.html of `sweep`: error, stated standard deviation and coverage of every quantity over each varied key, and mu
-/// over mass.
+/// report.html of `sweep`: error, stated standard deviation and coverage of every quantity against each varied key, and
+/// mu against mass.
 #pragma once
 
 #include <string>

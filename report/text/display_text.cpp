@@ -10,10 +10,10 @@
 
 #include "base/text/number_text.h"
 #include "base/text/readable_text.h"
-#include "core/result/why_unknown.h"
 #include "diagnose/effects/effect_library.h"
 #include "fit/estimators.h"
 #include "report/html/html.h"
+#include "report/text/why_words.h"
 #include "validate/study/coverage/interval_coverage.h"
 
 namespace glidelab::report {
@@ -151,7 +151,7 @@ bool is_open(const diagnose::DiagnosedParameter& parameter) {
 
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter) {
   if (!parameter.text.empty()) return fmt::format("{} = {}", parameter.key, parameter.text);
-  if (parameter.why) return fmt::format("{}: not known: {}", parameter.key, core::why_words(parameter.why));
+  if (parameter.why) return fmt::format("{}: not known: {}", parameter.key, why_words(parameter.why));
   if (is_open(parameter)) {
     const std::string named = parameter_text(parameter.key, parameter.value, parameter.sd);
     return named.substr(0, named.find(" = ")) + " not determined";

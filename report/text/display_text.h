@@ -87,7 +87,7 @@ using base::size_text;
 /// "line = 30.67 ± 0.34 µs" for the key "line_s"; for a single set-up ("x_mid_m.NAME") "x_mid.NAME = …".
 std::string parameter_text(std::string_view key, double value, double sd);
 /// A fitted one: "codec = libx264" for a word, "line: not known: …", "line not determined" if sd exceeds
-/// the range that is looked through.
+/// the range that is searched.
 std::string parameter_text(const diagnose::DiagnosedParameter& parameter);
 
 /// "22.1 to 28"; "–" if there is none.

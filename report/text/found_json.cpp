@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/result/quantity.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 
@@ -19,7 +20,7 @@ Json parameters_json(const std::vector<diagnose::DiagnosedParameter>& parameters
       put(value, "sd", parameter.sd);
       if (parameter.at_end) value["at_end"] = true;
     } else {
-      put(value, "value", std::optional<double>(), core::why_words(parameter.why));
+      put(value, "value", std::optional<double>(), why_words(parameter.why));
       value["sd"] = nullptr;
     }
     object[parameter.key] = std::move(value);

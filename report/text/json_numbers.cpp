@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/text/json_text.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 
@@ -46,7 +47,7 @@ void put(Json& object, const std::string& key, const core::Quantity& quantity) {
     return;
   }
   object[key] = nullptr;
-  const std::string why = core::why_words(quantity.why);
+  const std::string why = why_words(quantity.why);
   object["why"][key] = why.empty() ? "the data do not determine it" : why;
 }
 

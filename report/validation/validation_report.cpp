@@ -20,6 +20,7 @@
 #include "report/text/display_text.h"
 #include "report/text/json_numbers.h"
 #include "report/text/outside_text.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 
@@ -35,14 +36,15 @@ std::string comparison_json(const validate::Comparison& comparison) {
     object["estimator"] = quantity.estimator;
     object["quantity"] = quantity.quantity;
     put(object, "truth", quantity.truth, "the scenario does not have it");
-    put(object, "value", quantity.value, quantity.why);
-    put(object, "sd", quantity.sd, quantity.why);
-    put(object, "error", quantity.error, quantity.truth ? quantity.why : "there is no truth to compare with");
+    const std::string why = why_words(quantity.why);
+    put(object, "value", quantity.value, why);
+    put(object, "sd", quantity.sd, why);
+    put(object, "error", quantity.error, quantity.truth ? why : "there is no truth to compare with");
     const char* const unbounded =
         "the motion does not determine it, or the law is not viscous drag with Coulomb friction";
     put(object, "cramer_rao_sd", quantity.cramer_rao_sd, unbounded);
-    put(object, "noise_sd", quantity.noise_sd, quantity.why);
-    put(object, "efficiency", quantity.efficiency, quantity.cramer_rao_sd ? quantity.why : unbounded);
+    put(object, "noise_sd", quantity.noise_sd, why);
+    put(object, "efficiency", quantity.efficiency, quantity.cramer_rao_sd ? why : unbounded);
     document["quantities"].push_back(std::move(object));
   }
   document["lines"] = Json::array();
@@ -304,7 +306,8 @@ std::string comparison_table(const validate::Comparison& comparison) {
     const bool relative = q.error && q.truth && *q.truth != 0.0 && q.quantity != core::key_of(core::Measurand::alpha) &&
                           q.quantity != core::key_of(core::Measurand::mu);
     table.row({escape(heading_of(q.quantity)), cell(q.truth, base::value_text, sd),
-               q.value ? base::value_text(*q.value, sd) : fmt::format("<span title=\"{}\">–</span>", escape(q.why)),
+               q.value ? base::value_text(*q.value, sd)
+                       : fmt::format("<span title=\"{}\">–</span>", escape(why_words(q.why))),
                q.sd ? base::sd_text(*q.sd) : "–", cell(q.error, base::error_text, sd), in_sd,
                relative ? fmt::format("{:+.3f} %", 100.0 * *q.error / *q.truth) : "–",
                q.cramer_rao_sd ? base::sd_text(*q.cramer_rao_sd) : "–",
@@ -339,7 +342,7 @@ std::string comparison_text(const validate::Comparison& comparison) {
   for (const validate::QuantityComparison& q : comparison.quantities) {
     if (!q.value && q.truth) {
       reasons += fmt::format("{}, {}: no {}: {}\n", q.configuration, q.estimator, symbol_of(q.quantity),
-                             base::printable_text(q.why));
+                             base::printable_text(why_words(q.why)));
     }
   }
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);

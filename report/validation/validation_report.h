@@ -19,7 +19,7 @@ namespace glidelab::report {
 std::string comparison_json(const validate::Comparison& comparison);
 
 /// Truth against estimate: errors of the recovered values in units of their standard deviation, restitution errors of
-/// the positions over the field, and errors of the centres within their pixels; each only if there is something to
+/// the positions across the field, and errors of the centres within their pixels; each only if there is something to
 /// compare.
 std::vector<Plot> validation_plots(const core::AnalysisResults& results, const validate::Comparison& comparison);
 

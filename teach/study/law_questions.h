@@ -1,7 +1,7 @@
 /// The numbers that a worksheet on a law asks for, from the glider's own a(v):
 ///
-///     slopes  (a(v1) - a(0+)) / v1  and  (a(v2) - a(v1)) / (v2 - v1),  v2 = 2 v1;  -K/m both, where friction is
-///     viscous jump    a(0-) - a(0+) = 2 mu g cos(alpha), mu that of dry friction near v = 0
+///     slopes  (a(v1) - a(0+)) / v1  and  (a(v2) - a(v1)) / (v2 - v1),  v2 = 2 v1;  both -K/m for viscous friction
+///     jump    a(0-) - a(0+) = 2 mu g cos(alpha), mu that of dry friction near v = 0
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,8 @@ struct LawAnswers {
 /// std::logic_error if there is none.
 LawAnswers answers_of(const LawStudy& study);
 
-/// The curve with the side of v = 0 on which no motion of the study lies, half as far: without it nobody can read how
-/// far a(v) jumps there.
+/// The curve with the side of v = 0 on which no motion of the study lies, half as far: without it the jump of
+/// a(v) there cannot be read.
 LawCurve in_both_directions(LawCurve curve);
 
 }  // namespace glidelab::teach

@@ -308,6 +308,21 @@ TEST_CASE("the README has at most 100 lines and 800 words, says that it runs on 
   }
 }
 
+TEST_CASE("the guide is read in the hour that the index of the documentation states, at 240 words a minute") {
+  std::ptrdiff_t words = 0;
+  bool stated = false;
+  for (const Page& page : pages_of_repository()) {
+    const std::string text = text_of(page);
+    std::istringstream stream(text);
+    if (page.path.starts_with("docs/guide/"))
+      words += std::distance(std::istream_iterator<std::string>(stream), std::istream_iterator<std::string>());
+    if (page.path == "docs/README.md") stated = text.find("front to back in an hour (") != std::string::npos;
+  }
+  CHECK(words > 5000);
+  CHECK(words <= 60 * 240);
+  CHECK(stated);
+}
+
 TEST_CASE("the figures of results in the README and the guide are those of the summary") {
   const std::vector<Page> pages = pages_of_repository();
   const auto rows_of = [&](const std::string& path, const std::string& heading) {

@@ -1,6 +1,6 @@
 /// Measured recordings that no one here made, analysed with the experiment.toml of tests/real. The environment variable
-/// GLIDELAB_REAL_DATA names their folder (DATA-FOLDER of tools/real). Without the data, tests of them pass with a
-/// warning.
+/// GLIDELAB_REAL_DATA names their folder (DATA-FOLDER of tools/real-recordings). Without the data, tests of them pass
+/// with a warning.
 #pragma once
 
 #include <cstdlib>

@@ -89,7 +89,7 @@ TEST_CASE("the numbers in the plot of require are those of its tables, the cheap
   const report::Page page = report::requirement_report(requirement);
   CHECK(has(page.html, "<td>1</td><td>webcam</td>"));
   CHECK(has(page.html, "<td>2</td><td>phone</td>"));
-  const std::string& plotted = page.files.at("plots/01-accuracy-reached-over-cost.csv");
+  const std::string& plotted = page.files.at("plots/01-accuracy-reached-against-cost.csv");
   // One standard deviation of 0.3 bounds at 1.1 bounds, as a ratio: exp(3/11) = 1.3135.
   CHECK(has(plotted, "# met\n10,1.98e-05,1,1.507"));
   CHECK(has(plotted, "e-05,2.600"));

@@ -63,7 +63,7 @@ void add_saying(const BlindOutcome& outcome, const EverydaySaying& saying, Every
   const EverydayClass kind = outcome.everyday->kind;
   const std::string of(word(kind)), strength = strength_of(outcome);
   const auto& names = saying.names;
-  if (kind == EverydayClass::dirt) add(method.false_claim[of][strength], claims_half(saying));
+  if (kind == EverydayClass::imperfect) add(method.false_claim[of][strength], claims_half(saying));
   if (kind == EverydayClass::outside) {
     add(method.wrong_name[of][strength],
         saying.claims && std::any_of(names.begin(), names.end(),
@@ -98,9 +98,9 @@ const BlindRanked* least_gap(const BlindVerdict& verdict, std::size_t size, cons
 
 bool is_fair(const BlindOutcome& outcome, const EverydaySaying& saying) {
   double all = 0.0, fair = 0.0;
-  for (const ActingDirt& dirt : outcome.everyday->dirt) {
-    all += dirt.excess;
-    if (!saying.names.empty() && holds(dirt.effects, saying.names.front().id)) fair += dirt.excess;
+  for (const ActingImperfection& imperfection : outcome.everyday->imperfections) {
+    all += imperfection.excess;
+    if (!saying.names.empty() && holds(imperfection.effects, saying.names.front().id)) fair += imperfection.excess;
   }
   return fair > 0.0 && fair >= kLeastClaimedShare * all;
 }
@@ -117,7 +117,7 @@ std::pair<double, bool> stated_and_right(const BlindOutcome& outcome) {
     }
     return {std::min(1.0, std::max(first.probability, first.joint)), right};
   }
-  if (kind == EverydayClass::dirt) return {std::min(1.0, verdict.none + verdict.unknown), true};
+  if (kind == EverydayClass::imperfect) return {std::min(1.0, verdict.none + verdict.unknown), true};
   const bool unknown = verdict.verdict == "unknown";
   return {unknown ? verdict.unknown : verdict.none, unknown && kind == EverydayClass::outside};
 }

@@ -1,5 +1,5 @@
-/// Diagnoses of everyday cases compared with the truth: the main cause, both of two, dirt alone, a cause outside the
-/// list; shares, recovered quantities and stated probabilities.
+/// Diagnoses of everyday cases compared with the truth: the main cause, both of two, imperfections alone, a cause
+/// outside the list; shares, recovered quantities and stated probabilities.
 ///
 /// A decision method either claims a cause or does not (a diagnosis claims one if its verdict is `effect`), and names
 /// ids in order: for a diagnosis those of `explained`, or of `effects` if that is empty. A name is right if it is the
@@ -7,8 +7,8 @@
 /// set" also if the diagnosis says that the data cannot distinguish the name from it.
 ///
 /// For a diagnosis with a claim, the probability of its first name counts, together with the names that cannot be
-/// distinguished from it. For dirt alone `none` and `unknown` are both right, and their sum counts. For a cause outside
-/// the list, `unknown` is right.
+/// distinguished from it. For imperfections alone `none` and `unknown` are both right, and their sum counts. For a
+/// cause outside the list, `unknown` is right.
 ///
 /// A probability is that of a verdict, before the truth is known. So honest probabilities are right as often as stated
 /// over all cases, and over those with one verdict (`by_verdict`), but not within one class of truths: a name that is
@@ -68,7 +68,7 @@ struct EverydayMethod {
   SharesByCase main_first;   ///< one, two: claimed, and the main cause comes first
   SharesByCase main_in_set;  ///< the same, or the first cannot be told from it
   SharesByCase both;         ///< two: claimed, and both are among the names
-  SharesByCase false_claim;  ///< dirt: claimed a cause with half of the excess
+  SharesByCase false_claim;  ///< imperfections alone: claimed a cause with half of the excess
   SharesByCase wrong_name;   ///< outside: claimed, a name above kSureName
   ErrorSum share_error;      ///< one, two: of the causes that it names, claimed minus true
   ErrorSum any_share_error;  ///< of all causes; a cause that is not named counts as claimed 0
@@ -84,9 +84,9 @@ struct EverydayCalibration {
 struct EverydayScore {
   std::vector<EverydayMethod> methods;  ///< the diagnosis, then forward selection
   SharesByCase main_helps;              ///< one, two: the main cause is the first of the names, claimed or not
-  SharesByCase unknown;                 ///< outside, dirt: the verdict is `unknown`
-  BlindShare fair_claim;  ///< of the false claims for dirt: an acceptable name for what makes half of the dirt's excess
-                          ///< or more
+  SharesByCase unknown;                 ///< outside, imperfections alone: the verdict is `unknown`
+  BlindShare fair_claim;  ///< of the false claims for imperfections alone: an acceptable name for what makes half of
+                          ///< their excess or more
   std::map<std::string, std::map<std::string, BlindShare>> covered;  ///< by class and quantity, of those stated
   std::map<std::string, EverydayCalibration> calibration;            ///< by class, and "all"
   std::map<std::string, EverydayCalibration> by_verdict;             ///< the same by the verdict's word

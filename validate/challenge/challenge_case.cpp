@@ -14,9 +14,9 @@
 #include "render/film/render_experiment.h"
 #include "render/scenario/scenario.h"
 #include "validate/blind/case/everyday_case.h"
+#include "validate/made_tracks/made_tracks.h"
+#include "validate/made_tracks/outside_runs.h"
 #include "validate/random_use.h"
-#include "validate/tracks/made_tracks.h"
-#include "validate/tracks/outside_runs.h"
 
 namespace glidelab::validate {
 namespace {

@@ -16,7 +16,7 @@
 #include "core/pictures/frames/frame_source.h"
 #include "render/film/clip_renderer.h"
 #include "render/scenario/scenario.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::validate {
 

@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "fit/estimators.h"
 #include "render/film/marker_view.h"
-#include "validate/tracks/outside_runs.h"
+#include "validate/made_tracks/outside_runs.h"
 #include "validate/truth/cramer_rao.h"
 #include "validate/truth/truth_folder.h"
 

@@ -7,7 +7,7 @@
 #include "core/motion/analyze_motion.h"
 #include "diagnose/effects/effect_list.h"
 #include "render/scenario/scenario.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::validate {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "base/errors.h"
 #include "core/result/quantity.h"
-#include "core/result/why_unknown.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
@@ -19,7 +18,7 @@ QuantityComparison compare_quantity(std::string name, const std::optional<double
   QuantityComparison compared;
   compared.quantity = std::move(name);
   compared.truth = truth;
-  compared.why = core::why_words(quantity.why);
+  compared.why = quantity.why;
   if (!quantity.estimate) return compared;
   compared.value = quantity.estimate->value;
   compared.sd = quantity.estimate->sd;

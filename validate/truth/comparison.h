@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result/results.h"
+#include "core/result/why_unknown.h"
 #include "fit/outside/outside_tally.h"
 #include "validate/truth/cramer_rao.h"
 #include "validate/truth/truth_folder.h"
@@ -25,7 +26,7 @@ struct QuantityComparison {
   std::optional<double> value;
   std::optional<double> sd;
   std::optional<double> error;               ///< value - truth
-  std::string why;                           ///< why there is no value
+  std::optional<core::WhyUnknown> why;       ///< why there is no value
   std::optional<double> cramer_rao_sd = {};  ///< smallest sd that the positions' noise allows (cramer_rao.h)
   std::optional<double> efficiency = {};     ///< (cramer_rao_sd / noise_sd)²
   /// The part of the sd due to the positions' noise: the bound does not include clock, calibration or scale either.

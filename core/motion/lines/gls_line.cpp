@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/math/levenberg_marquardt.h"
 #include "core/math/least_squares.h"
 #include "core/motion/lines/gls_pieces.h"
 #include "core/motion/lines/line_fit.h"
@@ -121,14 +122,27 @@ std::vector<LineNodes> nodes_of(int direction, const Motion& motion, const std::
   return nodes;
 }
 
+/// Gauss-Newton steps of k, with a0 eliminated. They are not damped and chi^2 is not compared: `step()` follows its
+/// whole gradient, with the change of C(k), so that the steps end where it vanishes.
 std::optional<Fit> settle(const std::vector<LineNodes>& nodes, double k) {
-  for (int i = 0; i < kSteps; ++i) {
-    Fit fit(nodes, k);
-    if (!fit.valid()) return {};
-    if (std::abs(fit.step()) <= kSlopeSettled * fit.sd()) return fit;
-    k += fit.step();
-  }
-  return {};
+  const auto is_settled = [](const Fit& fit) { return std::abs(fit.step()) <= kSlopeSettled * fit.sd(); };
+  Fit fit(nodes, k);
+  if (!fit.valid()) return {};
+  if (is_settled(fit)) return fit;
+  base::FitOptions options;
+  options.most_iterations = kSteps - 1;  // after the first fit
+  options.take_every_step = true;
+  const base::FitSummary summary = base::levenberg_marquardt(fit, fit.chi2(), options, [&](const Fit& at, double) {
+    base::FitTrial<Fit> trial;
+    Fit there(nodes, at.k() + at.step());
+    if (!there.valid()) return trial;
+    trial.cost = there.chi2();
+    trial.is_small = is_settled(there);
+    trial.point = std::move(there);
+    return trial;
+  });
+  if (!base::is_settled(summary.stop)) return {};
+  return fit;
 }
 
 /// The noise, and the scatter of whitened residuals beyond it.

@@ -10,9 +10,9 @@
 #include <variant>
 
 #include "base/text/number_text.h"
-#include "core/result/why_unknown.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/text/display_text.h"
+#include "report/text/why_words.h"
 
 namespace glidelab::report {
 
@@ -423,7 +423,7 @@ std::vector<RecoveredTable> recovered_tables(const diagnose::Diagnosis& diagnosi
       row.push_back(quantity.estimate ? base::value_and_sd_text(quantity.estimate->value, quantity.estimate->sd) : "–");
       if (quantity.why) {
         reasons[static_cast<std::size_t>(table - tables.begin())].push_back(
-            {std::string(name.symbol), core::why_words(quantity.why), {label}});
+            {std::string(name.symbol), why_words(quantity.why), {label}});
       }
     }
     table->rows.push_back(std::move(row));

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "diagnose/fit/nominal_fit.h"
-#include "diagnose/frames/missing_frames.h"
+#include "diagnose/single_frames/missing_frames.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"
 

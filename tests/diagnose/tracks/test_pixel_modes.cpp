@@ -6,8 +6,8 @@
 
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/fit/nominal_fit.h"
-#include "diagnose/frames/frame_effects.h"
 #include "diagnose/gap/held_out.h"
+#include "diagnose/single_frames/frame_effects.h"
 #include "diagnose/verdict/diagnose.h"
 #include "tests/catch.h"
 #include "tests/diagnose/made_motions.h"

@@ -298,7 +298,7 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
 
 TEST_CASE("a rehearsal's page says at the top how many values lie near the truth, above all its tables") {
   validate::Comparison comparison;
-  comparison.quantities = {{"m1", 0.335, 4.0, "trajectory", "mu", 0.0071, 0.0072, 0.0001, 0.0001, ""}};
+  comparison.quantities = {{"m1", 0.335, 4.0, "trajectory", "mu", 0.0071, 0.0072, 0.0001, 0.0001, {}}};
   CHECK(tells(report::validation_report("v", tests::made_results(), comparison, {}),
               "lie within two standard deviations"));
 }

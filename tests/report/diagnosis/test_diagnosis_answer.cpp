@@ -112,8 +112,8 @@ TEST_CASE("where nothing has a name the curve over what matters most is open, an
   };
   CHECK_FALSE(shows(open_part(), "Curve of the force"));  // over the position, and the rest lies over time
   of.curves.front().variable = diagnose::GapVariable::time;
-  CHECK(shows(open_part(), "Curve of the force over time"));
-  CHECK(shows(open_part(), "The smooth force over time"));
+  CHECK(shows(open_part(), "Curve of the force against time"));
+  CHECK(shows(open_part(), "The smooth force as a function of time"));
   of.verdict = diagnose::Verdict::effect;
   CHECK_FALSE(shows(open_part(), "Curve of the force"));
   // Without a remainder `unknown` has the places of the whole gap.

@@ -155,8 +155,9 @@ TEST_CASE("the pages of an analysis and of a rehearsal have every name from a fi
   const core::AnalysisResults results = evil_results();
   check_is_text(report::analysis_report(kEvil, results, evil_previews()));
   validate::Comparison comparison;
-  comparison.quantities = {{kEvil, 0.335, 4.0, kEvil, kEvil, 1.0, 1.1, 0.1, 0.1, kEvil},
-                           {kEvil, 0.335, 4.0, kEvil, "mu", 1.0, {}, {}, {}, kEvil}};
+  const core::WhyUnknown evil{core::unknown::Told{kEvil}};
+  comparison.quantities = {{kEvil, 0.335, 4.0, kEvil, kEvil, 1.0, 1.1, 0.1, 0.1, evil},
+                           {kEvil, 0.335, 4.0, kEvil, "mu", 1.0, {}, {}, {}, evil}};
   comparison.lines = {{kEvil, -1, 0.9999}};
   comparison.restitution.points = {{}};
   check_is_text(report::validation_report(kEvil, results, comparison, evil_previews()));
@@ -376,7 +377,7 @@ TEST_CASE("the page of everyday cases has every name from a file as text") {
   outcome.everyday.emplace();
   outcome.everyday->shares = {0.8};
   outcome.everyday->equals = {{kEvil}};
-  outcome.everyday->dirt = {{kEvil, 0.1, kEvil, 0.6, {kEvil}}};
+  outcome.everyday->imperfections = {{kEvil, 0.1, kEvil, 0.6, {kEvil}}};
   report::BlindRun run;
   run.outcomes = {outcome};
   run.everyday.emplace();

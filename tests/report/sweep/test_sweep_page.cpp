@@ -154,7 +154,7 @@ TEST_CASE("bars of several estimators at one value stand side by side, and cover
     for (validate::GroupStatistics& group : series.groups) group.statistics.coverage = 1.0;
   }
   const report::Plot plot = report::sweep_plots(of.axes[0], "mu").back();
-  REQUIRE(plot.description == "Coverage of µ over rate_hz");
+  REQUIRE(plot.description == "Coverage of µ against rate_hz");
   const std::vector<double>&a = plot.drawing.data[0].rows[0], &b = plot.drawing.data[1].rows[0];
   CHECK(a[0] == b[0]);
   CHECK(a.back() < 50.0);
@@ -172,9 +172,9 @@ TEST_CASE("a sweep of two configurations has a table and an error plot of each, 
   const std::vector<report::Plot> plots = report::sweep_plots(of.axes[0], "mu", of.configurations);
   REQUIRE(plots.size() == 4);
   const std::vector<std::string> names = report::plot_file_names(plots);
-  CHECK(names[0] == "01-error-and-standard-deviation-of-mu-over-rate-hz-turning");
-  CHECK(names[1] == "02-error-and-standard-deviation-of-mu-over-rate-hz-straight");
-  CHECK(names[2] == "03-bias-of-mu-over-rate-hz");
+  CHECK(names[0] == "01-error-of-mu-against-rate-hz-turning");
+  CHECK(names[1] == "02-error-of-mu-against-rate-hz-straight");
+  CHECK(names[2] == "03-bias-of-mu-against-rate-hz");
   CHECK(plots[0].drawing.data[0].rows[0][1] == 0.8 * 6e-4);
   CHECK(plots[1].drawing.data[0].rows[0][1] == 1.6 * 6e-4);
 }

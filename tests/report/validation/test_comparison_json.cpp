@@ -9,10 +9,11 @@ using nlohmann::json;
 
 TEST_CASE("comparison.json has every key of its form, and what is missing is null with a reason") {
   validate::Comparison comparison;
+  const core::WhyUnknown level{core::unknown::Told{"level"}};
   comparison.quantities = {
-      {"m1", 0.335, 4.0, "phase-diagram", "k_over_m_1_s", 2.76, 2.763, 0.004, 0.003, ""},
-      {"m1", 0.335, 4.0, "phase-diagram", "v_lim_m_s", std::nullopt, std::nullopt, std::nullopt, std::nullopt, "level"},
-      {"m1", 0.335, 4.0, "phase-diagram", "mu", std::nullopt, 0.001, 0.002, std::nullopt, ""}};
+      {"m1", 0.335, 4.0, "phase-diagram", "k_over_m_1_s", 2.76, 2.763, 0.004, 0.003, {}},
+      {"m1", 0.335, 4.0, "phase-diagram", "v_lim_m_s", std::nullopt, std::nullopt, std::nullopt, std::nullopt, level},
+      {"m1", 0.335, 4.0, "phase-diagram", "mu", std::nullopt, 0.001, 0.002, std::nullopt, {}}};
   comparison.lines = {{"m1-up", -1, 0.9999}};
   comparison.restitution = {1.1e-5, 4e-5, 1.6, {{0, 0.0, 0.1, 1.1e-5}}};
   comparison.frames = 4100;

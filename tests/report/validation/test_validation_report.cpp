@@ -12,7 +12,7 @@ namespace {
 validate::QuantityComparison quantity(const char* configuration, const char* estimator, const char* key,
                                       std::optional<double> truth, std::optional<double> value, double sd) {
   const std::optional<double> error = truth && value ? std::optional(*value - *truth) : std::nullopt;
-  return {configuration, 0.335, 4.0, estimator, key, truth, value, value ? std::optional(sd) : std::nullopt, error, ""};
+  return {configuration, 0.335, 4.0, estimator, key, truth, value, value ? std::optional(sd) : std::nullopt, error, {}};
 }
 
 /// One configuration on a slope by both estimators; of the four values one is three standard deviations off.

@@ -84,13 +84,14 @@ TEST_CASE("both of two causes take two names, one for each") {
   CHECK(score.methods.front().any_share_error.rms() == Approx(std::sqrt((0.04 + 0.01 + 0.0 + 0.01) / 4.0)));
 }
 
-TEST_CASE("dirt is falsely claimed from half of the excess on, and a wrong name off the list counts above 0.8") {
-  auto quiet = made(EverydayClass::dirt, true, {});
+TEST_CASE("with imperfections alone half of the excess is a false claim, off the list a wrong name above 0.8") {
+  auto quiet = made(EverydayClass::imperfect, true, {});
   quiet.verdict.sequence.explained = {{"track_bow", 0.3}};
-  auto half = made(EverydayClass::dirt, true, {});
+  auto half = made(EverydayClass::imperfect, true, {});
   half.verdict.sequence.explained = {{"track_bow", 0.5}};
-  auto fair = made(EverydayClass::dirt, false, {});
-  fair.everyday->dirt = {{"scattered_friction", 0.1, "1", 0.6, {"clip_scatter"}}, {"draught", 0.1, "N", 0.4, {}}};
+  auto fair = made(EverydayClass::imperfect, false, {});
+  fair.everyday->imperfections = {{"scattered_friction", 0.1, "1", 0.6, {"clip_scatter"}},
+                                  {"draught", 0.1, "N", 0.4, {}}};
   name(fair, {{"clip_scatter", 0.7}}, 0.9);
   auto sure = made(EverydayClass::outside, true, {{"cogging", 0.9}});
   name(sure, {{"tether", 0.7}}, 0.9);
@@ -114,10 +115,10 @@ TEST_CASE("calibration is that of each class: what is stated against what is rig
     name(one, {{i == 0 ? "tether" : "stribeck", 0.9}}, 0.95);
     outcomes.push_back(one);
   }
-  auto dirt = made(EverydayClass::dirt, true, {});  // none and unknown together: right
-  dirt.verdict.none = 0.2;
-  dirt.verdict.unknown = 0.5;
-  outcomes.push_back(dirt);
+  auto imperfection = made(EverydayClass::imperfect, true, {});  // none and unknown together: right
+  imperfection.verdict.none = 0.2;
+  imperfection.verdict.unknown = 0.5;
+  outcomes.push_back(imperfection);
   auto outside = made(EverydayClass::outside, true, {{"cogging", 0.9}});  // none is wrong
   outside.verdict.verdict = "none";
   outside.verdict.none = 0.85;
@@ -132,7 +133,8 @@ TEST_CASE("calibration is that of each class: what is stated against what is rig
   CHECK(score.calibration.at("one").error == Approx(0.2));
   CHECK(score.calibration.at("dirt").error == Approx(0.3));
   CHECK(score.calibration.at("outside").error == Approx(0.85));
-  // Bins of all: 0.9 to 1 holds the four (0.8 too much in sum), 0.7 the dirt (0.3 too little), 0.8 the last (0.85).
+  // Bins of all: 0.9 to 1 holds the four (0.8 too much in sum), 0.7 the imperfections (0.3 too little), 0.8 the last
+  // (0.85).
   CHECK(score.calibration.at("all").error == Approx((0.8 + 0.3 + 0.85) / 6.0));
   CHECK(score.by_verdict.at("effect").of == 4);
   CHECK(score.by_verdict.at("effect").error == Approx(0.2));

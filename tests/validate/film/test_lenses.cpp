@@ -2,6 +2,7 @@
 
 #include "base/files/file_io.h"
 #include "render/scenario/scenario.h"
+#include "report/text/why_words.h"
 #include "tests/catch.h"
 #include "tests/small_scenario.h"
 #include "tests/temp_dir.h"
@@ -55,7 +56,7 @@ TEST_CASE("a fisheye and a rational lens are calibrated to the paper's figure fo
     // the nominal lens; here they are too narrow: alpha is off by 4.9 of its standard deviations with the fisheye.)
     for (const validate::QuantityComparison& quantity : comparison.quantities) {
       if (quantity.estimator != "trajectory") continue;
-      CAPTURE(quantity.quantity, quantity.estimator, quantity.why);
+      CAPTURE(quantity.quantity, quantity.estimator, report::why_words(quantity.why));
       REQUIRE(quantity.error);
       // Fixed seed; four standard deviations of a normal error are exceeded once in 16,000 draws.
       CHECK(std::abs(*quantity.error) < 4.0 * *quantity.sd);

@@ -7,6 +7,7 @@
 #include "core/analysis/analyze.h"
 #include "render/scenario/scenario.h"
 #include "report/analysis/result_files.h"
+#include "report/text/why_words.h"
 #include "tests/catch.h"
 #include "tests/small_scenario.h"
 #include "tests/temp_dir.h"
@@ -51,7 +52,7 @@ TEST_CASE("the closed loop of a small scenario recovers its truth within the sta
   CHECK(comparison.detected == 290);
   REQUIRE(comparison.quantities.size() == 8);  // of the lines, and of the whole motion
   for (const validate::QuantityComparison& quantity : comparison.quantities) {
-    INFO(quantity.quantity << ": " << quantity.why);
+    INFO(quantity.quantity << ": " << report::why_words(quantity.why));
     REQUIRE(quantity.error);
     // Fixed seed; four standard deviations of a normal error are exceeded once in 16,000 draws.
     CHECK(std::abs(*quantity.error) < 4.0 * *quantity.sd);

@@ -14,7 +14,7 @@
 #include "tests/diagnose/made_motions.h"
 #include "tests/temp_dir.h"
 #include "validate/film/twin_motions.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 using namespace glidelab;
 

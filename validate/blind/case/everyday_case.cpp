@@ -19,8 +19,8 @@
 namespace glidelab::validate {
 namespace {
 
-constexpr double kUpToOne = 0.50, kUpToTwo = 0.70, kUpToDirt = 0.85;  // of 100 cases 50, 20, 15 and 15
-constexpr double kMostExcess = 40.0;                                  // a gap of 6.4
+constexpr double kUpToOne = 0.50, kUpToTwo = 0.70, kUpToImperfect = 0.85;  // of 100 cases 50, 20, 15 and 15
+constexpr double kMostExcess = 40.0;                                       // a gap of 6.4
 constexpr int kMostEverydayDraws = 600;
 constexpr int kDesignsPerCause = 8;    // designs tried per cause: none may show a weak effect
 constexpr double kLongestTrack = 1.3;  // m, on either side of the middle
@@ -80,10 +80,10 @@ std::optional<double> size_of_excess(const BlindDetection& detection, const Blin
 struct Drawn {
   std::vector<BlindEffect> effects;
   std::vector<double> sizes;
-  std::vector<EverydayDirt> dirt;
+  std::vector<EverydayImperfection> imperfections;
   std::vector<double> own_excess;  // excess of each at size 1 of its effect
-  double dirt_size = 0.0;
-  BlindEffect all_dirt;
+  double imperfection_size = 0.0;
+  BlindEffect all_imperfections;
 
   std::vector<BlindPut> causes() const {
     std::vector<BlindPut> puts;
@@ -92,7 +92,7 @@ struct Drawn {
   }
   std::vector<BlindPut> everything() const {
     std::vector<BlindPut> puts = causes();
-    puts.push_back({&all_dirt, dirt_size});
+    puts.push_back({&all_imperfections, imperfection_size});
     return puts;
   }
 };
@@ -119,8 +119,9 @@ bool measure(const BlindDetection& detection, const Wanted& wanted, Drawn& drawn
   truth.remainder = *left / *nominal;
   truth.shares.push_back(1.0 - truth.remainder - seen_share(truth.shares));
   if (wanted.kind == EverydayClass::two && truth.shares.back() < kLeastSecond) return false;
-  return truth.remainder >= kLeastDirt && truth.remainder <= kMostDirt && truth.shares.front() >= truth.shares.back() &&
-         (*nominal >= kStrongExcess) == wanted.strong && *nominal >= kModerateExcess;
+  return truth.remainder >= kLeastImperfections && truth.remainder <= kMostImperfections &&
+         truth.shares.front() >= truth.shares.back() && (*nominal >= kStrongExcess) == wanted.strong &&
+         *nominal >= kModerateExcess;
 }
 
 std::vector<std::string> fair_names(const Drawn& drawn) {
@@ -133,11 +134,11 @@ bool draw_sizes(const BlindDetection& detection, const Wanted& wanted, BlindRand
                 Drawn& drawn) {
   const double excess = wanted.strong ? log_uniform(random, kStrongExcess, kMostExcess)
                                       : log_uniform(random, kModerateExcess, kStrongExcess);
-  const double of_dirt = log_uniform(random, 1.2 * kLeastDirt, 0.9 * kMostDirt);
+  const double of_imperfections = log_uniform(random, 1.2 * kLeastImperfections, 0.9 * kMostImperfections);
   const double of_first = uniform(random, 0.5, 0.66);
   for (std::size_t e = 0; e < drawn.effects.size(); ++e) {
     const double part = drawn.effects.size() < 2 ? 1.0 : e == 0 ? of_first : 1.0 - of_first;
-    const auto size = size_of_excess(detection, drawn.effects[e], part * (1.0 - of_dirt) * excess,
+    const auto size = size_of_excess(detection, drawn.effects[e], part * (1.0 - of_imperfections) * excess,
                                      kFirstGuess * drawn.effects[e].largest);
     if (!size) return false;
     drawn.sizes.push_back(*size);
@@ -147,24 +148,25 @@ bool draw_sizes(const BlindDetection& detection, const Wanted& wanted, BlindRand
     const double both = detection.first_order_excess(puts, {});
     const double left =
         std::min(detection.first_order_excess(puts, {puts[0]}), detection.first_order_excess(puts, {puts[1]}));
-    if ((1.0 - of_dirt) * left < kLeastSecond * both) return false;  // the two look alike here
+    if ((1.0 - of_imperfections) * left < kLeastSecond * both) return false;  // the two look alike here
   }
   const int of_noise = (one.noise.clicked_sd_m > 0.0 ? 1 : 0) + (one.noise.rounded_m > 0.0 ? 1 : 0);
   const auto many = static_cast<std::size_t>(std::max(2, one_of(random, {3, 4, 5}) - of_noise));
-  drawn.dirt = draw_dirt(many, fair_names(drawn), one.design, random);
+  drawn.imperfections = draw_imperfections(many, fair_names(drawn), one.design, random);
   double weights = 0.0;
-  for (EverydayDirt& dirt : drawn.dirt) {
-    const double own = detection.first_order_excess({{&dirt.effect, 1.0}}, {});
+  for (EverydayImperfection& imperfection : drawn.imperfections) {
+    const double own = detection.first_order_excess({{&imperfection.effect, 1.0}}, {});
     const double weight = log_uniform(random, 0.5, 2.0);
     weights += weight;
     drawn.own_excess.push_back(own);
-    dirt.part = std::sqrt(weight * of_dirt * excess / std::max(own, kNoExcess));
+    imperfection.part = std::sqrt(weight * of_imperfections * excess / std::max(own, kNoExcess));
   }
-  for (EverydayDirt& dirt : drawn.dirt) dirt.part = std::min(dirt.part / std::sqrt(weights), dirt.effect.largest);
-  drawn.all_dirt = all_of_dirt(drawn.dirt);
-  const auto size = size_of_excess(detection, drawn.all_dirt, of_dirt * excess, 1.0);
+  for (EverydayImperfection& imperfection : drawn.imperfections)
+    imperfection.part = std::min(imperfection.part / std::sqrt(weights), imperfection.effect.largest);
+  drawn.all_imperfections = all_of_imperfections(drawn.imperfections);
+  const auto size = size_of_excess(detection, drawn.all_imperfections, of_imperfections * excess, 1.0);
   if (!size) return false;
-  drawn.dirt_size = *size;
+  drawn.imperfection_size = *size;
   return true;
 }
 
@@ -201,11 +203,11 @@ void tell_truth(const Drawn& drawn, EverydayCase& one) {
     const auto end = parameters.find("end");
     one.truth.equals.push_back(equals_of(effect.id, one.design, end != parameters.end() && end->second > 0.0));
   }
-  for (std::size_t d = 0; d < drawn.dirt.size(); ++d) {
-    const EverydayDirt& dirt = drawn.dirt[d];
-    const double size = dirt.size_at(drawn.dirt_size);
-    one.truth.dirt.push_back(
-        {dirt.id, size * dirt.amplitude, dirt.unit, size * size * drawn.own_excess[d], dirt.effects});
+  for (std::size_t d = 0; d < drawn.imperfections.size(); ++d) {
+    const EverydayImperfection& imperfection = drawn.imperfections[d];
+    const double size = imperfection.size_at(drawn.imperfection_size);
+    one.truth.imperfections.push_back({imperfection.id, size * imperfection.amplitude, imperfection.unit,
+                                       size * size * drawn.own_excess[d], imperfection.effects});
   }
   one.truth.configurations = everyday_configurations(one.design, drawn.causes(), one.x_m);
 }
@@ -217,10 +219,10 @@ BlindRandom random_of(std::uint64_t seed, std::size_t index) {
 Wanted draw_wanted(BlindRandom& random, const EverydayDraw& draw) {
   const double lot = uniform(random, 0.0, 1.0);
   Wanted wanted;
-  wanted.kind = lot < kUpToOne    ? EverydayClass::one
-                : lot < kUpToTwo  ? EverydayClass::two
-                : lot < kUpToDirt ? EverydayClass::dirt
-                                  : EverydayClass::outside;
+  wanted.kind = lot < kUpToOne         ? EverydayClass::one
+                : lot < kUpToTwo       ? EverydayClass::two
+                : lot < kUpToImperfect ? EverydayClass::imperfect
+                                       : EverydayClass::outside;
   wanted.strong = uniform(random, 0.0, 1.0) < 0.5;
   wanted.only = draw.only;
   if (draw.only.empty()) return wanted;
@@ -231,7 +233,7 @@ Wanted draw_wanted(BlindRandom& random, const EverydayDraw& draw) {
 }
 
 std::vector<std::string> draw_ids(const Wanted& wanted, BlindRandom& random) {
-  if (wanted.kind == EverydayClass::dirt) return {};
+  if (wanted.kind == EverydayClass::imperfect) return {};
   if (!wanted.only.empty()) return {wanted.only};
   const auto& ids = wanted.kind == EverydayClass::outside ? everyday_outside() : everyday_effects();
   std::vector<std::string> drawn = {one_of(ids, random)};
@@ -256,7 +258,7 @@ std::string_view word(EverydayClass kind) {
       return "one";
     case EverydayClass::two:
       return "two";
-    case EverydayClass::dirt:
+    case EverydayClass::imperfect:
       return "dirt";
     case EverydayClass::outside:
       return "outside";
@@ -317,10 +319,10 @@ EverydayCase make_everyday_case(std::uint64_t seed, std::size_t index, const Eve
     one.index = index;
     one.truth.kind = wanted.kind;
     one.truth.strong = wanted.strong;
-    one.kind = wanted.kind == EverydayClass::one    ? BlindKind::single
-               : wanted.kind == EverydayClass::two  ? BlindKind::pair
-               : wanted.kind == EverydayClass::dirt ? BlindKind::none
-                                                    : BlindKind::outside;
+    one.kind = wanted.kind == EverydayClass::one         ? BlindKind::single
+               : wanted.kind == EverydayClass::two       ? BlindKind::pair
+               : wanted.kind == EverydayClass::imperfect ? BlindKind::none
+                                                         : BlindKind::outside;
     one.design = draw_everyday_design(random);
     const double clicks = uniform(random, 0.0, 1.0), rounds = uniform(random, 0.0, 1.0);
     one.noise = draw_noise(one.design.noise_sd_m, clicks < 0.3, rounds < 0.35, random);
@@ -352,12 +354,12 @@ std::string everyday_truth_json(const EverydayCase& one) {
   }
   truth["remainder"] = one.truth.remainder;
   truth["dirt"] = Ordered::array();
-  for (const ActingDirt& dirt : one.truth.dirt) {
-    truth["dirt"].push_back({{"id", dirt.id},
-                             {"size", dirt.size},
-                             {"unit", dirt.unit},
-                             {"excess", dirt.excess},
-                             {"fair_names", dirt.effects}});
+  for (const ActingImperfection& imperfection : one.truth.imperfections) {
+    truth["dirt"].push_back({{"id", imperfection.id},
+                             {"size", imperfection.size},
+                             {"unit", imperfection.unit},
+                             {"excess", imperfection.excess},
+                             {"fair_names", imperfection.effects}});
   }
   truth["noise"] = {{"sd_m", one.design.noise_sd_m},
                     {"white_sd_m", one.noise.white_sd_m},

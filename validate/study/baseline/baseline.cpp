@@ -15,8 +15,8 @@
 #include "base/text/json_text.h"
 #include "core/math/quantile.h"
 #include "fit/estimators.h"
+#include "validate/made_tracks/oracle_bandwidth.h"
 #include "validate/random_use.h"
-#include "validate/tracks/oracle_bandwidth.h"
 #include "validate/truth/comparison.h"
 #include "validate/truth/cramer_rao.h"
 

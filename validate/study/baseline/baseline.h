@@ -12,7 +12,7 @@
 #include "base/long_work.h"
 #include "core/result/results.h"
 #include "render/scenario/scenario.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::validate {
 

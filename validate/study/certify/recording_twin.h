@@ -36,8 +36,8 @@
 #include "diagnose/result/diagnosis.h"
 #include "render/scenario/scenario.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/made_tracks.h"
 #include "validate/study/certify/certificate.h"
-#include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
 

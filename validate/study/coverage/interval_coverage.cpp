@@ -16,9 +16,9 @@
 #include "core/result/estimate.h"
 #include "core/result/quantity.h"
 #include "fit/estimators.h"
+#include "validate/made_tracks/made_tracks.h"
+#include "validate/made_tracks/outside_runs.h"
 #include "validate/random_use.h"
-#include "validate/tracks/made_tracks.h"
-#include "validate/tracks/outside_runs.h"
 #include "validate/truth/binomial.h"
 #include "validate/truth/cramer_rao.h"
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/result/results.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::validate {
 

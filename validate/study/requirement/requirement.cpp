@@ -18,10 +18,10 @@
 #include "render/film/stills.h"
 #include "render/scenario/scenario.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/made_tracks.h"
 #include "validate/study/requirement/requirement_trial.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
-#include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
 namespace {

@@ -3,15 +3,15 @@
 /// A target applies to the worst configuration of the scenario. It limits the error that 95 % of the errors do not
 /// exceed ("error95"), the rms error including bias ("sd": for an unbiased estimator the standard deviation), or the
 /// mean error ("bias"); see target.h. The bound takes the noise of the sweep's tracks, or predicts it from the camera
-/// (validate/tracks/made_tracks.h); it is that of the standard deviation, times 1.96 for "error95". A point whose bound
-/// is above the target cannot reach it. Any other is judged as tracks and then rendered, with lens, shutter, codec and
-/// calibration, the cheapest first: kLeastRendered times, then twice as often, up to `runs` times, until the limits of
-/// the error (of the better estimator) are on one side of the target. The first that reaches it is rendered `runs`
-/// times: it is the one to buy, and nothing more expensive is rendered. The confidence of the limits is such that all
-/// looks at one point together err with at most 5 %. (That holds for a point, not for the search: of k cheaper points
-/// that just miss the target, one is taken with a probability of up to 1 - 0.95^k.) Two runs then decide if the errors
-/// are ten times smaller than allowed, and four runs if they are four times smaller. The up to `track_runs` runs as
-/// tracks have that noise; they are made because a bound does not include dropped frames: if fewer than
+/// (validate/made_tracks/made_tracks.h); it is that of the standard deviation, times 1.96 for "error95". A point whose
+/// bound is above the target cannot reach it. Any other is judged as tracks and then rendered, with lens, shutter,
+/// codec and calibration, the cheapest first: kLeastRendered times, then twice as often, up to `runs` times, until the
+/// limits of the error (of the better estimator) are on one side of the target. The first that reaches it is rendered
+/// `runs` times: it is the one to buy, and nothing more expensive is rendered. The confidence of the limits is such
+/// that all looks at one point together err with at most 5 %. (That holds for a point, not for the search: of k cheaper
+/// points that just miss the target, one is taken with a probability of up to 1 - 0.95^k.) Two runs then decide if the
+/// errors are ten times smaller than allowed, and four runs if they are four times smaller. The up to `track_runs` runs
+/// as tracks have that noise; they are made because a bound does not include dropped frames: if fewer than
 /// kRunsForQuantile rendered runs reach what the tracks miss, or if the limits span the target, the point is undecided.
 /// Without rendering, the tracks alone judge. If nothing is run, a bound below the target by kClearMargin is said to
 /// have room.

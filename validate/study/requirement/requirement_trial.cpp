@@ -11,10 +11,10 @@
 #include "core/math/quantile.h"
 #include "fit/estimators.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/made_tracks.h"
 #include "validate/study/requirement/target.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/one_run.h"
-#include "validate/tracks/made_tracks.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {

@@ -12,9 +12,9 @@
 
 #include "render/film/clip_renderer.h"
 #include "render/scenario/scenario.h"
+#include "validate/made_tracks/made_tracks.h"
 #include "validate/study/requirement/candidate.h"
 #include "validate/study/sweep/design/sweep.h"
-#include "validate/tracks/made_tracks.h"
 #include "validate/truth/comparison.h"
 
 namespace glidelab::validate {

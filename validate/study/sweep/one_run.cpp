@@ -4,14 +4,13 @@
 
 #include "base/errors.h"
 #include "core/result/quantity.h"
-#include "core/result/why_unknown.h"
 #include "fit/estimators.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/oracle_bandwidth.h"
+#include "validate/made_tracks/outside_runs.h"
 #include "validate/study/coverage/naive_lines.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/design/sweep_scenario.h"
-#include "validate/tracks/oracle_bandwidth.h"
-#include "validate/tracks/outside_runs.h"
 #include "validate/truth/cramer_rao.h"
 
 namespace glidelab::validate {
@@ -23,7 +22,7 @@ QuantityRow row_of(std::string_view quantity, const std::optional<double>& truth
   row.quantity = quantity;
   row.truth = truth;
   row.least_sd = least_sd;
-  row.why = core::why_words(found.why);
+  row.why = found.why;
   if (!found.estimate) return row;
   row.value = found.estimate->value;
   row.sd = found.estimate->sd;

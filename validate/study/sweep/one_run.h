@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "base/long_work.h"
+#include "core/result/why_unknown.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/made_tracks.h"
 #include "validate/study/sweep/design/sweep.h"
-#include "validate/tracks/made_tracks.h"
 
 namespace glidelab::validate {
 
@@ -23,8 +24,8 @@ struct QuantityRow {
   std::string estimator;  ///< Analysis::name()
   std::string quantity;   ///< a key of core::kQuantities
   std::optional<double> truth, value, sd, low95, high95;
-  std::optional<double> least_sd;  ///< Cramér-Rao bound; only for tracks, whose noise is known
-  std::string why;                 ///< why there is no value
+  std::optional<double> least_sd;       ///< Cramér-Rao bound; only for tracks, whose noise is known
+  std::optional<core::WhyUnknown> why;  ///< why there is no value
   /// The value including the smoothing's bias; empty if none was subtracted.
   std::optional<double> uncorrected = {};
 };
@@ -36,7 +37,7 @@ struct ClipRow {
   double bandwidth_s = 0.0;
   double position_noise_m = 0.0;
   std::optional<double> r2_up, r2_down;    ///< of the line for v < 0, v > 0
-  std::optional<double> a_rms_error_m_s2;  ///< of the points that count (validate/tracks/oracle_bandwidth.h)
+  std::optional<double> a_rms_error_m_s2;  ///< of the points that count (validate/made_tracks/oracle_bandwidth.h)
 };
 
 struct RunRecord {

@@ -255,8 +255,13 @@ WriterLock::~WriterLock() {
   ::close(file_);  // the file stays: removing it would let two processes lock two files of one name
 }
 
-SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std::string& version, const Shard& shard)
-    : lock_(file), database_(file, Database::Mode::create), entries_(entries_of(sweep, version)), sweep_(sweep) {
+SweepDatabase::SweepDatabase(const fs::path& file, const Sweep& sweep, const std::string& version, const Shard& shard,
+                             WhyWords why_words)
+    : lock_(file),
+      database_(file, Database::Mode::create),
+      entries_(entries_of(sweep, version)),
+      sweep_(sweep),
+      why_words_(why_words) {
   SqlStatement any = database_.prepare("SELECT count(*) FROM sqlite_master");
   any.step();
   const bool empty = any.integer(0) == 0;
@@ -318,7 +323,8 @@ void SweepDatabase::add(const RunRecord& record, double wall_s) {
     add_result_->bind(1, run).bind(2, std::string_view(row.configuration)).bind(3, std::string_view(row.estimator));
     add_result_->bind(4, std::string_view(row.quantity)).bind(5, row.truth).bind(6, row.value).bind(7, row.sd);
     add_result_->bind(8, row.low95).bind(9, row.high95).bind(10, row.least_sd);
-    if (!row.why.empty()) add_result_->bind(11, std::string_view(row.why));
+    const std::string why = why_words_(row.why);
+    if (!why.empty()) add_result_->bind(11, std::string_view(why));
     add_result_->bind(12, row.uncorrected);
     add_result_->run();
   }
@@ -341,14 +347,15 @@ void SweepDatabase::merge_runs_of(const std::vector<fs::path>& others) {
 
 double bytes_of(const RunRecord& record) {
   constexpr std::size_t kRow = 12, kNumber = 9;  // record header and key; an 8-byte real with its type
+  constexpr std::size_t kReason = 100;           // text of a usual reason for a missing value
   std::size_t bytes = 2 * kRow + 6 * kNumber + record.why.size();
   for (const base::TomlScalar& value : record.values) {
     const auto* text = std::get_if<std::string>(&value);
     bytes += text == nullptr ? kNumber : text->size() + 1;
   }
   for (const QuantityRow& row : record.quantities) {
-    bytes +=
-        kRow + 6 * kNumber + row.configuration.size() + row.estimator.size() + row.quantity.size() + row.why.size();
+    bytes += kRow + 6 * kNumber + row.configuration.size() + row.estimator.size() + row.quantity.size() +
+             (row.why ? kReason : 0);
   }
   for (const ClipRow& row : record.clips) bytes += kRow + 5 * kNumber + row.clip.size() + row.estimator.size();
   constexpr double kPacking = 1.25;  // pages of a tree that grows at its end are not full

@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/result/why_unknown.h"
 #include "validate/study/sweep/design/sweep.h"
 #include "validate/study/sweep/one_run.h"
 #include "validate/study/sweep/sqlite.h"
@@ -69,11 +70,16 @@ class WriterLock {
   int file_ = -1;
 };
 
+/// Puts into words why a quantity has no value, for the column `why`: report/text/why_words.h, which this room may not
+/// include.
+using WhyWords = std::string (*)(const std::optional<core::WhyUnknown>& why);
+
 class SweepDatabase {
  public:
   /// Makes the file, or opens one of the same sweep, version and shard. InputError, which says what differs, for any
   /// other file or a damaged one; EnvironmentError if another process writes it.
-  SweepDatabase(const std::filesystem::path& file, const Sweep& sweep, const std::string& version, const Shard& shard);
+  SweepDatabase(const std::filesystem::path& file, const Sweep& sweep, const std::string& version, const Shard& shard,
+                WhyWords why_words);
 
   /// Runs of [from, to) that are present, in order.
   std::vector<std::uint64_t> runs_within(std::uint64_t from, std::uint64_t to);
@@ -92,6 +98,7 @@ class SweepDatabase {
   Database database_;
   SweepEntries entries_;  ///< the shard is the last entry
   Sweep sweep_;
+  WhyWords why_words_;
   std::optional<SqlStatement> add_run_, add_result_, add_clip_, add_timing_;
 };
 

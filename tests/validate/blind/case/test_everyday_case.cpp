@@ -216,14 +216,14 @@ TEST_CASE("classes of everyday cases are as frequent as stated") {
   for (std::size_t i = 0; i < kCases; ++i) seen[validate::everyday_class(27, i)] += 1.0;
   const std::map<EverydayClass, double> share = {{EverydayClass::one, 0.50},
                                                  {EverydayClass::two, 0.20},
-                                                 {EverydayClass::dirt, 0.15},
+                                                 {EverydayClass::imperfect, 0.15},
                                                  {EverydayClass::outside, 0.15}};
   double chi2 = 0.0;
   for (const auto& [kind, p] : share) chi2 += std::pow(seen[kind] - p * kCases, 2) / (p * kCases);
   CHECK(chi2 < 16.3);  // three degrees of freedom, p = 0.001
 }
 
-TEST_CASE("an everyday case is the same for a seed and an index, with dirt, shares and a folder as stated") {
+TEST_CASE("an everyday case is the same for a seed and an index, with imperfections, shares and a folder as stated") {
   std::set<EverydayClass> kinds;
   for (const std::size_t index : {0, 2, 3, 7, 9}) {
     const auto one = validate::make_everyday_case(1, index);
@@ -235,14 +235,14 @@ TEST_CASE("an everyday case is the same for a seed and an index, with dirt, shar
     CHECK(one.design.clips.size() <= 12);
     CHECK(one.causes.size() == one.truth.shares.size());
     const std::size_t of_noise = (one.noise.clicked_sd_m > 0.0 ? 1 : 0) + (one.noise.rounded_m > 0.0 ? 1 : 0);
-    CHECK(one.truth.dirt.size() + of_noise >= 3);
-    CHECK(one.truth.dirt.size() + of_noise <= 5);
+    CHECK(one.truth.imperfections.size() + of_noise >= 3);
+    CHECK(one.truth.imperfections.size() + of_noise <= 5);
     double sum = one.truth.remainder;
     for (const double share : one.truth.shares) sum += share;
     CHECK(sum == Approx(1.0));
     if (!one.causes.empty()) {
-      CHECK(one.truth.remainder >= validate::kLeastDirt);
-      CHECK(one.truth.remainder <= validate::kMostDirt);
+      CHECK(one.truth.remainder >= validate::kLeastImperfections);
+      CHECK(one.truth.remainder <= validate::kMostImperfections);
       CHECK(one.truth.excess >= validate::kModerateExcess);
       CHECK((one.truth.excess >= validate::kStrongExcess) == one.truth.strong);
     }
@@ -253,7 +253,7 @@ TEST_CASE("an everyday case is the same for a seed and an index, with dirt, shar
     CHECK(core::read_experiment(temp / "case").clips.size() == one.design.clips.size());
     std::vector<std::string> secrets = {"truth", "share", "dirt"};
     for (const auto& cause : one.causes) secrets.push_back(cause.id);
-    for (const auto& dirt : one.truth.dirt) secrets.push_back(dirt.id);
+    for (const auto& imperfection : one.truth.imperfections) secrets.push_back(imperfection.id);
     for (const auto& entry : fs::recursive_directory_iterator(temp / "case")) {
       if (!entry.is_regular_file()) continue;
       const std::string text = base::read_file(entry.path());
@@ -296,12 +296,12 @@ TEST_CASE("an everyday run leaves truth and time, goes on where it stopped, and 
   CHECK_THROWS_AS(validate::run_blind(options, temp / "other", diagnoser), base::InputError);
 }
 
-TEST_CASE("of many everyday cases every one has dirt of 2 to 30 per cent", "[slow]") {
+TEST_CASE("of many everyday cases every one has imperfections of 2 to 30 per cent", "[slow]") {
   for (std::size_t index = 100; index < 140; ++index) {
     const auto one = validate::make_everyday_case(27, index);
     INFO("case " << index);
     if (one.causes.empty()) continue;
-    CHECK(one.truth.remainder >= validate::kLeastDirt);
-    CHECK(one.truth.remainder <= validate::kMostDirt);
+    CHECK(one.truth.remainder >= validate::kLeastImperfections);
+    CHECK(one.truth.remainder <= validate::kMostImperfections);
   }
 }

@@ -21,8 +21,8 @@
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
-#include "validate/tracks/made_tracks.h"
-#include "validate/tracks/outside_runs.h"
+#include "validate/made_tracks/made_tracks.h"
+#include "validate/made_tracks/outside_runs.h"
 
 using namespace glidelab;
 using namespace glidelab::validate;
@@ -293,7 +293,6 @@ TEST_CASE("a quantity that no twin answers has the reason of the analysis") {
   REQUIRE_FALSE(short_clips.quantities.empty());
   CHECK(short_clips.quantities.front().answered() == 0);
   REQUIRE(short_clips.quantities.front().why);
-  CHECK(!core::why_words(short_clips.quantities.front().why).empty());
 }
 
 TEST_CASE("a table of lines and too few twins are refused, each with one error") {

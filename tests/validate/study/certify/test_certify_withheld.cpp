@@ -26,9 +26,9 @@
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
+#include "validate/made_tracks/made_tracks.h"
+#include "validate/made_tracks/outside_runs.h"
 #include "validate/study/certify/certify.h"
-#include "validate/tracks/made_tracks.h"
-#include "validate/tracks/outside_runs.h"
 
 using namespace glidelab;
 using namespace glidelab::validate;

@@ -10,8 +10,8 @@
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
 #include "validate/film/film_studio.h"
+#include "validate/made_tracks/made_tracks.h"
 #include "validate/study/sweep/one_run.h"
-#include "validate/tracks/made_tracks.h"
 
 using namespace glidelab;
 

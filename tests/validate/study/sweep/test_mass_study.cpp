@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "report/text/why_words.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
@@ -77,7 +78,7 @@ source = "nobody"
                        "duration_s = 1.2\n[[configuration.clip]]\nname = \"down\"\nlaunched = \"down\"\n"
                        "x0_m = -0.45\nv0_m_s = 1.2\nduration_s = 1.2\n");
   const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   REQUIRE(validate::run_sweep(sweep, database, {}, 1).failed == 0);
   const validate::MassStudy study = validate::summarize(sweep, database.database()).masses;
   REQUIRE(study.rows.size() == 4);  // two noises, two bandwidths

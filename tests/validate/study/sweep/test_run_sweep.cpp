@@ -8,6 +8,7 @@
 
 #include "base/files/file_io.h"
 #include "render/scenario/scenario.h"
+#include "report/text/why_words.h"
 #include "test_paths.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
@@ -23,7 +24,7 @@ using tests::kNoise;
 TEST_CASE("Rows hold the truth that was varied, and the bound shrinks as noise and frames say") {
   const tests::TempDir dir;
   const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 4", tests::kTwoKeys));
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   validate::run_sweep(sweep, database, {}, 2);
   validate::SqlStatement rows = database.database().prepare(
       "SELECT r.\"K/m\", s.truth, s.value, s.sd, s.least_sd FROM run r JOIN result s ON s.run = r.run "
@@ -72,7 +73,7 @@ values = [50, 80]
 key = "camera.exposure_s"
 values = [0.001, 0.015]
 )"));
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   const validate::SweepOutcome outcome = validate::run_sweep(sweep, database, {}, 1);
   CHECK(outcome.done == 4);
   CHECK(outcome.failed == 1);
@@ -92,7 +93,7 @@ values = [50, 80]
 key = "camera.exposure_s"
 values = [0.001, 0.015]
 )"));
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   validate::RunWorker worker(sweep);
   const double full = validate::bytes_of(worker.evaluate(0)), refused = validate::bytes_of(worker.evaluate(39));
   REQUIRE(refused < 0.5 * full);
@@ -117,7 +118,7 @@ TEST_CASE("A camera file that the scenario names is part of what a sweep is, and
   const std::filesystem::path file = tests::write_sweep(dir.path(), "", tests::kTwoKeys);
   base::write_file(dir / "scenario.toml", "camera_file = \"cams/c.toml\"\n" + tests::kSweptScenario);
   const validate::Sweep sweep = validate::read_sweep(file);
-  { validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}); }
+  { validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words); }
   // Written in, the text says the same in a folder that has no such file.
   const validate::RunScenario run = validate::scenario_with(sweep, {50.0, 2.0});
   const std::string whole = render::with_camera_written_in(run.text, sweep.scenario_file);
@@ -128,7 +129,7 @@ TEST_CASE("A camera file that the scenario names is part of what a sweep is, and
   CHECK(elsewhere.recording.shutter.line_readout_s == run.scenario.recording.shutter.line_readout_s);
   CHECK(elsewhere.recording.frame_rate_hz == 50.0);
   camera("0.003");
-  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", validate::read_sweep(file), "1", {}),
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", validate::read_sweep(file), "1", {}, report::why_words),
                     Contains("camera file"));
 }
 
@@ -156,7 +157,7 @@ TEST_CASE("Two camera files of one name in two folders are two groups of a sweep
   tests::write_sweep(dir.path(), "", kNoise + "[[vary]]\ncameras = [\"old/lab.toml\", \"new/lab.toml\"]\n");
   base::write_file(dir / "scenario.toml", without_camera());
   const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   validate::run_sweep(sweep, database, {}, 1);
   const validate::SweepSummary summary = validate::summarize(sweep, database.database());
   const std::vector<validate::GroupStatistics>& groups = summary.axes[0].series.front().groups;
@@ -187,7 +188,7 @@ TEST_CASE("The best possible bandwidth loses nothing to itself, and a bandwidth 
                          "replicates = 4\nestimators = [\"phase-diagram\"]\nbandwidth_rules = [\"best-possible\"]\n"
                          "bandwidths_s = [0.02]",
                          "[tracks]\nnoise_m = 1e-4\n[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [120]\n"));
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   validate::run_sweep(sweep, database, {}, 1);
   const std::vector<validate::AccelerationError> errors = validate::summarize(sweep, database.database()).accelerations;
   REQUIRE(errors.size() == 3);

@@ -12,6 +12,7 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "report/text/why_words.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
@@ -40,12 +41,30 @@ std::string contents(const std::filesystem::path& file) {
 
 }  // namespace
 
+TEST_CASE("Why a quantity has no value is stored in the words of the pages, and nothing where there is a value") {
+  const tests::TempDir dir;
+  const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", tests::kTwoKeys));
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
+  validate::QuantityRow unknown, known;
+  unknown.quantity = "mu";
+  unknown.why = core::WhyUnknown{core::unknown::NoDownhillLine{}};
+  known.quantity = "alpha_deg";
+  known.value = 4.0;
+  database.add({0, 0, 0, validate::seed_of(sweep, 0), {50.0, 2.0}, false, "", {unknown, known}, {}}, 0.1);
+  validate::SqlStatement rows = database.database().prepare("SELECT why, value FROM result ORDER BY quantity DESC");
+  REQUIRE(rows.step());
+  CHECK(rows.text(0) == "no line for v > 0");
+  REQUIRE(rows.step());
+  CHECK(rows.text(0).empty());
+  CHECK(rows.text(1) == "4.0");
+}
+
 TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and at once or in parts") {
   const tests::TempDir dir;
   const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 2", tests::kTwoKeys));
   validate::SweepOutcome outcome;
   {
-    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
     CHECK(validate::estimate_sweep(sweep, database, {}, 1, dir.path()).missing == 12);
     outcome = validate::run_sweep(sweep, database, {}, 1);
     CHECK(outcome.done == 12);
@@ -53,7 +72,7 @@ TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and a
     CHECK(validate::run_sweep(sweep, database, {}, 1).done == 0);
   }
   {
-    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {});
+    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {}, report::why_words);
     CHECK_THROWS_AS(validate::run_sweep(sweep, database, {}, 2,
                                         [](std::string_view, double fraction) {
                                           if (fraction > 0.3) throw base::Interrupted();
@@ -63,14 +82,14 @@ TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and a
     CHECK(database.runs() <= 6);
   }
   {
-    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {});
+    validate::SweepDatabase database(dir / "b.sqlite", sweep, "1", {}, report::why_words);
     validate::run_sweep(sweep, database, {}, 2);
   }
   for (const std::uint64_t part : {1u, 2u, 3u}) {
-    validate::SweepDatabase database(dir / fmt::format("c{}.sqlite", part), sweep, "1", {part, 3});
+    validate::SweepDatabase database(dir / fmt::format("c{}.sqlite", part), sweep, "1", {part, 3}, report::why_words);
     CHECK(validate::run_sweep(sweep, database, {part, 3}, 1).done == 4);
   }
-  validate::SweepDatabase merged(dir / "c.sqlite", sweep, "1", {});
+  validate::SweepDatabase merged(dir / "c.sqlite", sweep, "1", {}, report::why_words);
   // Half of a merge is none: what is missing, or differs, leaves nothing behind.
   CHECK_THROWS_AS(merged.merge_runs_of({dir / "c3.sqlite", dir / "none.sqlite", dir / "c1.sqlite"}), base::InputError);
   CHECK(merged.runs() == 0);
@@ -98,7 +117,7 @@ TEST_CASE("A sweep of tracks gives the same rows on one thread and on two, and a
 TEST_CASE("Every column of every table has a row in the schema") {
   const tests::TempDir dir;
   const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(dir.path(), "", tests::kTwoKeys));
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   validate::SqlStatement none = database.database().prepare(
       "SELECT t.name || '.' || c.name FROM sqlite_master t JOIN pragma_table_info(t.name) c "
       "WHERE t.type = 'table' AND t.name IN ('run', 'result', 'clip', 'timing') AND NOT EXISTS "
@@ -113,17 +132,20 @@ TEST_CASE("A database of another sweep, another version or no sweep at all is re
   const std::filesystem::path file = tests::write_sweep(dir.path(), "replicates = 2", tests::kTwoKeys);
   const validate::Sweep sweep = validate::read_sweep(file);
   {
-    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
-    CHECK_THROWS_AS(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {}), base::EnvironmentError);
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
+    CHECK_THROWS_AS(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {}, report::why_words),
+                    base::EnvironmentError);
   }
-  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "2", {}),
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "2", {}, report::why_words),
                     Contains("program version") && Contains("\"1\""));
-  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {1, 2}), Contains("shard"));
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", sweep, "1", {1, 2}, report::why_words),
+                    Contains("shard"));
   validate::Sweep other = sweep;
   other.scenario_text += "\n# another\n";
-  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", other, "1", {}), Contains("scenario's text"));
+  CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", other, "1", {}, report::why_words),
+                    Contains("scenario's text"));
   base::write_file(dir / "b.sqlite", "this is a text and certainly no database, however long one makes it");
-  CHECK_THROWS_AS(validate::SweepDatabase(dir / "b.sqlite", sweep, "1", {}), base::InputError);
+  CHECK_THROWS_AS(validate::SweepDatabase(dir / "b.sqlite", sweep, "1", {}, report::why_words), base::InputError);
 }
 
 TEST_CASE("A full disk is an error of the environment that keeps what is finished, and the sweep goes on later") {
@@ -132,14 +154,14 @@ TEST_CASE("A full disk is an error of the environment that keeps what is finishe
       validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 20", tests::kTwoKeys));
   std::uint64_t kept = 0;
   {
-    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
     database.database().run("PRAGMA max_page_count = 24");  // what a full disk is to SQLite, for this connection
     CHECK_THROWS_WITH(validate::run_sweep(sweep, database, {}, 1), Contains("disk is full"));
     kept = database.runs();
     CHECK(kept > 0);
     CHECK(kept < 120);
   }
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   CHECK(validate::run_sweep(sweep, database, {}, 2).done == 120 - kept);
 }
 
@@ -149,11 +171,11 @@ TEST_CASE("A part whose runs are not those of the sweep by number or seed is ref
   const auto refusal = [&](const std::string& change) {
     std::filesystem::remove(dir / "part.sqlite");
     {
-      validate::SweepDatabase part(dir / "part.sqlite", sweep, "1", {1, 2});
+      validate::SweepDatabase part(dir / "part.sqlite", sweep, "1", {1, 2}, report::why_words);
       validate::run_sweep(sweep, part, {1, 2}, 1);
       part.database().run(change);
     }
-    validate::SweepDatabase whole(dir / "whole.sqlite", sweep, "1", {});
+    validate::SweepDatabase whole(dir / "whole.sqlite", sweep, "1", {}, report::why_words);
     std::string said = "taken";
     try {
       whole.merge_runs_of({dir / "part.sqlite"});
@@ -187,7 +209,7 @@ echo '{"format": 1, "configurations": [{"clips": ["up"], "k_over_m_1_s": {"value
  "mu": null, "alpha_deg": null, "v_lim_m_s": null}]}' > "$2/results.json")");
   sweep.outside = fit::outside_estimator("sh " + (dir / "mine.sh").string() + " {folder} {out}");
   {
-    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
     CHECK(validate::run_sweep(sweep, database, {}, 2).failed == 0);
     const validate::SweepSummary summary = validate::summarize(sweep, database.database());
     REQUIRE(summary.outside);
@@ -204,7 +226,8 @@ echo '{"format": 1, "configurations": [{"clips": ["up"], "k_over_m_1_s": {"value
   without.outside.reset();
   other.outside->words.back() = "{out}/.";
   for (const validate::Sweep& changed : {without, other}) {
-    CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", changed, "1", {}), Contains("estimator"));
+    CHECK_THROWS_WITH(validate::SweepDatabase(dir / "a.sqlite", changed, "1", {}, report::why_words),
+                      Contains("estimator"));
   }
 }
 

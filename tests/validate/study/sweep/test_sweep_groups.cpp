@@ -1,4 +1,5 @@
 /// What may be compared where some runs of a sweep have no answer.
+#include "report/text/why_words.h"
 #include "validate/study/sweep/sweep_groups.h"
 
 #include <fmt/format.h>
@@ -45,7 +46,8 @@ struct Made {
   std::unique_ptr<validate::SweepDatabase> database;
   explicit Made(const Fate& fate, const std::string& vary = kRatesAndNoise) {
     sweep = validate::read_sweep(tests::write_sweep(dir.path(), "replicates = 2", tests::kNoise + vary));
-    database = std::make_unique<validate::SweepDatabase>(dir / "a.sqlite", sweep, "1", validate::Shard{});
+    database =
+        std::make_unique<validate::SweepDatabase>(dir / "a.sqlite", sweep, "1", validate::Shard{}, report::why_words);
     for (std::uint64_t run = 0; run < validate::run_count(sweep); ++run) {
       validate::RunRecord record;
       record.run = run;
@@ -56,7 +58,7 @@ struct Made {
       for (const std::string configuration : {"a", "b"}) {
         const Outcome outcome = fate(configuration, rate, noise, record.replicate);
         record.failed = record.failed || outcome == Outcome::failed;
-        validate::QuantityRow row{configuration, "trajectory", "mu", 7.0, {}, {}, {}, {}, {}, ""};
+        validate::QuantityRow row{configuration, "trajectory", "mu", 7.0, {}, {}, {}, {}, {}, {}};
         if (outcome == Outcome::answer) {
           row.value = 7.0 + error_of(configuration, rate, noise, record.replicate);
           row.sd = 2.0;
@@ -154,7 +156,7 @@ TEST_CASE("Of more than five kinds of failures the summary has five, how many mo
     const tests::TempDir dir;
     const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(
         dir.path(), "replicates = 20", tests::kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [50]\n"));
-    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+    validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
     for (std::uint64_t run = 0; run < 20; ++run) {  // kind k: of 2 runs, the last of the rest
       const std::uint64_t kind = std::min(run / 2, kinds - 1);
       database.add({run, 0, run, run, {50.0}, true, std::string("reason ") + static_cast<char>('a' + kind), {}, {}},
@@ -179,7 +181,7 @@ TEST_CASE("Failures of one cause are one kind whatever its numbers, and one of t
   const tests::TempDir dir;
   const validate::Sweep sweep = validate::read_sweep(tests::write_sweep(
       dir.path(), "replicates = 20", tests::kNoise + "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [50]\n"));
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   const std::string file = sweep.scenario_file.string();
   for (std::uint64_t run = 0; run < 20; ++run) {
     const double size = 1.0 / (3.0 + static_cast<double>(run));
@@ -219,7 +221,7 @@ TEST_CASE("The error of a(t) beside the best possible one is given of each confi
   second.replace(second.find("name = \"m1\""), 11, "name = \"m2\"");
   base::write_file(dir / "scenario.toml", tests::kSweptScenario + second);
   const validate::Sweep sweep = validate::read_sweep(dir / "sweep.toml");
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   for (std::uint64_t run = 0; run < 3; ++run) {  // the first one failed
     validate::RunRecord record{run, 0, run, validate::seed_of(sweep, run), {50.0}, run == 0, "first", {}, {}};
     for (const std::string clip : {"up", "level"}) {
@@ -229,7 +231,7 @@ TEST_CASE("The error of a(t) beside the best possible one is given of each confi
       }
     }
     for (const char* name : {"m1", "m2"}) {
-      if (run > 0) record.quantities.push_back({name, "phase-diagram", "mu", 1.0, 1.0, {}, {}, {}, {}, ""});
+      if (run > 0) record.quantities.push_back({name, "phase-diagram", "mu", 1.0, 1.0, {}, {}, {}, {}, {}});
     }
     database.add(record, 0.1);
   }

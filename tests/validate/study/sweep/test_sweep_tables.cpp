@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "report/text/why_words.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
@@ -35,7 +36,7 @@ void change(const std::filesystem::path& file, const std::string& sql) {
 class Damaged {
  public:
   Damaged() : sweep_(validate::read_sweep(tests::write_sweep(dir_.path(), "replicates = 2", tests::kNoise + kOneKey))) {
-    validate::SweepDatabase database(dir_ / "whole.sqlite", sweep_, "1", {});
+    validate::SweepDatabase database(dir_ / "whole.sqlite", sweep_, "1", {}, report::why_words);
     CHECK(validate::run_sweep(sweep_, database, {}, 1).done == 2);
   }
 
@@ -58,10 +59,12 @@ class Damaged {
   static constexpr const char* kOneKey = "[[vary]]\nkey = \"camera.frame_rate_hz\"\nvalues = [50]\n";
 
   std::string said() {
-    const std::string continued = refusal([&] { validate::SweepDatabase(dir_ / "a.sqlite", sweep_, "1", {}); });
+    const std::string continued =
+        refusal([&] { validate::SweepDatabase(dir_ / "a.sqlite", sweep_, "1", {}, report::why_words); });
     std::filesystem::remove(dir_ / "b.sqlite");
-    const std::string merged = refusal(
-        [&] { validate::SweepDatabase(dir_ / "b.sqlite", sweep_, "1", {}).merge_runs_of({dir_ / "a.sqlite"}); });
+    const std::string merged = refusal([&] {
+      validate::SweepDatabase(dir_ / "b.sqlite", sweep_, "1", {}, report::why_words).merge_runs_of({dir_ / "a.sqlite"});
+    });
     CHECK(continued == merged);
     return continued;
   }

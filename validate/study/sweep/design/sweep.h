@@ -65,7 +65,7 @@ struct Axis {
   int line = 0;                      ///< line of the keys in the sweep's file
 };
 
-/// The rule that knows the truth (validate/tracks/oracle_bandwidth.h).
+/// The rule that knows the truth (validate/made_tracks/oracle_bandwidth.h).
 inline constexpr const char* kBestPossible = "best-possible";
 
 /// One way to analyse a run's clips.

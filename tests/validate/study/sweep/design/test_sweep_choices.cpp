@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/files/file_io.h"
+#include "report/text/why_words.h"
 #include "tests/catch.h"
 #include "tests/temp_dir.h"
 #include "tests/validate/small_sweep.h"
@@ -46,7 +47,7 @@ values = [0.001, 0.002]
     CHECK(recording.exposure_s == (run % 2 == 0 ? 0.001 : 0.002));
   }
   // The results call them by their labels.
-  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {});
+  validate::SweepDatabase database(dir / "a.sqlite", sweep, "1", {}, report::why_words);
   CHECK(validate::run_sweep(sweep, database, {}, 1).failed == 0);
   const validate::SweepSummary summary = validate::summarize(sweep, database.database());
   REQUIRE(summary.axes[0].words);

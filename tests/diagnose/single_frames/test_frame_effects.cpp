@@ -1,4 +1,4 @@
-#include "diagnose/frames/frame_effects.h"
+#include "diagnose/single_frames/frame_effects.h"
 
 #include <algorithm>
 #include <cmath>

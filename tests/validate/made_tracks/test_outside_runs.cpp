@@ -1,5 +1,5 @@
 /// What an outside estimator is given: the same numbers that Glidelab's own estimators see, and no truth.
-#include "validate/tracks/outside_runs.h"
+#include "validate/made_tracks/outside_runs.h"
 
 #include <filesystem>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "core/result/why_unknown.h"
+#include "report/text/why_words.h"
 
 #include <cstddef>
 #include <string>
@@ -8,6 +8,7 @@
 
 #include "tests/catch.h"
 
+using namespace glidelab;
 using namespace glidelab::core;
 
 TEST_CASE("every reason for a missing quantity has words, with its numbers") {
@@ -47,7 +48,7 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
       {unknown::KernelNotStated{}, "neither the bandwidth nor the stretch"}};
   std::vector<bool> seen(std::variant_size_v<AnyReason>, false);
   for (const auto& [reason, part] : reasons) {
-    const std::string words = why_words(WhyUnknown{reason});
+    const std::string words = report::why_words(WhyUnknown{reason});
     INFO(words);
     CHECK(words.find(part) != std::string::npos);
     seen[reason.index()] = true;
@@ -56,12 +57,12 @@ TEST_CASE("every reason for a missing quantity has words, with its numbers") {
     INFO("kind " << kind);
     CHECK(seen[kind]);
   }
-  CHECK(why_words({}).empty());
+  CHECK(report::why_words({}).empty());
 }
 
 TEST_CASE("a reason names the clips whose motion went against the launch, and when the launch begins") {
   const AgainstLaunch turning{1, 0.542, 0.4, true}, whole{-1, {}, 1.0, false};
-  CHECK(why_words(WhyUnknown{unknown::NoDownhillLine{}, {{"up", turning}, {"down", whole}}}) ==
+  CHECK(report::why_words(WhyUnknown{unknown::NoDownhillLine{}, {{"up", turning}, {"down", whole}}}) ==
         "no line for v > 0; up: motion towards +x before 0.542 s is attributed to the hand and excluded, since the "
         "launch was towards -x (as launched and downhill in experiment.toml say); down: it moves towards -x only: the "
         "launch was towards +x (as launched and downhill in experiment.toml say)");

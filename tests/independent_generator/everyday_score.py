@@ -110,8 +110,8 @@ def table(rows):
     yield "two causes, both named", fraction(of("both", "two"))
     yield "or told as not to be told apart", fraction(of("both_told", "two"))
     yield "one or two causes, a wrong name above 0.8", fraction(of("wrong", "one", "two"))
-    yield "dirt alone, half of the excess claimed", fraction(of("claimed", "none"))
-    yield "dirt alone, any name", fraction(of("named", "none"))
+    yield "imperfections alone, half of the excess claimed", fraction(of("claimed", "none"))
+    yield "imperfections alone, any name", fraction(of("named", "none"))
     yield "off the list, a wrong name above 0.8", fraction(of("wrong", "off"))
     yield "shares, rms error", f"{np.sqrt(np.mean(np.square(rests))):.3f} ({len(rests)})" if rests else "-"
     yield "recovered intervals contain the true value", fraction([h for r in rows for h in r["held"]["all"]])

@@ -1,11 +1,13 @@
-#include "core/result/why_unknown.h"
+#include "report/text/why_words.h"
 
 #include <fmt/format.h>
 
 #include <variant>
 
-namespace glidelab::core {
+namespace glidelab::report {
 namespace {
+
+namespace unknown = core::unknown;
 
 const char* incline_words(bool would_do) {
   return would_do ? ", unless the inclination is stated with its uncertainty (incline_deg and incline_sd_deg; for a "
@@ -92,17 +94,17 @@ struct ReasonWords {
 
 }  // namespace
 
-std::string why_words(const std::optional<WhyUnknown>& why) {
+std::string why_words(const std::optional<core::WhyUnknown>& why) {
   if (!why) return "";
   std::string text = std::visit(ReasonWords{}, why->reason);
-  for (const ClipAgainstLaunch& one : why->against_launch) {
+  for (const core::ClipAgainstLaunch& one : why->against_launch) {
     text +=
         fmt::format("; {}: {} (as launched and downhill in experiment.toml say)", one.clip, launch_words(one.motion));
   }
   return text;
 }
 
-std::string launch_words(const AgainstLaunch& against) {
+std::string launch_words(const core::AgainstLaunch& against) {
   const char* const moving = against.direction > 0 ? "+x" : "-x";
   const char* const launch = against.direction > 0 ? "-x" : "+x";
   if (!against.until_s) return fmt::format("it moves towards {} only: the launch was towards {}", moving, launch);
@@ -111,4 +113,4 @@ std::string launch_words(const AgainstLaunch& against) {
       moving, *against.until_s, launch);
 }
 
-}  // namespace glidelab::core
+}  // namespace glidelab::report

@@ -1,4 +1,4 @@
-#include "diagnose/frames/frame_effects.h"
+#include "diagnose/single_frames/frame_effects.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_model.h"
-#include "diagnose/frames/point_scatter.h"
+#include "diagnose/single_frames/point_scatter.h"
 
 namespace glidelab::diagnose {
 namespace {

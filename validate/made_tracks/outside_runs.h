@@ -13,7 +13,7 @@
 
 #include "core/result/results.h"
 #include "fit/outside/outside_estimator.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::validate {
 

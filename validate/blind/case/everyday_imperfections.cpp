@@ -1,4 +1,4 @@
-#include "validate/blind/case/everyday_dirt.h"
+#include "validate/blind/case/everyday_imperfections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,16 +11,16 @@ namespace {
 
 constexpr double kDecade = 0.1;  // of the maximum: the smallest amplitude drawn
 
-using DirtPut = std::function<void(double amplitude, std::size_t clip, BlindFilm& film)>;
+using ImperfectionPut = std::function<void(double amplitude, std::size_t clip, BlindFilm& film)>;
 
-EverydayDirt dirt_of(const char* id, double most, const char* unit, std::vector<std::string> effects, DirtPut put,
-                     BlindRandom& random) {
-  EverydayDirt dirt{id, log_uniform(random, kDecade * most, most), unit, std::move(effects), {}};
-  const double amplitude = dirt.amplitude;
-  dirt.effect.id = id;
-  dirt.effect.largest = most / amplitude;
-  dirt.effect.put = [=](double size, std::size_t clip, BlindFilm& film) { put(size * amplitude, clip, film); };
-  return dirt;
+EverydayImperfection imperfection_of(const char* id, double most, const char* unit, std::vector<std::string> effects,
+                                     ImperfectionPut put, BlindRandom& random) {
+  EverydayImperfection imperfection{id, log_uniform(random, kDecade * most, most), unit, std::move(effects), {}};
+  const double amplitude = imperfection.amplitude;
+  imperfection.effect.id = id;
+  imperfection.effect.largest = most / amplitude;
+  imperfection.effect.put = [=](double size, std::size_t clip, BlindFilm& film) { put(size * amplitude, clip, film); };
+  return imperfection;
 }
 
 std::vector<double> of_each_clip(const BlindDesign& design, BlindRandom& random) {
@@ -33,9 +33,9 @@ void add_force(BlindFilm& film, BlindChange change) {
   film.law.changes.push_back(std::move(change));
 }
 
-EverydayDirt scattered_friction(const BlindDesign& design, BlindRandom& random) {
+EverydayImperfection scattered_friction(const BlindDesign& design, BlindRandom& random) {
   const auto z = of_each_clip(design, random);
-  return dirt_of(
+  return imperfection_of(
       "scattered_friction", 0.15, "1", {diagnose::ids::clip_scatter},
       [=](double a, std::size_t clip, BlindFilm& film) {
         const double factor = 1.0 + a * z[clip];
@@ -44,10 +44,10 @@ EverydayDirt scattered_friction(const BlindDesign& design, BlindRandom& random) 
       random);
 }
 
-EverydayDirt wavy_track(const BlindDesign& design, BlindRandom& random) {
+EverydayImperfection wavy_track(const BlindDesign& design, BlindRandom& random) {
   const auto waves = random_waves(0.15, 1.2, random);
   const double g = design.gravity_m_s2;
-  return dirt_of(
+  return imperfection_of(
       "wavy_track", 4e-3, "rad", {diagnose::ids::track_bow},
       [=](double a, std::size_t, BlindFilm& film) {
         add_force(film, [=](double x, double, double, BlindTerms& f) { f.drive_n += a * g * f.mass_kg * waves(x); });
@@ -55,9 +55,9 @@ EverydayDirt wavy_track(const BlindDesign& design, BlindRandom& random) {
       random);
 }
 
-EverydayDirt lag(const BlindDesign& design, BlindRandom& random) {
+EverydayImperfection lag(const BlindDesign& design, BlindRandom& random) {
   const auto z = of_each_clip(design, random);
-  return dirt_of(
+  return imperfection_of(
       "lagging_tracker", 2.0 / design.clips.front().rate_hz, "s", {},
       [=](double a, std::size_t clip, BlindFilm& film) {
         const double lag_s = a * (1.0 + 0.4 * z[clip]);
@@ -75,10 +75,10 @@ EverydayDirt lag(const BlindDesign& design, BlindRandom& random) {
       random);
 }
 
-EverydayDirt draught(const BlindDesign& design, BlindRandom& random) {
+EverydayImperfection draught(const BlindDesign& design, BlindRandom& random) {
   const auto phase = phases(design, random), second = phases(design, random);
   const double slow = uniform(random, 3.0, 6.0), fast = uniform(random, 1.2, 3.0);  // periods, s
-  return dirt_of(
+  return imperfection_of(
       "draught", 0.015, "N", {},
       [=](double a, std::size_t clip, BlindFilm& film) {
         const double p = phase[clip], q = second[clip];
@@ -89,7 +89,7 @@ EverydayDirt draught(const BlindDesign& design, BlindRandom& random) {
       random);
 }
 
-EverydayDirt wrong_mass(const BlindDesign& design, BlindRandom& random) {
+EverydayImperfection wrong_mass(const BlindDesign& design, BlindRandom& random) {
   const BlindClip& one =
       design.clips[std::min(design.clips.size() - 1,
                             static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(design.clips.size()))))];
@@ -97,7 +97,7 @@ EverydayDirt wrong_mass(const BlindDesign& design, BlindRandom& random) {
   const double sign = either_sign(random);
   std::vector<bool> has;
   for (const BlindClip& clip : design.clips) has.push_back(configuration_of(design, clip) == wrong);
-  return dirt_of(
+  return imperfection_of(
       "wrong_mass", 0.03, "1", {},
       [=](double a, std::size_t clip, BlindFilm& film) {
         if (has[clip]) film.law.mass_kg *= 1.0 + sign * a;
@@ -105,10 +105,10 @@ EverydayDirt wrong_mass(const BlindDesign& design, BlindRandom& random) {
       random);
 }
 
-EverydayDirt unfree_start(const BlindDesign& design, BlindRandom& random) {
+EverydayImperfection unfree_start(const BlindDesign& design, BlindRandom& random) {
   const auto z = of_each_clip(design, random);
   const double until = uniform(random, 0.02, 0.08);
-  return dirt_of(
+  return imperfection_of(
       "unfree_start", 3.0, "m/s²", {diagnose::ids::late_release},
       [=](double a, std::size_t clip, BlindFilm& film) {
         const double push = 0.6 * a * z[clip];
@@ -118,7 +118,7 @@ EverydayDirt unfree_start(const BlindDesign& design, BlindRandom& random) {
       random);
 }
 
-EverydayDirt bad_clip(const BlindDesign& design, BlindRandom& random) {
+EverydayImperfection bad_clip(const BlindDesign& design, BlindRandom& random) {
   const auto bad = std::min(design.clips.size() - 1,
                             static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(design.clips.size()))));
   const BlindClip& clip_of = design.clips[bad];
@@ -126,7 +126,7 @@ EverydayDirt bad_clip(const BlindDesign& design, BlindRandom& random) {
   const double from = uniform(random, 0.2, 0.7) * length, until = from + uniform(random, 0.03, 0.08);
   const double sign = either_sign(random);
   if (uniform(random, 0.0, 1.0) < 0.5) {
-    return dirt_of(
+    return imperfection_of(
         "bad_clip", 4.0, "m/s²", {},
         [=](double a, std::size_t clip, BlindFilm& film) {
           if (clip != bad) return;
@@ -136,7 +136,7 @@ EverydayDirt bad_clip(const BlindDesign& design, BlindRandom& random) {
         },
         random);
   }
-  return dirt_of(
+  return imperfection_of(
       "bad_clip", 1.5, "1", {diagnose::ids::clip_scatter},
       [=](double a, std::size_t clip, BlindFilm& film) {
         if (clip != bad) return;
@@ -145,22 +145,22 @@ EverydayDirt bad_clip(const BlindDesign& design, BlindRandom& random) {
       random);
 }
 
-bool is_fair(const EverydayDirt& dirt, const std::vector<std::string>& names) {
+bool is_fair(const EverydayImperfection& imperfection, const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(), [&](const std::string& id) {
-    return std::find(dirt.effects.begin(), dirt.effects.end(), id) != dirt.effects.end();
+    return std::find(imperfection.effects.begin(), imperfection.effects.end(), id) != imperfection.effects.end();
   });
 }
 
 }  // namespace
 
-std::vector<EverydayDirt> draw_dirt(std::size_t many, const std::vector<std::string>& without,
-                                    const BlindDesign& design, BlindRandom& random) {
-  std::vector<EverydayDirt> left;
+std::vector<EverydayImperfection> draw_imperfections(std::size_t many, const std::vector<std::string>& without,
+                                                     const BlindDesign& design, BlindRandom& random) {
+  std::vector<EverydayImperfection> left;
   for (const auto draw : {scattered_friction, wavy_track, lag, draught, wrong_mass, unfree_start, bad_clip}) {
-    EverydayDirt dirt = draw(design, random);
-    if (!is_fair(dirt, without)) left.push_back(std::move(dirt));
+    EverydayImperfection imperfection = draw(design, random);
+    if (!is_fair(imperfection, without)) left.push_back(std::move(imperfection));
   }
-  std::vector<EverydayDirt> chosen;
+  std::vector<EverydayImperfection> chosen;
   while (chosen.size() < many && !left.empty()) {
     const auto at =
         std::min(left.size() - 1, static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(left.size()))));
@@ -170,12 +170,13 @@ std::vector<EverydayDirt> draw_dirt(std::size_t many, const std::vector<std::str
   return chosen;
 }
 
-BlindEffect all_of_dirt(const std::vector<EverydayDirt>& dirt) {
+BlindEffect all_of_imperfections(const std::vector<EverydayImperfection>& imperfections) {
   BlindEffect all;
   all.id = "dirt";
-  for (const EverydayDirt& one : dirt) all.largest = std::max(all.largest, one.effect.largest / one.part);
-  all.put = [dirt](double size, std::size_t clip, BlindFilm& film) {
-    for (const EverydayDirt& one : dirt) one.effect.put(one.size_at(size), clip, film);
+  for (const EverydayImperfection& one : imperfections)
+    all.largest = std::max(all.largest, one.effect.largest / one.part);
+  all.put = [imperfections](double size, std::size_t clip, BlindFilm& film) {
+    for (const EverydayImperfection& one : imperfections) one.effect.put(one.size_at(size), clip, film);
   };
   return all;
 }

@@ -1,4 +1,4 @@
-#include "validate/tracks/outside_runs.h"
+#include "validate/made_tracks/outside_runs.h"
 
 #include <fmt/format.h>
 

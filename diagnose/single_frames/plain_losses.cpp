@@ -1,4 +1,4 @@
-#include "diagnose/frames/plain_losses.h"
+#include "diagnose/single_frames/plain_losses.h"
 
 #include <algorithm>
 #include <array>

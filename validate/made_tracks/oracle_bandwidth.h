@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/result/results.h"
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 namespace glidelab::validate {
 

@@ -9,7 +9,7 @@
 /// model lacks look like a series of losses.
 #pragma once
 
-#include "diagnose/frames/frame_effects.h"
+#include "diagnose/single_frames/frame_effects.h"
 
 namespace glidelab::diagnose {
 

@@ -1,4 +1,4 @@
-#include "diagnose/frames/missing_frames.h"
+#include "diagnose/single_frames/missing_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/frames/plain_losses.h"
+#include "diagnose/single_frames/plain_losses.h"
 
 namespace glidelab::diagnose {
 namespace {

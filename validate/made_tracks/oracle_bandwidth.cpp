@@ -1,4 +1,4 @@
-#include "validate/tracks/oracle_bandwidth.h"
+#include "validate/made_tracks/oracle_bandwidth.h"
 
 #include <algorithm>
 #include <cassert>

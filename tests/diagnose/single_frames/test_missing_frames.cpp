@@ -1,4 +1,4 @@
-#include "diagnose/frames/missing_frames.h"
+#include "diagnose/single_frames/missing_frames.h"
 
 #include <algorithm>
 #include <random>

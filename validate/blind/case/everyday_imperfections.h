@@ -1,8 +1,8 @@
 /// The small imperfections of an experiment recorded by a student; none of them is on the list.
 ///
 /// Each alters forces or seen positions with an amplitude below its maximum. Each gets a part of the total excess of
-/// the dirt, between a quarter of and four times another's, as far as its maximum allows; then all grow with one common
-/// size until together they make that excess. `s a` is the amplitude at that size, z a deviate of each clip:
+/// all of them, between a quarter of and four times another's, as far as its maximum allows; then all grow with one
+/// common size until together they make that excess. `s a` is the amplitude at that size, z a deviate of each clip:
 ///
 ///     scattered_friction   mu (1 + s a z)                         a up to 15 %
 ///     wavy_track           slope + s a waves(x), 0.15 to 1.2 m    a up to 4 mrad
@@ -25,7 +25,7 @@
 
 namespace glidelab::validate {
 
-struct EverydayDirt {
+struct EverydayImperfection {
   std::string id;
   double amplitude = 0.0;  ///< in `unit`, at size 1 of `effect`
   std::string unit;
@@ -46,11 +46,11 @@ struct EverydayNoise {
 };
 
 /// Draws `many` from the list, excluding any for which an effect in `without` would be an acceptable name.
-std::vector<EverydayDirt> draw_dirt(std::size_t many, const std::vector<std::string>& without,
-                                    const BlindDesign& design, BlindRandom& random);
+std::vector<EverydayImperfection> draw_imperfections(std::size_t many, const std::vector<std::string>& without,
+                                                     const BlindDesign& design, BlindRandom& random);
 
 /// All of them as one effect, with their common size.
-BlindEffect all_of_dirt(const std::vector<EverydayDirt>& dirt);
+BlindEffect all_of_imperfections(const std::vector<EverydayImperfection>& imperfections);
 
 /// Noise of one or two kinds (or none), with a total of noise_sd_m.
 EverydayNoise draw_noise(double noise_sd_m, bool clicked, bool rounded, BlindRandom& random);

@@ -1,10 +1,11 @@
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "fit/trajectory/trajectory_results.h"
 #include "render/scenario/clip_motion.h"
+#include "report/text/why_words.h"
 #include "sim/oracle/closed_forms.h"
 #include "test_paths.h"
 #include "tests/catch.h"
@@ -99,7 +100,8 @@ TEST_CASE("both estimators recover the truth of made tracks, and the whole motio
       join_estimators(compare_quantities(lines, clean.truth), compare_quantities(whole, clean.truth)), bounds);
   REQUIRE(quantities.size() == 24);
   for (const QuantityComparison& quantity : quantities) {
-    INFO(quantity.configuration << " " << quantity.estimator << " " << quantity.quantity << ": " << quantity.why);
+    INFO(quantity.configuration << " " << quantity.estimator << " " << quantity.quantity << ": "
+                                << report::why_words(quantity.why));
     REQUIRE((quantity.error && quantity.efficiency));
     CHECK(std::abs(*quantity.error) < 4.5 * *quantity.sd);  // 24 numbers, fixed seed
     // The noise's variance is estimated from 600 to 1000 points: to 5 %, three of these are allowed.

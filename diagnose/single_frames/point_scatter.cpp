@@ -1,4 +1,4 @@
-#include "diagnose/frames/point_scatter.h"
+#include "diagnose/single_frames/point_scatter.h"
 
 #include <boost/math/tools/minima.hpp>
 

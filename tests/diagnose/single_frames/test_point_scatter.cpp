@@ -1,5 +1,5 @@
 /// The scatter of single positions: what is left beside a curve, and the speed that it grows with.
-#include "diagnose/frames/point_scatter.h"
+#include "diagnose/single_frames/point_scatter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "validate/tracks/made_tracks.h"
+#include "validate/made_tracks/made_tracks.h"
 
 #include <algorithm>
 #include <cassert>
