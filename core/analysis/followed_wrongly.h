@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/analysis/see_clip.h"
+#include "core/analysis/seen_clip.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/marker/marker_path.h"
 #include "core/pictures/marker/pattern/moving_pattern.h"

@@ -20,10 +20,14 @@ constexpr double kLeastTurned = 0.8;         // correlation of a pattern with it
 constexpr double kMostShifted = 0.8;         // and after a shift by half a radius or more
 constexpr double kLeastAlike = 0.75;         // correlation of a pattern with itself in another frame
 constexpr double kLookReach = 1.3;           // radii: half the side of what is matched
-constexpr double kGateRadii = 2.5, kGateSteps = 0.5;  // radii and steps of its motion around the expected place
-constexpr std::size_t kMostMissed = 6;                // frames in a row
+constexpr double kFirstGateRadii = 2.5;      // around a pattern whose speed is not known yet;
+constexpr double kGateRadii = 0.75;      // later around the expected place: a jump from stripe to stripe is no motion,
+constexpr double kGateSteps = 2.2;       // and times its step, for it may bounce
+constexpr std::size_t kMostMissed = 6;   // frames in a row
 constexpr std::size_t kRestFrames = 12;  // after which a pattern that has not moved is given up until it is new
 constexpr std::size_t kFewestFrames = 8;
+constexpr std::size_t kFewestForSpeed = 3;
+constexpr double kAsLong = 0.9;           // of the frames of the longest: the most alike after half a turn comes first
 constexpr double kNodesPerRadius = 12.0;  // of the comparison after half a turn
 
 cv::Mat single_precision(const cv::Mat& grey, const cv::Rect& part) {
@@ -84,15 +88,20 @@ std::optional<cv::Point2d> centre_near(const cv::Mat& grey, cv::Point2d spot, do
   return centre;
 }
 
+struct Centre {
+  cv::Point2d at;
+  double turned = 0.0;  ///< correlation with itself after half a turn; 0: not known
+};
+
 /// The centre about which the pixels are most alike after half a turn, from one that is nearly it, to a small part of a
 /// pixel: places to whole pixels err alike wherever the pattern lies alike in its pixels, and a look that is the mean
 /// of such places hardly loses that. The correlations about the points of a grid of half pixels, less their mean, are
 /// those of a smooth function, whose maximum is that of a parabola through three of them.
-cv::Point2d refined_centre(const cv::Mat& grey, cv::Point2d centre, double radius_px) {
+Centre refined_centre(const cv::Mat& grey, cv::Point2d centre, double radius_px) {
   constexpr int kMostHalves = 4;  // of half a pixel
   const double reach = kPatternReach * radius_px;
   const cv::Rect part = square_around(centre, static_cast<int>(std::ceil(reach)) + kMostHalves + 1);
-  if (!is_inside(part, grey)) return centre;
+  if (!is_inside(part, grey)) return {centre};
   const cv::Mat codes = single_precision(grey, part);
   const cv::Point2d within = centre - cv::Point2d(part.tl());
   cv::Point twice(static_cast<int>(std::lround(2.0 * within.x)), static_cast<int>(std::lround(2.0 * within.y)));
@@ -111,9 +120,11 @@ cv::Point2d refined_centre(const cv::Mat& grey, cv::Point2d centre, double radiu
       const double bend = 2.0 * here - before - after;
       return bend > 0.0 ? 0.5 * (after - before) / bend : 0.0;
     };
-    return cv::Point2d(part.tl()) + 0.5 * (cv::Point2d(twice) + cv::Point2d(off(left, right), off(up, down)));
+    const cv::Point2d beyond(off(left, right), off(up, down));
+    return {cv::Point2d(part.tl()) + 0.5 * (cv::Point2d(twice) + beyond),
+            here + 0.25 * ((right - left) * beyond.x + (down - up) * beyond.y)};
   }
-  return centre;
+  return {centre};
 }
 
 class Followed {
@@ -137,13 +148,17 @@ class Followed {
           return std::nullopt;
       }
     }
-    made.push(frame, refined_centre(grey, centre, radius_px));
+    const Centre refined = refined_centre(grey, centre, radius_px);
+    made.turned_ = refined.turned;
+    made.push(frame, refined.at);
     return made;
   }
 
   void follow(const cv::Mat& grey, std::size_t frame) {
     const cv::Point2d expected = path_.predict(frame);
-    const double gate = kGateRadii * radius_px_ + kGateSteps * cv::norm(path_.velocity());
+    const double gate = path_.seen.size() < kFewestForSpeed
+                            ? kFirstGateRadii * radius_px_
+                            : kGateRadii * radius_px_ + kGateSteps * cv::norm(path_.velocity());
     const int half = look_.rows / 2 + static_cast<int>(std::ceil(gate));
     const cv::Rect part = square_around(expected - off_, half) & cv::Rect({}, grey.size());
     ++missed_;
@@ -156,7 +171,7 @@ class Followed {
     if (best < kLeastAlike) return;
     missed_ = 0;
     const cv::Point2d middle = 0.5 * cv::Point2d(look_.cols - 1, look_.rows - 1);
-    push(frame, refined_centre(grey, cv::Point2d(part.tl() + where) + middle + off_, radius_px_));
+    push(frame, refined_centre(grey, cv::Point2d(part.tl() + where) + middle + off_, radius_px_).at);
   }
 
   bool is_lost() const { return missed_ > kMostMissed; }
@@ -164,6 +179,7 @@ class Followed {
   bool moved() const { return path_.seen.size() >= kFewestFrames && steady_travel(path_) >= least_travel(radius_px_); }
   bool is_near(cv::Point2d place) const { return cv::norm(path_.seen.back().fit.centre - place) < 0.5 * radius_px_; }
   std::size_t seen() const { return path_.seen.size(); }
+  double turned() const { return turned_; }
 
   MovingPattern pattern() const {
     MovingPattern pattern;
@@ -189,6 +205,7 @@ class Followed {
   cv::Mat look_;
   cv::Point2d off_;  ///< from the middle of the look to the centre
   MarkerPath path_;
+  double turned_ = 0.0;  ///< correlation with itself after half a turn, in the first frame
   double radius_px_ = 0.0;
   std::size_t missed_ = 0;
 };
@@ -276,7 +293,13 @@ std::vector<MovingPattern> moving_patterns(const ClipAgain& clip, const RadiusAt
   }
   ended.insert(ended.end(), followed.begin(), followed.end());
   std::erase_if(ended, [](const Followed& one) { return !one.moved(); });
+  // The end of a plate and the edge of the pattern on it are alike after half a turn too, but less so.
   std::ranges::stable_sort(ended, std::ranges::greater{}, &Followed::seen);
+  const auto as_long = std::ranges::find_if(ended, [&](const Followed& one) {
+    return static_cast<double>(one.seen()) < kAsLong * static_cast<double>(ended.front().seen());
+  });
+  std::stable_sort(ended.begin(), as_long,
+                   [](const Followed& a, const Followed& b) { return a.turned() > b.turned(); });
   std::vector<MovingPattern> patterns;
   for (const Followed& one : ended) patterns.push_back(one.pattern());
   return patterns;

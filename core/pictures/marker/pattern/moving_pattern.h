@@ -20,8 +20,8 @@ struct MovingPattern {
 
 /// Compares the surroundings of every pixel with themselves after half a turn, at regular intervals through the clip,
 /// and follows those of them that are alike, and that no shift leaves alike (an edge would slide along itself), by the
-/// correlation of their pixels. Those that move by less than least_travel() are no result. The one that is seen in most
-/// frames comes first.
+/// correlation of their pixels. Those that move by less than least_travel() are no result. Of those that are seen in
+/// about as many frames as the longest, the one most like itself after half a turn comes first.
 std::vector<MovingPattern> moving_patterns(const ClipAgain& clip, const RadiusAt& radius_at);
 
 /// Whether they look alike, move as far, and are seen side by side in half of the frames of the shorter one.
