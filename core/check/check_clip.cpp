@@ -10,7 +10,7 @@
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
 #include "core/pictures/marker/marker_search.h"
-#include "core/pictures/scene/light_flicker.h"
+#include "core/pictures/scene/lamp_flicker.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::core {

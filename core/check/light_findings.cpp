@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/math/quantile.h"
-#include "core/pictures/scene/light_flicker.h"
+#include "core/pictures/scene/lamp_flicker.h"
 #include "core/pictures/scene/path_light.h"
 
 namespace glidelab::core {

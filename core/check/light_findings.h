@@ -2,7 +2,7 @@
 ///
 /// Each is reported only where it may displace the marker by more than a tenth of the noise of a position. A step of
 /// the light by h across the middle of a disc of radius r displaces the centroid of its light by 2 h r / (3 pi), at
-/// most; a gradient and a flicker by what path_light.h and light_flicker.h say. The analysis fits an outline, which
+/// most; a gradient and a flicker by what path_light.h and lamp_flicker.h say. The analysis fits an outline, which
 /// such light displaces less.
 #pragma once
 

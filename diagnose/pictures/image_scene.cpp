@@ -9,7 +9,7 @@
 #include "base/math/log_sum.h"
 #include "core/math/quantile.h"
 #include "core/pictures/scene/camera_traces.h"
-#include "core/pictures/scene/light_flicker.h"
+#include "core/pictures/scene/lamp_flicker.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/pictures/image_recording.h"

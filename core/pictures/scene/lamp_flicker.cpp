@@ -1,4 +1,4 @@
-#include "core/pictures/scene/light_flicker.h"
+#include "core/pictures/scene/lamp_flicker.h"
 
 #include <algorithm>
 #include <cmath>
