@@ -12,6 +12,7 @@
 #include "base/long_work.h"
 #include "base/math/angles.h"
 #include "core/analysis/centroid_wander.h"
+#include "core/analysis/followed_wrongly.h"
 #include "core/motion/codec_drag.h"
 #include "core/pictures/camera/motion_axis.h"
 #include "core/pictures/camera/plumb.h"

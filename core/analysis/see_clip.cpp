@@ -11,12 +11,14 @@
 #include "base/errors.h"
 #include "base/long_work.h"
 #include "base/text/number_text.h"
+#include "core/analysis/followed_wrongly.h"
 #include "core/math/even_times.h"
 #include "core/math/quantile.h"
 #include "core/pictures/camera/restitution.h"
+#include "core/pictures/marker/pattern/moving_pattern.h"
+#include "core/pictures/marker/pattern/template_look.h"
 #include "core/pictures/marker/second_look.h"
 #include "core/pictures/marker/sphere/still_background.h"
-#include "core/pictures/marker/template_look.h"
 #include "core/pictures/scene/scene_watch.h"
 
 namespace glidelab::core {
@@ -176,16 +178,17 @@ Looked look_for(const MarkerSetup& marker, const Experiment& experiment, const C
     }
     if (seen.frame_t_s.size() % kTellEvery == 0) counter.add(static_cast<double>(kTellEvery) / stated);
   }
+  std::optional<NoMarker> none;
   try {
     seen.marker = tracker.finish();
   } catch (const NoMarker& nothing) {
-    return {std::move(seen), nothing};
+    none = nothing;
   }
   seen.notes = source->notes();
   seen.predicted = source->facts().predicts;
   if (experiment.camera->time == TimeSource::container) put_even(seen);
   if (scene) finish_record(source->facts(), signal_kind(marker) == SignalKind::dark, *scene, seen);
-  return {std::move(seen)};
+  return {std::move(seen), std::move(none)};
 }
 
 }  // namespace
@@ -263,6 +266,7 @@ class FurtherLooks {
   std::optional<SeenClip> as_lit_body(const SeenClip& rough, const std::vector<FrameWindow>& windows,
                                       const StillBackground& background) const;
   bool as_own_look(const SeenClip& rough, const std::vector<FrameWindow>& windows);
+  bool as_moving_pattern(const SeenClip& disc);
   bool in_more_frames(const SeenClip& found) const {
     return static_cast<double>(found.marker.sightings.size()) > kLeastSeenRatio * seen_before_;
   }
@@ -293,12 +297,6 @@ std::optional<SeenClip> FurtherLooks::any_shape(const AnyShape& any) const {
     // The error of the first search counts.
   }
   return std::nullopt;
-}
-
-Places places_of(const TrackedMarker& marker) {
-  Places places;
-  for (const MarkerSighting& sighting : marker.sightings) places[sighting.frame] = {sighting.u_px, sighting.v_px};
-  return places;
 }
 
 /// With another marker in place of the rough one.
@@ -336,6 +334,23 @@ bool FurtherLooks::as_own_look(const SeenClip& rough, const std::vector<FrameWin
   return has_own_centre;
 }
 
+/// Keeps the pattern with a centre of its own that moves. Whether there is one.
+bool FurtherLooks::as_moving_pattern(const SeenClip& disc) {
+  constexpr std::size_t kMostTried = 4;
+  const auto radius_at = [&](cv::Point2d pixel) {
+    return restitution_.marker_radius_px(pixel).value_or(kSomeRadiusPx);
+  };
+  const std::vector<MovingPattern> patterns = moving_patterns(again_, radius_at);
+  for (std::size_t i = 0; i < std::min(patterns.size(), kMostTried); ++i) {
+    const SeenClip rough = with_marker(disc, patterns[i].rough);
+    if (!as_own_look(rough, windows_of(rough))) continue;
+    own_look_->dark_marker = false;
+    if (!marker_in(experiment_, clip_).start_px) require_no_twin(patterns, i, clip_);
+    return true;
+  }
+  return false;
+}
+
 SeenClip FurtherLooks::after_hue(SeenClip seen) {
   again_.frames = seen.frame_t_s.size();
   auto lit = as_lit_body(seen, windows_of(seen), background_of(again_));
@@ -349,6 +364,13 @@ SeenClip FurtherLooks::after_hue(SeenClip seen) {
 
 SeenClip FurtherLooks::after(Looked disc) {
   again_.frames = disc.seen.frame_t_s.size();
+  const cv::Point2d middle(0.5 * disc.seen.size.width, 0.5 * disc.seen.size.height);
+  const double radius_px = restitution_.marker_radius_px(middle).value_or(kSomeRadiusPx);
+  // By its own look, unless it is as large as half the image.
+  const bool may_have_look = radius_px < 0.5 * std::min(middle.x, middle.y);
+  // A disc at rest is hardly the marker if a pattern of its size moves.
+  const bool rests = !disc.none && !moves(disc.seen.marker);
+  if (rests && may_have_look && as_moving_pattern(disc.seen)) return *std::move(own_look_);
   if (!disc.none && !is_worth_a_second_look(disc.seen.marker, again_.frames)) return std::move(disc.seen);
   const StillBackground background = background_of(again_);
   if (!disc.none) {
@@ -359,11 +381,8 @@ SeenClip FurtherLooks::after(Looked disc) {
     if (well_seen(disc.seen.marker)) return std::move(disc.seen);
     if (in_most) return steady(std::move(disc.seen), clip_);
   }
-  // By its own look, unless it is as large as half the image.
   const cv::Mat still = background.median();
-  const cv::Point2d middle(0.5 * still.cols, 0.5 * still.rows);
-  const double radius_px = restitution_.marker_radius_px(middle).value_or(kSomeRadiusPx);
-  const bool may_have_look = radius_px < 0.5 * std::min(middle.x, middle.y);
+  if (!rests && may_have_look && as_moving_pattern(disc.seen)) return *std::move(own_look_);
   for (const AnyShape& any : {AnyShape{still}, AnyShape{}, AnyShape{{}, true}}) {
     const std::optional<SeenClip> rough = any_shape(any);
     if (!rough) continue;
@@ -388,60 +407,6 @@ double summed_variance(const TrackedMarker& marker) {
 }
 
 }  // namespace
-
-std::optional<NoMarker> not_from_start(const SeenClip& seen, const MarkerSetup& marker, const ClipSetup& clip) {
-  if (!marker.start_px || seen.marker.sightings.empty()) return std::nullopt;
-  const std::vector<double>& t_s = seen.frame_t_s;
-  const auto start =
-      std::ranges::min_element(t_s, {}, [&](double t) { return std::abs(t - clip.start_s.value_or(t_s.front())); });
-  const auto frame = static_cast<std::size_t>(start - t_s.begin());
-  std::vector<PlaceInFrame> places;
-  for (const MarkerSighting& sighting : seen.marker.sightings)
-    places.push_back({sighting.frame, {sighting.u_px, sighting.v_px}});
-  const cv::Point2d at(marker.start_px->x, marker.start_px->y);
-  const bool is_before = frame<places.front().frame, is_after = frame> places.back().frame;
-  const cv::Point2d end = is_after ? places.back().at : places.front().at;
-  // Beyond an end of the track, it may have been at rest, or have bounced.
-  const cv::Point2d expected = place_by_neighbours(places, frame, false).value_or(end);
-  const double off = cv::norm(expected - at), from_end = is_before || is_after ? cv::norm(end - at) : off;
-  const double allowed = farthest_from_start(seen.marker.sightings.front().radius_px);
-  if (std::min(off, from_end) <= allowed) return std::nullopt;
-  return NoMarker(base::Issue{
-      clip.file.string(), 0, "marker",
-      fmt::format("no marker that can be followed from start_px = [{:.1f}, {:.1f}] in frame {}: what is followed {} "
-                  "{:.0f} px away from there",
-                  at.x, at.y, frame,
-                  is_before  ? fmt::format("is first seen in frame {},", places.front().frame)
-                  : is_after ? fmt::format("is last seen in frame {},", places.back().frame)
-                             : std::string("is"),
-                  from_end),
-      "one thing of the stated diameter that stands out from its surroundings in every frame, as a plain disc does, or "
-      "another start_px"});
-}
-
-std::optional<NoMarker> far_rougher(const std::vector<SeenClip>& clips, std::size_t which, const ClipSetup& clip) {
-  constexpr double kTimesRougher = 10.0, kLeastRough_px = 0.3;
-  constexpr std::size_t kFewestOthers = 2;
-  std::optional<double> mine;
-  std::vector<double> others;
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    const auto roughness = roughness_of(places_of(clips[i].marker));
-    if (i == which) {
-      mine = roughness;
-    } else if (roughness) {
-      others.push_back(*roughness);
-    }
-  }
-  if (!mine || *mine < kLeastRough_px || others.size() < kFewestOthers) return std::nullopt;
-  const double usual = median_of(std::move(others));
-  if (*mine < kTimesRougher * usual) return std::nullopt;
-  return NoMarker(
-      base::Issue{clip.file.string(), 0, "marker",
-                  fmt::format("no marker that can be followed: what is followed scatters by {} px from frame "
-                              "to frame, the marker of the other clips by {} px",
-                              base::number_text(*mine, 2), base::number_text(usual, 2)),
-                  "one thing of the stated diameter that stands out from its surroundings in every frame"});
-}
 
 MarkerMethod measured_by(const SeenClip& clip) {
   const bool is_lit = clip.by_other_means && clip.marker.body;

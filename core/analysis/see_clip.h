@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/long_work.h"
+#include "core/analysis/seen_clip.h"
 #include "core/experiment/experiment.h"
 #include "core/pictures/camera/restitution.h"
 #include "core/pictures/frames/frame_source.h"
@@ -18,28 +19,6 @@
 #include "core/result/image_record.h"
 
 namespace glidelab::core {
-
-/// What one clip's images show, in pixels: the marker in every frame, the frames' times, and anything else of note.
-struct SeenClip {
-  TrackedMarker marker;
-  std::vector<double> frame_t_s;        ///< of all frames
-  cv::Size size;                        ///< of the images
-  std::vector<Note> notes;              ///< about the file; the marker has its own notes
-  std::shared_ptr<ImageRecord> images;  ///< if requested
-  bool dark_marker = false;             ///< seen as darker than its surroundings, with no stated colour
-  std::optional<bool> predicted;        ///< whether a lossy codec predicts images from earlier ones; empty if not known
-  /// Of a marker with a hue, measured by that alone and as a lit body: by whichever of the two the marker above is not.
-  std::shared_ptr<const TrackedMarker> by_other_means = {};
-};
-
-/// Why a track is not that of the object at start_px: in the frame to which start_px refers it is elsewhere or, beyond
-/// its ends, neither is it on its way from there nor has it been at rest there. Empty if it may be that object, and if
-/// no start_px is given.
-std::optional<NoMarker> not_from_start(const SeenClip& seen, const MarkerSetup& marker, const ClipSetup& clip);
-
-/// Why the track of a clip is not that of the marker although something is followed in it: it is ten times rougher than
-/// the median of the others, and by more than 0.3 px. Empty if it is not, and for fewer than two others.
-std::optional<NoMarker> far_rougher(const std::vector<SeenClip>& clips, std::size_t which, const ClipSetup& clip);
 
 /// The method by which a marker with a hue is measured, before it may be fitted as a lit body.
 MarkerMethod measured_by(const SeenClip& clip);

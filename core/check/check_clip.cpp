@@ -9,6 +9,8 @@
 #include "core/check/motion_look.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
+#include "core/pictures/marker/marker_search.h"
+#include "core/pictures/scene/lamp_flicker.h"
 #include "core/track/track_data.h"
 
 namespace glidelab::core {
@@ -204,6 +206,52 @@ std::optional<MarkerLighting> lighting_of(const std::vector<MarkerFit>& fits) {
   return light;
 }
 
+/// The brightness that tells the light: a fit's own level of a bright marker; the background of a dark one, for glare
+/// and the black level act on its own, and of one that was looked at again; the contrast of a pattern, which has no
+/// outline. A change of the whole scene is taken out.
+PathBrightness brightness_of(const MarkerSetup& marker, const ClipAttempt& attempt) {
+  constexpr double kSaturated = 0.96;  // of the largest code
+  const TrackData& track = attempt.track;
+  const SignalKind kind = signal_kind(marker);
+  PathBrightness brightness;
+  if (kind == SignalKind::colored || !track.images || attempt.fits.size() != track.x_m.size()) return brightness;
+  const double full = track.images->full_code;
+  // A second look tells the size of a contrast, not its sign, and the background at rest.
+  const bool again = std::ranges::any_of(
+      track.notes, [](const Note& note) { return std::holds_alternative<MarkerFittedAgain>(note); });
+  brightness.of_marker = kind == SignalKind::bright && !again;
+  double x = 0.0, u = 0.0, v = 0.0, xx = 0.0, xu = 0.0, xv = 0.0;
+  const auto n = static_cast<double>(track.x_m.size());
+  for (std::size_t i = 0; i < track.x_m.size(); ++i) {
+    const MarkerFit& fit = attempt.fits[i];
+    x += track.x_m[i] / n;
+    u += track.sightings[i].u_px / n;
+    v += track.sightings[i].v_px / n;
+    const bool is_pattern = !(fit.rms > 0.0);
+    if (is_pattern) brightness.of_marker = true;
+    const double level = is_pattern                 ? fit.amplitude
+                         : again                    ? fit.background
+                         : kind == SignalKind::dark ? full - fit.background
+                                                    : fit.background + fit.amplitude;
+    const bool at_rest = again && !is_pattern;
+    const double scene = at_rest ? 1.0 : scene_brightness(*track.images, track.frame[i], track.sightings[i].v_px);
+    if (level > 0.0 && level < kSaturated * full && scene > 0.0) {
+      brightness.points.push_back({track.frame[i], track.x_m[i], level / scene});
+    }
+  }
+  for (std::size_t i = 0; i < track.x_m.size(); ++i) {
+    const double off = track.x_m[i] - x;
+    xx += off * off;
+    xu += off * (track.sightings[i].u_px - u);
+    xv += off * (track.sightings[i].v_px - v);
+  }
+  if (xx > 0.0) {
+    brightness.u_px_per_m = xu / xx;
+    brightness.v_px_per_m = xv / xx;
+  }
+  return brightness;
+}
+
 void check_images(const Experiment& experiment, const ClipAttempt& attempt, const ClipWatch& watch, double px_per_m,
                   ClipCheck& clip) {
   const TrackData& track = attempt.track;
@@ -217,6 +265,8 @@ void check_images(const Experiment& experiment, const ClipAttempt& attempt, cons
   }
   clip.marker_px = 2.0 * median_of(radii);
   if (clip.contrast) clip.light = lighting_of(attempt.fits);
+  clip.brightness = brightness_of(marker, attempt);
+  clip.record = track.images;
   clip.centre_sd_px = median_of(sds);
   clip.marker_expected_px = experiment.marker->diameter_m * px_per_m;
   const CameraSettings& camera = *experiment.camera;

@@ -135,7 +135,7 @@ std::vector<ClipAttempt> attempt_all(const Experiment& experiment, int jobs, con
   std::vector<ClipAttempt> attempts(experiment.clips.size());
   // Tracks what `part` has, the first of whose clips is the experiment's clip `first`.
   const auto attempt = [&](const Experiment& part, std::size_t first, MarkerSearch search) {
-    ImageResults seen = tracks_of(part, jobs, progress, watches.opener(), false, seen_pattern, search);
+    ImageResults seen = tracks_of(part, jobs, progress, watches.opener(), true, seen_pattern, search);
     if (check.pattern) check.pattern->calibration = seen.calibration;
     check.plumbs.insert(check.plumbs.end(), seen.plumbs.begin(), seen.plumbs.end());
     for (std::size_t i = 0; i < seen.tracks.size(); ++i) {

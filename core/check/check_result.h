@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/check/finding.h"
+#include "core/pictures/scene/path_light.h"
 #include "core/result/analysis_note.h"
+#include "core/result/image_record.h"
 #include "core/result/results.h"
 
 namespace glidelab::core {
@@ -60,6 +63,13 @@ struct MarkerLighting {
   double pull_change_px = 0.0;
 };
 
+/// Brightness along the path, codes: of the marker, or, if that is dark, of what is around it.
+struct PathBrightness {
+  std::vector<LitPoint> points;  ///< none of a marker that is known by its hue
+  bool of_marker = false;
+  double u_px_per_m = 0.0, v_px_per_m = 0.0;  ///< the image of a metre downhill
+};
+
 /// The slope of the marker's lengthening (the difference of its second moments along and across its path) over the
 /// square of its speed, in s^2: a twelfth of the square of the exposure.
 struct SmearSlope {
@@ -92,11 +102,13 @@ struct ClipCheck {
   std::optional<double> contrast;       ///< marker minus its surroundings; none for one that is known by its hue
   std::optional<double> marker_level;   ///< its own brightness
   std::optional<MarkerLighting> light;  ///< how it changes along the path; of a marker with an outline
-  double pixel_noise = 0.0;             ///< of a pixel at rest from frame to frame; 0 if none is seen
-  double block_steps = 0.0;             ///< excess of the steps between pixels at the edges of a codec's 8 x 8 blocks
-                                        ///< over those elsewhere, relative; 0 if no block is beyond doubt
-  double centre_sd_px = 0.0;            ///< of one coordinate of the marker's centre, from its fit, median
-  double distance_m = 0.0;              ///< from the uppermost position to the lowest
+  PathBrightness brightness;
+  std::shared_ptr<const ImageRecord> record;  ///< of its scene
+  double pixel_noise = 0.0;                   ///< of a pixel at rest from frame to frame; 0 if none is seen
+  double block_steps = 0.0;   ///< excess of the steps between pixels at the edges of a codec's 8 x 8 blocks
+                              ///< over those elsewhere, relative; 0 if no block is beyond doubt
+  double centre_sd_px = 0.0;  ///< of one coordinate of the marker's centre, from its fit, median
+  double distance_m = 0.0;    ///< from the uppermost position to the lowest
   double top_speed_m_s = 0.0;
   double top_speed_px_s = 0.0;
   std::optional<double> blur_px;  ///< at that speed, with the stated exposure

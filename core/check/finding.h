@@ -209,6 +209,31 @@ struct ContrastFalls {
   double least = 1.0;
 };
 
+/// A place at which the light changes within a diameter of the marker.
+struct ShadowEdge {
+  double x_m = 0.0;
+  double fall = 0.0;       ///< part of the brighter side that is lost on the darker one
+  bool downhill = false;   ///< whether the darker side is the lower one
+  bool of_marker = false;  ///< the marker itself darkens; otherwise what is around it
+  struct Frames {
+    std::size_t first = 0, last = 0;  ///< counted from 1
+  };
+  std::string clip;            ///< in which
+  std::vector<Frames> frames;  ///< the marker lies across it; of several clips, the first
+};
+
+/// The light along the path falls by this part per metre, which displaces the centroid of a marker.
+struct LightFalls {
+  double part_per_m = 0.0, displaces_m = 0.0;
+  bool of_marker = false;  ///< as of ShadowEdge
+  enum class Towards { right, left, bottom, top } towards = Towards::right;
+};
+
+/// Brightness of 1 ± depth at f_hz, which the frames show as seen_hz.
+struct LightFlickers {
+  double depth = 0.0, f_hz = 0.0, seen_hz = 0.0, displaces_m = 0.0;
+};
+
 /// The images show the blocks of a codec: ClipCheck::block_steps.
 struct StrongCompression {
   double block_steps = 0.0;
@@ -379,18 +404,17 @@ struct Smoothed {
 
 }  // namespace found
 
-using AnyFound =
-    std::variant<Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
-                 found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
-                 found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
-                 found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark,
-                 found::LittleContrast, found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls,
-                 found::StrongCompression, found::OtherRateInFile, found::UnevenStamps, found::Jumps,
-                 found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart,
-                 found::MarkerSizeOff, found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch,
-                 found::LengthInUnit, found::ScaleInUnit, found::MassInGrams, found::TrackInUnit,
-                 found::InclineInRadians, found::WrongFrameRate, found::MotionFault, found::FallAboveGravity,
-                 found::LongRun, found::SlowFrames, found::FallsSlowly, found::Gaps, found::Smoothed>;
+using AnyFound = std::variant<
+    Note, found::NoCamera, found::NoPatternIn, found::FewViews, found::CornersOff, found::LittleCovered,
+    found::LittleTilt, found::PlaneViewsOff, found::NotTracked, found::FewPositions, found::FewSightings,
+    found::SightingsMissing, found::UnseenAtEnd, found::SmallMarker, found::LongExposure, found::Smeared,
+    found::OutsidePattern, found::MarkerSaturated, found::PixelsSaturated, found::Dark, found::LittleContrast,
+    found::NoisyContrast, found::LitFromOneSide, found::ContrastFalls, found::ShadowEdge, found::LightFalls,
+    found::LightFlickers, found::StrongCompression, found::OtherRateInFile, found::UnevenStamps, found::Jumps,
+    found::FramesRepeated, found::AssumedForFile, found::NoPlumbAngle, found::MassesApart, found::MarkerSizeOff,
+    found::BeyondTrack, found::InclineOff, found::AgainstStatedLaunch, found::LengthInUnit, found::ScaleInUnit,
+    found::MassInGrams, found::TrackInUnit, found::InclineInRadians, found::WrongFrameRate, found::MotionFault,
+    found::FallAboveGravity, found::LongRun, found::SlowFrames, found::FallsSlowly, found::Gaps, found::Smoothed>;
 
 /// What was found; a Note if the analysis notes the same. What copies, moves and destroys it is compiled once
 /// (finding.cpp), as of Note.

@@ -8,6 +8,7 @@
 #include <variant>
 #include "base/math/angles.h"
 #include "core/check/check_result.h"
+#include "core/check/light_findings.h"
 #include "core/check/motion_look.h"
 #include "core/check/statement_findings.h"
 #include "core/pictures/frames/frame_source.h"
@@ -228,6 +229,7 @@ std::vector<Finding> findings_of(const Experiment& experiment, const RecordingCh
     }
     judge_clip(experiment, clip, {findings, {Subject::Part::clips, {clip.name}}});
   }
+  std::ranges::move(light_findings(experiment, check.clips), std::back_inserter(findings));
   note_assumptions(experiment.clips, findings);
   findings = with_root_causes(experiment, check, std::move(findings));
   if (!check.plumb_failure.empty()) {

@@ -59,15 +59,19 @@ void add_shape(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   for (ImageCurve& curve : fit.curves) evidence.curves.push_back(std::move(curve));
   ImageFinding blur = finding_of(ids::exposure_blur);
   const double least_s = kLeastSmear_px / fit.fastest_px_s;
-  blur.parameters = {{"exposure_s", fit.exposure_s, std::hypot(fit.exposure_sd_s, 0.1 * fit.exposure_s)}};
+  const double codec_sd_s2 = codec_squared_exposure_sd(fit, clips);
+  // dT = d(T²) / (T + T0), exactly so from the stated T0.
+  const double codec_sd_s = codec_sd_s2 / std::max(least_s, fit.exposure_s + camera.exposure_s.value_or(0.0));
+  blur.parameters = {{"exposure_s", fit.exposure_s, std::hypot(fit.exposure_sd_s, 0.1 * fit.exposure_s, codec_sd_s)}};
   if (camera.exposure_s) {
-    const double sd =
-        std::sqrt(std::pow(fit.exposure_sd_s, 2) + std::pow(kToneOfShape * *camera.exposure_s, 2) + least_s * least_s);
-    blur.log_evidence =
-        log_deviation_evidence((fit.exposure_s - *camera.exposure_s) / sd, 1.0 / camera.frame_rate_hz / sd);
-    blur.fact = image::Smear{fit.exposure_s, sd, camera.exposure_s};
+    const double stated_s = *camera.exposure_s, agreed_s = std::sqrt(agreed_squared_exposure(fit, stated_s));
+    const double of_codec_s = codec_sd_s2 / std::max(least_s, agreed_s + stated_s);
+    const double sd = std::sqrt(std::pow(fit.exposure_sd_s, 2) + std::pow(kToneOfShape * stated_s, 2) +
+                                least_s * least_s + of_codec_s * of_codec_s);
+    blur.log_evidence = log_deviation_evidence((agreed_s - stated_s) / sd, 1.0 / camera.frame_rate_hz / sd);
+    blur.fact = image::Smear{fit.exposure_s, sd, stated_s};
   } else {
-    blur.fact = image::Smear{fit.exposure_s, std::hypot(fit.exposure_sd_s, least_s), {}};
+    blur.fact = image::Smear{fit.exposure_s, std::hypot(fit.exposure_sd_s, least_s, codec_sd_s), {}};
   }
   add_clearest(std::move(blur), evidence);
 

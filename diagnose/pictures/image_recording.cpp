@@ -1,6 +1,7 @@
 #include "diagnose/pictures/image_recording.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -95,6 +96,7 @@ constexpr double kOutlier = 7.0;            // median deviations
 constexpr double kLeastScatter_px2 = 1e-9;  // so that exact data have one
 constexpr double kSlowest_px_s = 1.0;       // of the fastest sample: slower, nothing smears
 constexpr double kLongestSmear = 3.0;       // radii
+constexpr double kHighestSpeeds = 0.95;     // quantile of v²
 
 struct Sample {
   double place = 0.0;  ///< u, -1 to 1 over the image
@@ -127,6 +129,11 @@ std::vector<Sample> samples_of(const FilmedClip& clip) {
 /// The second moment that a smear adds along it, more than across it.
 double smear(double length_px) {
   return length_px * length_px / 12.0;
+}
+
+/// Its derivatives with T² in the two rows of a sample: stretch and shear.
+std::array<double, 2> smear_of_unit(const Sample& s) {
+  return {(s.wu * s.wu - s.wv * s.wv) / 12.0, s.wu * s.wv / 12.0};
 }
 
 struct Solved {
@@ -170,10 +177,9 @@ class Linear {
     Eigen::VectorXd left = data_;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Sample& s = samples_[static_cast<std::size_t>(i)];
-      const double speed2 = std::max(1e-12, s.wu * s.wu + s.wv * s.wv);
-      const double stretch = smear(std::sqrt(speed2) * exposure_s);
-      left[i] -= stretch * (s.wu * s.wu - s.wv * s.wv) / speed2;
-      left[n + i] -= w_ * stretch * s.wu * s.wv / speed2;
+      const auto [stretch, shear] = smear_of_unit(s);
+      left[i] -= stretch * exposure_s * exposure_s;
+      left[n + i] -= w_ * shear * exposure_s * exposure_s;
     }
     const Eigen::VectorXd coefficients = base::product(inverse_, base::transposed_product(design_, left));
     Solved solved;
@@ -183,6 +189,35 @@ class Linear {
     solved.line = coefficients[last] * scale_;
     solved.line_variance = inverse_(last, last) * scale_ * scale_;
     return solved;
+  }
+
+  /// Everything linear, with T² up to a squared speed and T² of what is beyond it; their variances for a variance of 1.
+  struct Halves {
+    double slower = 0.0, faster = 0.0, slower_variance = 0.0, faster_variance = 0.0, covariance = 0.0;
+  };
+  Halves halves(double speed2) const {
+    const auto n = static_cast<Eigen::Index>(samples_.size());
+    const Eigen::Index slow = design_.cols(), fast = slow + 1;
+    Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(2 * n, fast + 1);
+    wider.leftCols(slow) = design_;
+    const double unit = speed2 > 0.0 ? 12.0 / speed2 : 1.0;  // of columns of about 1
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Sample& s = samples_[static_cast<std::size_t>(i)];
+      const double own2 = s.wu * s.wu + s.wv * s.wv;
+      const double below = own2 > speed2 ? speed2 / own2 : 1.0;
+      const auto [stretch, shear] = smear_of_unit(s);
+      wider(i, slow) = unit * stretch * below;
+      wider(i, fast) = unit * stretch * (1.0 - below);
+      wider(n + i, slow) = w_ * unit * shear * below;
+      wider(n + i, fast) = w_ * unit * shear * (1.0 - below);
+    }
+    Eigen::MatrixXd normal = base::transposed_product(wider, wider);
+    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
+    const Eigen::MatrixXd inverse = base::inverse_positive(normal);
+    const Eigen::VectorXd found = base::product(inverse, base::transposed_product(wider, data_));
+    const double unit2 = unit * unit;
+    return {unit * found[slow], unit * found[fast], unit2 * inverse(slow, slow), unit2 * inverse(fast, fast),
+            unit2 * inverse(slow, fast)};
   }
 
  private:
@@ -310,7 +345,41 @@ void tell_exposure(const Scan& scan, double variance, ShapeFit& result) {
       std::max(square / sum - result.exposure_s * result.exposure_s, std::pow(scan.best_s * (kFinest - 1.0) / 3.0, 2)));
 }
 
+/// T² of slower and faster frames, and what a single fast frame tells.
+void tell_halves(const Linear& linear, const std::vector<Sample>& samples, const Solved& best, double variance,
+                 ShapeFit& result) {
+  std::vector<double> speed2;
+  double square = 0.0, fourth = 0.0;
+  for (const Sample& s : samples) {
+    speed2.push_back(s.wu * s.wu + s.wv * s.wv);
+    square += speed2.back();
+    fourth += speed2.back() * speed2.back();
+  }
+  const Linear::Halves halves = linear.halves(0.5 * core::quantile(speed2, kHighestSpeeds));
+  result.slower = {halves.slower, std::sqrt(variance * halves.slower_variance)};
+  result.faster = {halves.faster, std::sqrt(variance * halves.faster_variance)};
+  result.difference_sd_s2 =
+      std::sqrt(variance * (halves.slower_variance + halves.faster_variance - 2.0 * halves.covariance));
+  const auto n = static_cast<Eigen::Index>(samples.size());
+  const double of_frame_px2 = best.rest.head(n).norm() / std::sqrt(static_cast<double>(n));
+  result.single_frame_sd_s2 = 12.0 * of_frame_px2 * square / fourth;
+}
+
 }  // namespace
+
+double agreed_squared_exposure(const ShapeFit& fit, double stated_s) {
+  constexpr double kAgree_sd = 2.0;
+  const double whole = fit.exposure_s * fit.exposure_s, stated = stated_s * stated_s;
+  if (std::abs(fit.slower.s2 - fit.faster.s2) <= kAgree_sd * fit.difference_sd_s2) return whole;
+  const std::array<double, 3> all = {whole, std::max(0.0, fit.slower.s2), std::max(0.0, fit.faster.s2)};
+  return *std::ranges::min_element(all, {}, [&](double s2) { return std::abs(s2 - stated); });
+}
+
+double codec_squared_exposure_sd(const ShapeFit& fit, const std::vector<FilmedClip>& clips) {
+  const bool lossy =
+      std::ranges::any_of(clips, [](const FilmedClip& clip) { return core::through_lossy_codec(*clip.record); });
+  return lossy ? fit.single_frame_sd_s2 : 0.0;
+}
 
 ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
   ShapeFit result;
@@ -329,10 +398,12 @@ ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
 
   double weight = 1.0;
   Scan scan;
+  std::optional<Linear> linear;
   for (int round = 0; round < kRounds; ++round) {
     if (round > 0) leave_outliers(scan.best, samples, weight);
     if (samples.size() < kFewestFramesOfShape) return result;
-    scan = scan_exposures({samples, views, weight}, longest_s, kLongestSmear * result.radius_px, result.fastest_px_s);
+    linear.emplace(samples, views, weight);
+    scan = scan_exposures(*linear, longest_s, kLongestSmear * result.radius_px, result.fastest_px_s);
   }
   const Solved& best = scan.best;
   const auto n = static_cast<Eigen::Index>(samples.size());
@@ -340,6 +411,7 @@ ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips) {
   const double variance = memory * best.chi2 / static_cast<double>(2 * n);
   result.known = true;
   tell_exposure(scan, variance, result);
+  tell_halves(*linear, samples, best, variance, result);
   result.line_s = best.line;
   result.line_sd_s = std::sqrt(best.line_variance * variance);
   result.curves.push_back(lengthening(samples, best.rest, scan.best_s, clips.front().camera.exposure_s));

@@ -27,6 +27,13 @@ struct ShapeFit {
   bool known = false;
   double exposure_s = 0.0, exposure_sd_s = 0.0;
   double line_s = 0.0, line_sd_s = 0.0;  ///< positive if the top row is first
+  /// T² of the lengthening up to half of the highest v², and of what it grows by beyond that.
+  struct SquaredExposure {
+    double s2 = 0.0, sd_s2 = 0.0;
+  };
+  SquaredExposure slower, faster;
+  double difference_sd_s2 = 0.0;    ///< of slower minus faster
+  double single_frame_sd_s2 = 0.0;  ///< of T² from one of the fast frames alone
   double fastest_px_s = 0.0;
   double radius_px = 0.0;
   std::vector<ImageCurve> curves;  ///< lengthening as a function of speed
@@ -45,6 +52,17 @@ struct ShapeFit {
 /// lens, which do not depend on the speed. T is found by trying exposures, everything else by least squares. Outliers
 /// beyond seven median deviations are left out, and variances are multiplied by the correlation length of the
 /// residuals.
+///
+/// `slower` and `faster` take the place of T² in a fit of their own: the smear of an exposure grows with v² all along,
+/// one that comes with the motion, or only with a fast one, does not.
 ShapeFit fit_marker_shape(const std::vector<FilmedClip>& clips);
+
+/// T² that slower and faster frames agree on: that of the fit, or, where the halves differ by more than two standard
+/// deviations, whichever of the three is closest to the stated one.
+double agreed_squared_exposure(const ShapeFit& fit, double stated_s);
+
+/// Standard deviation of T² due to a codec's own blur, 0 without loss. A codec lays light where it predicts it: what it
+/// leaves in one frame at some speed it may leave in every frame at that speed, so that frames do not average it out.
+double codec_squared_exposure_sd(const ShapeFit& fit, const std::vector<FilmedClip>& clips);
 
 }  // namespace glidelab::diagnose

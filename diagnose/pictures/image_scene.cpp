@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "base/math/log_sum.h"
 #include "core/math/quantile.h"
 #include "core/pictures/scene/camera_traces.h"
+#include "core/pictures/scene/lamp_flicker.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/pictures/image_recording.h"
@@ -24,51 +24,18 @@ constexpr double kOfDrift = 0.01;            // of the light, for each pixel tha
 constexpr double kUsualGradient_1_m = 0.1;   // of the light, in an ordinary room
 constexpr double kSaturatedCode = 0.96;      // of the largest code: a marker this bright may be saturated
 
-/// The sinc factor by which an exposure averages a wave.
-double averaged(double f_hz, double exposure_s) {
-  const double x = std::numbers::pi * f_hz * exposure_s;
-  return x < 1e-6 ? 1.0 : std::sin(x) / x;
-}
-
-/// Mains light flickers at 100 or 120 Hz, of which the frames see an alias; otherwise the frequency is the one seen.
-double flicker_of_mains(double seen_hz, double sd_hz, double rate_hz) {
-  for (const double mains : {100.0, 120.0}) {
-    const double folded = std::abs(mains - rate_hz * std::round(mains / rate_hz));
-    // Mains itself keeps to 0.2 %.
-    if (std::abs(folded - seen_hz) < 0.002 * mains + 3.0 * sd_hz + 0.1) return mains;
-  }
-  return seen_hz;
-}
-
 }  // namespace
 
 void add_flicker(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   std::vector<Series> series;
   for (const FilmedClip& clip : clips) {
-    const bool rolling = clip.camera.shutter == core::Shutter::rolling;
-    std::vector<Series> bands(core::kRowBands);
-    for (const core::SceneLook& look : clip.record->scene) {
-      double sum = 0.0, weight = 0.0;
-      for (std::size_t b = 0; b < core::kRowBands; ++b) {
-        if (!(look.gain_sd[b] > 0.0)) continue;
-        const double w = 1.0 / (look.gain_sd[b] * look.gain_sd[b]);
-        if (rolling) {
-          bands[b].t_s.push_back(look.t_s);
-          bands[b].value.push_back(look.gain[b]);
-        }
-        sum += w * look.gain[b];
-        weight += w;
-      }
-      if (rolling || weight == 0.0) continue;
-      bands[0].t_s.push_back(look.t_s);
-      bands[0].value.push_back(sum / weight);
-    }
+    std::vector<Series> bands = core::brightness_series(*clip.record, clip.camera);
     ImageCurve curve;
     curve.what = "brightness";
     curve.clip = clip.name;
     curve.at = bands[0].t_s;
     curve.value = bands[0].value;
-    for (std::size_t b = 1; b < core::kRowBands && curve.at.empty(); ++b) {
+    for (std::size_t b = 1; b < bands.size() && curve.at.empty(); ++b) {
       curve.at = bands[b].t_s;
       curve.value = bands[b].value;
     }
@@ -78,8 +45,8 @@ void add_flicker(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) 
   const SeriesWave wave = strongest_wave(series);
   if (!(wave.f_hz > 0.0)) return;
   const core::CameraSettings& camera = clips.front().camera;
-  const double f_hz = flicker_of_mains(wave.f_hz, wave.sd_hz, camera.frame_rate_hz);
-  const double passed = std::max(0.1, std::abs(averaged(f_hz, camera.exposure_s.value_or(0.0))));
+  const double f_hz = core::flicker_of_mains(wave, camera.frame_rate_hz);
+  const double passed = std::max(0.1, std::abs(core::passed_by_exposure(f_hz, camera.exposure_s.value_or(0.0))));
   ImageFinding finding = finding_of(ids::light_flicker);
   // If the file does not say so, pixels that keep their values show it: light that changes by less than 1 % cannot
   // cause that.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/experiment/experiment.h"
+#include "core/math/strongest_wave.h"
 #include "core/result/image_record.h"
 #include "diagnose/pictures/twin_camera.h"
 #include "diagnose/result/diagnosis.h"
@@ -47,29 +48,10 @@ double log_deviation_evidence(double z, double largest);
 /// The same of a deviation that may have either sign, each with a probability of a half.
 double log_either_sign_evidence(double z, double largest);
 
-struct Series {
-  std::vector<double> t_s, value;
-};
-
-struct SeriesWave {
-  double log_evidence = 0.0;
-  double f_hz = 0.0, sd_hz = 0.0;
-  double amplitude = 0.0, sd = 0.0;  ///< root mean square over the series
-};
-
-/// The strongest wave, between 3 periods a series and half the sampling rate, that the series of several clips have in
-/// common: brightness that flickers, a scene that sways in the image.
-///
-/// Least squares of const + slope t + curve t² + a cos + b sin over each series at each frequency, with a and b free in
-/// every series. The gain of a frequency is sum (n/2) ln(RSS without/RSS with), so that no noise level need be known.
-/// Its evidence is reduced by Schwarz's penalty for what is free, and by four times the median gain over all
-/// frequencies, which is the gain if the noise is not white.
-SeriesWave strongest_wave(const std::vector<Series>& series);
-
-/// Amplitude at one frequency and its standard deviation (of a component), of one series.
-struct Amplitude {
-  double size = 0.0, sd = 0.0;
-};
-Amplitude amplitude_at(const Series& series, double f_hz);
+using core::Amplitude;
+using core::amplitude_at;
+using core::Series;
+using core::SeriesWave;
+using core::strongest_wave;
 
 }  // namespace glidelab::diagnose

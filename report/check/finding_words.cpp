@@ -168,6 +168,41 @@ struct FindingSentence {
     return {fmt::format("the marker's contrast falls to {} of its largest along the path", percent_text(of.least)),
             "move lamps, and bright or dark objects in the background, away from the marker's path"};
   }
+  FindingWords operator()(const found::ShadowEdge& of) const {
+    std::vector<std::string> frames;
+    for (const auto& one : of.frames) {
+      if (frames.size() == 3) break;
+      frames.push_back(one.first == one.last ? fmt::format("{}", one.first)
+                                             : fmt::format("{} to {}", one.first, one.last));
+    }
+    return {fmt::format("a shadow's edge{} lies at x = {:.3g} m: the brightness {} the marker falls by {:.2g} % {} "
+                        "within one diameter (frames {} of {})",
+                        of.of_marker ? "" : ", or that of another surface,", of.x_m, of.of_marker ? "of" : "around",
+                        100.0 * of.fall, of.downhill ? "downhill" : "uphill", fmt::join(frames, ", "), of.clip),
+            "move the lamp, or what casts the shadow: at such an edge the marker's centre is less certain"};
+  }
+  FindingWords operator()(const found::LightFalls& of) const {
+    using Towards = found::LightFalls::Towards;
+    const char* const where = of.towards == Towards::right    ? "to the right"
+                              : of.towards == Towards::left   ? "to the left"
+                              : of.towards == Towards::bottom ? "downwards"
+                                                              : "upwards";
+    return {fmt::format("the light{} falls by {:.2g} % per metre {} in the image: it displaces the centroid of the "
+                        "marker by {:.2g} mm at most",
+                        of.of_marker ? "" : " around the marker", 100.0 * of.part_per_m, where, 1e3 * of.displaces_m),
+            ""};
+  }
+  FindingWords operator()(const found::LightFlickers& of) const {
+    return {fmt::format(
+                "the light flickers: the brightness of the image varies by ±{:.2g} % at {:.4g} Hz{}, which displaces "
+                "the marker by up to {:.2g} mm at its top speed",
+                100.0 * of.depth, of.f_hz,
+                std::abs(of.f_hz - of.seen_hz) > 0.01 * of.f_hz
+                    ? fmt::format(" (it looks like {:.3g} Hz at this frame rate)", of.seen_hz)
+                    : "",
+                1e3 * of.displaces_m),
+            "use daylight or a lamp on direct current"};
+  }
   FindingWords operator()(const found::StrongCompression& of) const {
     return {fmt::format("strong compression: steps between pixels are {} larger at the edges of 8 × 8 blocks than "
                         "elsewhere, and the marker's centre errs with them over several frames",

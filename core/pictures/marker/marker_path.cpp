@@ -215,6 +215,12 @@ std::optional<double> sd_of_differences(const Places& places, std::span<const do
 
 }  // namespace
 
+Places places_of(const TrackedMarker& marker) {
+  Places places;
+  for (const MarkerSighting& sighting : marker.sightings) places[sighting.frame] = {sighting.u_px, sighting.v_px};
+  return places;
+}
+
 std::optional<double> jitter_of(const Places& places) {
   constexpr std::array<double, 3> kSecond{1.0, -2.0, 1.0};
   return sd_of_differences(places, kSecond);
@@ -268,6 +274,7 @@ class Choice {
  private:
   TrackedMarker undisturbed(const MarkerPath& path) const;
   bool is_place_of_another(const MarkerPath& path, const MarkerSeen& sighting) const;
+  void require_motion(const TrackedMarker& tracked) const;
   std::size_t choose_path(std::vector<Note>& notes) const;
   std::size_t path_at_start() const;
   std::size_t resting_path(std::vector<Note>& notes) const;
@@ -442,10 +449,23 @@ TrackedMarker Choice::undisturbed(const MarkerPath& path) const {
   return tracked;
 }
 
+/// NoMarker if only sightings that are left out made the path one that moves: what is left is another object, at rest.
+void Choice::require_motion(const TrackedMarker& tracked) const {
+  MarkerPath left;
+  for (std::size_t i = 0; i < tracked.fits.size(); ++i) left.push({tracked.sightings[i].frame, tracked.fits[i], 0.0});
+  if (left.seen.size() >= 2 && steady_travel(left) >= least_travel(left.radius_px)) return;
+  throw NoMarker(issue(fmt::format("no marker: what is followed in {} frames stays where it is but for frames in which "
+                                   "something disturbs it",
+                                   left.seen.size()),
+                       "one thing of the stated diameter that stands out from its surroundings in every frame, or "
+                       "start_px"));
+}
+
 TrackedMarker Choice::marker() const {
   std::vector<Note> notes;
   const MarkerPath& path = paths_[choose_path(notes)];
   TrackedMarker tracked = undisturbed(path);
+  if (notes.empty() && !marker_.start_px) require_motion(tracked);
   tracked.method = path.method;
   tracked.notes.insert(tracked.notes.begin(), notes.begin(), notes.end());
   if (path.method == MarkerMethod::centroid) {

@@ -134,6 +134,9 @@ struct TrackedMarker {
   std::size_t left_out = 0;  ///< sightings whose fit with the response of the pixels fails (kept_windows.h)
 };
 
+/// Where it was seen.
+Places places_of(const TrackedMarker& marker);
+
 /// The objects that were followed through a clip.
 struct FollowedPaths {
   std::vector<MarkerPath> paths;  ///< joined paths, each with a method

@@ -35,8 +35,11 @@ void add_differences(const cv::Mat& now, const cv::Mat& before, const MarkerSigh
   const double away_px = 4.0 * marker.radius_px + 30.0;
   for (int row = 0; row < now.rows; ++row) {
     if (std::abs(row * kPixelStep - marker.v_px) < away_px) continue;  // the glider moves along rows
+    // Lamps that flicker change a whole row, and, with a rolling shutter, each row by a factor of its own.
+    const double light = cv::sum(before.row(row))[0], light_now = cv::sum(now.row(row))[0];
+    const double gain = light > 0.0 && light_now > 0.0 ? light_now / light : 1.0;
     for (int column = 0; column < now.cols; ++column) {
-      const double difference = now.at<Code>(row, column) - before.at<Code>(row, column);
+      const double difference = now.at<Code>(row, column) - gain * before.at<Code>(row, column);
       squares.push_back(difference * difference);
     }
   }

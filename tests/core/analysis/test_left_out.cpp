@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "core/analysis/analyze.h"
+#include "core/analysis/followed_wrongly.h"
 #include "core/analysis/see_clip.h"
 #include "tests/catch.h"
 #include "tests/core/small_clip.h"

@@ -158,6 +158,37 @@ TEST_CASE("two blobs of the background that come and go are no two markers") {
   CHECK_THROWS_AS(core::choose_marker(followed, setup, "clip.mkv"), core::NoMarker);
 }
 
+TEST_CASE("what moves only in frames that are left out as disturbed is no marker") {
+  // Forty frames at rest; before them, it seems to glide there, half as large.
+  const auto seen_at = [](std::size_t frame, double u_px, double radius_px) {
+    core::MarkerSeen seen;
+    seen.frame = frame;
+    seen.fit.centre = {u_px, 40.0};
+    seen.fit.radius_px = radius_px;
+    seen.fit.amplitude = 100.0;
+    seen.expected_px = kRadius;
+    return seen;
+  };
+  for (const double at_first : {0.6, 1.0}) {
+    core::MarkerPath path;
+    path.method = core::MarkerMethod::uniform;
+    for (std::size_t k = 0; k < 12; ++k)
+      path.push(seen_at(k, 100.0 - 5.0 * static_cast<double>(12 - k), at_first * kRadius));
+    for (std::size_t k = 12; k < 52; ++k) path.push(seen_at(k, 100.0, kRadius));
+    core::FollowedPaths followed;
+    followed.paths = {path};
+    followed.frames = 52;
+    followed.radius_px = kRadius;
+    core::MarkerSetup setup;
+    setup.diameter_m = 0.02;
+    if (at_first < 1.0) {
+      CHECK_THROWS_AS(core::choose_marker(followed, setup, "clip.mkv"), core::NoMarker);
+    } else {
+      CHECK(core::choose_marker(followed, setup, "clip.mkv").sightings.size() == 52);
+    }
+  }
+}
+
 TEST_CASE("a marker that comes into view later is followed from where it is first fully in view") {
   const auto tracked = track(kLate, {}, {});
   // The window of its fit (1.25 radii plus 2.5 px) is within the image from frame 29 on, until 231 px in frame 73.

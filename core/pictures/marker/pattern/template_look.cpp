@@ -1,4 +1,4 @@
-#include "core/pictures/marker/template_look.h"
+#include "core/pictures/marker/pattern/template_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "core/math/quantile.h"
 #include "core/math/skipped_frames.h"
-#include "core/pictures/marker/marker_template.h"
+#include "core/pictures/marker/pattern/marker_template.h"
 #include "core/pictures/marker/sphere/sphere_window.h"
 
 namespace glidelab::core {

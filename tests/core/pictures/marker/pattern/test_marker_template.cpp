@@ -1,11 +1,11 @@
-#include "core/pictures/marker/marker_template.h"
+#include "core/pictures/marker/pattern/marker_template.h"
 
 #include <cmath>
 #include <memory>
 #include <vector>
 
+#include "core/pictures/marker/pattern/template_look.h"
 #include "core/pictures/marker/second_look.h"
-#include "core/pictures/marker/template_look.h"
 #include "tests/catch.h"
 #include "tests/core/clip_in_memory.h"
 #include "tests/core/lit_scene.h"

@@ -1,4 +1,4 @@
-#include "core/pictures/marker/marker_template.h"
+#include "core/pictures/marker/pattern/marker_template.h"
 
 #include <Eigen/Core>
 #include <algorithm>
