@@ -292,11 +292,9 @@ void CauseWeighing::measure_excess() {
     if (!std::isfinite(noise_alone_[f].cost)) return;
     double& of_fit = excess_.of_fits[f];
     of_fit = held_out_excess(set_, noise_alone_[f]);
-    if (f == 0 || !searched_) return;
+    if (f == 0 || !searched_ || likeliest_before_.contains(static_cast<int>(f))) return;
     const MotionFit& with = comparison().fits[f];
-    const bool is_by_noise = likeliest_before_.contains(static_cast<int>(f));
-    const MotionFit anew =
-        is_by_noise ? linearise_again(set_, with) : fit_motions(set_, with.effects, with.at, with.late);
+    const MotionFit anew = fit_motions(set_, with.effects, with.at, with.late);
     if (std::isfinite(anew.cost)) of_fit = std::min(of_fit, held_out_excess(set_, anew));
   });
   excess_.of_unnamed = unnamed_excess(set_, first_);
