@@ -25,8 +25,8 @@ namespace glidelab::diagnose {
 /// the fit fails.
 std::optional<MotionFit> with_clip_scatter(const TrackSet& set, const MotionFit& law);
 
-/// The fit of `law` together with one more effect, by the noise of `set` alone. Empty if the effect does not show beside
-/// the law and its remainder, whose sizes are `sizes`, or if the fit fails.
+/// The fit of `law` together with one more effect, by the noise of `set` alone. Empty if the effect does not show
+/// beside the law and its remainder, whose sizes are `sizes`, or if the fit fails.
 std::optional<MotionFit> with_further(const TrackSet& set, const MotionFit& law, std::size_t effect,
                                       const RemainderSizes& sizes);
 

@@ -27,8 +27,8 @@ bool shows_in_gap(const Hypothesis& explanation);
 /// well. A name that explains the gap does not give way to one that would make the cause unknown.
 bool may_displace(const CauseSequence& likelier, const CauseSequence& named);
 
-/// Whether a name is known by stated inclinations alone, beside a gap that is less than the noise: it need not take half
-/// of that.
+/// Whether a name is known by stated inclinations alone, beside a gap that is less than the noise: it need not take
+/// half of that.
 bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, const Comparison& comparison);
 
 /// Moves the probability of the explanations for which `of` holds to `none`: what they would explain needs no cause.

@@ -32,12 +32,11 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr double kLeastUnknown = 0.5;  // probability of something without a name, above which a remainder is weighed
-constexpr double kLeastDoubt =
-    0.05;  // probability of none or unknown, above which names by the noise alone are in doubt
-constexpr double kMostOfOneClip = 0.999;  // the highest probability that one clip can support
-
+constexpr double kLeastDoubt = 0.05;   // probability of none or unknown above which names by noise alone are in doubt
+constexpr double kMostOfOneClip = 0.999;   // the highest probability that one clip can support
 constexpr double kLeastNamed = 0.1;        // of the excess: a smaller share counts as part of the remainder
 constexpr double kLeastMeasuredGap = 0.5;  // a gap below which the assumed noise is not that of the positions
+constexpr double kNearlyAllOfGap = 0.99;   // of the excess
 constexpr double kOpenSize = 0.25;    // the least probability of an unknown cause beside a name without a certain size
 constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
 
@@ -477,8 +476,9 @@ void VerdictWithCauses::add_recovered(const Reported& reported, Diagnosis& diagn
   Explanations explanations{{&reported.fit, reported.sizes, 1.0}};
   if (weighed_) {
     explanations.front().probability = with_names ? 0.0 : unknown_before_;
-    add_others(*weighed_, before_, unknown_before_, with_names ? best_.effects : std::vector<std::size_t>(),
-               explanations);
+    // What is off the list and imitates causes that take nearly all of the gap leaves the parameters as they do.
+    const double unknown = with_names && sequence_.named_share > kNearlyAllOfGap ? 0.0 : unknown_before_;
+    add_others(*weighed_, before_, unknown, with_names ? best_.effects : std::vector<std::size_t>(), explanations);
     explanations.front().probability = std::max(explanations.front().probability, kLikely);
   }
   if (with_names) {

@@ -347,4 +347,11 @@ TEST_CASE("a soft bumper is no hand although friction scatters and no law follow
     if (parameter.key == "x_b_m") CHECK(parameter.value == Approx(kFrom_m).margin(5e-3));
   }
   for (const diagnose::Note& note : found.notes) CHECK(!std::holds_alternative<diagnose::HandLeftOut>(note));
+  // The nominal model, which knows no bumper and lies hundreds of times as far off, widens no interval.
+  REQUIRE(found.recovered.size() == 2);
+  for (const diagnose::RecoveredConfiguration& one : found.recovered) {
+    REQUIRE(one.mu.estimate);
+    CHECK(one.mu.estimate->sd < 0.1 * 0.02);
+    CHECK(std::abs(one.mu.estimate->value - 0.02) < 4.0 * one.mu.estimate->sd);
+  }
 }
