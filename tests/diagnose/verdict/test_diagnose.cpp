@@ -347,7 +347,20 @@ TEST_CASE("a soft bumper is no hand although friction scatters and no law follow
     if (parameter.key == "x_b_m") CHECK(parameter.value == Approx(kFrom_m).margin(5e-3));
   }
   for (const diagnose::Note& note : found.notes) CHECK(!std::holds_alternative<diagnose::HandLeftOut>(note));
-  // The nominal model, which knows no bumper and lies hundreds of times as far off, widens no interval.
+}
+
+TEST_CASE("the law without a cable that takes nearly all of the gap does not widen what is recovered beside it") {
+  tests::ScatteringFriction friction(0.02, {0.02, -0.02, 0.01, -0.02});
+  tests::MadeEffect both;
+  both.force = [&](double m, double x, double v, double t) {
+    return friction(m, v, t) - (x > 0.1 ? 3.0 * (x - 0.1) : 0.0);
+  };
+  const std::vector<tests::MadeLaunch> launches = {
+      {0.3, 2.5, 0.6, -1.3}, {0.3, 2.5, -0.8, 0.6}, {0.45, 2.5, 0.6, -1.3}, {0.45, 2.5, -0.8, 0.6}};
+  const auto made = tests::made_experiment(launches, both, 3, 3e-4, 200, 40.0, 0.05, 0.0, {.mu = 0.02});
+  const diagnose::Diagnosis found = diagnose::diagnose_results(made.results, made.setups, {});
+  REQUIRE(found.verdict == diagnose::Verdict::effect);
+  REQUIRE(found.explained.front().share > 0.99);
   REQUIRE(found.recovered.size() == 2);
   for (const diagnose::RecoveredConfiguration& one : found.recovered) {
     REQUIRE(one.mu.estimate);
