@@ -48,14 +48,15 @@ def write(folder: Path, tracks) -> None:
         rows = [f"{t!r},{x!r}" for t, x in zip(map(float, track.t_s), map(float, track.x_m))]
         (folder / f"{track.name}.csv").write_text("t_s,x_m\n" + "\n".join(rows) + "\n")
         lines += ["[[clip]]", f'name = "{track.name}"', f'track = "{track.name}.csv"', f"mass_kg = {track.mass_kg!r}",
-                  f"incline_deg = {track.incline_deg!r}", 'launched = "released"']
+                  f"incline_deg = {track.incline_deg!r}", f'launched = "{track.launched}"']
     (folder / "experiment.toml").write_text("\n".join(lines) + "\n")
 
 
 def main() -> None:
     """Prints both."""
     program, repeats = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 3
-    tracks = [glidelab.Track(**{**vars(track), "launched": "released"}) for track in twelve_tracks()]
+    tracks = [glidelab.Track(**{**vars(track), "launched": "up" if track.name.endswith("-up") else "down"})
+              for track in twelve_tracks()]
     with tempfile.TemporaryDirectory() as temp:
         folder = Path(temp) / "made"
         folder.mkdir()
