@@ -8,8 +8,6 @@
 #include "base/errors.h"
 #include "core/analysis/analyze.h"
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/nominal_fit.h"
-#include "diagnose/gap/held_out.h"
 #include "diagnose/lines/line_diagnosis.h"
 #include "diagnose/next/next_experiment.h"
 #include "diagnose/pictures/image_evidence.h"
@@ -102,21 +100,14 @@ const std::string* named_of_hand(const Diagnosis& diagnosis) {
   return nullptr;
 }
 
-/// Whether an end stop, a cable or lost frames act in the explanation with the most evidence, and explain the frames
-/// that look like a hand or a stop: held-out positions lie about as far off as without these frames. What is left is
-/// then something else, which acts throughout.
-bool explains_disputed(const TrackSet& set, const Comparison& comparison, const TrackSet& trimmed) {
-  constexpr double kAboutAsFar = 2.0;
+/// The fit with the most evidence that reached a minimum; null: none.
+const MotionFit* best_by_evidence(const Comparison& comparison) {
   const Hypothesis* best = nullptr;
   for (const Hypothesis& one : comparison.all) {
     if (one.unnamed || one.fit <= 0 || !one.converged) continue;
     if (best == nullptr || one.log_evidence > best->log_evidence) best = &one;
   }
-  const std::string_view known[] = {ids::end_stop, ids::tether, ids::dropped_frames};
-  const auto acts = [&](std::string_view id) { return has(*best, effect_index(id)); };
-  if (best == nullptr || std::none_of(std::begin(known), std::end(known), acts)) return false;
-  const double with_frames = held_out_gap(set, comparison.fits[static_cast<std::size_t>(best->fit)]).value;
-  return with_frames < kAboutAsFar * std::max(1.0, held_out_gap(trimmed, fit_nominal(trimmed)).value);
+  return best != nullptr ? &comparison.fits[static_cast<std::size_t>(best->fit)] : nullptr;
 }
 
 }  // namespace
@@ -150,7 +141,8 @@ Diagnosis diagnose_results(const core::AnalysisResults& results, const std::vect
   if (set.disputed > 0 && (comparison.all.front().unnamed || is_misfit(set, best_fit(comparison)))) {
     // No effect on the list explains the motion with its hand and stops, so these are what the analysis took them for.
     std::optional<TrackSet> trimmed = motions_without_hand(results, setups, set.disputed);
-    if (trimmed && !explains_disputed(set, comparison, *trimmed)) {
+    const MotionFit* best = best_by_evidence(comparison);
+    if (trimmed && !(best != nullptr && explains_disputed(set, *best, *trimmed))) {
       set = std::move(*trimmed);
       with_hand = 0;
       progress("weighing explanations", 0.5);

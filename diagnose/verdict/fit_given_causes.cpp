@@ -185,7 +185,8 @@ GivenCauses fit_given_causes(core::AnalysisResults results, const std::vector<co
   WithCauses of = fits_of(std::move(whole), images, effects, option, progress);
   if (of.set.disputed > 0 && is_misfit(of.set, of.fit)) {
     // The causes do not explain the hand and the stops, so these are what the analysis took them for.
-    if (std::optional<TrackSet> trimmed = motions_without_hand(results, setups, of.set.disputed)) {
+    std::optional<TrackSet> trimmed = motions_without_hand(results, setups, of.set.disputed);
+    if (trimmed && !explains_disputed(of.set, of.fit, *trimmed)) {
       of = fits_of(std::move(*trimmed), images, effects, option, progress);
     }
   }

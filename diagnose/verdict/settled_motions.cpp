@@ -12,6 +12,7 @@
 #include "core/result/estimate.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
+#include "diagnose/gap/held_out.h"
 #include "diagnose/noise/position_noise.h"
 #include "diagnose/single_frames/missing_frames.h"
 #include "diagnose/single_frames/plain_losses.h"
@@ -226,6 +227,18 @@ std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& result
   cut_driven_motions(set, kFewestDrivenPoints);
   set.notes.emplace_back(HandLeftOut{disputed});
   return set;
+}
+
+bool explains_disputed(const TrackSet& set, const MotionFit& fit, const TrackSet& trimmed) {
+  constexpr double kAboutAsFar = 2.0;
+  const bool acts = std::any_of(fit.effects.begin(), fit.effects.end(), [](std::size_t e) {
+    return e == effect_index(ids::end_stop) || e == effect_index(ids::tether);
+  });
+  const bool loses = std::any_of(fit.late.begin(), fit.late.end(), [](const std::vector<double>& motion) {
+    return std::any_of(motion.begin(), motion.end(), [](double late) { return late != 0.0; });
+  });
+  if (!acts && !loses) return false;
+  return held_out_gap(set, fit).value < kAboutAsFar * std::max(1.0, held_out_gap(trimmed, fit_nominal(trimmed)).value);
 }
 
 bool is_misfit(const TrackSet& set, const MotionFit& fit) {

@@ -27,6 +27,11 @@ TrackSet whole_motions(const core::AnalysisResults& results, const std::vector<c
 std::optional<TrackSet> motions_without_hand(const core::AnalysisResults& results,
                                              const std::vector<core::ClipSetup>& setups, std::size_t disputed);
 
+/// Whether an end stop, a cable or lost frames act in a fit to `set` and explain the frames that `trimmed` lacks, which
+/// look like a hand or a stop: held-out positions lie about as far off as without these frames. What is left is then
+/// something else, which acts throughout.
+bool explains_disputed(const TrackSet& set, const MotionFit& fit, const TrackSet& trimmed);
+
 /// Finds the noise of every position from single frames and from what the images show of a codec, and sets outliers
 /// aside. Missing frames are corrected first: a jump is neither noise nor an outlier.
 void settle_noise(const ImageEvidence& images, TrackSet& set);
