@@ -90,10 +90,12 @@ void move_minorities_to_unknown(Comparison& comparison) {
     for (const std::size_t e : one.effects) {
       if (stated == nullptr || !kept.contains(e)) comparison.effect_probability[e] -= one.probability;
     }
-    double& to = stated == nullptr
-                     ? comparison.unknown
-                     : comparison.all[static_cast<std::size_t>(stated - comparison.all.data())].probability;
-    to += std::exchange(one.probability, 0.0);
+    const double moved = std::exchange(one.probability, 0.0);
+    if (stated == nullptr) {
+      comparison.unknown += moved;
+    } else {
+      comparison.all[static_cast<std::size_t>(stated - comparison.all.data())].probability += moved;
+    }
   }
   sort_by_probability(comparison);
 }

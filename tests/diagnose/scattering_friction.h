@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/diagnose/made_motions.h"
+
 namespace glidelab::tests {
 
 /// The force of a friction that differs from the glider's by parts of `mu` m g, a part for each clip in turn. Clips
@@ -28,5 +30,18 @@ class ScatteringFriction {
   std::size_t clip_ = 0;
   double before_s_ = 1.0;
 };
+
+/// Two masses that run into a soft bumper, -25 N/m (x - 0.35 m) beyond 0.35 m, with a friction that differs by some 5 %
+/// between the clips.
+inline MadeExperiment made_with_bumper() {
+  ScatteringFriction friction(0.02, {0.05, -0.04, 0.03, -0.06});
+  MadeEffect both;
+  both.force = [&](double m, double x, double v, double t) {
+    return friction(m, v, t) - (x > 0.35 ? 25.0 * (x - 0.35) : 0.0);
+  };
+  const std::vector<MadeLaunch> launches = {
+      {0.3, 3.0, 0.2, -1.0}, {0.3, 3.0, -0.6, 0.5}, {0.5, 3.0, 0.2, -0.9}, {0.5, 3.0, -0.6, 0.6}};
+  return made_experiment(launches, both, 3, 1.5e-4, 160, 40.0, 0.05, 0.0, {.mu = 0.02});
+}
 
 }  // namespace glidelab::tests

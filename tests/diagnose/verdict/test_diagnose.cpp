@@ -328,23 +328,15 @@ TEST_CASE("a drag below zero, which would drive the glider, is a note") {
 }
 
 TEST_CASE("a soft bumper is no hand although friction scatters and no law follows the whole motion to the noise") {
-  constexpr double kStiffness_n_m = 25.0, kFrom_m = 0.35;
-  tests::ScatteringFriction friction(0.02, {0.05, -0.04, 0.03, -0.06});
-  tests::MadeEffect both;
-  both.force = [&](double m, double x, double v, double t) {
-    return friction(m, v, t) - (x > kFrom_m ? kStiffness_n_m * (x - kFrom_m) : 0.0);
-  };
-  const std::vector<tests::MadeLaunch> launches = {
-      {0.3, 3.0, 0.2, -1.0}, {0.3, 3.0, -0.6, 0.5}, {0.5, 3.0, 0.2, -0.9}, {0.5, 3.0, -0.6, 0.6}};
-  const auto made = tests::made_experiment(launches, both, 3, 1.5e-4, 160, 40.0, 0.05, 0.0, {.mu = 0.02});
+  const auto made = tests::made_with_bumper();
   const diagnose::Diagnosis found = diagnose::diagnose_results(made.results, made.setups, {});
   REQUIRE(found.verdict == diagnose::Verdict::effect);
   REQUIRE(!found.effects.empty());
   CHECK(found.effects.front().id == "end_stop");
   CHECK(found.effects.front().joint_probability + found.effects.front().probability > 0.5);
   for (const diagnose::DiagnosedParameter& parameter : found.effects.front().parameters) {
-    if (parameter.key == "k") CHECK(parameter.value == Approx(kStiffness_n_m).epsilon(0.03));
-    if (parameter.key == "x_b_m") CHECK(parameter.value == Approx(kFrom_m).margin(5e-3));
+    if (parameter.key == "k") CHECK(parameter.value == Approx(25.0).epsilon(0.03));
+    if (parameter.key == "x_b_m") CHECK(parameter.value == Approx(0.35).margin(5e-3));
   }
   for (const diagnose::Note& note : found.notes) CHECK(!std::holds_alternative<diagnose::HandLeftOut>(note));
 }

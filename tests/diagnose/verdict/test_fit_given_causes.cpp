@@ -157,14 +157,7 @@ TEST_CASE("an effect that no fit or no such recording can show is refused, with 
 }
 
 TEST_CASE("a bumper that is given keeps its frames, although friction scatters and no fit reaches the noise") {
-  tests::ScatteringFriction friction(0.02, {0.05, -0.04, 0.03, -0.06});
-  tests::MadeEffect both;
-  both.force = [&](double m, double x, double v, double t) {
-    return friction(m, v, t) - (x > 0.35 ? 25.0 * (x - 0.35) : 0.0);
-  };
-  const std::vector<tests::MadeLaunch> launches = {
-      {0.3, 3.0, 0.2, -1.0}, {0.3, 3.0, -0.6, 0.5}, {0.5, 3.0, 0.2, -0.9}, {0.5, 3.0, -0.6, 0.6}};
-  const auto made = tests::made_experiment(launches, both, 3, 1.5e-4, 160, 40.0, 0.05, 0.0, {.mu = 0.02});
+  const auto made = tests::made_with_bumper();
   const diagnose::GivenCauses given = fit(made, {"end_stop"});
   REQUIRE(given.causes.size() == 1);
   REQUIRE(given.causes[0].parameters.size() == 2);
