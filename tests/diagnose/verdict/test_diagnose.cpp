@@ -334,10 +334,12 @@ TEST_CASE("a soft bumper is no hand although friction scatters and no law follow
   REQUIRE(!found.effects.empty());
   CHECK(found.effects.front().id == "end_stop");
   CHECK(found.effects.front().joint_probability + found.effects.front().probability > 0.5);
-  for (const diagnose::DiagnosedParameter& parameter : found.effects.front().parameters) {
-    if (parameter.key == "k") CHECK(parameter.value == Approx(25.0).epsilon(0.03));
-    if (parameter.key == "x_b_m") CHECK(parameter.value == Approx(0.35).margin(5e-3));
-  }
+  const std::vector<diagnose::DiagnosedParameter>& sizes = found.effects.front().parameters;
+  REQUIRE(sizes.size() == 2);
+  CHECK(sizes[0].key == "k_n_m");
+  CHECK(sizes[0].value == Approx(25.0).epsilon(0.03));
+  CHECK(sizes[1].key == "x_b_m");
+  CHECK(sizes[1].value == Approx(0.35).margin(5e-3));
   for (const diagnose::Note& note : found.notes) CHECK(!std::holds_alternative<diagnose::HandLeftOut>(note));
 }
 
