@@ -83,13 +83,18 @@ double tempered(double behind) {
 
 }  // namespace
 
+bool noise_is_negligible(const std::vector<double>& excess) {
+  const auto near_noise = [](double of_one) { return of_one > kNoClipHeldOut && of_one <= kNearNoise; };
+  return excess.front() > kLargestExcess && std::none_of(excess.begin(), excess.end(), near_noise);
+}
+
 void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
   std::vector<Hypothesis>& all = comparison.all;
   const std::vector<SameCauses> groups = by_causes(all);
   double best = -std::numeric_limits<double>::infinity();
   for (const SameCauses& group : groups) best = std::max(best, all[group.plain].log_evidence);
   const std::vector<double>& left = excess.of_fits;
-  const bool no_noise = left.front() > kLargestExcess;
+  const bool no_noise = noise_is_negligible(left);
   const auto before = [&](const Hypothesis& one) {
     return has(one, effect_index(ids::quadratic_drag)) ? excess.without_drag.value_or(left.front()) : left.front();
   };

@@ -42,10 +42,11 @@
 
 namespace glidelab::diagnose {
 
-/// The excess above which the noise is negligible. The evidence of any curve is a certainty there, so only what an
-/// explanation leaves counts, less a log odds of 2 for each further cause. What is left spans decades there: its root
-/// counts as well.
+/// The excess above which the noise is negligible, if every explanation leaves more than kNearNoise. The evidence of
+/// any curve is a certainty there, so only what an explanation leaves counts, less a log odds of 2 for each further
+/// cause. What is left spans decades there: its root counts as well.
 inline constexpr double kLargestExcess = 1e6;
+inline constexpr double kNearNoise = 1e5;  ///< a gap of some 300 times the noise
 
 /// What explanations leave of the held-out excess g² - 1.
 struct LeftExcess {
@@ -55,6 +56,9 @@ struct LeftExcess {
   /// part of this one; all others, and all where there is none, leave a part of the nominal model's.
   std::optional<double> without_drag = {};
 };
+
+/// Whether the noise is negligible for these excesses of the nominal model and of explanations. NaN was not measured.
+bool noise_is_negligible(const std::vector<double>& excess);
 
 /// Sets the probability of each hypothesis, of `none` and `unknown` and of each effect, and the part of the excess that
 /// each hypothesis leaves (`left`). Hypotheses are then in order of falling probability. A function without a name

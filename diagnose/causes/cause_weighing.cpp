@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,10 +25,7 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr std::size_t kFirst =
-    6;  // likeliest by the noise alone: the best gives the first remainder, and all are weighed
 constexpr double kCostOfTakingTheBest = 3.0;  // ln 20: the likeliest of some twenty functions without a name is taken
-constexpr std::size_t kProfiled = 14;         // explanations that get a remainder of their own
 constexpr double kRemainderCost = 3.0;        // log evidence that a remainder costs, its sizes being unknown
 constexpr std::size_t kWithHand = 4;          // explanations that are weighed together with a hand,
 constexpr std::size_t kWithStated = 2;        // and with each cause that is known by stated inclinations
@@ -67,25 +65,6 @@ std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with,
   return log;
 }
 
-/// Indices of the fits that are weighed anew: the nominal fit and those of the likeliest explanations.
-std::vector<std::size_t> worth_profiling(const TrackSet& set, const Comparison& comparison) {
-  std::vector<Hypothesis> fitted;
-  for (const Hypothesis& one : comparison.all) {
-    if (one.fit > 0 && !one.unnamed) fitted.push_back(one);
-  }
-  std::sort(fitted.begin(), fitted.end(),
-            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
-  std::vector<std::size_t> worth = {0};
-  for (const Hypothesis& one : fitted) {
-    const auto fit = static_cast<std::size_t>(one.fit);
-    // Single effects are always weighed: a remainder of their own may suit them better than the common one.
-    if (worth.size() >= kProfiled && one.effects.size() > 1 && !(set.through_air && is_drag_with_its_air(one.effects)))
-      continue;
-    if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
-  }
-  return worth;
-}
-
 /// Adds the explanations that are likeliest by the noise alone, so that they are weighed beside a remainder too.
 /// Returns the indices of the added fits.
 std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) {
@@ -95,7 +74,7 @@ std::set<int> add_likeliest_of(const Comparison& first, Comparison& comparison) 
   }
   std::sort(likeliest.begin(), likeliest.end(),
             [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
-  if (likeliest.size() > kFirst) likeliest.resize(kFirst);
+  if (likeliest.size() > kMostByNoise) likeliest.resize(kMostByNoise);
   std::set<int> joined;
   for (Hypothesis& one : likeliest) {
     if (find(comparison, {one.effects.begin(), one.effects.end()}) != nullptr) continue;
@@ -126,18 +105,13 @@ std::optional<double> excess_without_drag(const TrackSet& set, double nominal) {
   return std::max(nominal, held_out_excess(no_drag, fit_nominal(no_drag)));
 }
 
-/// Indices of the likeliest fits by the noise alone, the nominal one first.
-std::vector<std::size_t> likeliest_fits(const Comparison& first) {
-  std::vector<std::size_t> fits{0};
-  std::vector<Hypothesis> by_evidence = first.all;
-  std::sort(by_evidence.begin(), by_evidence.end(),
-            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
-  for (const Hypothesis& one : by_evidence) {
-    if (one.fit <= 0 || fits.size() >= kFirst) continue;
-    const auto fit = static_cast<std::size_t>(one.fit);
-    if (std::find(fits.begin(), fits.end(), fit) == fits.end()) fits.push_back(fit);
-  }
-  return fits;
+/// What these fits by the noise alone leave of the held-out excess.
+std::vector<double> excess_of(const TrackSet& set, const Comparison& first, const std::vector<std::size_t>& fits,
+                              int jobs) {
+  std::vector<double> left(fits.size());
+  base::for_each_parallel(fits.size(), jobs,
+                          [&](std::size_t i) { left[i] = held_out_excess(set, first.fits[fits[i]]); });
+  return left;
 }
 
 /// An explanation that is fitted together with a further cause.
@@ -165,7 +139,8 @@ class CauseWeighing {
         first_(first),
         without_(without),
         jobs_(jobs),
-        searched_(held_out_excess(set, first.fits.front()) < kLargestExcess) {
+        likeliest_by_noise_(likeliest_fits(first)),
+        searched_(!noise_is_negligible(excess_of(set, first, likeliest_by_noise_, jobs))) {
     weighed_.set = set;
   }
 
@@ -203,6 +178,7 @@ class CauseWeighing {
 
   void count_first_remainder_as_noise();
   void compare_again(const ImageEvidence* images, const std::function<void(double)>& done);
+  void start_from_noise_alone();
   void profile_each();
   void measure_excess();
   void find_causes_by_stated();
@@ -222,7 +198,8 @@ class CauseWeighing {
   const Comparison& first_;  // by the noise alone
   const std::set<std::size_t>& without_;
   const int jobs_;
-  const bool searched_;  // beside a huge gap the noise is negligible, and a remainder would not change what is found
+  const std::vector<std::size_t> likeliest_by_noise_;  // fits
+  const bool searched_;  // where the noise is negligible, a remainder would not change what is found
   WeighedCauses weighed_;
   RemainderSizes first_remainder_;
   std::set<int> likeliest_before_;      // fits that are weighed because they are likeliest by the noise alone
@@ -234,7 +211,7 @@ class CauseWeighing {
 
 /// The remainder of the best explanation so far becomes noise of the motions.
 void CauseWeighing::count_first_remainder_as_noise() {
-  const std::vector<std::size_t> tried = likeliest_fits(first_);
+  const std::vector<std::size_t>& tried = likeliest_by_noise_;
   std::vector<Profile> profiles(tried.size());
   base::for_each_parallel(tried.size(), jobs_,
                           [&](std::size_t i) { profiles[i] = profile_of(set_, first_.fits[tried[i]], nullptr); });
@@ -257,7 +234,28 @@ void CauseWeighing::compare_again(const ImageEvidence* images, const std::functi
       comparison().fits[f] = linearise_again(weighed_.set, comparison().fits[f]);
     });
   }
+  if (searched_) start_from_noise_alone();
   likeliest_before_ = add_likeliest_of(first_, comparison());
+}
+
+/// Beside a large remainder a search may stop at a poor minimum where the same search by the noise alone did not: each
+/// fit is made again from there if that fits better.
+void CauseWeighing::start_from_noise_alone() {
+  const auto sorted = [](std::vector<std::size_t> effects) {
+    std::sort(effects.begin(), effects.end());
+    return effects;
+  };
+  std::map<std::vector<std::size_t>, const MotionFit*> by_effects;
+  for (const MotionFit& fit : first_.fits) by_effects.emplace(sorted(fit.effects), &fit);
+  std::vector<MotionFit>& fits = comparison().fits;
+  base::for_each_parallel(fits.size(), jobs_, [&](std::size_t f) {
+    const auto same = by_effects.find(sorted(fits[f].effects));
+    if (same == by_effects.end() || !std::isfinite(same->second->cost)) return;
+    const MotionFit from = linearise_again(weighed_.set, *same->second);
+    if (!(from.cost < fits[f].cost)) return;
+    MotionFit anew = fit_motions(weighed_.set, from.effects, from.at, from.late);
+    if (anew.cost < fits[f].cost) fits[f] = std::move(anew);
+  });
 }
 
 /// A remainder of its own for each explanation that is worth it.
@@ -476,7 +474,7 @@ void allow_for_remainders(const TrackSet& set, const std::set<std::size_t>& with
   std::vector<Hypothesis*> worth;
   for (Hypothesis& one : comparison.all) {
     if (one.unnamed || (one.fit < 0 && !one.effects.empty())) continue;
-    if (one.effects.empty() || worth.size() < kProfiled) worth.push_back(&one);
+    if (one.effects.empty() || worth.size() < kMostProfiled) worth.push_back(&one);
   }
   std::vector<double> gains(worth.size(), 0.0);
   base::for_each_parallel(worth.size(), jobs, [&](std::size_t k) {

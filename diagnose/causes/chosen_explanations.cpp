@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -11,7 +12,14 @@ namespace {
 constexpr double kNearlyAsLikely = 0.1;  // relative to the probability of the likeliest explanation
 constexpr std::size_t kMostBeside = 8;   // explanations beside which a function without a name is weighed
 constexpr std::size_t kWithScatter = 3;  // laws that are weighed together with clip scatter
-constexpr double kMuchLeft = 0.1;        // of the excess: a law that leaves less needs no clip scatter beside it
+constexpr double kMuchLeft = 0.1;        // of the excess: a law that leaves less needs no clip scatter beside it,
+constexpr double kAboveNoise = 1.0;      // unless that is an excess of more than the noise
+
+std::vector<Hypothesis> by_falling_evidence(std::vector<Hypothesis> all) {
+  std::sort(all.begin(), all.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  return all;
+}
 
 /// The hypotheses as weighed by what is known so far, by falling probability.
 std::vector<Hypothesis> weighed_so_far(const Comparison& comparison, const LeftExcess& excess) {
@@ -38,6 +46,30 @@ const Hypothesis* pure_of(const Comparison& comparison, int fit) {
     if (a == b) return &one;
   }
   return nullptr;
+}
+
+std::vector<std::size_t> likeliest_fits(const Comparison& by_noise) {
+  std::vector<std::size_t> fits{0};
+  for (const Hypothesis& one : by_falling_evidence(by_noise.all)) {
+    if (one.fit <= 0 || fits.size() >= kMostByNoise) continue;
+    const auto fit = static_cast<std::size_t>(one.fit);
+    if (std::find(fits.begin(), fits.end(), fit) == fits.end()) fits.push_back(fit);
+  }
+  return fits;
+}
+
+std::vector<std::size_t> worth_profiling(const TrackSet& set, const Comparison& comparison) {
+  std::vector<std::size_t> worth = {0};
+  for (const Hypothesis& one : by_falling_evidence(comparison.all)) {
+    if (one.fit <= 0 || one.unnamed) continue;
+    const auto fit = static_cast<std::size_t>(one.fit);
+    // Single effects are always weighed: a remainder of their own may suit them better than the common one.
+    if (worth.size() >= kMostProfiled && one.effects.size() > 1 &&
+        !(set.through_air && is_drag_with_its_air(one.effects)))
+      continue;
+    if (std::find(worth.begin(), worth.end(), fit) == worth.end()) worth.push_back(fit);
+  }
+  return worth;
 }
 
 std::vector<Hypothesis> worth_a_function(const Comparison& comparison, const LeftExcess& excess) {
@@ -80,9 +112,10 @@ std::vector<Hypothesis> likeliest_laws(const Comparison& comparison, const LeftE
 
 std::vector<Hypothesis> laws_that_leave_much(const Comparison& comparison, const LeftExcess& excess) {
   std::vector<Hypothesis> laws = likeliest_laws(comparison, excess);
-  std::erase_if(laws, [](const Hypothesis& one) {
+  std::erase_if(laws, [&](const Hypothesis& one) {
+    const double left = excess.of_fits[static_cast<std::size_t>(one.fit)];
     return one.effects.size() != 1 || differs_between_clips(one.effects.front()) ||
-           !(one.left.value_or(0.0) >= kMuchLeft);
+           !(one.left.value_or(0.0) >= kMuchLeft || left > kAboveNoise);
   });
   if (laws.size() > kWithScatter) laws.resize(kWithScatter);
   return laws;

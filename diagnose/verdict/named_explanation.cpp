@@ -26,12 +26,19 @@ double probability_of(const Comparison& comparison, const Hypothesis& best, std:
   return probability_of_any(comparison, any);
 }
 
-/// The same without the other causes of the explanation, and only with those that no track can tell from it: what else
-/// could stand beside those other causes does not make it likelier alone.
+/// Whether one of the two laws is the other with one parameter held: a quadratic drag is a power law of exponent 2.
+bool is_same_law(std::size_t one, std::size_t other) {
+  const std::set<std::size_t> drags = {effect_index(ids::quadratic_drag), effect_index(ids::power_law_drag)};
+  return one != other && drags.contains(one) && drags.contains(other);
+}
+
+/// The same without the other causes of the explanation, and only with those that no track can tell from it or that are
+/// the same law: what else could stand beside those other causes does not make it likelier alone.
 double probability_alone(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
   std::vector<std::size_t> any = {effect};
   for (std::size_t e = 0; e < effect_list().size(); ++e) {
-    if (!has(best, e) && are_alike(comparison, e, effect, filmed)) any.push_back(e);
+    if (has(best, e)) continue;
+    if (are_alike(comparison, e, effect, filmed) || is_same_law(e, effect)) any.push_back(e);
   }
   return probability_of_any(comparison, any);
 }

@@ -180,6 +180,13 @@ bool act_together(const Comparison& comparison, std::size_t one, std::size_t oth
   return both > 0.5 * std::min(probability_of_any(comparison, {one}), probability_of_any(comparison, {other}));
 }
 
+/// Beside a remainder the evidence counts for less than it says (cause_odds.h): what it makes of the probabilities is
+/// what tells two explanations apart.
+bool is_about_as_likely(const Hypothesis& other, const Hypothesis& best) {
+  constexpr double kPartOfBest = 1.0 / 3.0;
+  return best.left && other.left && other.probability > kPartOfBest * best.probability;
+}
+
 }  // namespace
 
 std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypothesis& best, std::size_t effect,
@@ -197,9 +204,10 @@ std::vector<std::size_t> not_told_apart(const Comparison& comparison, const Hypo
       // The scatter of single positions is no other name for an effect that shifts them all.
       const bool same_cause =
           first_alike(e, filmed) == first_alike(effect, filmed);  // evidence tells them apart only by chance
-      const bool as_likely = (same_cause || other.log_evidence > best.log_evidence - kSameEvidence) &&
-                             leaves_as_little(other, best) && is_scatter(e) == is_scatter(effect);
-      if (as_likely && other.gain > best.gain - kSameGain && other.gain > kSameGain) others.push_back(e);
+      if (is_scatter(e) != is_scatter(effect) || !leaves_as_little(other, best)) break;
+      const bool same_evidence = (same_cause || other.log_evidence > best.log_evidence - kSameEvidence) &&
+                                 other.gain > best.gain - kSameGain && other.gain > kSameGain;
+      if (same_evidence || is_about_as_likely(other, best)) others.push_back(e);
       break;
     }
   }

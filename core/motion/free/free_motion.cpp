@@ -327,13 +327,19 @@ Motion between(const Motion& motion, std::size_t from, std::size_t to) {
   return without(motion, outside);
 }
 
+/// The points before the body lies on the floor, where a fall ends there.
+std::size_t free_points(const Motion& motion, const ClipSetup& setup) {
+  if (motion.forced || !is_fall(setup.incline_rad)) return motion.t_s.size();
+  return landed_from(motion, setup.incline_rad > 0.0 ? 1 : -1);
+}
+
 }  // namespace
 
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
   const auto& t = motion.t_s;
   const auto from = setup.start_s ? std::lower_bound(t.begin(), t.end(), *setup.start_s) - t.begin() : 0;
   const auto to = setup.end_s ? std::upper_bound(t.begin(), t.end(), *setup.end_s) - t.begin()
-                              : static_cast<std::ptrdiff_t>(t.size());
+                              : static_cast<std::ptrdiff_t>(free_points(motion, setup));
   FreeMotion free;
   if (to - from >= static_cast<std::ptrdiff_t>(kLeastStretchPoints)) {
     free = Finder(between(motion, static_cast<std::size_t>(from), static_cast<std::size_t>(to)), setup).find();
@@ -342,7 +348,7 @@ FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
     free.pilot_bandwidth_s = 2.0 * motion.step_s;
   }
   free.reason.insert(free.reason.begin(), static_cast<std::size_t>(from), LeftOut::before_start);
-  free.reason.resize(t.size(), LeftOut::after_end);
+  free.reason.resize(t.size(), setup.end_s ? LeftOut::after_end : LeftOut::rest);
   for (FreeStretch& stretch : free.stretches) stretch.first += static_cast<std::size_t>(from);
   return free;
 }

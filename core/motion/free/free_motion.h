@@ -12,6 +12,7 @@
 ///    inclination of 80 degrees or more) every acceleration between 0 and g is: it speeds up towards a terminal
 ///    velocity, and where the drag grows with the square of the speed no line holds for all of it. (Of fewer than 24
 ///    points the pilot does not show that well enough. A hand that lowers the body looks the same: start_s tells.)
+///  - The end of a fall: positions of a body that lies on the floor are at rest, however few (landed_from()).
 ///  - A stretch of duration T determines its acceleration with a standard deviation proportional to T^(-5/2). A stretch
 ///    whose standard deviation is four times that of the longest of its direction (T below 0.57 of it) is left out:
 ///    least squares gives all points the same weight, so its points would add noise and no information.

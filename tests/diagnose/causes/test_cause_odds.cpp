@@ -62,7 +62,7 @@ TEST_CASE("log odds are linear in what is left") {
 TEST_CASE("where the noise is negligible the odds count decades of what is left, and no evidence") {
   const auto odds = [](double evidence, double first, double second) {
     diagnose::Comparison comparison = comparison_of(0.0, 0.0, evidence);
-    constexpr double kBefore = 1e8;
+    constexpr double kBefore = 1e15;
     diagnose::weigh_beside_remainder({{kBefore, first * kBefore, second * kBefore}, kNotMeasured}, comparison);
     return probability_of(comparison, diagnose::ids::quadratic_drag) /
            probability_of(comparison, diagnose::ids::track_bow);
@@ -199,6 +199,19 @@ TEST_CASE("scatter of single positions is no other explanation of a gap, however
   diagnose::weigh_beside_remainder({{1e8, 5e6, 2e7}, kNotMeasured}, comparison);
   CHECK(probability_of(comparison, diagnose::ids::heavy_tailed_noise) <
         0.2 * probability_of(comparison, diagnose::ids::track_bow));
+}
+
+TEST_CASE("however huge the gap, evidence counts once an explanation leaves little of it") {
+  const auto bow_over_drag = [](double left_by_drag, double evidence_of_bow) {
+    diagnose::Comparison comparison = comparison_of(-1e3, 0.0, evidence_of_bow);
+    diagnose::weigh_beside_remainder({{1e12, left_by_drag, 1.5 * left_by_drag}, kNotMeasured}, comparison);
+    return probability_of(comparison, diagnose::ids::track_bow) /
+           probability_of(comparison, diagnose::ids::quadratic_drag);
+  };
+  CHECK(bow_over_drag(4.0, 200.0) > 100.0);
+  CHECK(bow_over_drag(4.0, -200.0) < 0.01);
+  // Where all leave a gap beside which the noise is negligible, only what they leave counts.
+  CHECK(bow_over_drag(1e9, 200.0) == Approx(bow_over_drag(1e9, -200.0)).epsilon(1e-9));
 }
 
 TEST_CASE("a cause on the list may be imitated by one that is not: no name is certain") {

@@ -343,6 +343,27 @@ TEST_CASE("a soft bumper is no hand although friction scatters and no law follow
   for (const diagnose::Note& note : found.notes) CHECK(!std::holds_alternative<diagnose::HandLeftOut>(note));
 }
 
+TEST_CASE("what is recovered beside a hard bumper is as certain as what the bumper leaves, not as the gap it takes") {
+  tests::ScatteringFriction friction(0.02, {0.02, -0.015, 0.01, -0.02});
+  tests::MadeEffect both;
+  both.force = [&](double m, double x, double v, double t) {
+    return friction(m, v, t) - (x > 0.35 ? 120.0 * (x - 0.35) : 0.0);
+  };
+  const std::vector<tests::MadeLaunch> launches = {
+      {0.3, 3.0, 0.2, -1.0}, {0.3, 3.0, -0.6, 0.5}, {0.5, 3.0, 0.2, -0.9}, {0.5, 3.0, -0.6, 0.6}};
+  const auto made = tests::made_experiment(launches, both, 3, 5e-6, 160, 40.0, 0.05, 0.0, {.mu = 0.02});
+  const diagnose::Diagnosis found = diagnose::diagnose_results(made.results, made.setups, {});
+  REQUIRE(found.verdict == diagnose::Verdict::effect);
+  CHECK(found.effects.front().joint_probability > 0.5);  // of a bumper or a cable
+  REQUIRE(found.levels);
+  REQUIRE(found.levels->all > 1e3);  // an excess of 1e6 by which the noise would be negligible
+  for (const diagnose::RecoveredConfiguration& one : found.recovered) {
+    REQUIRE(one.mu.estimate);
+    CHECK(one.mu.estimate->sd < 0.05 * 0.02);
+    CHECK(std::abs(one.mu.estimate->value - 0.02) < 4.0 * one.mu.estimate->sd);
+  }
+}
+
 TEST_CASE("the law without a cable that takes nearly all of the gap does not widen what is recovered beside it") {
   tests::ScatteringFriction friction(0.02, {0.02, -0.02, 0.01, -0.02});
   tests::MadeEffect both;

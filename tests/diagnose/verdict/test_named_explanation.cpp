@@ -130,6 +130,25 @@ TEST_CASE("of two causes of which one takes the part of both, the likelier by it
   CHECK(keeps().empty());
 }
 
+TEST_CASE("a quadratic drag counts towards a drag with a power of the speed, of which it is one") {
+  Named named;
+  named.add({"power_law_drag", "late_release"}, true, 0.35);
+  named.add({"late_release"}, true, 0.1);
+  named.add({"quadratic_drag", "late_release"}, true, 0.3);
+  named.add({"quadratic_drag"}, true, 0.1);
+  named.comparison.all[2].gain = 0.0;  // the data tell the two powers apart
+  diagnose::CauseSequence sequence;
+  sequence.is_gap = true;
+  sequence.named.effects = {diagnose::effect_index(diagnose::ids::power_law_drag)};
+  const diagnose::Hypothesis& best = named.comparison.all.front();
+  CHECK(diagnose::without_the_lesser(named.comparison, false, best, sequence) == nullptr);
+  named.comparison.all[2].effects.front() = diagnose::effect_index(diagnose::ids::track_bow);
+  named.comparison.all[3].effects.front() = diagnose::effect_index(diagnose::ids::track_bow);
+  const diagnose::Hypothesis* hand = diagnose::without_the_lesser(named.comparison, false, best, sequence);
+  REQUIRE(hand != nullptr);
+  CHECK(hand->effects == std::vector{diagnose::effect_index(diagnose::ids::late_release)});
+}
+
 TEST_CASE("a cause that alone keeps its name has to be likelier than not by itself") {
   Named named;
   named.add({"quadratic_drag", "perspective_error"}, true, 0.4);

@@ -112,6 +112,20 @@ TEST_CASE("of an explanation the causes that are likelier than not keep their na
   CHECK(part(tracks, {of({"quadratic_drag", "track_bow"}, 0.45), of({"stribeck"}, 0.45)}).empty());
 }
 
+TEST_CASE("beside a remainder two effects are told apart by their probabilities, whatever their evidence says") {
+  diagnose::Comparison comparison;
+  comparison.all = {of({"friction_drift"}, 0.3), of({"clip_scatter"}, 0.2), of({"track_bow"}, 0.09)};
+  comparison.all[0].gain = comparison.all[0].log_evidence = 60.0;
+  const auto equals = [&] {
+    return diagnose::not_told_apart(comparison, comparison.all.front(), comparison.all.front().effects.front(), false);
+  };
+  CHECK(equals().empty());  // 60 in log evidence, by the noise alone
+  for (diagnose::Hypothesis& one : comparison.all) one.left = 0.0;
+  CHECK(equals() == of({"clip_scatter"}, 0.0).effects);
+  comparison.all[1].left = 0.9;  // it leaves the gap
+  CHECK(equals().empty());
+}
+
 TEST_CASE("several names that these data cannot tell apart count together against one name for another cause") {
   const diagnose::TrackSet tracks;
   diagnose::Comparison comparison;
