@@ -1,5 +1,6 @@
 #include "diagnose/verdict/likely_explanations.h"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,6 +13,20 @@ namespace {
 constexpr std::size_t kMostLikely = 6;
 
 }  // namespace
+
+MovedOn moved_on(const TrackSet& set, const MotionFit& fit, bool at_minimum) {
+  constexpr int kDescents = 3;
+  constexpr double kHardlyLower = 0.1;  // chi²
+  MovedOn moved{fit, at_minimum};
+  for (int descent = 0; descent < kDescents && !moved.at_minimum && std::isfinite(moved.fit.cost); ++descent) {
+    const MotionFit from = linearise_again(set, moved.fit);
+    MotionFit next = fit_motions(set, from.effects, from.at, from.late);
+    if (!(next.cost <= from.cost)) break;
+    moved.at_minimum = next.converged || from.cost - next.cost < kHardlyLower;
+    moved.fit = std::move(next);
+  }
+  return moved;
+}
 
 void add_others(const WeighedCauses& weighed, const std::vector<Hypothesis>& all, double unknown,
                 const std::vector<std::size_t>& reported, Explanations& explanations) {

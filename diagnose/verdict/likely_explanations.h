@@ -12,6 +12,17 @@ namespace glidelab::diagnose {
 
 inline constexpr double kLikely = 0.02;  ///< probability from which an explanation counts
 
+/// A fit that stopped at its limit on steps, and where further steps lead.
+struct MovedOn {
+  MotionFit fit;
+  bool at_minimum = true;  ///< or so near that as many steps again lower chi² by less than a tenth
+};
+
+/// Goes on from a fit in up to three further descents, unless it is at its minimum. An effect whose sizes the data
+/// hardly determine leads along a valley in which chi² hardly falls: what it does to K, mu and the inclination is known
+/// long before the end of it.
+MovedOn moved_on(const TrackSet& set, const MotionFit& fit, bool at_minimum);
+
 /// Adds the explanations other than the reported one, and to that one its probability. The nominal model stands for the
 /// unknown.
 void add_others(const WeighedCauses& weighed, const std::vector<Hypothesis>& all, double unknown,

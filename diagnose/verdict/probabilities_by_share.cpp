@@ -70,6 +70,16 @@ void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
   }
 }
 
+void keep_drag_of_air(Comparison& comparison) {
+  double kept = 0.0;
+  for (Hypothesis& one : comparison.all) {
+    const bool is_kept = !one.unnamed && (one.effects.empty() || has(one, effect_index(ids::quadratic_drag)));
+    kept += one.probability *= is_kept ? 1.0 : 0.0;
+  }
+  for (Hypothesis& one : comparison.all) one.probability /= kept;
+  set_probabilities(comparison);
+}
+
 void set_unknown(double unknown, Comparison& comparison) {
   const double before = 1.0 - comparison.unknown;
   const double factor = before > 0.0 ? (1.0 - unknown) / before : 0.0;

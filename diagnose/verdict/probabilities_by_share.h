@@ -34,6 +34,11 @@ bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, cons
 /// Moves the probability of the explanations for which `of` holds to `none`: what they would explain needs no cause.
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison);
 
+/// For a fall through air whose positions are rounded as finely as the nominal model follows them: nothing finer than
+/// the step is claimed, and that something brakes in proportion to the square of the speed is known without them. The
+/// nominal model and explanations with a quadratic drag share the probability of all others.
+void keep_drag_of_air(Comparison& comparison);
+
 /// Sets the probability of an unknown cause. Named explanations and `none` share the rest in proportion to their
 /// probabilities.
 void set_unknown(double unknown, Comparison& comparison);

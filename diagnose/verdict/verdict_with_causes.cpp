@@ -23,6 +23,7 @@
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/verdict/likely_explanations.h"
 #include "diagnose/verdict/named_explanation.h"
+#include "diagnose/verdict/order_of_causes.h"
 #include "diagnose/verdict/probabilities_by_share.h"
 #include "diagnose/verdict/unnamed_trifle.h"
 #include "diagnose/verdict/verdict.h"
@@ -46,29 +47,6 @@ double probability_of_scatter(const Comparison& comparison) {
   return sum;
 }
 
-/// With an unknown cause, the causes that help and together take less than half of the excess. A cause that would take
-/// more is not likely enough to be named, so it is not said to explain anything. Neither is one beside which held-out
-/// positions lie farther off than without it.
-std::vector<ExplainedCause> helpful(std::vector<ExplainedCause> causes) {
-  double sum = 0.0;
-  const auto first_too_many = std::find_if(causes.begin(), causes.end(), [&](const ExplainedCause& cause) {
-    return !(cause.share > 0.0) || (sum += cause.share) >= kHalfOfGap;
-  });
-  causes.erase(first_too_many, causes.end());
-  return causes;
-}
-
-GapRemainder remainder_of(double gap_before, const std::vector<ExplainedCause>& causes, const RemainderSizes& sizes,
-                          double part_s) {
-  GapRemainder remainder;
-  for (const ExplainedCause& cause : causes) remainder.share -= cause.share;
-  remainder.gap = causes.empty() ? gap_before : causes.back().gap_after;
-  if (part_s > 0.0) remainder.acceleration_m_s2 = std::sqrt(sizes.q_m2_s3 / part_s);
-  remainder.clip_scatter_m_s2 = sizes.force_m_s2;
-  remainder.drag_scatter = sizes.drag;
-  return remainder;
-}
-
 /// Where the rest of the gap lies beside the named causes. Empty if nothing is left.
 std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& sequence, int jobs) {
   if (!(sequence.gap_after > 1.0 + kClearGap * sequence.standard_error)) return {};
@@ -76,30 +54,6 @@ std::vector<GapRegion> regions_beside(const TrackSet& set, const CauseSequence& 
   rest.verdict = Verdict::unknown;
   add_regions(set, sequence.named, unnamed_families(ScoreSpace(set, sequence.named), jobs), rest);
   return rest.regions;
-}
-
-/// Puts the effects that a verdict names in order of falling share, and then those that no motion shows. In a fall
-/// through air the drag comes first: the other shares are what is left beside it. A cause that stated inclinations show
-/// has no share, and comes first if it is likelier than any that has one.
-void order_by_share(bool drag_first, Diagnosis& diagnosis) {
-  const auto probability = [](const DiagnosedEffect& effect) {
-    return std::max(effect.probability, effect.joint_probability);
-  };
-  double likeliest = 0.0;
-  for (const DiagnosedEffect& one : diagnosis.effects) {
-    if (!one.by_stated) likeliest = std::max(likeliest, probability(one));
-  }
-  const auto share = [&](const DiagnosedEffect& effect) {
-    const bool first =
-        effect.by_stated ? probability(effect) > likeliest : drag_first && effect.id == ids::quadratic_drag;
-    if (first) return std::numeric_limits<double>::infinity();
-    const auto of = std::find_if(diagnosis.explained.begin(), diagnosis.explained.end(),
-                                 [&](const ExplainedCause& cause) { return cause.id == effect.id; });
-    return of != diagnosis.explained.end() ? of->share : -std::numeric_limits<double>::infinity();
-  };
-  std::stable_sort(diagnosis.effects.begin(), diagnosis.effects.end(),
-                   [&](const DiagnosedEffect& a, const DiagnosedEffect& b) { return share(a) > share(b); });
-  if (!diagnosis.effects.empty()) diagnosis.stage = diagnosis.effects.front().stage;
 }
 
 /// A fit that counts its own remainder as noise, the motions with that noise, and the remainder.
@@ -214,6 +168,8 @@ class VerdictWithCauses {
   /// shows best against the noise alone.
   bool is_settled() const { return weighed_ && sequence_.is_gap && names_; }
   const MotionFit& fit_of_gap() const { return sequence_.named.effects.empty() ? fit_of(best_) : sequence_.named; }
+  /// What brakes a fall through air is known without positions too coarse to show it (keep_drag_of_air()).
+  bool drag_is_known() const { return set_.through_air && noise_is_rounding(set_); }
   CauseSequence sequence_with(const Hypothesis& one) const {
     return sequence_of(gap_set_, gap_nominal_, gap_with_, fit_of(one), without_, weighed_ ? kLeastNamed : 0.0);
   }
@@ -230,6 +186,7 @@ class VerdictWithCauses {
   Diagnosis verdict_beside_remainder(ImageEvidence images) const;
   Diagnosis verdict_by_noise(ImageEvidence images);
   void doubt_by_share(bool in_images);
+  void unname_what_explains_nothing();
   void move_imperfections_to_none();
   Reported reported_by(const Diagnosis& diagnosis) const;
   void add_shares(const Reported& reported, Diagnosis& diagnosis) const;
@@ -265,6 +222,7 @@ class VerdictWithCauses {
 };
 
 void VerdictWithCauses::weigh(const ImageEvidence& images, const base::Progress& progress) {
+  if (drag_is_known() && !has_gap(set_, nominal())) keep_drag_of_air(first_);
   if (first_.unknown > kLeastUnknown || leaves_a_gap(set_, first_)) {
     weighed_ = weigh_causes(set_, first_, without_, jobs_, &images,
                             [&](double part) { progress("weighing explanations", 0.5 + 0.4 * part); });
@@ -371,7 +329,7 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
   const bool in_images = names_ ? shows_in_images_alone(best_) : found_ && shows_in_images_alone(*found_);
   // Nothing is claimed below the step of rounding: what shows there and leaves no gap comes from rounding. Nor is
   // anything claimed if the positions follow the model far better than the assumed noise allows.
-  const bool not_measured = noise_is_rounding(set_) || sequence_.gap_before < kLeastMeasuredGap;
+  const bool not_measured = !drag_is_known() && (noise_is_rounding(set_) || sequence_.gap_before < kLeastMeasuredGap);
   const bool below_noise = not_measured && !sequence_.is_gap && !in_images;
   if (below_noise) {
     move_to_none([](const Hypothesis&) { return true; }, first_);
@@ -385,7 +343,7 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
     if (in_images && first_.unknown < 1.0) set_unknown(0.0, first_);
     first_.none += std::exchange(first_.unknown, 0.0);
   }
-  if (!weighed_ && !sequence_.is_gap && !below_noise) move_imperfections_to_none();
+  if (!weighed_ && !sequence_.is_gap && !below_noise && !drag_is_known()) move_imperfections_to_none();
   const NoiseAlone alone = noise_alone();
   Diagnosis diagnosis = verdict_of(set_, first_, std::move(images), by_air_ && sequence_.is_gap ? &alone : nullptr);
   if (weighed_ && sequence_.is_gap && !in_images) {
@@ -402,14 +360,24 @@ void VerdictWithCauses::doubt_by_share(bool in_images) {
     first_.unknown += std::exchange(first_.none, 0.0);
     set_unknown(std::max(by().none + by().unknown, kUnknownIfLess), first_);
   }
-  if (weighed_) return;
+  if (claims_ && !sequence_.is_gap && !in_images) unname_what_explains_nothing();
+  if (weighed_ || !sequence_.is_gap) return;
   // A name that takes less than half of a gap does not explain it.
   const bool explains = !names_ || !shows_in_gap(best_) || sequence_.named_share >= kHalfOfGap;
-  if (sequence_.is_gap && !explains) set_unknown(1.0, first_);
-  if (sequence_.is_gap && names_ && shows_in_gap(best_) && !in_images && !is_likelier_than_not(set_, first_, best_)) {
+  if (!explains) set_unknown(1.0, first_);
+  if (names_ && shows_in_gap(best_) && !in_images && !is_likelier_than_not(set_, first_, best_)) {
     set_unknown(std::max(first_.unknown, kUnknownIfLess), first_);
   }
   if (open_size_ && !in_images) set_unknown(std::max(first_.unknown, kOpenSize), first_);
+}
+
+/// Where nothing has to be explained, an unlikely name explains nothing, nor does one that predicts held-out positions
+/// worse.
+void VerdictWithCauses::unname_what_explains_nothing() {
+  const Hypothesis* best = best_named(set_, first_);
+  if (best == nullptr || best->fit <= 0 || !shows_in_gap(*best)) return;
+  const bool misleads = has_gap(set_, first_.fits[static_cast<std::size_t>(best->fit)]);
+  if (misleads || !is_likelier_than_not(set_, first_, *best)) move_to_none(shows_in_gap, first_);
 }
 
 /// Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no parameter
@@ -473,7 +441,8 @@ void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
 
 void VerdictWithCauses::add_recovered(const Reported& reported, Diagnosis& diagnosis) const {
   const bool with_names = diagnosis.verdict == Verdict::effect;
-  Explanations explanations{{&reported.fit, reported.sizes, 1.0}};
+  const MovedOn settled = moved_on(with_names && by_air_ ? gap_set_ : set_, reported.fit, best_.converged || !names_);
+  Explanations explanations{{&settled.fit, reported.sizes, 1.0}};
   if (weighed_) {
     explanations.front().probability = with_names ? 0.0 : unknown_before_;
     // What is off the list and imitates causes that take nearly all of the gap leaves the parameters as they do.
@@ -483,7 +452,7 @@ void VerdictWithCauses::add_recovered(const Reported& reported, Diagnosis& diagn
   }
   if (with_names) {
     explanations.front().effects = best_.effects;
-    explanations.front().at_minimum = best_.converged || !names_;
+    explanations.front().at_minimum = settled.at_minimum;
   }
   if (!weighed_) add_others(first_, before_, explanations);
   diagnosis.recovered = recovered_of(set_, explanations);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnose/effects/force/touching.h"
+
 namespace glidelab::diagnose::effects {
 namespace {
 
@@ -42,7 +44,7 @@ EffectInfo end_stop() {
       .meaning = "a force −k (x − x_b) beyond x_b",
       .search = Search::shape,
       .both_signs = false,
-      .odds = nullptr,
+      .odds = touched,
       .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 2000.0, .step = 1e-5, .reach = Reach::with_mass},

@@ -4,6 +4,7 @@
 /// same effect. About a typical speed V its a(v) is a line whose intercept is shifted by -s (2 K V³/v_c²)/m or by -s (1
 /// - n) K V^n/m, just as by this force.
 #include "diagnose/effects/effect.h"
+#include "diagnose/effects/force/touching.h"
 
 namespace glidelab::diagnose::effects {
 namespace {
@@ -22,11 +23,6 @@ void fixed_friction_twin(const double* p, TwinForces& forces) {
   forces.others += scenario_force("coulomb", {{"mu", forces.part * p[0] / forces.normal_n}});
 }
 
-/// A falling object touches nothing, unless something guides it.
-double without_a_track(const Circumstances& of) {
-  return of.only_falls ? 0.25 : 1.0;
-}
-
 }  // namespace
 
 EffectInfo load_independent_friction() {
@@ -39,7 +35,7 @@ EffectInfo load_independent_friction() {
       .meaning = "the same friction force at every mass",
       .search = Search::amplitude,
       .both_signs = false,
-      .odds = without_a_track,
+      .odds = touched,
       .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "force_n", .absent = 0.0, .low = 0.0, .high = 1.0, .step = 1e-7, .reach = Reach::with_mass}},

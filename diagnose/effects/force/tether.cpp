@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnose/effects/force/touching.h"
+
 namespace glidelab::diagnose::effects {
 namespace {
 
@@ -32,7 +34,7 @@ EffectInfo tether() {
       .meaning = "a force −k (x − x_t) beyond x_t",
       .search = Search::shape,
       .both_signs = false,
-      .odds = nullptr,
+      .odds = touched,
       .log_odds_beside_remainder = 0.0,
       .parameters =
           {{.key = "k_n_m", .absent = 0.0, .low = 0.0, .high = 200.0, .step = 1e-5, .reach = Reach::with_mass},

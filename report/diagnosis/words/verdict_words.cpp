@@ -360,24 +360,24 @@ std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   if (only_statements_fail(diagnosis)) {
     return wrongly_stated_words(diagnosis) + clip_gap_words(diagnosis);
   }
-  if (const std::string sequence = sequence_words(diagnosis); !sequence.empty()) {
-    return sequence + beside_sequence(diagnosis);
-  }
   if (diagnosis.verdict == diagnose::Verdict::none && !diagnosis.ranking.empty() &&
       diagnosis.ranking.front().probability > diagnosis.none) {
     return fmt::format(
-               "It is uncertain whether anything is missing. The likeliest explanation is {} ({}), but \"nothing "
-               "missing\" ({}) cannot be excluded at odds of 3 to 1, so no effect is claimed.",
-               explanation_id(diagnosis.ranking.front().explanation), percent(diagnosis.ranking.front().probability),
+               "It is uncertain whether anything is missing. The likeliest explanation is {} ({}), but “nothing "
+               "missing” ({}) cannot be excluded at odds of 3 to 1, so no effect is claimed.",
+               explanation_name(diagnosis.ranking.front().explanation), percent(diagnosis.ranking.front().probability),
                percent(diagnosis.none)) +
            clip_gap_words(diagnosis);
+  }
+  if (const std::string sequence = sequence_words(diagnosis); !sequence.empty()) {
+    return sequence + beside_sequence(diagnosis);
   }
   constexpr double kRather = 0.5;  // the probability from which nothing is rather missing than something
   if (diagnosis.verdict == diagnose::Verdict::none && diagnosis.none < kRather && !diagnosis.ranking.empty()) {
     return fmt::format(
                "The nominal model explains these data to within their noise. They cannot exclude other causes, but "
                "none is as likely as nothing being missing ({}); the likeliest is {} ({}).",
-               percent(diagnosis.none), explanation_id(diagnosis.ranking.front().explanation),
+               percent(diagnosis.none), explanation_name(diagnosis.ranking.front().explanation),
                percent(diagnosis.ranking.front().probability)) +
            clip_gap_words(diagnosis);
   }
