@@ -208,6 +208,7 @@ class VerdictWithCauses {
   std::optional<Hypothesis> found_;  // the best explanation
   bool claims_ = false;              // it is likely enough
   bool names_ = false;               // it has a fit
+  bool resized_ = false;             // by the noise alone: it is not the likeliest, but its sizes are certain
   Hypothesis best_;                  // the explanation that is named; none without names_
 
   // The gap, and what takes it.
@@ -244,7 +245,9 @@ void VerdictWithCauses::choose_explanation() {
   names_ = found_->fit > 0 && (weighed_ || claims_);
   if (!names_) return;
   best_ = *found_;
-  if (const Hypothesis* sized = weighed_ ? with_certain_sizes(with(), by(), best_) : nullptr) best_ = *sized;
+  const Hypothesis* sized = with_certain_sizes(with(), by(), best_);
+  resized_ = sized != nullptr && !weighed_;
+  if (sized != nullptr) best_ = *sized;
 }
 
 /// K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
@@ -345,7 +348,8 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
   }
   if (!weighed_ && !sequence_.is_gap && !below_noise && !drag_is_known()) move_imperfections_to_none();
   const NoiseAlone alone = noise_alone();
-  Diagnosis diagnosis = verdict_of(set_, first_, std::move(images), by_air_ && sequence_.is_gap ? &alone : nullptr);
+  Diagnosis diagnosis =
+      verdict_of(set_, first_, std::move(images), (by_air_ || resized_) && sequence_.is_gap ? &alone : nullptr);
   if (weighed_ && sequence_.is_gap && !in_images) {
     const NoiseAlone noise{set_, nominal(), nominal(), set_, nominal()};
     diagnosis.ranking = ranking_of(with(), by(), &noise);
@@ -397,7 +401,8 @@ void VerdictWithCauses::move_imperfections_to_none() {
 
 Reported VerdictWithCauses::reported_by(const Diagnosis& diagnosis) const {
   // Where causes are named whatever part of the gap they take, all of them are in the fit of the explanation itself.
-  const MotionFit& with_effect = sequence_.is_gap && (is_settled() || by_air_) ? sequence_.named : fit_of(best_);
+  const MotionFit& with_effect =
+      sequence_.is_gap && (is_settled() || by_air_ || resized_) ? sequence_.named : fit_of(best_);
   const MotionFit& fit = diagnosis.verdict == Verdict::effect ? with_effect : nominal();
   const RemainderSpace space(set_, fit);
   const bool is_sized = is_settled() && &fit == &fit_of_gap();

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/experiment/local_gravity.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/rounded_positions.h"
@@ -64,7 +65,25 @@ TEST_CASE("where a short fall has no gap, no name that is unlikely is claimed") 
   }
 }
 
-TEST_CASE("a bumper, a cable and friction need something that touches the body") {
+TEST_CASE("what falls with a fifth of gravity has inertia or is held back, and no drag of size 0 explains its gap") {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);  // a constant acceleration of 2 m/s², stated as a fall
+    tests::MadeExperiment made = tests::made_experiment({{1.0, 90.0, 0.05, 0.02}}, {}, seed, 1.5e-2, 32, 10.0, 0.0, 0.0,
+                                                        {.k_n_s_m = 0.0, .mu = 0.0, .gravity_m_s2 = 2.0});
+    made.results.gravity_m_s2 = kG;
+    made.results.gravity_sd_m_s2 = core::stated_gravity({}).sd_m_s2;
+    const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
+    REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
+    REQUIRE_FALSE(diagnosis.effects.empty());
+    for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
+      CAPTURE(effect.id);
+      REQUIRE_FALSE(effect.parameters.empty());
+      CHECK(std::abs(effect.parameters.front().value) > effect.parameters.front().sd);
+    }
+  }
+}
+
+TEST_CASE("bumper, cable and friction need something that touches the body") {
   const diagnose::Circumstances on_track{2, false, false}, guided{2, true, false}, free_fall{2, true, true};
   for (const auto& id : {diagnose::ids::end_stop, diagnose::ids::tether, diagnose::ids::load_independent_friction}) {
     const auto odds = diagnose::effect_list()[diagnose::effect_index(id)].odds;
