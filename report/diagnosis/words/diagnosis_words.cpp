@@ -65,9 +65,13 @@ std::string percent(double probability) {
 }
 
 std::vector<diagnose::AlikeEffect> told_alike(const diagnose::DiagnosedEffect& effect) {
+  constexpr double kPartOfLikeliest = 0.05;
   std::vector<diagnose::AlikeEffect> told = effect.alike;
+  double likeliest = 0.0;
+  for (const diagnose::AlikeEffect& one : told) likeliest = std::max(likeliest, one.probability.value_or(0.0));
+  const double least = std::max(kLeastPercent, kPartOfLikeliest * likeliest);
   std::erase_if(told, [&](const diagnose::AlikeEffect& one) {
-    return one.id != effect.id && one.probability && *one.probability < kLeastPercent;
+    return one.id != effect.id && one.probability && *one.probability < least;
   });
   if (told.size() < 2) told.clear();
   return told;

@@ -25,8 +25,9 @@ std::string explanation_html(const diagnose::Explanation& explanation);
 /// A probability for the reader: "87 %", "more than 99 %" from 0.995 on, "less than 1 %" below 0.005.
 std::string percent(double probability);
 
-/// The effects that a sentence tells as not to be told apart, the effect itself among them: not those whose probability
-/// prints as "less than 1 %". Empty if it stands alone.
+/// The effects that a sentence tells as not to be told apart, the effect itself among them: not those that are less
+/// than a twentieth as likely as the likeliest, or whose probability prints as "less than 1 %". Empty if it stands
+/// alone.
 std::vector<diagnose::AlikeEffect> told_alike(const diagnose::DiagnosedEffect& effect);
 
 std::string note_words(const diagnose::Note& note);

@@ -356,12 +356,20 @@ std::string beside_sequence(const diagnose::Diagnosis& diagnosis) {
   return text + clip_gap_words(diagnosis, true);
 }
 
+/// Whether an explanation that is more than the traces, which change nothing, is likelier than nothing.
+bool is_uncertain(const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.ranking.empty() || diagnosis.ranking.front().probability <= diagnosis.none) return false;
+  const std::vector<std::string>& ids = diagnosis.ranking.front().explanation.effects;
+  return !std::all_of(ids.begin(), ids.end(), [&](const std::string& id) {
+    return std::find(diagnosis.traces.begin(), diagnosis.traces.end(), id) != diagnosis.traces.end();
+  });
+}
+
 std::string clip_verdict(const diagnose::Diagnosis& diagnosis) {
   if (only_statements_fail(diagnosis)) {
     return wrongly_stated_words(diagnosis) + clip_gap_words(diagnosis);
   }
-  if (diagnosis.verdict == diagnose::Verdict::none && !diagnosis.ranking.empty() &&
-      diagnosis.ranking.front().probability > diagnosis.none) {
+  if (diagnosis.verdict == diagnose::Verdict::none && is_uncertain(diagnosis)) {
     return fmt::format(
                "It is uncertain whether anything is missing. The likeliest explanation is {} ({}), but “nothing "
                "missing” ({}) cannot be excluded at odds of 3 to 1, so no effect is claimed.",
