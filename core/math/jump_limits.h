@@ -1,5 +1,5 @@
 /// What counts as a jump of a recorded path: a body does not jump, so that positions behind one are not its own
-/// (unseen_positions.h, stray_positions.h).
+/// (unseen_positions.h, false_positions.h).
 #pragma once
 
 #include <cstddef>

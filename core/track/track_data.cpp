@@ -19,7 +19,7 @@
 #include "core/experiment/local_gravity.h"
 #include "core/math/even_times.h"
 #include "core/math/signed_drop.h"
-#include "core/math/stray_positions.h"
+#include "core/math/false_positions.h"
 #include "core/math/time_gap.h"
 #include "core/math/unseen_positions.h"
 #include "core/track/column_table.h"

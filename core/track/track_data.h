@@ -47,7 +47,7 @@ struct TrackData {
 };
 
 /// Leaves out the values that a sensor or a tracker writes while it sees nothing (core/math/unseen_positions.h), then
-/// the positions of something else (core/math/stray_positions.h), with notes that count them.
+/// the positions of something else (core/math/false_positions.h), with notes that count them.
 void leave_out_false_positions(TrackData& track);
 
 /// Takes every point of a track from a file as a frame in which the object was seen, without false ones; the frame
