@@ -15,9 +15,9 @@
 #include "base/errors.h"
 #include "base/math/angles.h"
 #include "core/experiment/file_names.h"
+#include "core/math/false_positions.h"
 #include "core/math/plane_path.h"
 #include "core/math/quantile.h"
-#include "core/math/unseen_positions.h"
 
 namespace glidelab::core {
 

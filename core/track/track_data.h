@@ -46,8 +46,8 @@ struct TrackData {
   std::vector<double> v_m_s = {};  ///< measured speeds in place of positions: x_m and force_n are empty then
 };
 
-/// Leaves out the values that a sensor or a tracker writes while it sees nothing (core/math/unseen_positions.h), then
-/// the positions of something else (core/math/stray_positions.h), with notes that count them.
+/// Leaves out the values that a sensor or a tracker writes while it sees nothing, then the positions of something else
+/// (core/math/false_positions.h), with notes that count them.
 void leave_out_false_positions(TrackData& track);
 
 /// Takes every point of a track from a file as a frame in which the object was seen, without false ones; the frame

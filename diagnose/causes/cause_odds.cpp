@@ -23,11 +23,6 @@ constexpr double kLeftPower = 0.5;  // of the part that is left, where the noise
 constexpr double kNoClipHeldOut = -1.0;                   // the excess of a gap of 0: no clip was held out
 constexpr double kLeastExcess = 0.1, kMostExcess = 10.0;  // limits of E in cause_odds.h
 
-bool makes_a_gap(const Hypothesis& hypothesis) {
-  return std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
-                     [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
-}
-
 /// The remainder of the nominal model contains friction and drag of each clip too, so clip scatter has at least its
 /// evidence.
 bool is_clip_scatter(const Hypothesis& hypothesis) {
@@ -117,7 +112,7 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
     if (of_drag && is_beside_drag_of_air(one)) {
       log += named(before(one)) - kLeftSlope * part_left(*of_drag, before(one));
       log += named(*of_drag) - kLeftSlope * part_left(left[static_cast<std::size_t>(one.fit)], *of_drag);
-    } else if (claims_part_of_gap(comparison, one)) {
+    } else if (shows_in_gap(one, comparison.by_stated)) {
       log += named(before(one)) - kLeftSlope * *one.left;
     }
     if (one.unnamed && one.effects.empty()) {
@@ -161,7 +156,7 @@ void weigh_beside_remainder(const LeftExcess& excess, Comparison& comparison) {
     unknown = std::prev(all.end());
   }
   for (Hypothesis& one : all) {
-    if (one.unnamed || !makes_a_gap(one)) continue;
+    if (one.unnamed || !shows_in_gap(one)) continue;
     unknown->probability += kImitatedPart * one.probability;
     one.probability *= 1.0 - kImitatedPart;
   }

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "base/math/angles.h"

@@ -46,11 +46,6 @@ void trust(std::size_t main, const std::vector<std::size_t>& best, Comparison& c
 
 }  // namespace
 
-bool shows_in_gap(const Hypothesis& explanation) {
-  return std::any_of(explanation.effects.begin(), explanation.effects.end(),
-                     [](std::size_t e) { return takes_part_of_gap(effect_list()[e].search); });
-}
-
 bool may_displace(const CauseSequence& likelier, const CauseSequence& named) {
   return likelier.named_share >= kHalfOfGap || named.named_share < kHalfOfGap;
 }
@@ -58,7 +53,8 @@ bool may_displace(const CauseSequence& likelier, const CauseSequence& named) {
 bool needs_no_share(const CauseSequence& sequence, const Hypothesis& named, const Comparison& comparison) {
   const bool by_stated = std::any_of(named.effects.begin(), named.effects.end(),
                                      [&](std::size_t e) { return comparison.by_stated.contains(e); });
-  return by_stated && !claims_part_of_gap(comparison, named) && sequence.gap_before * sequence.gap_before - 1.0 < 1.0;
+  return by_stated && !shows_in_gap(named, comparison.by_stated) &&
+         sequence.gap_before * sequence.gap_before - 1.0 < 1.0;
 }
 
 void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
@@ -93,7 +89,7 @@ void set_unknown(double unknown, Comparison& comparison) {
 
 void move_minorities_to_unknown(Comparison& comparison) {
   for (Hypothesis& one : comparison.all) {
-    if (one.unnamed || !claims_part_of_gap(comparison, one) || one.left.value_or(0.0) <= 1.0 - kHalfOfGap) continue;
+    if (one.unnamed || !shows_in_gap(one, comparison.by_stated) || one.left.value_or(0.0) <= 1.0 - kHalfOfGap) continue;
     std::set<std::size_t> kept(one.effects.begin(), one.effects.end());
     std::erase_if(kept, [&](std::size_t e) { return !comparison.by_stated.contains(e); });
     const Hypothesis* stated = kept.empty() ? nullptr : find(comparison, kept);

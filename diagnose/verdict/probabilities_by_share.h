@@ -20,9 +20,6 @@ inline constexpr double kUnknownIfLess = 0.5 + 1e-9;  ///< the least probability
 inline constexpr double kMostOfGap = 0.75;  ///< of the excess: the least by which a law is named by its share alone
 inline constexpr double kProbabilityByShare = 0.8;  ///< the probability of a law that is named by its share
 
-/// Whether any effect of an explanation contributes to the gap.
-bool shows_in_gap(const Hypothesis& explanation);
-
 /// Whether a likelier cause alone may replace the named ones: it takes half of the gap itself, or they take less as
 /// well. A name that explains the gap does not give way to one that would make the cause unknown.
 bool may_displace(const CauseSequence& likelier, const CauseSequence& named);

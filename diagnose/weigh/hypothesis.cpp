@@ -158,10 +158,9 @@ std::vector<std::size_t> alike_in(const ScoreSpace& space, const std::vector<Eff
   return alike;
 }
 
-bool claims_part_of_gap(const Comparison& comparison, const Hypothesis& hypothesis) {
-  return std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(), [&](std::size_t e) {
-    return takes_part_of_gap(effect_list()[e].search) && !comparison.by_stated.contains(e);
-  });
+bool shows_in_gap(const Hypothesis& hypothesis, const std::set<std::size_t>& except) {
+  return std::any_of(hypothesis.effects.begin(), hypothesis.effects.end(),
+                     [&](std::size_t e) { return takes_part_of_gap(effect_list()[e].search) && !except.contains(e); });
 }
 
 bool has(const Hypothesis& hypothesis, std::size_t effect) {

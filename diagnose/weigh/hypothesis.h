@@ -91,8 +91,9 @@ void fit_best(const TrackSet& set, const MotionFit& base, const std::vector<cons
 /// decreasing probability.
 void set_probabilities(Comparison& comparison);
 
-/// Whether any effect of a hypothesis would take part of the gap, beside those that are known by stated inclinations.
-bool claims_part_of_gap(const Comparison& comparison, const Hypothesis& hypothesis);
+/// Whether any effect of a hypothesis contributes to the gap. Effects in `except` do not count, such as those that are
+/// known by stated inclinations (Comparison::by_stated).
+bool shows_in_gap(const Hypothesis& hypothesis, const std::set<std::size_t>& except = {});
 
 /// Whether an effect is among a hypothesis' own.
 bool has(const Hypothesis& hypothesis, std::size_t effect);

@@ -28,7 +28,7 @@ Eigen::MatrixXd times_k(cv::Size grid, const Eigen::MatrixXd& columns) {
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
       Eigen::MatrixXd field(grid.width, grid.height);
       for (Eigen::Index k = 0; k < field.size(); ++k) field(k) = columns(2 * k + axis, c);
-      const Eigen::MatrixXd smooth = across * field * down;
+      const Eigen::MatrixXd smooth = base::product(base::product(across, field), down);
       for (Eigen::Index k = 0; k < field.size(); ++k) product(2 * k + axis, c) = smooth(k);
     }
   }
@@ -67,6 +67,7 @@ void add_view(const ViewResiduals& view, Moments& moments) {
   const Eigen::MatrixXd kp = times_k(view.grid, p), wp = times_w(view.grid, p);
   const Matrix6 g = base::inverse_positive(base::transposed_product(p, p));
   const Matrix6 pkp = base::transposed_product(p, kp), pwp = base::transposed_product(p, wp);
+  const Matrix6 pkwp = base::transposed_product(kp, wp), pwwp = base::transposed_product(wp, wp);
   const auto coordinates = static_cast<double>(view.residual.size());
   const double pairs = 2.0 * ((view.grid.width - 1.0) * view.grid.height + (view.grid.height - 1.0) * view.grid.width);
   moments.squares += view.residual.squaredNorm();
@@ -75,9 +76,8 @@ void add_view(const ViewResiduals& view, Moments& moments) {
   moments.white_products -= (g * pwp).trace();
   moments.correlated_squares += coordinates - (g * pkp).trace();
   moments.correlated_products += pairs * std::exp(-0.5 / (kCorrelationLength * kCorrelationLength)) -
-                                 2.0 * (g * (kp.transpose() * wp)).trace() + (g * pkp * g * pwp).trace();
-  moments.products_variance +=
-      2.0 * (0.5 * pairs - 2.0 * (g * (wp.transpose() * wp)).trace() + (g * pwp * g * pwp).trace());
+                                 2.0 * (g * pkwp).trace() + (g * pkp * g * pwp).trace();
+  moments.products_variance += 2.0 * (0.5 * pairs - 2.0 * (g * pwwp).trace() + (g * pwp * g * pwp).trace());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "core/math/stray_positions.h"
+#include "core/math/false_positions.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,0 +1,55 @@
+/// Positions in a recording that are not the body's. A body does not jump, so that positions behind a jump are not its
+/// own.
+///
+/// A jump is a step at more than four times the speed of the motion. That is the speed of nine tenths of all steps or,
+/// if larger, the median of the six steps nearest to the jump on the side of the motion.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace glidelab::core {
+
+/// Values that a sensor or a tracker writes while it sees nothing: the same number again and again, usually 0, far from
+/// where the body is.
+struct UnseenPositions {
+  std::vector<bool> is_unseen;  ///< of each position
+  std::size_t count = 0;
+  double value = 0.0;   ///< of the first of them
+  double from_s = 0.0;  ///< its time
+};
+
+/// A run of four exactly equal values or more is not a place of the body if all of its sides (one at the start or the
+/// end of the recording, both in between) are jumps. Steps that touch a value of such runs do not count for the speed
+/// of the motion. A rest is reached and left at that speed, however coarse the positions or the times are.
+///
+/// A value found in this way means the same elsewhere: runs of four at this value are not places either, nor are
+/// shorter ones with jumps on all sides.
+///
+/// Times rise. None if nothing is unseen, or if fewer than eight steps outside the runs show the speed of the motion.
+std::optional<UnseenPositions> unseen_positions(std::span<const double> t_s, std::span<const double> x);
+
+/// Positions of something else: a motion sensor that hears another object for a while, a tracker on another mark.
+struct StrayPositions {
+  std::vector<bool> is_stray;  ///< of each position
+  std::size_t count = 0;
+  double from_s = 0.0;  ///< the time of the first of them
+  double off = 0.0;     ///< the largest jump
+};
+
+/// A run of three positions or more, at most a tenth of all, is not of the body if jumps lead to it and from it, none
+/// lies within it, and the path goes on behind it where it ended before: the lines through the six positions on either
+/// side meet halfway to within a quarter of the smaller jump. At the start and at the end of a recording, where nothing
+/// shows the way back, a run of at most a twentieth of all positions is not of the body if the jump has more than
+/// twelve times the speed of the motion: more than frames that were lost would make of it. Steps of 0 do not count for
+/// that speed. Single positions and pairs are outliers (find_outliers).
+///
+/// Times rise. None if nothing strays, or if fewer than eight steps show the speed of the motion.
+std::optional<StrayPositions> stray_positions(std::span<const double> t_s, std::span<const double> x);
+
+/// The values without the flagged ones.
+std::vector<double> without_flagged(const std::vector<double>& values, const std::vector<bool>& flagged);
+
+}  // namespace glidelab::core
