@@ -381,7 +381,8 @@ void VerdictWithCauses::unname_what_explains_nothing() {
   const Hypothesis* best = best_named(set_, first_);
   if (best == nullptr || best->fit <= 0 || !shows_in_gap(*best)) return;
   const bool misleads = has_gap(set_, first_.fits[static_cast<std::size_t>(best->fit)]);
-  if (misleads || !is_likelier_than_not(set_, first_, *best)) move_to_none(shows_in_gap, first_);
+  if (misleads || !is_likelier_than_not(set_, first_, *best))
+    move_to_none([](const Hypothesis& one) { return shows_in_gap(one); }, first_);
 }
 
 /// Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no parameter
