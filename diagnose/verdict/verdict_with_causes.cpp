@@ -288,12 +288,14 @@ void VerdictWithCauses::size_causes() {
 }
 
 /// Whether some viscous drag is clearly likelier by the positions alone than any quadratic one and leaves less, each
-/// with what acts beside it.
+/// with what acts beside it. Bumpers and cables do not count: nothing but air touches the body.
 bool VerdictWithCauses::viscous_leaves_less() const {
   const std::size_t drag = effect_index(ids::quadratic_drag), power = effect_index(ids::power_law_drag);
+  const std::size_t bumper = effect_index(ids::end_stop), cable = effect_index(ids::tether);
   const Hypothesis *viscous = nullptr, *quadratic = nullptr;
   for (const Hypothesis& one : by().all) {
     if (one.unnamed || one.fit < 0 || !one.converged || has(one, power)) continue;
+    if (has(one, bumper) || has(one, cable)) continue;
     const Hypothesis*& best = has(one, drag) ? quadratic : viscous;
     if (best == nullptr || one.log_evidence > best->log_evidence) best = &one;
   }
