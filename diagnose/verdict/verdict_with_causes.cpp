@@ -295,7 +295,7 @@ bool VerdictWithCauses::viscous_leaves_less() const {
   const Hypothesis *viscous = nullptr, *quadratic = nullptr;
   for (const Hypothesis& one : by().all) {
     if (one.unnamed || one.fit < 0 || !one.converged || has(one, power)) continue;
-    if (has(one, bumper) || has(one, cable)) continue;
+    if (!has(one, drag) && (has(one, bumper) || has(one, cable))) continue;
     const Hypothesis*& best = has(one, drag) ? quadratic : viscous;
     if (best == nullptr || one.log_evidence > best->log_evidence) best = &one;
   }
