@@ -130,7 +130,7 @@ body { margin: 0; background: var(--paper); color: var(--ink); line-height: 1.5;
 main { max-width: 1240px; margin: 0 auto; padding: 1.2rem 1rem 3rem; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0.4rem 0 0.2rem; overflow-wrap: anywhere; }
 h1 small { display: block; font-size: 1rem; font-weight: 400; color: var(--soft); }
-h1 + p + #meaning, summary + #meaning { display: none; }
+h1 + #meaning, h1 + p + #meaning, summary + #meaning { display: none; }
 h2 { font-size: 1.3rem; margin: 2.2rem 0 0.5rem; padding-bottom: 0.2rem; border-bottom: 2px solid var(--line); }
 h3 { font-size: 1.08rem; margin: 1.6rem 0 0.4rem; overflow-wrap: anywhere; }
 p, li { max-width: 78ch; overflow-wrap: anywhere; }
