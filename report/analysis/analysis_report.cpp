@@ -205,15 +205,8 @@ std::string analysis_text(const core::AnalysisResults& results) {
                      text_table(rows, 3);
   if (!doubts.empty()) text += fmt::format("* {}\n", kIfItHeld);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
-  rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
   std::string notes;
   for (const core::ConfigurationResult& c : results.configurations) {
-    for (const auto& [name, quantity] : quantities_of(c)) {
-      if (!quantity->estimate || !quantity->smoothing_correction) continue;
-      const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      rows.push_back({configuration_name(results, c), with_unit(name.symbol, name.unit),
-                      base::value_text(quantity->estimate->value - correction, sd), base::error_text(-correction, sd)});
-    }
     for (const core::Note& note : c.notes) {
       notes += fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)),
                            base::printable_text(note_words(note)));
@@ -225,7 +218,6 @@ std::string analysis_text(const core::AnalysisResults& results) {
         notes += fmt::format("{}: {}\n", base::printable_text(clip.name), base::printable_text(note_words(note)));
     }
   }
-  if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));
   if (!notes.empty()) text.append("\n").append(notes);
   for (const std::string& doubt : doubts)
     text += fmt::format("{}{}\n", &doubt == &doubts.front() ? "\n" : "", base::printable_text(doubt));
@@ -317,12 +309,13 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
                      const Html& with_causes) {
   Html body = question_heading(title, "What are K/m, µ and α?");
   body += left_out_html(results.left_out);
-  // Whether the law fits, and what the numbers mean, comes before the numbers.
+  // The numbers come first, unless they may not be those of the track: then that does.
   const bool in_doubt = !doubts_about(results).empty();
   const bool few = results.configurations.size() <= kFew;
-  body += in_doubt || few ? meaning_of(results) : fits_sentence(results);
+  if (in_doubt) body += meaning_of(results);
   body += answer_html(results) + fmt::format("<p class=\"soft\">From the {}, {}.</p>\n",
                                              escape(estimator_name(results.estimator)), size_words(results));
+  if (!in_doubt) body += few ? meaning_of(results) : fits_sentence(results);
   body += answer_plot(results) + recovered_section(results) + with_causes;
   if (!in_doubt) body += bent_lines_note(results);
   if (!in_doubt && !few) body += folded("In words", meaning_of(results));
