@@ -188,13 +188,12 @@ std::string analysis_answer(const core::AnalysisResults& results, std::string_vi
 std::string analysis_text(const core::AnalysisResults& results) {
   const std::vector<std::string> doubts = doubts_about(results);
   const std::string mark = doubts.empty() ? "" : " *";
-  std::vector<std::vector<std::string>> rows = {{"mass (kg)", "stated α (°)", "group", "K/m (1/s)" + mark, "µ" + mark,
-                                                 "α (°)" + mark, "terminal velocity (m/s)" + mark, "R² v<0", "R² v>0"}};
+  std::vector<std::vector<std::string>> rows = {{"configuration", "K/m (1/s)" + mark, "µ" + mark, "α (°)" + mark,
+                                                 "terminal velocity (m/s)" + mark, "R² v<0", "R² v>0"}};
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
-    rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), c.group,
-                    quantity_text(c.k_over_m_1_s), quantity_text(c.mu), quantity_text(c.alpha_deg),
-                    quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
+    rows.push_back({configuration_name(results, c), quantity_text(c.k_over_m_1_s), quantity_text(c.mu),
+                    quantity_text(c.alpha_deg), quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
     for (const std::string& words : undetermined_words(c)) {
       reasons +=
           fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)), base::printable_text(words));
@@ -202,7 +201,7 @@ std::string analysis_text(const core::AnalysisResults& results) {
   }
   std::string text = left_out_text(results.left_out) +
                      analysis_answer(results, " (but the law is in doubt: see below the table)") + "\n\n" +
-                     text_table(rows, 3);
+                     text_table(rows, 1);
   if (!doubts.empty()) text += fmt::format("* {}\n", kIfItHeld);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
   std::string notes;

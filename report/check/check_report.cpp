@@ -364,7 +364,6 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
     if (!meaning.empty()) meanings += fmt::format("{}“{}”: {}", meanings.empty() ? "" : "; ", column->title, meaning);
   }
   HtmlTable table(header);
-  table.stack_when_narrow(1);
   for (const core::ClipCheck& clip : check.clips) {
     std::vector<std::string> cells = {escape(clip.name)};
     for (const ClipColumn* const column : columns) cells.push_back(cell_of(*column, clip));

@@ -396,11 +396,12 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
     cells[0] = escape(cells[0]);
     table.row(cells);
   }
-  body += "<h2 id=\"table\">Every quantity</h2>\n" + table.str();
-  body +=
+  Html every = table.str();
+  every +=
       "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
       "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the fraction "
       "of 95 % intervals that contain the true value, with its own 95 % interval (Clopper and Pearson).</p>\n";
+  body += folded("Every quantity", every);
   if (coverage.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*coverage.outside)));
   if (!coverage.levels.empty()) {
     Html levels = any ? figures({reliability_plot(coverage)}) : Html();

@@ -187,6 +187,7 @@ details.part[open] { padding-bottom: 0.8rem; }
   table.stack, table.stack tbody { display: block; } table.stack thead { display: none; }
   table.stack tr { display: grid; grid-template-columns: minmax(42%, auto) auto; gap: 0.1rem 0.6rem; padding: 0.45rem 0; border-bottom: 1px solid var(--line); }
   table.stack td { border: 0; padding: 0; text-align: left; } table.stack td:not([data-title]) { grid-column: 1 / -1; font-weight: 600; white-space: normal; }
+  table.stack td.n, table.stack td.s { white-space: normal; } table.stack td.t { grid-column: 1 / -1; min-width: 0; }
   table.stack td[data-title]::before { content: attr(data-title); display: block; color: var(--soft); font-size: 0.82rem; white-space: normal; }
   table.numbered td:first-child, table.numbered td:nth-child(2) { grid-row: 1; } table.numbered td:nth-child(2) { padding-left: 1.8rem; } }
 @media print {

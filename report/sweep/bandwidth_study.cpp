@@ -303,7 +303,7 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
   std::vector<PlotData> data = {errors, best};
   std::string script =
       std::string(kFrame) +
-      "set key at screen 0.5, screen 0.99 center top font ',13' maxcols 2 samplen 1.6\n"
+      "set key at screen 0.5, screen 0.99 center top font ',11' maxcols 2 samplen 1.6\n"
       "set tmargin at screen 0.76\nset logscale xy\nset offsets 0,0,0,0\n"
       "set xlabel 'bandwidth h (s)'\n" +
       fmt::format("set ylabel {}\nset xrange [{:.6g}:{:.6g}]\n",

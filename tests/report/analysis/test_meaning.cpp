@@ -2,7 +2,9 @@
 #include "report/analysis/doubts.h"
 
 #include <limits>
+#include <sstream>
 
+#include "base/text/wrapped_text.h"
 #include "core/result/estimate.h"
 #include "report/blind/blind_report.h"
 #include "report/characterize/camera_report.h"
@@ -10,6 +12,7 @@
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
 #include "report/diagnosis/words/verdict_words.h"
+#include "report/text/display_text.h"
 #include "report/validation/validation_report.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
@@ -155,6 +158,22 @@ TEST_CASE("the page of an analysis begins with the numbers, then says that the l
   CHECK(report::meaning_of(results).find("no clear departure from the law") == std::string::npos);
   results.configurations[0].k_over_m_1_s = results.configurations[0].mu = {};
   CHECK(report::meaning_of(results).find("no clear departure from the law") == std::string::npos);
+}
+
+TEST_CASE("on a terminal an analysis is its answer and a table that fits, a configuration a row") {
+  core::AnalysisResults results = one_clip();
+  const std::string text = report::analysis_text(results);
+  INFO(text);
+  CHECK(text.starts_with("K/m = "));
+  std::istringstream lines(text.substr(text.find("\n\n")));
+  std::string line;
+  std::size_t rows = 0;
+  while (std::getline(lines, line)) {
+    if (!line.starts_with(report::configuration_name(results, results.configurations[0]) + "  ")) continue;
+    ++rows;
+    CHECK(base::characters_in(line) <= base::kTerminalWidth);
+  }
+  CHECK(rows >= 1);
 }
 
 TEST_CASE("a reason for several missing quantities is told once") {

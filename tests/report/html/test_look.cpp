@@ -111,6 +111,37 @@ TEST_CASE("a page that begins with its answer has no heading above it") {
   CHECK(says(*dom, "shown=\"none\""));
 }
 
+TEST_CASE("in a narrow block two long cells stand side by side without overlap, and prose has the whole width") {
+  const tests::TempDir temp;
+  report::HtmlTable table({"what", "found", "wanted", "in words"}, 1);
+  table.stack_when_narrow(1);
+  const std::string found = "50 % (2 of 4; 95 %: 7 to 93 %) of so many cases as these";
+  table.row({"the main cause is named first", found, "at least 85 %: missed by a lot", "–"});
+  report::HtmlTable prose({"effect", "what it is"}, 2);
+  prose.stack_when_narrow(1);
+  const std::string words = "a drag that grows with the square of the speed, such as that of air: a force −c v |v|";
+  prose.row({"quadratic drag", words + "; " + words});
+  std::string html = report::page("look", report::Html(table.str() + prose.str())).html;
+  html.insert(html.find("</body>"),
+              "<script>const said = document.documentElement.dataset;\n"
+              "const inside = (cell) => { const range = document.createRange(); range.selectNodeContents(cell);\n"
+              "  return range.getBoundingClientRect(); };\n"
+              "const [tables, texts] = document.querySelectorAll('table');\n"
+              "const cells = tables.querySelectorAll('td');\n"
+              "said.apart = inside(cells[1]).right <= inside(cells[2]).left || "
+              "inside(cells[1]).bottom <= inside(cells[2]).top;\n"
+              "said.wide = texts.querySelectorAll('td')[1].clientWidth > 0.9 * texts.clientWidth;</script>");
+  base::write_file(temp / "page.html", html);
+  const auto dom =
+      browser(temp.path(), {"--window-size=500,900", "--dump-dom", "file://" + (temp / "page.html").string()});
+  if (!dom) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  CHECK(says(*dom, "apart=\"true\""));
+  CHECK(says(*dom, "wide=\"true\""));
+}
+
 TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one line, and numbers no width for names") {
   const tests::TempDir temp;
   base::write_file(temp / "page.html",
