@@ -133,7 +133,7 @@ void analyze(const AnalyzeOptions& options) {
   staged.publish_files();
   display.clear();
 
-  print_result(options.common.json ? report::results_json(results, with)
+  print_answer(options.common.json ? report::results_json(results, with)
                                    : report::analysis_text(results) +
                                          (given ? report::given_causes_text(results, *given) : std::string()));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));

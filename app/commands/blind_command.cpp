@@ -76,7 +76,7 @@ void blind(const BlindCommand& options) {
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
-  print_result(options.common.json ? json : report::blind_text(run));
+  print_answer(options.common.json ? json : report::blind_text(run));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 

@@ -66,7 +66,7 @@ void certify(const CertifyCommand& options, bool bandwidth_given) {
   staged.publish_files();
   display.clear();
 
-  print_result(options.common.json ? json : report::certificate_text(certificate));
+  print_answer(options.common.json ? json : report::certificate_text(certificate));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say(options.common, fmt::format("{} twins and their changes in {:.0f} s; report: {}", certificate.runs, seconds,
                                   (out / "report.html").string()));

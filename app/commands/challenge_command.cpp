@@ -121,7 +121,7 @@ void score(const ChallengeCommand& options) {
   report::write_page(staged.dir(), "report.html", report::challenge_page(scored));
   throw_if_interrupted();
   staged.publish_files();
-  print_result(options.common.json ? json : report::challenge_text(scored));
+  print_answer(options.common.json ? json : report::challenge_text(scored));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 

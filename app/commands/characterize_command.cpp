@@ -44,7 +44,7 @@ void characterize(const CharacterizeOptions& options) {
   staged.publish_files();
   display.clear();
 
-  print_result(options.common.json ? json : report::camera_text(camera));
+  print_answer(options.common.json ? json : report::camera_text(camera));
   say(options.common, fmt::format("camera file: {}", (out / "camera.toml").string()));
   if (!camera.gain_dn_per_e.value) {
     say(options.common,

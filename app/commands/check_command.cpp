@@ -43,7 +43,7 @@ void check(const CheckOptions& options) {
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
-  print_result(options.common.json ? json : report::check_text(found));
+  print_answer(options.common.json ? json : report::check_text(found));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (!found.usable) {
     const report::WordedFinding worst = report::worded(found.findings).front();

@@ -67,7 +67,7 @@ void coverage_command(const CoverageCommand& options, bool bandwidth_given, bool
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
-  print_result(options.common.json ? json : report::coverage_text(coverage));
+  print_answer(options.common.json ? json : report::coverage_text(coverage));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (std::all_of(coverage.rows.begin(), coverage.rows.end(),
                   [](const validate::CoverageRow& row) { return row.determined == 0; })) {

@@ -107,7 +107,7 @@ void plan(const DiagnoseCommand& options) {
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
-  print_result(options.common.json ? report::plan_json(plan) : report::plan_text(plan));
+  print_answer(options.common.json ? report::plan_json(plan) : report::plan_text(plan));
   say(options.common, fmt::format("plan: {}", (out / (options.no_page ? "plan.json" : "plan.html")).string()));
 }
 
@@ -145,7 +145,7 @@ void diagnose(const DiagnoseCommand& options) {
   display.clear();
   if (!options.twin.empty() && !diagnosis.twin.empty()) write_whole(options.twin, diagnosis.twin);
 
-  print_result(options.common.json ? report::diagnosis_json(diagnosis) : report::diagnosis_text(diagnosis));
+  print_answer(options.common.json ? report::diagnosis_json(diagnosis) : report::diagnosis_text(diagnosis));
   say(options.common, options.no_page ? fmt::format("diagnosis: {}", (out / "diagnosis.json").string())
                                       : fmt::format("report: {}", (out / "report.html").string()));
   if (options.twin.empty()) return;

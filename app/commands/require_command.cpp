@@ -66,7 +66,7 @@ void require_command(const RequireOptions& options) {
   throw_if_interrupted();
   staged.publish_files();
   display.clear();
-  print_result(options.common.json ? json : report::requirement_text(requirement));
+  print_answer(options.common.json ? json : report::requirement_text(requirement));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
   if (!requirement.any_reached()) {
     throw base::NotMet(fmt::format("{}: nothing reaches {}", options.sweep, fmt::join(options.targets, ", ")));

@@ -52,7 +52,7 @@ void simulate_command(const SimulateOptions& options) {
   staged.publish_files();
   display.clear();
 
-  print_result(options.common.json ? report::simulation_json(clips) : report::simulation_text(clips));
+  print_answer(options.common.json ? report::simulation_json(clips) : report::simulation_text(clips));
   say(options.common, fmt::format("trajectories: {}", out.string()));
 }
 

@@ -101,7 +101,7 @@ void finish(const SweepOptions& options, const validate::Sweep& sweep, validate:
     staged.publish_files();
   }
   display.clear();
-  print_result(options.common.json ? report::sweep_json(summary) : report::sweep_text(summary));
+  print_answer(options.common.json ? report::sweep_json(summary) : report::sweep_text(summary));
   if (page) say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 

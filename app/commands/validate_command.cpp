@@ -77,7 +77,7 @@ void validate_command(const ValidateOptions& options) {
   staged.publish_files();
   display.clear();
 
-  print_result(options.common.json ? comparison : report::comparison_text(result.comparison));
+  print_answer(options.common.json ? comparison : report::comparison_text(result.comparison));
   say(options.common, fmt::format("report: {}", (out / "report.html").string()));
 }
 

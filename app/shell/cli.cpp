@@ -26,11 +26,12 @@
 #include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/text/nearest_word.h"
+#include "base/text/wrapped_text.h"
 
 namespace glidelab::app {
 namespace {
 
-/// CLI11's formatter, except for the words of an option that takes one of many.
+/// CLI11's formatter, except for the words of an option that takes one of many, and for lines that fit a terminal.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override {
@@ -39,6 +40,25 @@ class HelpFormatter : public CLI::Formatter {
     const std::size_t at = text.find(type);
     return type.empty() || at == std::string::npos ? text : text.replace(at, type.size(), shown_type(*option));
   }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return base::wrapped(CLI::Formatter::make_option_desc(option), base::kTerminalWidth - get_column_width());
+  }
+  std::string make_description(const CLI::App* app) const override {
+    return base::wrapped(CLI::Formatter::make_description(app), base::kTerminalWidth);
+  }
+  std::string make_footer(const CLI::App* app) const override {
+    return base::wrapped(CLI::Formatter::make_footer(app), base::kTerminalWidth);
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream text;
+    CLI::detail::format_help(text, command->get_name(),
+                             base::wrapped(command->get_description(), base::kTerminalWidth - kCommandWidth),
+                             kCommandWidth);
+    return text.str();
+  }
+
+ private:
+  static constexpr std::size_t kCommandWidth = 15;  // the longest name, with two spaces on both sides
 };
 
 constexpr int kDone = 0;

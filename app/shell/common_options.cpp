@@ -1,6 +1,7 @@
 #include "app/shell/common_options.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <CLI/App.hpp>
@@ -17,6 +18,7 @@
 #include "app/shell/run_control.h"
 #include "base/errors.h"
 #include "base/files/file_io.h"
+#include "base/text/wrapped_text.h"
 #include "base/toml/strict_toml.h"
 #include "fit/estimators.h"
 
@@ -186,6 +188,14 @@ std::string check_noise_m(const std::string& text) {
 void print_result(std::string_view text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (!written || std::fflush(stdout) != 0) base::throw_system_error("standard output", "cannot be written", errno);
+}
+
+void print_answer(std::string_view text) {
+  winsize window{};
+  const bool on_terminal = ::isatty(STDOUT_FILENO) == 1 && !text.starts_with('{');
+  if (!on_terminal) return print_result(text);
+  const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
+  print_result(base::prose_wrapped(text, known ? window.ws_col : base::kTerminalWidth));
 }
 
 void say(const CommonOptions& options, std::string_view line) {

@@ -92,6 +92,10 @@ std::string check_noise_m(const std::string& text);
 /// Writes to standard output and flushes it; EnvironmentError if that fails.
 void print_result(std::string_view text);
 
+/// The same for sentences and tables: on a terminal the sentences are wrapped to the width of the window. JSON stays,
+/// and so does what is written to a file or a pipe, where the answer is the whole first line.
+void print_answer(std::string_view text);
+
 /// One line on standard error, unless --quiet.
 void say(const CommonOptions& options, std::string_view line);
 

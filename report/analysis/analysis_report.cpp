@@ -188,13 +188,12 @@ std::string analysis_answer(const core::AnalysisResults& results, std::string_vi
 std::string analysis_text(const core::AnalysisResults& results) {
   const std::vector<std::string> doubts = doubts_about(results);
   const std::string mark = doubts.empty() ? "" : " *";
-  std::vector<std::vector<std::string>> rows = {{"mass (kg)", "stated α (°)", "group", "K/m (1/s)" + mark, "µ" + mark,
-                                                 "α (°)" + mark, "terminal velocity (m/s)" + mark, "R² v<0", "R² v>0"}};
+  std::vector<std::vector<std::string>> rows = {{"configuration", "K/m (1/s)" + mark, "µ" + mark, "α (°)" + mark,
+                                                 "terminal velocity (m/s)" + mark, "R² v<0", "R² v>0"}};
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
-    rows.push_back({fmt::format("{:.6g}", c.mass_kg), fmt::format("{:.4g}", c.incline_deg), c.group,
-                    quantity_text(c.k_over_m_1_s), quantity_text(c.mu), quantity_text(c.alpha_deg),
-                    quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
+    rows.push_back({configuration_name(results, c), quantity_text(c.k_over_m_1_s), quantity_text(c.mu),
+                    quantity_text(c.alpha_deg), quantity_text(c.v_lim_m_s), r2_of(c, -1), r2_of(c, 1)});
     for (const std::string& words : undetermined_words(c)) {
       reasons +=
           fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)), base::printable_text(words));
@@ -202,18 +201,11 @@ std::string analysis_text(const core::AnalysisResults& results) {
   }
   std::string text = left_out_text(results.left_out) +
                      analysis_answer(results, " (but the law is in doubt: see below the table)") + "\n\n" +
-                     text_table(rows, 3);
+                     text_table(rows, 1);
   if (!doubts.empty()) text += fmt::format("* {}\n", kIfItHeld);
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
-  rows = {{"configuration", "quantity", "uncorrected", "subtracted for smoothing"}};
   std::string notes;
   for (const core::ConfigurationResult& c : results.configurations) {
-    for (const auto& [name, quantity] : quantities_of(c)) {
-      if (!quantity->estimate || !quantity->smoothing_correction) continue;
-      const double sd = quantity->estimate->sd, correction = *quantity->smoothing_correction;
-      rows.push_back({configuration_name(results, c), with_unit(name.symbol, name.unit),
-                      base::value_text(quantity->estimate->value - correction, sd), base::error_text(-correction, sd)});
-    }
     for (const core::Note& note : c.notes) {
       notes += fmt::format("{}: {}\n", base::printable_text(configuration_name(results, c)),
                            base::printable_text(note_words(note)));
@@ -225,7 +217,6 @@ std::string analysis_text(const core::AnalysisResults& results) {
         notes += fmt::format("{}: {}\n", base::printable_text(clip.name), base::printable_text(note_words(note)));
     }
   }
-  if (rows.size() > 1) text.append("\n").append(text_table(rows, 2));
   if (!notes.empty()) text.append("\n").append(notes);
   for (const std::string& doubt : doubts)
     text += fmt::format("{}{}\n", &doubt == &doubts.front() ? "\n" : "", base::printable_text(doubt));
@@ -317,12 +308,13 @@ Page analysis_report(const std::string& title, const core::AnalysisResults& resu
                      const Html& with_causes) {
   Html body = question_heading(title, "What are K/m, µ and α?");
   body += left_out_html(results.left_out);
-  // Whether the law fits, and what the numbers mean, comes before the numbers.
+  // The numbers come first, unless they may not be those of the track: then that does.
   const bool in_doubt = !doubts_about(results).empty();
   const bool few = results.configurations.size() <= kFew;
-  body += in_doubt || few ? meaning_of(results) : fits_sentence(results);
+  if (in_doubt) body += meaning_of(results);
   body += answer_html(results) + fmt::format("<p class=\"soft\">From the {}, {}.</p>\n",
                                              escape(estimator_name(results.estimator)), size_words(results));
+  if (!in_doubt) body += few ? meaning_of(results) : fits_sentence(results);
   body += answer_plot(results) + recovered_section(results) + with_causes;
   if (!in_doubt) body += bent_lines_note(results);
   if (!in_doubt && !few) body += folded("In words", meaning_of(results));

@@ -254,7 +254,7 @@ std::string corrections_html(const core::AnalysisResults& results) {
     }
   }
   if (table.empty()) return {};
-  return "<details><summary>Bias from smoothing, and its correction</summary>\n" + table.str() +
+  return "<details class=\"part\"><summary>Bias from smoothing, and its correction</summary>\n" + table.str() +
          "<p class=\"soft\">Smoothing biases the fitted lines. The law that was found is put through the same "
          "smoothing and the same fit without noise, and the excess is subtracted. The lines themselves, their slopes "
          "and R² are not corrected.</p></details>\n";
@@ -281,8 +281,8 @@ std::vector<std::string> undetermined_words(const core::ConfigurationResult& con
 std::string recovered_section(const core::AnalysisResults& results) {
   const bool in_doubt = !doubts_about(results).empty();
   const std::string mark = in_doubt ? " *" : "";
-  HtmlTable table({"mass", "stated incline", "group", "K/m (1/s)" + mark, "µ" + mark, "α (°)" + mark,
-                   "terminal velocity (m/s)" + mark, "R² (v &lt; 0)", "R² (v &gt; 0)"});
+  HtmlTable table({"mass", "stated α", "group", "K/m (1/s)" + mark, "µ" + mark, "α (°)" + mark,
+                   "terminal velocity (m/s)" + mark, "R² (v&nbsp;&lt;&nbsp;0)", "R² (v&nbsp;&gt;&nbsp;0)"});
   table.stack_when_narrow(1);
   std::string reasons;
   for (const core::ConfigurationResult& c : results.configurations) {
@@ -300,8 +300,8 @@ std::string recovered_section(const core::AnalysisResults& results) {
     for (const core::Note& note : c.notes)
       notes.push_back(fmt::format("{}: {}", configuration_name(results, c), note_words(note)));
   }
-  text += notes_html(notes) + corrections_html(results);
   text += "<p class=\"soft\">± is one standard deviation. α is the inclination as the motion itself shows it.</p>\n";
+  text += notes_html(notes) + corrections_html(results);
   if (!reasons.empty()) text += "<ul class=\"soft\">\n" + reasons + "</ul>\n";
   return text;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/text/number_text.h"
 #include "core/result/quantity.h"
 #include "report/blind/blind_words.h"
@@ -222,7 +224,7 @@ Json case_json(const validate::BlindOutcome& outcome) {
 std::string named_text(const validate::EverydaySaying& saying) {
   std::string text;
   for (const auto& name : saying.names) {
-    text += (text.empty() ? "" : " + ") + name.id;
+    text += (text.empty() ? "" : " + ") + effect_name(name.id);
     if (name.share) text += fmt::format(" {:.0f} %", 100.0 * *name.share);
   }
   return text;
@@ -230,11 +232,13 @@ std::string named_text(const validate::EverydaySaying& saying) {
 
 std::string everyday_cases_table(const BlindRun& run) {
   HtmlTable table({"case", "class", "truth", "excess", "verdict", "named", "forward selection"}, 7);
+  table.stack_when_narrow(2);
   for (const validate::BlindOutcome& outcome : run.outcomes) {
     const validate::EverydayTruth& truth = *outcome.everyday;
     std::string causes;
     for (std::size_t c = 0; c < outcome.causes.size(); ++c) {
-      causes += fmt::format("{}{} {:.0f} %", c == 0 ? "" : " + ", outcome.causes[c].id, 100.0 * truth.shares[c]);
+      causes +=
+          fmt::format("{}{} {:.0f} %", c == 0 ? "" : " + ", effect_name(outcome.causes[c].id), 100.0 * truth.shares[c]);
     }
     table.row({fmt::format("{}", outcome.index),
                fmt::format("{}, {}", words_of_class(std::string(validate::word(truth.kind))),
@@ -309,19 +313,27 @@ std::string everyday_json(const BlindRun& run) {
   return json_text(document);
 }
 
+namespace {
+
+/// "The main cause is named first in 77 % (…); 6 of 10 targets are met."
+std::string everyday_answer(const EverydayScore& score) {
+  const std::vector<EverydayTarget> targets = everyday_targets(score);
+  const auto bearing = std::ranges::count_if(targets, bears);
+  const auto met = std::ranges::count_if(targets, [](const auto& of) { return bears(of) && is_met(of); });
+  const EverydayTarget& first = targets.front();
+  if (!bears(first)) return fmt::format("{} of {} targets are met.", met, bearing);
+  return fmt::format("The main cause is named first in {}; {} of {} targets are met.", found_text(first), met, bearing);
+}
+
+}  // namespace
+
 std::string everyday_text(const BlindRun& run) {
   const EverydayScore& score = *run.everyday;
   TextRows rows = {{fmt::format("of {} everyday cases", run.outcomes.size()), "found", "wanted"}};
   for (const EverydayTarget& target : everyday_targets(score)) {
     rows.push_back({target.what, found_text(target), limits_text(target)});
   }
-  std::string text = text_table(rows, 1) + "\n";
-  rows = detail_rows(score);
-  rows.insert(rows.begin(), {"", "class", "strength", "by", "cases"});
-  text += text_table(rows, 4) + "\n";
-  rows = number_rows(score);
-  rows.insert(rows.begin(), {"", "of", ""});
-  return text + text_table(rows, 2);
+  return everyday_answer(score) + "\n\n" + text_table(rows, 1);
 }
 
 Page everyday_page(const BlindRun& run) {
@@ -329,31 +341,36 @@ Page everyday_page(const BlindRun& run) {
   const char* const question = "How often is the diagnosis right about experiments as students record them?";
   Html body = question_heading(fmt::format("blind cases: {} everyday tracks, seed {}", run.outcomes.size(), run.seed),
                                question);
+  body += meaning_section(fmt::format("<p><b>{}</b></p>\n", escape(everyday_answer(score))));
   body +=
       "<p class=\"soft\">The experiments were made by a generator that shares no model with the diagnosis, each with "
       "three to five small imperfections besides its causes. Each was diagnosed by a separate process that saw only "
       "the experiment folder.</p>\n";
   HtmlTable targets({"what", "found (95 % interval)", "wanted"});
+  targets.stack_when_narrow(1);
   for (const EverydayTarget& target : everyday_targets(score)) {
     const char* how = !bears(target) ? "" : is_met(target) ? ": met" : ": missed";
     targets.row({escape(target.what), escape(found_text(target)), escape(limits_text(target)) + how});
   }
   body += "<h2>Results against the targets</h2>\n" + targets.str();
   HtmlTable details({"what", "class", "strength", "by", "cases (95 % interval)"}, 5);
+  details.stack_when_narrow(1);
   for (const auto& row : detail_rows(score)) {
     details.row({escape(row[0]), escape(row[1]), escape(row[2]), escape(row[3]), escape(row[4])});
   }
-  body += "<h2>By class and strength</h2>\n" + details.str();
+  body += folded("By class and strength", details.str());
   HtmlTable numbers({"what", "of", "found"}, 3);
+  numbers.stack_when_narrow(1);
   for (const auto& row : number_rows(score)) numbers.row({escape(row[0]), escape(row[1]), escape(row[2])});
-  body += "<h2>Shares, intervals, probabilities</h2>\n" + numbers.str();
-  body +=
-      "<p class=\"soft\">The excess is g² - 1, g the gap of held-out clips without noise: 1.5 to 4 is moderate, "
-      "more is strong. A cause's share is the part of it that is removed when the cause is added to the law after "
-      "those before it. Forward selection takes the effect with the smallest held-out gap, then the one that lowers "
-      "the gap most when added to it, and claims them where they take half of the excess; it states no probability, "
-      "so each of its names counts as certain.</p>\n<h2>All cases</h2>\n" +
-      everyday_cases_table(run);
+  body += folded("Shares, intervals, probabilities", numbers.str());
+  body += folded(
+      "All cases",
+      everyday_cases_table(run) +
+          "<p class=\"soft\">The excess is g² - 1, g the gap of held-out clips without noise: 1.5 to 4 is moderate, "
+          "more is strong. A cause's share is the part of it that is removed when the cause is added to the law after "
+          "those before it. Forward selection takes the effect with the smallest held-out gap, then the one that "
+          "lowers the gap most when added to it, and claims them where they take half of the excess; it states no "
+          "probability, so each of its names counts as certain.</p>\n");
   return page(question, body);
 }
 

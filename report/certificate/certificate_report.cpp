@@ -57,13 +57,13 @@ bool is_headline(const CertifiedQuantity& quantity) {
   return quantity.quantity != core::key_of(core::Measurand::v_lim) && quantity.answered() > 0;
 }
 
-/// "K/m, µ, α": the quantities that were counted.
+/// "K/m, µ and α": the quantities that were counted.
 std::string headline_names(const Certificate& certificate) {
-  std::string names;
+  std::vector<std::string> names;
   for (const CertifiedQuantity& quantity : certificate.quantities) {
-    if (is_headline(quantity)) names += (names.empty() ? "" : ", ") + symbol_of(quantity.quantity);
+    if (is_headline(quantity)) names.push_back(symbol_of(quantity.quantity));
   }
-  return names;
+  return list_of(names);
 }
 
 double sureness(const CertifiedQuantity& quantity) {

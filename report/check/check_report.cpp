@@ -387,9 +387,7 @@ std::string clips_section(const core::RecordingCheck& check, const std::vector<c
 }  // namespace
 
 Page check_report(const core::RecordingCheck& check, const std::vector<core::Preview>& previews) {
-  Html body = question_heading(check.name, "Is this recording good enough?") +
-              "<p class=\"soft\">The recording, checked before any analysis.</p>\n";
-  body += check_meaning(check);
+  Html body = question_heading(check.name, "Is this recording good enough?") + check_meaning(check);
   body += findings_section(check) + pattern_section(check) + clips_section(check, previews);
   return page("Check of " + check.name, body);
 }
@@ -401,9 +399,9 @@ std::string check_text(const core::RecordingCheck& check) {
                         finding.advice.empty() ? "" : "; ", finding.advice);
   }
   const bool images = std::ranges::any_of(check.clips, [](const core::ClipCheck& clip) { return clip.images; });
-  std::vector<std::string> header = {"clip", "seen", "speed m/s"};
-  if (images) header.insert(header.end(), {"blur px", "marker px"});
-  header.emplace_back("noise mm");
+  std::vector<std::string> header = {"clip", "seen", "speed (m/s)"};
+  if (images) header.insert(header.end(), {"blur (px)", "marker (px)"});
+  header.emplace_back("noise (mm)");
   std::vector<std::vector<std::string>> rows = {header};
   for (const core::ClipCheck& clip : check.clips) {
     std::vector<std::string>& row = rows.emplace_back(header.size(), "-");

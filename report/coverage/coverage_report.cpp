@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/text/number_text.h"
+#include "base/text/readable_text.h"
 #include "report/html/gnuplot.h"
 #include "report/html/html.h"
 #include "report/html/plot.h"
@@ -102,6 +103,8 @@ namespace {
 std::string level_text(double level) {
   return base::number_text(100.0 * level, 4) + " %";
 }
+
+enum Cell : std::size_t { kBias = 2, kSd = 3, kStatedSd = 4, kCoverage = 7 };  // of cells_of()
 
 std::vector<std::string> cells_of(const validate::CoverageRow& row) {
   if (row.determined == 0)
@@ -332,37 +335,45 @@ std::string coverage_answer(const validate::Coverage& coverage) {
          (failing.empty() ? "" : fmt::format(": {}", fmt::join(failing, "; "))) + ".";
 }
 
-std::string coverage_text(const validate::Coverage& coverage) {
-  std::vector<std::vector<std::string>> rows = {{"configuration", "estimator", "quantity", "truth", "bias", "sd",
-                                                 "stated sd", "least sd", "efficiency", "coverage (95 % interval)",
-                                                 "values"}};
-  std::string configuration, estimator;
-  for (const validate::CoverageRow& row : coverage.rows) {
-    const bool first = row.configuration != configuration, other = first || row.estimator != estimator;
-    configuration = row.configuration;
-    estimator = row.estimator;
-    std::vector<std::string> cells = {first ? row.configuration : "", other ? row.estimator : ""};
-    for (std::string& cell : cells_of(row)) cells.push_back(std::move(cell));
-    rows.push_back(std::move(cells));
+namespace {
+
+/// The rows of one quantity of one configuration, an estimator each. The page has all columns, and every level.
+std::string quantity_text(const std::vector<const validate::CoverageRow*>& of) {
+  std::vector<std::vector<std::string>> rows = {{"estimator", "bias", "sd", "stated sd", "coverage (95 % interval)"}};
+  for (const validate::CoverageRow* row : of) {
+    const std::vector<std::string> cells = cells_of(*row);
+    rows.push_back({row->estimator, cells[kBias], cells[kSd], cells[kStatedSd], cells[kCoverage]});
   }
-  std::vector<std::vector<std::string>> levels = {{"configuration", "estimator", "quantity"}};
-  for (const double level : coverage.levels) levels.front().push_back(fmt::format("of {}", level_text(level)));
-  for (std::size_t i = 0; i < coverage.rows.size(); ++i) {
-    const validate::CoverageRow& row = coverage.rows[i];
-    levels.push_back({rows[i + 1][0], rows[i + 1][1], symbol_of(row.quantity)});
-    for (std::size_t k = 0; k < coverage.levels.size(); ++k) {
-      levels.back().push_back(k < row.levels.size() ? fmt::format("{:.1f} %", 100.0 * row.levels[k].coverage) : "–");
+  const validate::CoverageRow& first = *of.front();
+  return fmt::format("\n{}, {} = {}{}:\n{}", base::printable_text(first.configuration), symbol_of(first.quantity),
+                     base::value_text(first.truth, first.sd), unit_suffix(unit_of(first.quantity)),
+                     text_table(rows, 1));
+}
+
+}  // namespace
+
+std::string coverage_text(const validate::Coverage& coverage) {
+  std::vector<std::vector<const validate::CoverageRow*>> tables;
+  for (const validate::CoverageRow& row : coverage.rows) {
+    const auto same = std::ranges::find_if(tables, [&](const auto& of) {
+      return of.front()->configuration == row.configuration && of.front()->quantity == row.quantity;
+    });
+    if (same == tables.end()) {
+      tables.push_back({&row});
+    } else {
+      same->push_back(&row);
     }
   }
   const std::string answer = coverage_answer(coverage);
-  std::string text = (answer.empty() ? answer : answer + "\n\n") + text_table(rows, 3) +
-                     (coverage.levels.empty() ? std::string() : fmt::format("\n{}", text_table(levels, 3)));
+  std::string text = answer.empty() ? answer : answer + "\n";
+  for (const auto& of : tables) text += quantity_text(of);
   if (coverage.outside) text += "\n" + outside_text(*coverage.outside) + "\n";
   return text;
 }
 
 Page coverage_page(const std::string& title, const validate::Coverage& coverage) {
   Html body = question_heading(title, "How often do the stated intervals contain the true value?") +
+              coverage_meaning(coverage) +
               fmt::format(
                   "<p class=\"soft\">{} replicates of the scenario's motions as tracks, with {} of independent "
                   "noise in every position{}, a clock that is off by 20 ppm (one standard deviation) and no lost "
@@ -370,7 +381,6 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
                   "by each estimator.</p>\n",
                   coverage.replicates, noise_text(coverage),
                   coverage.camera_noise ? " (the least that the camera, the light and the marker allow)" : "");
-  body += coverage_meaning(coverage);
   const bool any = std::any_of(coverage.rows.begin(), coverage.rows.end(),
                                [](const validate::CoverageRow& row) { return row.determined > 0; });
   if (any) body += figures({coverage_plot(coverage)});
@@ -386,11 +396,12 @@ Page coverage_page(const std::string& title, const validate::Coverage& coverage)
     cells[0] = escape(cells[0]);
     table.row(cells);
   }
-  body += "<h2 id=\"table\">Every quantity</h2>\n" + table.str();
-  body +=
+  Html every = table.str();
+  every +=
       "<p class=\"soft\">bias and sd are those of the values over the replicates, stated sd what the estimator says "
       "(root mean square), least sd the Cramér-Rao bound, efficiency least sd² / (sd² + bias²), coverage the fraction "
       "of 95 % intervals that contain the true value, with its own 95 % interval (Clopper and Pearson).</p>\n";
+  body += folded("Every quantity", every);
   if (coverage.outside) body += fmt::format("<p>{}.</p>\n", escape(outside_text(*coverage.outside)));
   if (!coverage.levels.empty()) {
     Html levels = any ? figures({reliability_plot(coverage)}) : Html();

@@ -21,7 +21,7 @@ std::string region_size(const diagnose::GapRegion& region) {
   return region.size_sd ? size_and_sd_text(region.size, *region.size_sd, unit) : size_text(region.size, 2, unit);
 }
 
-/// A table of texts; the first row is its header.
+/// A table of texts; the first row is its header, and the first cell of each row heads it on a narrow screen.
 std::string html_of(const std::vector<std::vector<std::string>>& rows) {
   const auto cells = [](const std::vector<std::string>& row) {
     std::vector<std::string> html;
@@ -29,6 +29,7 @@ std::string html_of(const std::vector<std::vector<std::string>>& rows) {
     return html;
   };
   HtmlTable table(cells(rows.front()));
+  if (rows.front().size() > 3) table.stack_when_narrow(1);
   for (std::size_t r = 1; r < rows.size(); ++r) table.row(cells(rows[r]));
   return table.str();
 }

@@ -7,6 +7,7 @@
 
 #include "base/text/number_text.h"
 #include "base/text/readable_text.h"
+#include "base/text/wrapped_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "report/analysis/left_out_clips.h"
 #include "report/diagnosis/diagnosis_answer.h"
@@ -261,22 +262,22 @@ Page diagnosis_report(const std::string& title, const diagnose::Diagnosis& diagn
 namespace {
 
 constexpr std::size_t kRanked = 6;
-constexpr std::size_t kLineWidth = 110;
 
 std::string wrapped(const std::string& text) {
-  std::string lines, line;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t space = std::min(text.find(' ', at), text.size());
-    const std::string word = text.substr(at, space - at);
-    if (!line.empty() && line.size() + 1 + word.size() > kLineWidth) {
-      lines += line + "\n";
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-    at = space + 1;
+  return base::wrapped(text, base::kTerminalWidth) + "\n";
+}
+
+/// The likeliest explanations in words; their log evidence is on the page.
+std::string ranking_text(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::vector<std::string>> rows = {{"probability", "explanation"}};
+  rows.push_back({fmt::format("{:.3f}", diagnosis.none), effect_name("none")});
+  rows.push_back({fmt::format("{:.3f}", diagnosis.unknown), effect_name("unknown")});
+  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
+    const auto& ranked = diagnosis.ranking[i];
+    rows.push_back({ranked.left_out ? "not weighed" : fmt::format("{:.3f}", ranked.probability),
+                    explanation_name(ranked.explanation)});
   }
-  return lines + line + "\n";
+  return text_table(rows, 2);
 }
 
 /// The gap of held-out clips or lines, before and after what the verdict adds to the model; if it adds nothing, once.
@@ -299,9 +300,12 @@ std::string gap_lines(const diagnose::GapSizes& gap, const char* of, bool one) {
   const auto acceleration = [&](double size, const std::optional<diagnose::GapInterval>& interval) {
     return base::number_text(size, 3) + " m/s²" + (interval ? " (" + interval_text(interval) + ")" : "");
   };
-  return text + fmt::format("  in acceleration {}, noise included\n",
-                            before_and_after(acceleration(*gap.acceleration_before, over_clips.acceleration_before),
-                                             acceleration(*gap.acceleration_after, over_clips.acceleration_after)));
+  constexpr std::size_t kIndent = 4;
+  const std::string line =
+      fmt::format("  in acceleration {}, noise included",
+                  before_and_after(acceleration(*gap.acceleration_before, over_clips.acceleration_before),
+                                   acceleration(*gap.acceleration_after, over_clips.acceleration_after)));
+  return text + base::wrapped(line, base::kTerminalWidth, kIndent) + "\n";
 }
 
 /// The individual values of each configuration, one table per effect.
@@ -309,7 +313,7 @@ std::vector<std::string> member_tables(const diagnose::Diagnosis& diagnosis) {
   std::vector<std::string> tables;
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     if (const auto rows = member_rows(effect); rows.size() > 2) {
-      tables.push_back(effect.id + ":\n" + text_table(rows, 1));
+      tables.push_back(effect_name(effect.id) + ":\n" + text_table(rows, 1));
     }
   }
   return tables;
@@ -345,35 +349,27 @@ std::string diagnosis_text(const diagnose::Diagnosis& diagnosis) {
   std::string text = left_out_text(diagnosis.left_out);
   text += fmt::format("{}verdict: {}\n\n", wrapped(verdict_words(diagnosis)), verdict_id(diagnosis.verdict));
   const std::string sequence = diagnosis.lines ? std::string() : sequence_lines(diagnosis);
-  if (!sequence.empty()) text += sequence + "next: " + wrapped(next_step_words(diagnosis.next)) + "\n";
-  std::vector<std::vector<std::string>> rows = {{"explanation", "probability", "log evidence"}};
-  rows.push_back({"none", fmt::format("{:.3f}", diagnosis.none), "0"});
-  rows.push_back({"unknown", fmt::format("{:.3f}", diagnosis.unknown), ""});
-  for (std::size_t i = 0; i < diagnosis.ranking.size() && i < kRanked; ++i) {
-    const auto& ranked = diagnosis.ranking[i];
-    rows.push_back({explanation_id(ranked.explanation), fmt::format("{:.3f}", ranked.probability),
-                    ranked.left_out ? "not weighed" : base::gain_text(ranked.log_evidence_gain)});
-  }
+  if (!sequence.empty()) text += sequence + wrapped("next: " + next_step_words(diagnosis.next)) + "\n";
   if (diagnosis.lines) {
     if (!diagnosis.explained.empty()) text += text_table(explained_rows(diagnosis, true), 1) + "\n";
     for (const std::string& table : member_tables(diagnosis)) text += table + "\n";
   }
-  text += text_table(diagnosis.lines ? line_rows(*diagnosis.lines) : rows, diagnosis.lines ? 2 : 1) + "\n";
+  text += (diagnosis.lines ? text_table(line_rows(*diagnosis.lines), 2) : ranking_text(diagnosis)) + "\n";
   for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
     for (const diagnose::DiagnosedParameter& parameter : effect.parameters) {
       if ((!sequence.empty() || diagnosis.lines) && parameter.key.find('.') != std::string::npos)
         continue;  // in the table above
-      text += fmt::format("{}: {}\n", effect.id, parameter_text(parameter));
+      text += fmt::format("{}: {}\n", effect_name(effect.id), parameter_text(parameter));
     }
   }
   for (const diagnose::ImageFinding& finding : diagnosis.images) {
-    if (finding.seen) text += "images: " + wrapped(image_words(finding.fact));
+    if (finding.seen) text += wrapped("images: " + image_words(finding.fact));
   }
   if (diagnosis.gap) {
     text += gap_lines(*diagnosis.gap, diagnosis.lines ? "lines" : "clips", one_model(diagnosis));
   }
-  if (sequence.empty()) text += "\nnext: " + wrapped(next_step_words(diagnosis.next));
-  for (const std::string& note : notes_words(diagnosis)) text += "note: " + wrapped(note);
+  if (sequence.empty()) text += "\n" + wrapped("next: " + next_step_words(diagnosis.next));
+  for (const std::string& note : notes_words(diagnosis)) text += wrapped("note: " + note);
   return text;
 }
 

@@ -89,11 +89,17 @@ std::string plan_json(const diagnose::Plan& plan) {
 }
 
 std::string plan_text(const diagnose::Plan& plan) {
-  std::vector<std::vector<std::string>> rows = {{"effect", "smallest size that shows", "indistinguishable from"}};
+  std::vector<std::vector<std::string>> rows = {{"effect", "smallest size that shows"}};
+  std::string alike;
   for (const diagnose::PlannedEffect& effect : plan.effects) {
-    rows.push_back({effect_name(effect.id), seen_text(effect), alike_text(effect_names(effect.alike))});
+    rows.push_back({effect_name(effect.id), seen_text(effect)});
+    if (effect.alike.empty()) continue;
+    alike +=
+        base::printable_text(fmt::format("  {}: {}", effect_name(effect.id), alike_text(effect_names(effect.alike)))) +
+        "\n";
   }
-  std::string text = lead(plan) + "\n\n" + text_table(rows, 3);
+  std::string text = lead(plan) + "\n\n" + text_table(rows, 2);
+  if (!alike.empty()) text += "\nindistinguishable from:\n" + alike;
   std::string letters;
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     const std::string meaning = effect_meaning(effect.id);
@@ -108,17 +114,17 @@ std::string plan_text(const diagnose::Plan& plan) {
 
 Page plan_page(const std::string& title, const diagnose::Plan& plan) {
   Html body = question_heading(title, "Which effects would these motions show?") +
-              fmt::format("<p class=\"soft\">What this experiment will be able to tell apart.</p>\n{}",
-                          meaning_section(fmt::format("<p>{} {}</p>\n", escape(lead(plan)), what_follows(plan))));
+              meaning_section(fmt::format("<p><b>{}</b> {}</p>\n", escape(lead(plan)), what_follows(plan)));
   if (!advice(plan).empty()) body += fmt::format("<p class=\"note\">{}</p>\n", advice(plan));
   for (const std::string& note : notes_words(plan.notes))
     body += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   body += "<h2>What can be seen</h2>\n";
-  HtmlTable table({"effect", "what it is", "smallest size that shows", "indistinguishable from"}, 4);
+  HtmlTable table({"effect", "smallest size that shows", "indistinguishable from", "what it is"}, 4);
+  table.stack_when_narrow(1);
   for (const diagnose::PlannedEffect& effect : plan.effects) {
     const std::string meaning = effect_meaning(effect.id);
-    table.row({effect_html(effect.id), escape(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning)),
-               symbols_html(seen_text(effect)), escape(alike_text(effect_names(effect.alike)))});
+    table.row({effect_html(effect.id), symbols_html(seen_text(effect)), escape(alike_text(effect_names(effect.alike))),
+               symbols_html(effect.words) + (meaning.empty() ? "" : ": " + symbols_html(meaning))});
   }
   body += table.str() + figures(isolability_plots(plan.isolability)) +
           fmt::format("<p class=\"soft\">{}</p>\n", kPlanMethod);

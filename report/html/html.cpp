@@ -130,7 +130,7 @@ body { margin: 0; background: var(--paper); color: var(--ink); line-height: 1.5;
 main { max-width: 1240px; margin: 0 auto; padding: 1.2rem 1rem 3rem; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0.4rem 0 0.2rem; overflow-wrap: anywhere; }
 h1 small { display: block; font-size: 1rem; font-weight: 400; color: var(--soft); }
-h1 + p + #meaning, summary + #meaning { display: none; }
+h1 + #meaning, h1 + p + #meaning, summary + #meaning { display: none; }
 h2 { font-size: 1.3rem; margin: 2.2rem 0 0.5rem; padding-bottom: 0.2rem; border-bottom: 2px solid var(--line); }
 h3 { font-size: 1.08rem; margin: 1.6rem 0 0.4rem; overflow-wrap: anywhere; }
 p, li { max-width: 78ch; overflow-wrap: anywhere; }
@@ -187,6 +187,7 @@ details.part[open] { padding-bottom: 0.8rem; }
   table.stack, table.stack tbody { display: block; } table.stack thead { display: none; }
   table.stack tr { display: grid; grid-template-columns: minmax(42%, auto) auto; gap: 0.1rem 0.6rem; padding: 0.45rem 0; border-bottom: 1px solid var(--line); }
   table.stack td { border: 0; padding: 0; text-align: left; } table.stack td:not([data-title]) { grid-column: 1 / -1; font-weight: 600; white-space: normal; }
+  table.stack td.n, table.stack td.s { white-space: normal; } table.stack td.t { grid-column: 1 / -1; min-width: 0; }
   table.stack td[data-title]::before { content: attr(data-title); display: block; color: var(--soft); font-size: 0.82rem; white-space: normal; }
   table.numbered td:first-child, table.numbered td:nth-child(2) { grid-row: 1; } table.numbered td:nth-child(2) { padding-left: 1.8rem; } }
 @media print {

@@ -53,6 +53,8 @@ inline constexpr std::array<std::string_view, 7> kColors = {"#0072b2", "#d55e00"
                                                             "#56b4e9", "#e69f00", "#000000"};
 /// Background or omitted data; the shading of such a stretch.
 inline constexpr std::string_view kGrey = "#9a9a9a";
+/// A thin or dotted grey line: dark enough to be seen on white paper and, inverted, on a dark page.
+inline constexpr std::string_view kThinGrey = "#6b6b6b";
 inline constexpr std::string_view kShade = "#ececec";
 
 /// The colour of the n-th series; colours repeat after the last.

@@ -316,7 +316,7 @@ Plot plot_of(const SweepSummary& summary, const QuantityName& quantity, const Cu
       "$errors using 1:6 with points pt 7 ps 0.45 lc rgb '{2}' notitle, "
       "$errors using 1:5 with lines lw 1.2 dt 3 lc rgb '{3}' title 'stated sd', "
       "$best using 1:2 with points pt 6 ps 1.3 lw 1.6 lc rgb '{0}' title 'best h'",
-      color(6), color(0), color(1), kGrey);
+      color(6), color(0), color(1), kThinGrey);
   if (!choice.rows.empty()) {
     choice.rows.front().insert(choice.rows.front().end(), {chosen->low_s, chosen->high_s});
     drawn += fmt::format(", $choice using 1:2:3:4 with xerrorbars pt 9 ps 1 lw 1.6 lc rgb '{}' title 'default rule'",
@@ -354,6 +354,53 @@ std::vector<Plot> bandwidth_plots(const SweepSummary& summary) {
   return plots;
 }
 
+namespace {
+
+/// A row of the table: what was run, and its statistics for each quantity; nullptr where it has none.
+struct StudyRow {
+  std::string page_name, typed_name;  ///< for people, and as one types it
+  std::vector<const ErrorStatistics*> of;
+};
+
+std::vector<StudyRow> study_rows(const SweepSummary& summary, const Curves& curves) {
+  std::vector<StudyRow> rows;
+  std::set<double> bandwidths_s;  // of any quantity: one that few runs determine there is a dash
+  for (const auto& [quantity, curve] : curves.of) {
+    for (const auto& [h, of] : curve) bandwidths_s.insert(h);
+  }
+  for (const double h : bandwidths_s) {
+    const std::string name = base::number_text(h, 3);
+    StudyRow& row = rows.emplace_back(StudyRow{name, name, {}});
+    for (const auto& [quantity, curve] : curves.of) {
+      const auto found = curve.find(h);
+      row.of.push_back(found == curve.end() ? nullptr : found->second);
+    }
+  }
+  const auto add_estimator = [&](const std::string& page_name, const std::string& typed, std::string_view estimator) {
+    StudyRow& row = rows.emplace_back(StudyRow{page_name, typed, {}});
+    for (const auto& [quantity, curve] : curves.of) row.of.push_back(overall(summary, quantity->key, estimator));
+  };
+  add_estimator("default rule", "default rule", fit::default_estimator().name);
+  for (const fit::Estimator& other : fit::judged_estimators()) {
+    if (!other.of_lines) add_estimator(std::string(other.title), std::string(other.name), other.name);
+  }
+  return rows;
+}
+
+/// The largest relative standard error of an error, in words.
+std::string known_to_words(const std::vector<StudyRow>& rows) {
+  double known_to = 0.0;
+  for (const StudyRow& row : rows) {
+    for (const ErrorStatistics* of : row.of) {
+      if (of != nullptr) known_to = std::max(known_to, 1.0 / std::sqrt(2.0 * static_cast<double>(of->answered)));
+    }
+  }
+  return fmt::format("Root mean square errors, known to {:.0f} % or better (one standard error, if errors are normal)",
+                     100.0 * known_to);
+}
+
+}  // namespace
+
 std::string bandwidth_table(const SweepSummary& summary) {
   const Curves curves = curves_of(summary);
   if (curves.bandwidths_s.size() < kLeastBandwidths) return {};
@@ -362,42 +409,35 @@ std::string bandwidth_table(const SweepSummary& summary) {
     header.insert(header.end(), {"error of " + escape(with_unit(quantity->symbol, quantity->unit)), "coverage"});
   }
   HtmlTable table(header, 1);
-  double known_to = 0.0;  // the largest relative standard error of an error
-  const auto cells = [&](const ErrorStatistics* of) -> std::vector<std::string> {
-    if (of == nullptr) return {"–", "–"};
-    known_to = std::max(known_to, 1.0 / std::sqrt(2.0 * static_cast<double>(of->answered)));
-    return {base::digits_text(of->rms, 3), fmt::format("{:.1f} %", 100.0 * of->coverage)};
-  };
-  const auto add = [&](const std::string& name, const auto& statistics) {
-    std::vector<std::string> row = {name};
-    for (const auto& [quantity, curve] : curves.of) {
-      for (std::string& cell : cells(statistics(*quantity, curve))) row.push_back(std::move(cell));
+  const std::vector<StudyRow> rows = study_rows(summary, curves);
+  for (const StudyRow& row : rows) {
+    std::vector<std::string> cells = {row.page_name};
+    for (const ErrorStatistics* of : row.of) {
+      cells.push_back(of == nullptr ? "–" : base::digits_text(of->rms, 3));
+      cells.push_back(of == nullptr ? "–" : fmt::format("{:.1f} %", 100.0 * of->coverage));
     }
-    table.row(row);
-  };
-  std::set<double> bandwidths_s;  // of any quantity: one that few runs determine there is a dash
+    table.row(cells);
+  }
+  return table.str() + fmt::format(
+                           "<p class=\"soft\">{}; coverage is the fraction of the stated 95 % intervals that contain "
+                           "the true value.</p>\n",
+                           known_to_words(rows));
+}
+
+std::string bandwidth_text(const SweepSummary& summary) {
+  const Curves curves = curves_of(summary);
+  if (curves.bandwidths_s.size() < kLeastBandwidths) return {};
+  std::vector<std::vector<std::string>> table = {{"h (s)"}};
   for (const auto& [quantity, curve] : curves.of) {
-    for (const auto& [h, of] : curve) bandwidths_s.insert(h);
+    table.front().push_back(with_unit(quantity->symbol, quantity->unit));
   }
-  for (const double h : bandwidths_s) {
-    add(base::number_text(h, 3), [h](const QuantityName&, const Curve& curve) {
-      const auto found = curve.find(h);
-      return found == curve.end() ? nullptr : found->second;
-    });
+  const std::vector<StudyRow> rows = study_rows(summary, curves);
+  for (const StudyRow& row : rows) {
+    table.push_back({row.typed_name});
+    for (const ErrorStatistics* of : row.of)
+      table.back().push_back(of == nullptr ? "–" : base::digits_text(of->rms, 3));
   }
-  const auto add_estimator = [&](const std::string& name, std::string_view estimator) {
-    add(name, [&](const QuantityName& quantity, const Curve&) { return overall(summary, quantity.key, estimator); });
-  };
-  add_estimator("default rule", fit::default_estimator().name);
-  for (const fit::Estimator& other : fit::judged_estimators()) {
-    if (!other.of_lines) add_estimator(std::string(other.title), other.name);
-  }
-  return table.str() +
-         fmt::format(
-             "<p class=\"soft\">Root mean square errors, known to {:.0f} % or better (one standard "
-             "error, if errors are "
-             "normal); coverage is the fraction of the stated 95 % intervals that contain the true value.</p>\n",
-             100.0 * known_to);
+  return text_table(table, 1) + known_to_words(rows) + ".\n";
 }
 
 }  // namespace glidelab::report

@@ -45,4 +45,8 @@ std::vector<Plot> bandwidth_plots(const validate::SweepSummary& summary);
 /// motion. HTML; empty if there is no bandwidth_answer().
 std::string bandwidth_table(const validate::SweepSummary& summary);
 
+/// The errors of bandwidth_table(), for a terminal: a row for each bandwidth, for the default rule and for each
+/// estimator without a bandwidth; empty if there is no bandwidth_answer().
+std::string bandwidth_text(const validate::SweepSummary& summary);
+
 }  // namespace glidelab::report

@@ -315,11 +315,38 @@ Page sweep_report(const SweepSummary& summary, const base::Progress& progress) {
   return page(summary.name, body);
 }
 
+namespace {
+
+/// The errors of each quantity, one table a quantity; the page has all columns.
+std::string errors_text(const SweepSummary& summary) {
+  constexpr std::size_t kResults = 2;
+  const std::vector<std::size_t> shown = {1, 3, 4, 5, 7};  // columns of kHeader
+  std::vector<std::vector<std::string>> all = rows_of(summary.overall);
+  const bool complete = std::ranges::all_of(summary.overall, [](const validate::Series& series) {
+    const ErrorStatistics& of = series.groups.front().statistics;
+    return of.answered == of.runs;
+  });
+  std::string text;
+  for (std::size_t i = 0; i < all.size();) {
+    std::vector<std::vector<std::string>> rows;
+    const auto add = [&](const std::vector<std::string>& from) {
+      std::vector<std::string>& row = rows.emplace_back();
+      for (const std::size_t column : shown) row.push_back(from[column]);
+      if (!complete) row.push_back(from[kResults]);
+    };
+    add(kHeader);
+    const std::string quantity = all[i].front();
+    for (; i < all.size() && all[i].front() == quantity; ++i) add(all[i]);
+    text += fmt::format("{}:\n{}\n", quantity, text_table(rows, 1));
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string sweep_text(const SweepSummary& summary) {
-  std::vector<std::vector<std::string>> rows = rows_of(summary.overall);
-  rows.insert(rows.begin(), kHeader);
   const std::optional<BandwidthAnswer> answer = bandwidth_answer(summary);
-  std::string text = (answer ? answer->text + "\n\n" : std::string()) + text_table(rows, 2);
+  std::string text = answer ? answer->text + "\n\n" + bandwidth_text(summary) : errors_text(summary);
   text += fmt::format("{} of {} runs, {} failed\n", summary.runs, summary.planned, summary.failed);
   for (const std::string& failure : failure_lines(summary.failures)) text += fmt::format("  {}\n", failure);
   if (summary.outside) text += outside_text(*summary.outside) + "\n";

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "base/text/number_text.h"
 #include "base/text/readable_text.h"
+#include "base/text/wrapped_text.h"
 #include "diagnose/effects/effect_library.h"
 #include "fit/estimators.h"
 #include "report/html/html.h"
@@ -181,16 +183,6 @@ std::string shrink_text(const diagnose::GapSizes& gap) {
   return text;
 }
 
-namespace {
-
-/// Number of UTF-8 code points: bytes that are not continuation bytes.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-}  // namespace
-
 std::string list_of(const std::vector<std::string>& words, const std::string& last) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -199,24 +191,119 @@ std::string list_of(const std::vector<std::string>& words, const std::string& la
   return text;
 }
 
-std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number) {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+constexpr std::size_t kColumnGap = 2;  // spaces between two columns
+
+std::vector<std::size_t> widths_of(const Rows& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], base::characters_in(row[i]));
   }
+  return widths;
+}
+
+std::size_t whole_width(const std::vector<std::size_t>& widths) {
+  return std::accumulate(widths.begin(), widths.end(), std::size_t{0}) +
+         kColumnGap * (std::max<std::size_t>(widths.size(), 1) - 1);
+}
+
+/// The rows with these columns alone.
+std::string table_of(const Rows& rows, const std::vector<std::size_t>& columns, std::size_t first_number) {
+  const std::vector<std::size_t> widths = widths_of(rows);
   std::string text;
   for (const auto& row : rows) {
     std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - width_of(row[i]), ' ');
-      if (i > 0) line += "  ";
-      line += i >= first_number ? padding + base::printable_text(row[i]) : base::printable_text(row[i]) + padding;
+    for (const std::size_t i : columns) {
+      if (i >= row.size()) continue;
+      const std::string padding(widths[i] - base::characters_in(row[i]), ' ');
+      if (i != columns.front()) line += std::string(kColumnGap, ' ');
+      line += i >= first_number ? padding + row[i] : row[i] + padding;
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
   return text;
+}
+
+/// The head in two lines, "K/m" above "(1/s)", where that makes a column narrower; other heads are on the lower line.
+Rows with_units_below(const Rows& rows) {
+  const std::vector<std::size_t> below_head = widths_of(Rows(rows.begin() + 1, rows.end()));
+  Rows all = {std::vector<std::string>(rows.front().size()), rows.front()};
+  for (std::size_t i = 0; i < rows.front().size(); ++i) {
+    const std::string& head = rows.front()[i];
+    const std::size_t unit = head.rfind(" (");
+    if (unit == std::string::npos || i >= below_head.size() || base::characters_in(head) <= below_head[i]) continue;
+    all[0][i] = head.substr(0, unit);
+    all[1][i] = head.substr(unit + 1);
+  }
+  if (all[1] == rows.front()) return rows;
+  all.insert(all.end(), rows.begin() + 1, rows.end());
+  return all;
+}
+
+/// With this column of words wrapped to so many characters; the other cells of a row are on its first line.
+Rows with_wrapped(const Rows& rows, std::size_t column, std::size_t width) {
+  Rows all;
+  for (const auto& row : rows) {
+    all.push_back(row);
+    if (column >= row.size()) continue;
+    std::string rest = base::wrapped(row[column], width);
+    while (true) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      all.back()[column] = rest.substr(0, end);
+      if (end == rest.size()) break;
+      rest.erase(0, end + 1);
+      all.emplace_back(row.size());
+    }
+  }
+  return all;
+}
+
+/// In parts that fit, each with the columns before the first number.
+std::string table_in_parts(const Rows& rows, std::size_t first_number) {
+  const std::vector<std::size_t> widths = widths_of(rows);
+  std::size_t names = 0;
+  for (std::size_t i = 0; i < first_number; ++i) names += widths[i] + kColumnGap;
+  std::string text;
+  for (std::size_t next = first_number; next < widths.size();) {
+    std::vector<std::size_t> part(first_number);
+    std::iota(part.begin(), part.end(), std::size_t{0});
+    std::size_t used = names;
+    do {
+      part.push_back(next);
+      used += widths[next] + kColumnGap;
+      ++next;
+    } while (next < widths.size() && used + widths[next] <= base::kTerminalWidth);
+    text += (text.empty() ? "" : "\n") + table_of(rows, part, first_number);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_table(const std::vector<std::vector<std::string>>& unsafe, std::size_t first_number) {
+  constexpr std::size_t kLeastWords = 28;  // characters to which a column of words may be wrapped
+  Rows rows = unsafe;
+  for (auto& row : rows) {
+    for (std::string& cell : row) cell = base::printable_text(cell);
+  }
+  std::vector<std::size_t> columns(widths_of(rows).size());
+  std::iota(columns.begin(), columns.end(), std::size_t{0});
+  const auto width = [&] { return whole_width(widths_of(rows)); };
+  if (rows.empty() || width() <= base::kTerminalWidth) return table_of(rows, columns, first_number);
+  rows = with_units_below(rows);
+  const bool only_words = first_number >= columns.size();
+  if (width() > base::kTerminalWidth && (only_words || first_number == 1)) {
+    const std::size_t words = only_words ? columns.size() - 1 : 0;
+    const std::size_t others = width() - widths_of(rows)[words];
+    rows =
+        with_wrapped(rows, words, std::max(kLeastWords, base::kTerminalWidth - std::min(others, base::kTerminalWidth)));
+  }
+  if (width() <= base::kTerminalWidth || only_words) return table_of(rows, columns, first_number);
+  return table_in_parts(rows, first_number);
 }
 
 }  // namespace glidelab::report

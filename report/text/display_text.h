@@ -102,6 +102,10 @@ std::string list_of(const std::vector<std::string>& words, const std::string& la
 
 /// Columns aligned below their headers, two spaces apart; columns from `first_number` on are flush right. Widths count
 /// characters, not bytes. base::printable_text() is applied to every cell: a clip's name must not steer the terminal.
+///
+/// A table that is wider than base::kTerminalWidth first gets units on a second line of its head. If that is not
+/// enough, a last or only column of words is wrapped, and a table of numbers that is still too wide is printed in parts
+/// one below the other, each with the columns before `first_number` (as R prints a data frame).
 std::string text_table(const std::vector<std::vector<std::string>>& rows, std::size_t first_number);
 
 }  // namespace glidelab::report

@@ -179,10 +179,6 @@ namespace {
 
 constexpr double kAgrees_sd = 2.0;  // standard deviations from the truth: 95 of 100 values lie within
 
-/// The quantities that a reader wants to know first.
-constexpr std::array<std::string_view, 3> kHeadline = {
-    core::key_of(core::Measurand::k_over_m), core::key_of(core::Measurand::mu), core::key_of(core::Measurand::alpha)};
-
 /// The fit of the whole motion if it has a value, because it is more precise; otherwise the first of the estimators.
 std::string headline_estimator(const validate::Comparison& comparison) {
   for (const validate::QuantityComparison& q : comparison.quantities) {
@@ -194,13 +190,6 @@ std::string headline_estimator(const validate::Comparison& comparison) {
 
 std::string name_of(const validate::QuantityComparison& q) {
   return fmt::format("{} ({:.6g} kg, {:.4g}°)", q.configuration, q.mass_kg, q.incline_deg);
-}
-
-/// "2.768 ± 0.002 (2.7680)"; "–" if there is no recovered or no true value.
-std::string beside_truth(const validate::QuantityComparison& q) {
-  const double sd = q.sd.value_or(0.0);
-  return fmt::format("{} ({})", q.value ? base::value_and_sd_text(*q.value, sd) : "–",
-                     q.truth ? base::value_text(*q.truth, sd) : "–");
 }
 
 /// How many values are close to their truth, and which is farthest off; one sentence.
@@ -228,35 +217,29 @@ std::string agreement_of(const validate::Comparison& comparison) {
   return text + ".";
 }
 
+/// A quantity that these motions do not have (a level track has no terminal velocity) gets no row.
+bool is_absent(const validate::QuantityComparison& of) {
+  return !of.truth && !of.value;
+}
+
 std::string headline(const validate::Comparison& comparison) {
   const std::string estimator = headline_estimator(comparison);
   if (estimator.empty()) return agreement_of(comparison) + "\n";
-  std::vector<std::vector<std::string>> rows = {{"configuration"}};
-  std::vector<std::string> names;  // of the configurations, in their order
-  for (const validate::QuantityComparison& q : comparison.quantities) {
-    if (q.estimator != estimator || (!names.empty() && names.back() == q.configuration)) continue;
-    names.push_back(q.configuration);
-    rows.push_back({name_of(q)});
-  }
+  std::vector<std::vector<std::string>> rows = {{"configuration", "quantity", "recovered", "truth"}};
+  std::string previous;
   bool no_constant = false;
-  for (const std::string_view key : kHeadline) {
-    std::vector<std::string> column;
-    bool any = false;
-    for (const validate::QuantityComparison& q : comparison.quantities) {
-      if (q.estimator != estimator || q.quantity != key) continue;
-      column.push_back(beside_truth(q));
-      any = any || q.value || q.truth;
-      no_constant = no_constant || (q.value && !q.truth);
-    }
-    if (!any || column.size() != names.size()) continue;
-    rows.front().push_back(heading_of(key));
-    for (std::size_t i = 0; i < column.size(); ++i) rows[i + 1].push_back(column[i]);
+  for (const validate::QuantityComparison& q : comparison.quantities) {
+    if (q.estimator != estimator || is_absent(q)) continue;
+    const double sd = q.sd.value_or(0.0);
+    rows.push_back({q.configuration == previous ? "" : name_of(q), heading_of(q.quantity),
+                    q.value ? base::value_and_sd_text(*q.value, sd) : "–",
+                    q.truth ? base::value_text(*q.truth, sd) : "–"});
+    previous = q.configuration;
+    no_constant = no_constant || (q.value && !q.truth);
   }
-  return fmt::format(
-      "{}\n\nRecovered from the images alone with the {}, ± one standard deviation, with the truth in "
-      "brackets:\n\n{}\n{}",
-      base::printable_text(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 1),
-      no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
+  return fmt::format("{}\n\nRecovered from the images with the {}, ± one sd:\n\n{}{}",
+                     base::printable_text(agreement_of(comparison)), estimator_name(estimator), text_table(rows, 2),
+                     no_constant ? "A truth of \"–\": the friction law of this scenario has no such constant.\n" : "");
 }
 
 /// The errors of the measured positions, in one line.
@@ -276,11 +259,6 @@ std::string restitution_text(const validate::RestitutionComparison& restitution)
 
 std::string cell(const std::optional<double>& value, std::string (*text)(double, double), double sd) {
   return value ? text(*value, sd) : "–";
-}
-
-/// A quantity that these motions do not have (a level track has no terminal velocity) gets no row.
-bool is_absent(const validate::QuantityComparison& of) {
-  return !of.truth && !of.value;
 }
 
 std::string comparison_table(const validate::Comparison& comparison) {
@@ -318,26 +296,38 @@ std::string comparison_table(const validate::Comparison& comparison) {
 
 }  // namespace
 
-std::string comparison_text(const validate::Comparison& comparison) {
-  std::vector<std::vector<std::string>> rows = {
-      {"configuration", "estimator", "quantity", "truth", "recovered", "sd", "error", "error/sd", "least sd"}};
-  std::string estimator;
-  std::string previous;
+namespace {
+
+/// The errors of each estimator in each configuration, as tables.
+std::string errors_text(const validate::Comparison& comparison) {
+  std::string text, name;
+  std::vector<std::vector<std::string>> rows;
+  const auto end_table = [&] {
+    if (!rows.empty()) text += "\n" + base::printable_text(name) + "\n" + text_table(rows, 1);
+    rows.clear();
+  };
   for (const validate::QuantityComparison& q : comparison.quantities) {
     if (is_absent(q)) continue;
+    const std::string of = fmt::format("{}, {}:", name_of(q), estimator_name(q.estimator));
+    if (of != name || rows.empty()) {
+      end_table();
+      name = of;
+      rows = {{"quantity", "truth", "recovered", "sd", "error", "error/sd"}};
+    }
     const double sd = q.sd.value_or(0.0);
-    const bool first = q.configuration != previous;
-    const bool other = first || q.estimator != estimator;
-    previous = q.configuration;
-    estimator = q.estimator;
-    rows.push_back({first ? fmt::format("{} ({:.6g} kg, {:.4g}°)", q.configuration, q.mass_kg, q.incline_deg) : "",
-                    other ? q.estimator : "", heading_of(q.quantity), q.truth ? base::value_text(*q.truth, sd) : "–",
+    rows.push_back({heading_of(q.quantity), q.truth ? base::value_text(*q.truth, sd) : "–",
                     q.value ? base::value_text(*q.value, sd) : "–", q.sd ? base::sd_text(*q.sd) : "–",
                     q.error ? base::error_text(*q.error, sd) : "–",
-                    q.error && sd > 0.0 ? fmt::format("{:+.2f}", *q.error / sd) : "–",
-                    q.cramer_rao_sd ? base::sd_text(*q.cramer_rao_sd) : "–"});
+                    q.error && sd > 0.0 ? fmt::format("{:+.2f}", *q.error / sd) : "–"});
   }
-  std::string text = headline(comparison) + "\nIn full:\n" + text_table(rows, 3);
+  end_table();
+  return text;
+}
+
+}  // namespace
+
+std::string comparison_text(const validate::Comparison& comparison) {
+  std::string text = headline(comparison) + "\nIn full:\n" + errors_text(comparison);
   std::string reasons;
   for (const validate::QuantityComparison& q : comparison.quantities) {
     if (!q.value && q.truth) {
@@ -347,7 +337,7 @@ std::string comparison_text(const validate::Comparison& comparison) {
   }
   if (!reasons.empty()) text += fmt::format("\n{}", reasons);
 
-  rows = {{"clip", "line", "R²"}};
+  std::vector<std::vector<std::string>> rows = {{"clip", "line", "R²"}};
   for (const validate::LineComparison& line : comparison.lines) {
     rows.push_back({line.clip, line.direction < 0 ? "v < 0" : "v > 0", base::r2_text(line.r2)});
   }
@@ -362,7 +352,7 @@ std::string comparison_text(const validate::Comparison& comparison) {
 }
 
 std::string meaning_of(const validate::Comparison& comparison) {
-  std::string text = "<p>" + escape(agreement_of(comparison)) + "</p>\n";
+  std::string text = "<p><b>" + escape(agreement_of(comparison)) + "</b></p>\n";
   const validate::RestitutionComparison& restitution = comparison.restitution;
   if (!restitution.points.empty() && restitution.field_m > 0.0) {
     text += fmt::format(
@@ -386,10 +376,10 @@ Page validation_report(const std::string& title, const core::AnalysisResults& re
   double lowest_r2 = 1.0;
   for (const validate::LineComparison& line : comparison.lines) lowest_r2 = std::min(lowest_r2, line.r2);
   const validate::RestitutionComparison& restitution = comparison.restitution;
-  Html body = question_heading(title, "How well are the true values recovered?") +
-              "<p class=\"soft\">A rehearsal: simulated, filmed, analysed from the images alone with the lines "
-              "of the phase diagram and with the fit of the whole motion, and compared with the truth.</p>\n";
-  body += meaning_of(comparison);
+  Html body = question_heading(title, "How well are the true values recovered?") + meaning_of(comparison);
+  body +=
+      "<p class=\"soft\">A rehearsal: simulated, filmed, analysed from the images alone with the lines of the phase "
+      "diagram and with the fit of the whole motion, and compared with the truth.</p>\n";
   body += "<div class=\"tiles\">" +
           tile(fmt::format("{} / {}", comparison.detected, comparison.frames), "frames with the marker found") +
           (comparison.frames_out_of_view == 0

@@ -364,8 +364,9 @@ std::vector<std::vector<std::string>> explained_rows(const diagnose::Diagnosis& 
   if (diagnosis.explained.empty()) return {};
   std::vector<std::vector<std::string>> rows = {{"cause", "share of the gap", "gap after"}};
   for (const diagnose::ExplainedCause& cause : diagnosis.explained) {
-    rows.push_back({ids ? cause.id : effect_name(cause.id), share_text(cause.share, cause.share_interval95),
-                    base::digits_text(cause.gap_after, 3)});
+    const std::string name = effect_name(cause.id);
+    rows.push_back({ids && name != cause.id ? fmt::format("{} ({})", name, cause.id) : name,
+                    share_text(cause.share, cause.share_interval95), base::digits_text(cause.gap_after, 3)});
   }
   if (diagnosis.remainder) {
     rows.push_back(

@@ -1,9 +1,15 @@
 /// What every command has in common: help, version, and the exit status of a wrong command line.
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
 #include <regex>
 #include <set>
 #include <sstream>
 
 #include "base/files/file_io.h"
+#include "base/text/wrapped_text.h"
 #include "test_paths.h"
 #include "tests/app/command_names.h"
 #include "tests/app/made_track.h"
@@ -62,6 +68,56 @@ TEST_CASE("every command's help names the options that every command takes, and 
     CHECK((result.out.find("--seed N") != std::string::npos) != kDrawNothing.contains(command));
     if (command != "new") CHECK(result.out.find("glidelab-out/" + command) != std::string::npos);
   }
+}
+
+TEST_CASE("help fits a terminal: only an option's own form may be longer than its lines") {
+  std::vector<std::vector<std::string>> all = {{"--help"}};
+  for (const std::string& command : kCommands) all.push_back({command, "--help"});
+  for (const std::vector<std::string>& words : all) {
+    std::istringstream lines(tests::glidelab(words).out);
+    for (std::string line; std::getline(lines, line);) {
+      INFO(words.front() << ": " << line);
+      CHECK((base::characters_in(line) <= base::kTerminalWidth || line.starts_with("  -")));
+    }
+  }
+}
+
+TEST_CASE("on a terminal an answer is wrapped between words, in a pipe it is one line") {
+  const tests::TempDir temp;
+  base::write_file(temp / "scenario.toml", tests::tiny_scenario());
+  const std::vector<std::string> words = {"diagnose",
+                                          "--plan",
+                                          (temp / "scenario.toml").string(),
+                                          "--noise-m",
+                                          "1e-5",
+                                          "-q",
+                                          "-o",
+                                          (temp / "out").string()};
+  const std::string piped = tests::glidelab(words).out;
+  CHECK(base::characters_in(piped.substr(0, piped.find('\n'))) > 90);
+  const winsize window = {24, 60, 0, 0};
+  int terminal = -1;
+  const pid_t child = ::forkpty(&terminal, nullptr, nullptr, &window);
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    std::vector<char*> arguments = {const_cast<char*>(tests::kBinary)};
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    ::execv(arguments.front(), arguments.data());
+    ::_exit(127);
+  }
+  std::string shown;
+  std::array<char, 4096> bytes{};
+  for (ssize_t count = 0; (count = ::read(terminal, bytes.data(), bytes.size())) > 0;) {
+    shown.append(bytes.data(), static_cast<std::size_t>(count));
+  }
+  ::close(terminal);
+  int status = -1;
+  CHECK(::waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
+  std::erase(shown, '\r');
+  INFO(shown);
+  CHECK(shown.substr(0, shown.find("\n\n")) == base::wrapped(piped.substr(0, piped.find("\n\n")), window.ws_col));
 }
 
 TEST_CASE("the version is printed and nothing else is done") {

@@ -88,7 +88,7 @@ TEST_CASE("an analysis' page has the values as tiles, one plot and one table ope
   const std::string fold = "<details class=\"part\"";
   CHECK(tile < table);
   CHECK(table < html.find(fold));
-  CHECK(html.find("id=\"meaning\"") < tile);  // what they mean comes first
+  CHECK(tile < html.find("id=\"meaning\""));  // then what they mean
   CHECK(html.find(fold) < fitted);
   CHECK(fitted < html.find("id=\"phase\""));
   const std::string many = report::analysis_report("track", tests::made_results(), {}).html;

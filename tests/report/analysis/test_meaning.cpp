@@ -2,7 +2,9 @@
 #include "report/analysis/doubts.h"
 
 #include <limits>
+#include <sstream>
 
+#include "base/text/wrapped_text.h"
 #include "core/result/estimate.h"
 #include "report/blind/blind_report.h"
 #include "report/characterize/camera_report.h"
@@ -10,6 +12,7 @@
 #include "report/diagnosis/diagnosis_report.h"
 #include "report/diagnosis/plan_report.h"
 #include "report/diagnosis/words/verdict_words.h"
+#include "report/text/display_text.h"
 #include "report/validation/validation_report.h"
 #include "tests/catch.h"
 #include "tests/report/made_results.h"
@@ -128,7 +131,7 @@ TEST_CASE("points far off their line are told with the clip and the next step, o
   CHECK(report::doubts_about(results).empty());
 }
 
-TEST_CASE("the page of an analysis says first that the law fits and what the numbers mean, then the numbers") {
+TEST_CASE("the page of an analysis begins with the numbers, then says that the law fits and what they mean") {
   core::AnalysisResults results = one_clip();
   const std::string page = report::analysis_report("fits", results, {}).html;
   const std::size_t fits = page.find("show no clear departure from the law");
@@ -136,11 +139,11 @@ TEST_CASE("the page of an analysis says first that the law fits and what the num
   REQUIRE(fits != std::string::npos);
   REQUIRE(words != std::string::npos);  // 1 / 2.7
   CHECK(fits < words);
-  CHECK(words < page.find("class=\"tile\""));
+  CHECK(page.find("class=\"tile\"") < fits);
   // Of many configurations the table has the values, and the words are folded.
   results.configurations.resize(3, results.configurations.front());
   const std::string many = report::analysis_report("fits", results, {}).html;
-  CHECK(many.find("show no clear departure from the law") < many.find("over 3 configurations"));
+  CHECK(many.find("over 3 configurations") < many.find("show no clear departure from the law"));
   CHECK(many.find("<summary>In words</summary>") != std::string::npos);
   // Not next to a sentence that says otherwise.
   core::AnalysisResults bent = one_clip();
@@ -155,6 +158,22 @@ TEST_CASE("the page of an analysis says first that the law fits and what the num
   CHECK(report::meaning_of(results).find("no clear departure from the law") == std::string::npos);
   results.configurations[0].k_over_m_1_s = results.configurations[0].mu = {};
   CHECK(report::meaning_of(results).find("no clear departure from the law") == std::string::npos);
+}
+
+TEST_CASE("on a terminal an analysis is its answer and a table that fits, a configuration a row") {
+  core::AnalysisResults results = one_clip();
+  const std::string text = report::analysis_text(results);
+  INFO(text);
+  CHECK(text.starts_with("K/m = "));
+  std::istringstream lines(text.substr(text.find("\n\n")));
+  std::string line;
+  std::size_t rows = 0;
+  while (std::getline(lines, line)) {
+    if (!line.starts_with(report::configuration_name(results, results.configurations[0]) + "  ")) continue;
+    ++rows;
+    CHECK(base::characters_in(line) <= base::kTerminalWidth);
+  }
+  CHECK(rows >= 1);
 }
 
 TEST_CASE("a reason for several missing quantities is told once") {
@@ -287,6 +306,7 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
   check.clips[1].position_noise_m = 3.6e-6;
   const auto page = [&] { return report::check_report(check, {}); };
   CHECK(tells(page(), "Usable as it is.</b> Nothing needs to be recorded again"));
+  CHECK(page().html.find("</h1>\n<h2 id=\"meaning\">What this means</h2>\n<p><b") != std::string::npos);
   CHECK(tells(page(), "found in 189 of 200 frames of 2 clips"));
   CHECK(tells(page(), "position noise: at most 0.0036\u00a0mm (one standard deviation)"));
   check.findings = {{core::Severity::change, {}, core::found::Dark{0.2}}};
@@ -299,8 +319,9 @@ TEST_CASE("a check says at the top whether to analyse, to record again or to men
 TEST_CASE("a rehearsal's page says at the top how many values lie near the truth, above all its tables") {
   validate::Comparison comparison;
   comparison.quantities = {{"m1", 0.335, 4.0, "trajectory", "mu", 0.0071, 0.0072, 0.0001, 0.0001, {}}};
-  CHECK(tells(report::validation_report("v", tests::made_results(), comparison, {}),
-              "lie within two standard deviations"));
+  const report::Page page = report::validation_report("v", tests::made_results(), comparison, {});
+  CHECK(tells(page, "lie within two standard deviations"));
+  CHECK(page.html.find("lie within two standard deviations") < page.html.find("A rehearsal: simulated"));
 }
 
 TEST_CASE("a measured camera's page says at the top how far a pixel wavers, and that some numbers are missing") {

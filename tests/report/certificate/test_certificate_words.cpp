@@ -47,7 +47,7 @@ TEST_CASE(
     "a certificate's first line is the share of intervals that hold and the largest sure bias of K/m, mu and alpha") {
   validate::Certificate made = certificate();
   CHECK(report::certificate_answer(made) ==
-        "Intervals of K/m, µ hold in 94 % (90 to 97 %) of recordings like yours; µ is off by 0.3 standard "
+        "Intervals of K/m and µ hold in 94 % (90 to 97 %) of recordings like yours; µ is off by 0.3 standard "
         "deviations on average.");
   CHECK(report::certificate_text(made).starts_with(report::certificate_answer(made) + "\n"));
   made.quantities[0].bias_sds = {1.2, 0.4};  // larger, and as sure
@@ -118,7 +118,7 @@ TEST_CASE("only changes that stand out are given as advice, three at most, and n
   REQUIRE(report::best_changes(made).size() == 1);
   CHECK(report::best_changes(made).front() ==
         "Use more light, or a wider aperture: four times the light halves the noise. With half the noise of each "
-        "pixel, the errors of K/m, µ are 42 % (30 to 50 %) smaller.");
+        "pixel, the errors of K/m and µ are 42 % (30 to 50 %) smaller.");
   CHECK(report::certificate_text(made).find("What limits it, the largest first: noise.") != std::string::npos);
   made.changes.front().limit = TwinLimit::cause;
   made.changes.front().causes = {"quadratic_drag"};

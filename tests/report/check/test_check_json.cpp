@@ -60,8 +60,8 @@ TEST_CASE("the clips of a check have no column that says nothing about any of th
   }
   check.clips[0].position_noise_m = 2e-4;
   std::string text = report::check_text(check), page = report::check_report(check, {}).html;
-  CHECK(text.find("noise mm") != std::string::npos);
-  CHECK(text.find("blur px") == std::string::npos);
+  CHECK(text.find("noise (mm)") != std::string::npos);
+  CHECK(text.find("blur (px)") == std::string::npos);
   CHECK(page.find("noise (mm)</th>") != std::string::npos);
   CHECK(page.find("120 positions in 2 clips") != std::string::npos);
   for (const char* title : {"blur (px)", "marker (px)", "contrast", "white, black", "in the file"}) {
@@ -73,7 +73,7 @@ TEST_CASE("the clips of a check have no column that says nothing about any of th
   check.clips[1].saturated = 1.54e-6;
   text = report::check_text(check);
   page = report::check_report(check, {}).html;
-  CHECK(text.find("blur px") != std::string::npos);
+  CHECK(text.find("blur (px)") != std::string::npos);
   CHECK(page.find("“marker (px)”: its diameter") != std::string::npos);
   CHECK(page.find("&lt; 0.01\u00a0%, 0\u00a0%") != std::string::npos);
 }

@@ -1,4 +1,6 @@
 /// What a browser makes of a page's style: dark, narrow, printed. Skipped where there is no chromium.
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -68,6 +70,76 @@ TEST_CASE("on a dark page plots are dark and photographs as they are, and a ligh
     CHECK(says(*dom, "plot=\"none\"") == !dark);
     CHECK(says(*dom, "plot=\"invert(") == dark);
   }
+}
+
+namespace {
+
+/// WCAG 2.1: (L1 + 0.05) / (L2 + 0.05) of the relative luminances of two greys, 0 to 1 each.
+double contrast(double one, double other) {
+  const auto luminance = [](double grey) {
+    return grey <= 0.03928 ? grey / 12.92 : std::pow((grey + 0.055) / 1.055, 2.4);
+  };
+  const auto [least, most] = std::minmax({luminance(one), luminance(other)});
+  return (most + 0.05) / (least + 0.05);
+}
+
+}  // namespace
+
+TEST_CASE("a thin grey line is as clear as small text has to be, on white paper and on a dark page") {
+  const std::string two(report::kThinGrey.substr(1, 2));
+  REQUIRE(report::kThinGrey == "#" + two + two + two);
+  const double grey = std::stoi(two, nullptr, 16) / 255.0;
+  const auto inverted = [](double value) { return value + 0.9 * (1.0 - 2.0 * value); };  // CSS: invert(0.9)
+  constexpr double kOfSmallText = 4.5;                                                   // WCAG 2.1, 1.4.3
+  CHECK(contrast(grey, 1.0) > kOfSmallText);
+  CHECK(contrast(inverted(grey), inverted(1.0)) > kOfSmallText);
+}
+
+TEST_CASE("a page that begins with its answer has no heading above it") {
+  const tests::TempDir temp;
+  const std::string meaning = report::meaning_section("<p>Yes.</p>\n");
+  std::string html = report::page("look", report::question_heading("mine", "Is it so?") + meaning).html;
+  html.insert(html.find("</body>"),
+              "<script>document.documentElement.dataset.shown = "
+              "getComputedStyle(document.getElementById('meaning')).display;</script>");
+  base::write_file(temp / "page.html", html);
+  const auto dom = browser(temp.path(), {"--dump-dom", "file://" + (temp / "page.html").string()});
+  if (!dom) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  CHECK(says(*dom, "shown=\"none\""));
+}
+
+TEST_CASE("in a narrow block two long cells stand side by side without overlap, and prose has the whole width") {
+  const tests::TempDir temp;
+  report::HtmlTable table({"what", "found", "wanted", "in words"}, 1);
+  table.stack_when_narrow(1);
+  const std::string found = "50 % (2 of 4; 95 %: 7 to 93 %) of so many cases as these";
+  table.row({"the main cause is named first", found, "at least 85 %: missed by a lot", "–"});
+  report::HtmlTable prose({"effect", "what it is"}, 2);
+  prose.stack_when_narrow(1);
+  const std::string words = "a drag that grows with the square of the speed, such as that of air: a force −c v |v|";
+  prose.row({"quadratic drag", words + "; " + words});
+  std::string html = report::page("look", report::Html(table.str() + prose.str())).html;
+  html.insert(html.find("</body>"),
+              "<script>const said = document.documentElement.dataset;\n"
+              "const inside = (cell) => { const range = document.createRange(); range.selectNodeContents(cell);\n"
+              "  return range.getBoundingClientRect(); };\n"
+              "const [tables, texts] = document.querySelectorAll('table');\n"
+              "const cells = tables.querySelectorAll('td');\n"
+              "said.apart = inside(cells[1]).right <= inside(cells[2]).left || "
+              "inside(cells[1]).bottom <= inside(cells[2]).top;\n"
+              "said.wide = texts.querySelectorAll('td')[1].clientWidth > 0.9 * texts.clientWidth;</script>");
+  base::write_file(temp / "page.html", html);
+  const auto dom =
+      browser(temp.path(), {"--window-size=500,900", "--dump-dom", "file://" + (temp / "page.html").string()});
+  if (!dom) {
+    WARN("skipped: no chromium program");
+    return;
+  }
+  CHECK(says(*dom, "apart=\"true\""));
+  CHECK(says(*dom, "wide=\"true\""));
 }
 
 TEST_CASE("a table that is cut shows a shadow that stays, short cells keep one line, and numbers no width for names") {

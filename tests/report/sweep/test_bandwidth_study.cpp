@@ -130,3 +130,14 @@ TEST_CASE("the table of a bandwidth study keeps a bandwidth that one of its quan
   const std::string cells = table.substr(row, table.find("</tr>", row) - row);
   CHECK_THAT(cells, Contains("0.00160") && Contains("–"));
 }
+
+TEST_CASE("on a terminal a bandwidth study is its answer and one row a bandwidth, not all columns of the database") {
+  const std::string text = report::sweep_text(study());
+  INFO(text);
+  const auto spaces = [](std::size_t count) { return std::string(count, ' '); };
+  // The first column is as wide as "default rule", the second as "0.0000200"; 1e-4 hypot(32, 1/16).
+  CHECK_THAT(text, Contains("\n\nh (s)" + spaces(17) + "µ\n0.01" + spaces(12) + "0.00320\n"));
+  CHECK_THAT(text,
+             Contains("\ntrajectory    0.0000200\nRoot mean square errors, known to 4 % or better"));  // 1/sqrt(800)
+  CHECK_THAT(text, !Contains("coverage"));
+}

@@ -1,8 +1,10 @@
 #include "report/validation/validation_report.h"
 
 #include <optional>
+#include <sstream>
 #include <string>
 
+#include "base/text/wrapped_text.h"
 #include "tests/catch.h"
 
 using namespace glidelab;
@@ -42,8 +44,8 @@ TEST_CASE("the few numbers that matter come before the table: the better estimat
   CHECK(first.find("fit of the whole motion") != std::string::npos);
   CHECK(first.find("K/m (1/s)") != std::string::npos);
   CHECK(first.find("m1 (0.335 kg, 4°)") != std::string::npos);
-  CHECK(first.find("2.76810 ± 0.00040 (2.76800)") != std::string::npos);
-  CHECK(first.find("0.007120 ± 0.000020 (0.007100)") != std::string::npos);
+  CHECK(first.find("K/m (1/s)    2.76810 ± 0.00040   2.76800\n") != std::string::npos);
+  CHECK(first.find("µ          0.007120 ± 0.000020  0.007100\n") != std::string::npos);
   CHECK(first.find("2.780") == std::string::npos);  // the lines' value is below
   CHECK(first.find("α (°)") == std::string::npos);  // of which nothing is known here
   CHECK(first.find(
@@ -77,14 +79,26 @@ TEST_CASE("without a fit of the whole motion the lines' numbers come first, and 
   const std::string first = before_full(report::comparison_text(comparison));
   INFO(first);
   CHECK(first.find("lines of the phase diagram") != std::string::npos);
-  CHECK(first.find("2.7800 ± 0.0040 (–)") != std::string::npos);
+  CHECK(first.find("2.7800 ± 0.0040      –\n") != std::string::npos);
   CHECK(first.find("A truth of \"–\"") != std::string::npos);
   CHECK(first.find("No recovered value could be compared with a true one.") != std::string::npos);
 }
 
 TEST_CASE("a configuration's name cannot steer the terminal, and is text on the page") {
   validate::Comparison comparison = made_comparison();
-  for (validate::QuantityComparison& q : comparison.quantities) q.configuration = "\x1b[2J<b>";
+  for (validate::QuantityComparison& q : comparison.quantities) q.configuration = "\x1b[2J<i>";
   CHECK(report::comparison_text(comparison).find('\x1b') == std::string::npos);
-  CHECK(report::meaning_of(comparison).find("<b>") == std::string::npos);
+  CHECK(report::meaning_of(comparison).find("<i>") == std::string::npos);
+}
+
+TEST_CASE("the tables of a comparison fit a terminal, each under the estimator's name for people") {
+  validate::Comparison comparison = made_comparison();
+  for (validate::QuantityComparison& q : comparison.quantities) q.configuration = "a glider with quite a long name";
+  const std::string text = report::comparison_text(comparison);
+  const std::string tables = text.substr(text.find("\n\n"));
+  INFO(tables);
+  std::istringstream lines(tables);
+  for (std::string line; std::getline(lines, line);) CHECK(base::characters_in(line) <= base::kTerminalWidth);
+  CHECK(text.find("(0.335 kg, 4°), lines of the phase diagram:\nquantity ") != std::string::npos);
+  CHECK(text.find("(0.335 kg, 4°), fit of the whole motion:\nquantity ") != std::string::npos);
 }

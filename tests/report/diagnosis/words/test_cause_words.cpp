@@ -294,13 +294,16 @@ TEST_CASE("a terminal has the answer, the causes, what is left, the quantities a
   CHECK(text.starts_with("Quadratic drag, c ="));
   std::size_t at = 0;
   for (const char* part :
-       {"\nverdict: effect\n", "\nquadratic_drag      91 % (86 to 95 %)       1.85\n", "\nremainder ",
+       {"\nverdict: effect\n", "\nquadratic drag (quadratic_drag)     91 % (86 to 95 %)       1.85\n", "\nremainder ",
         "random acceleration", "It is clearest at times", "in the model:\n", "\n0.335 kg, 4°", "\nnext: Repeat",
-        "log evidence", "\ngap of held-out clips: 5.300 before"}) {
+        "\nprobability  explanation\n", "\ngap of held-out clips: 5.300 before"}) {
     INFO(part << "\n" << text);
     const std::size_t found = text.find(part, at);
     REQUIRE(found != std::string::npos);
     at = found;
   }
   CHECK(text.find("next: ") == text.rfind("next: "));
+  // What all rows share, and what only files and options need, is elsewhere.
+  CHECK(text.find("log evidence") == std::string::npos);
+  CHECK(text.find("quadratic_drag") == text.rfind("quadratic_drag"));
 }
