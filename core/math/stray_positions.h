@@ -7,6 +7,11 @@
 /// twentieth of all positions is not of the body if the jump has more than twelve times the speed of the motion: more
 /// than frames that were lost would make of it.
 ///
+/// Nor does a recording belong to one body on both sides of a jump at more than twelve times the speed of either side,
+/// with an acceleration above 20 g, from which no later jump leads back: an echo, then what lies where the body landed,
+/// or a hand. The motion is the stretch between such jumps with the widest range of positions, if no other has half of
+/// it, and all others are left out, however long; otherwise nothing shows which is the motion, and all stay.
+///
 /// The speed of the motion at a jump is that of nine tenths of all steps that are not 0 or, if larger, the median of
 /// the six nearest steps on the side of the motion. Single positions and pairs are outliers (find_outliers).
 #pragma once
