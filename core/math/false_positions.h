@@ -46,6 +46,11 @@ struct StrayPositions {
 /// twelve times the speed of the motion: more than frames that were lost would make of it. Steps of 0 do not count for
 /// that speed. Single positions and pairs are outliers (find_outliers).
 ///
+/// Nor does a recording belong to one body on both sides of a jump at more than twelve times the speed of either side,
+/// with an acceleration above 20 g, from which no later jump leads back: an echo, then what lies where the body landed,
+/// or a hand. The motion is the stretch between such jumps with the widest range of positions, if no other has half of
+/// it, and all others are left out, however long; otherwise nothing shows which is the motion, and all stay.
+///
 /// Times rise. None if nothing strays, or if fewer than eight steps show the speed of the motion.
 std::optional<StrayPositions> stray_positions(std::span<const double> t_s, std::span<const double> x);
 

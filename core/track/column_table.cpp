@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -281,6 +284,59 @@ void drop_empty_columns_at_end(ColumnTable& table) {
   while (!table.columns.empty() && is_empty(table.columns.back())) table.columns.pop_back();
 }
 
+/// Rows of one run, [from, to), and its number in the table.
+struct StackedRun {
+  std::size_t from = 0, to = 0;
+  double number = 0.0;
+};
+
+/// The runs that this column numbers: whole numbers that each stay for rows on end and do not return, with times that
+/// rise within a run and begin anew in the next; none otherwise.
+std::vector<StackedRun> stacked_runs(const TableColumn& numbers, const TableColumn& times) {
+  std::vector<StackedRun> runs;
+  std::set<double> seen;
+  for (std::size_t row = 0; row < numbers.values.size(); ++row) {
+    const std::optional<double>&number = numbers.values[row], &time = times.values[row];
+    if (!number || !time || *number != std::round(*number)) return {};
+    const bool is_next = runs.empty() || *number != runs.back().number;
+    const bool falls = row > 0 && *time <= *times.values[row - 1];
+    if (is_next != (runs.empty() || falls) || (is_next && !seen.insert(*number).second)) return {};
+    if (is_next) runs.push_back({row, row, *number});
+    runs.back().to = row + 1;
+  }
+  return runs.size() < 2 ? std::vector<StackedRun>() : runs;
+}
+
+/// A table with its runs one below the other, as one with the runs side by side: each value stays in its row.
+void put_side_by_side(ColumnTable& table) {
+  const auto time = std::ranges::find_if(table.columns, is_time_column);
+  if (!table.has_header || time == table.columns.end()) return;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const TableColumn& numbers = table.columns[c];
+    if (&numbers == &*time || is_place_column(numbers) || is_height_column(numbers)) continue;
+    const std::vector<StackedRun> runs = stacked_runs(numbers, *time);
+    if (runs.empty()) continue;
+    if (runs.size() > kMostFields / (table.columns.size() * table.line.size())) return;
+    std::vector<TableColumn> columns;
+    for (const StackedRun& run : runs) {
+      for (std::size_t of = 0; of < table.columns.size(); ++of) {
+        if (of == c) continue;
+        TableColumn column = table.columns[of];
+        column.run = fmt::format("{} {}", numbers.name, run.number);
+        column.text = fmt::format("{} {}", column.text, column.run);
+        const int first = table.line[run.from], last = table.line[run.to - 1];
+        std::erase_if(column.texts, [&](const base::Issue& text) { return text.line < first || text.line > last; });
+        for (std::size_t row = 0; row < column.values.size(); ++row) {
+          if (row < run.from || row >= run.to) column.values[row].reset();
+        }
+        columns.push_back(std::move(column));
+      }
+    }
+    table.columns = std::move(columns);
+    return;
+  }
+}
+
 }  // namespace
 
 ColumnTable read_column_table(const std::filesystem::path& file) {
@@ -386,6 +442,7 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
   drop_empty_columns_at_end(table);
+  put_side_by_side(table);
   return table;
 }
 

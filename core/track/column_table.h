@@ -6,10 +6,12 @@
 /// header after a '#'; one to three header lines (a padded line of runs, or of bodies that several columns belong to;
 /// names, short names, units); channels as "Position, Ch 1 (m)"; units as "Time (s)", "x [cm]", "x_mm", "x / cm", "x in
 /// cm" or in a line of their own; runs as "Run 1: Time (s)", "Time (s) Run #1" or in a line of their own; columns of
-/// different lengths; NaN for no value; the Unicode minus sign (U+2212); blanks between thousands. A decimal comma
-/// goes with a comma between fields if each number that has one is in quotes. The delimiter and the decimal sign are
-/// chosen so that most lines consist only of numbers, or have numbers in the same columns. Text in other columns, as
-/// labels and remarks are, is no value. Brackets around digits belong to the name: "cal[0]".
+/// different lengths; runs one below the other, told apart by a column of whole numbers, with times that begin anew
+/// ("Run,Time,Position"), which become columns as of runs side by side, each value in its row; NaN for no value; the
+/// Unicode minus sign (U+2212); blanks between thousands. A decimal comma goes with a comma between fields if each
+/// number that has one is in quotes. The delimiter and the decimal sign are chosen so that most lines consist only of
+/// numbers, or have numbers in the same columns. Text in other columns, as labels and remarks are, is no value.
+/// Brackets around digits belong to the name: "cal[0]".
 #pragma once
 
 #include <cstddef>

@@ -218,7 +218,7 @@ NoiseSoFar noise_so_far(const TrackSet& set, const MotionFit& fit) {
     squares += n * motion.sd_m * motion.sd_m;
     count += n;
     for (std::size_t p = 0; p < motion.wider.size(); ++p) {
-      excess += motion.wider[p] * motion.wider[p] - 1.0;
+      excess += std::pow(motion.sd_of(p) / motion.own_sd_of(p), 2) - 1.0;
       fast += fit.motions[i].v_m_s[p] * fit.motions[i].v_m_s[p];
     }
   }

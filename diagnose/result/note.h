@@ -133,7 +133,7 @@ struct NegativeLoss {
 /// A unit of lengths or times, or a scale, that the positions of a clip make doubtful (core/check/motion_look.h).
 struct DoubtfulUnit {
   std::string clip;
-  core::Found found;  ///< LongRun, SlowFrames or FallAboveGravity
+  core::Found found;  ///< LongRun, SlowFrames, FallAboveGravity or FallsSlowly
 };
 
 /// A stated inclination that the motion contradicts.

@@ -80,7 +80,7 @@ TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
     // Rounding affects a single position in the same way anywhere; frames with the same error are `wider` together.
     const TrackedMotion& motion = set.motions[i];
     for (std::size_t p = 0; motion.step_m > 0.0 && p < left.over_sd.size(); ++p) {
-      left.over_sd[p] *= motion.sd_of(p) / motion.sd_m;
+      left.over_sd[p] *= motion.sd_of(p) / motion.own_sd_of(p);
     }
     over_sd.insert(over_sd.end(), left.over_sd.begin(), left.over_sd.end());
     v.insert(v.end(), left.v_m_s.begin(), left.v_m_s.end());
@@ -94,7 +94,7 @@ TailResiduals tail_residuals(const TrackSet& set, const MotionFit& fit) {
   for (const TrackedMotion& motion : set.motions) {
     for (std::size_t p = 0; p < motion.t_s.size(); ++p, ++at) {
       residuals.over_scatter.push_back(over_sd[at] / scatter[at]);
-      residuals.scatter_m.push_back(scatter[at] * (motion.step_m > 0.0 ? motion.sd_m : motion.sd_of(p)));
+      residuals.scatter_m.push_back(scatter[at] * (motion.step_m > 0.0 ? motion.own_sd_of(p) : motion.sd_of(p)));
     }
   }
   return residuals;

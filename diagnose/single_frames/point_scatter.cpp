@@ -168,9 +168,9 @@ void set_noise_at_rest(std::vector<TrackedMotion>& motions, const std::vector<Sp
 }  // namespace
 
 void SpeedScatter::add(const TrackedMotion& motion, std::size_t point, double over_sd, double v_m_s) {
-  const double wider = motion.sd_of(point) / motion.sd_m;
+  const double own_sd_m = motion.own_sd_of(point), wider = motion.sd_of(point) / own_sd_m;
   squares.push_back(std::pow(over_sd * wider, 2));
-  fast.push_back(std::pow(v_m_s / motion.sd_m, 2));
+  fast.push_back(std::pow(v_m_s / own_sd_m, 2));
   top_m_s = std::max(top_m_s, std::abs(v_m_s));
   widest = std::max(widest, wider);
 }
@@ -233,7 +233,8 @@ bool give_fast_positions_their_noise(TrackSet& set, const Lateness& late) {
     for (std::size_t p = 0; p < times.back().size() && !late.empty(); ++p) times.back()[p] += late[i][p];
   }
   for (const TrackedMotion& motion : set.motions) {
-    if (core::rounding_step(motion.x_m) > motion.sd_m) return false;  // the errors of rounding depend on the position
+    const bool is_coarse = core::rounding_step(motion.x_m) > motion.sd_m || !motion.coarser.empty();
+    if (is_coarse) return false;  // the errors of rounding depend on the position
   }
   bool any = false;
   for (int round = 0; round < kJitterRounds; ++round) {

@@ -10,6 +10,10 @@
 /// before the rounding, removes this correlation: if its standard deviation is s, the correlation falls by exp(-(2 pi
 /// s/q)²).
 ///
+/// Where the step grows with the size of the number (core/motion/smoothing/noise.h, written_steps()), the motion counts
+/// as rounded to the coarsest step that a tenth of the positions have. If fewer have a coarse one, each position has
+/// the noise of its own step, and the noise besides rounding is the likeliest for all residuals from the neighbours.
+///
 /// B. Widrow, I. Kollar, Quantization Noise (2008), 5 and 20.
 #pragma once
 
@@ -23,7 +27,8 @@ namespace glidelab::diagnose {
 /// `step_m`, in order of time.
 std::vector<double> frames_alike(const std::vector<double>& t_s, const std::vector<double>& x_m, double step_m);
 
-/// Raises sd_m to the noise that rounding causes, and sets `wider`; a motion without a step is left unchanged.
+/// Raises sd_m to the noise that rounding causes, and sets `wider` and, if steps differ, `coarser`; a motion without a
+/// step is left unchanged.
 void add_rounding(TrackedMotion& motion);
 
 /// Whether rounding causes most of the noise of some motion: then neighbouring positions show no other noise.

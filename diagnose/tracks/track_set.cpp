@@ -328,6 +328,7 @@ void measure_noise(std::vector<TrackedMotion>& motions, const std::vector<std::v
       const std::vector<double>& x = x_m.empty() ? motion.x_m : x_m[i];
       motion.sd_m = std::max(neighbour_noise(t_s, x, motion.outlier), least_m);
       motion.wider.clear();
+      motion.coarser.clear();
       const std::vector<double> own = neighbour_residuals(t_s, x, motion.outlier);
       if (own.size() >= kFewestForNoise) continue;
       of_short.push_back(i);

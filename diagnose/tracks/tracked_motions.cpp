@@ -82,6 +82,7 @@ TrackedMotion some_points(const TrackedMotion& motion, std::size_t from, std::si
   pick(part.x_m);
   pick(part.outlier);
   pick(part.wider);
+  pick(part.coarser);
   pick(part.row_px);
   pick(part.along_px);
   for (auto& mode : part.shared_m) pick(mode);

@@ -51,10 +51,12 @@ struct TrackedMotion {
   std::vector<char> outlier;                  ///< 1: lies far from the cubic through its neighbours; not fitted
   double sd_m = 0.0;                          ///< noise of one position, from neighbouring positions alone
   std::vector<double> wider;                  ///< noise of each position over sd_m; empty: 1
+  std::vector<double> coarser;                ///< part of `wider` that is due to a coarser last digit; empty: 1
   std::vector<std::vector<double>> shared_m;  ///< as in FreeBlock, or empty
   /// Index among them at which the errors by sub-pixel position begin (track_set.h).
   std::size_t first_pixel_mode = std::numeric_limits<std::size_t>::max();
-  double step_m = 0.0;           ///< all positions of its clip are rounded to whole multiples of it; 0: not rounded
+  double step_m = 0.0;           ///< all positions of its clip are rounded to whole multiples of it, or the
+                                 ///< coarsest of their steps; 0: not rounded
   double scale_sd = 0.0;         ///< relative
   double m_per_px = 0.0;         ///< along the motion; 0: not filmed
   std::vector<double> row_px;    ///< image row of the marker; empty: not filmed
@@ -66,6 +68,8 @@ struct TrackedMotion {
   KnownForce known;     ///< if one was recorded
 
   double sd_of(std::size_t point) const { return wider.empty() ? sd_m : sd_m * wider[point]; }
+  /// Of a position by itself, whether or not its neighbours have the same error.
+  double own_sd_of(std::size_t point) const { return coarser.empty() ? sd_m : sd_m * coarser[point]; }
 };
 
 struct TrackedMass {

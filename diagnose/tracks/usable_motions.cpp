@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -49,6 +50,11 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
     }
   }
   if (!issues.empty()) throw base::InputError(std::move(issues));
+  for (const core::ConfigurationResult& configuration : results.configurations) {
+    const std::optional<core::SlowFall> fall = core::slow_fall(configuration, results.gravity_m_s2);
+    if (!fall || configuration.clips.empty()) continue;
+    doubtful.push_back({configuration.clips.front(), core::found::FallsSlowly{*fall}});
+  }
   return doubtful;
 }
 

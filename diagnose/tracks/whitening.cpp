@@ -52,6 +52,7 @@ SeenFrames seen_frames(const TrackedMotion& motion, double rate_hz) {
 
 void whiten(TrackedMotion& motion, const NoiseShape& shape, double rate_hz) {
   motion.wider.clear();
+  motion.coarser.clear();
   motion.whitening.clear();
   const SeenFrames all = seen_frames(motion, rate_hz);
   if (all.along_px.empty()) return;

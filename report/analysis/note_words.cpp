@@ -104,7 +104,7 @@ struct AnalysisSentence {
     const bool one = of.positions == 1;
     return fmt::format(
         "{} position{} {:.6g} s {} left out: the path jumps to {} by up to {:.3g} m, as when a motion sensor hears "
-        "another object for a moment",
+        "another object",
         of.positions, one ? " at" : "s from", of.from_s, one ? "is" : "on are", one ? "it" : "them", of.off_m);
   }
   std::string operator()(const core::ColumnsGuessed& of) const {

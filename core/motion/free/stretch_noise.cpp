@@ -89,7 +89,12 @@ struct SmoothedStretches {
 }  // namespace
 
 PositionNoise noise_at(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s) {
-  return estimate_noise(SmoothedStretches(motion, stretches, bandwidth_s).pieces, motion.noise_m);
+  PositionNoise noise = estimate_noise(SmoothedStretches(motion, stretches, bandwidth_s).pieces, motion.noise_m);
+  const double least_m = coarsest_step(motion.x_m) / std::sqrt(12.0);
+  if (noise.sd_m >= least_m) return noise;
+  for (double& covariance : noise.autocovariance) covariance *= std::pow(least_m / noise.sd_m, 2);
+  noise.sd_m = least_m;
+  return noise;
 }
 
 std::vector<double> noise_factors(const Motion& motion, const std::vector<FreeStretch>& stretches, double bandwidth_s) {

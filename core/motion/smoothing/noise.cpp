@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
@@ -171,6 +173,58 @@ double rounding_step(std::span<const double> x_m) {
   return 0.0;
 }
 
+namespace {
+
+constexpr int kMostDecimals = 10;
+
+/// The decimals of a number as it was written; kMostDecimals for any longer one.
+int decimals_of(double x) {
+  constexpr double kDigits = 1e-4;  // of the last decimal: what a conversion of units leaves is smaller
+  double scaled = std::abs(x);
+  for (int decimals = 0; decimals < kMostDecimals; ++decimals, scaled *= 10.0) {
+    if (std::abs(scaled - std::round(scaled)) < kDigits) return decimals;
+  }
+  return kMostDecimals;
+}
+
+int decade_of(double x) {
+  constexpr double kOnBorder = 1e-9;
+  return static_cast<int>(std::floor(std::log10(std::abs(x)) + kOnBorder));
+}
+
+}  // namespace
+
+std::vector<double> written_steps(std::span<const double> x_m) {
+  constexpr std::size_t kFewestNumbers = 6;  // that all end in a zero by chance in one of a million cases
+  std::map<int, std::set<double>> numbers;
+  for (const double x : x_m) {
+    if (x != 0.0) numbers[decade_of(x)].insert(std::abs(x));
+  }
+  std::map<int, int> decimals;  // of each decade
+  for (const auto& [decade, of_decade] : numbers) {
+    if (of_decade.size() < kFewestNumbers) continue;
+    int most = 0;
+    for (const double x : of_decade) most = std::max(most, decimals_of(x));
+    // A smaller number is not written more coarsely.
+    for (auto& [smaller, known] : decimals) known = std::max(known, most);
+    decimals[decade] = most;
+  }
+  if (decimals.empty() || decimals.begin()->second == decimals.rbegin()->second) return {};
+  std::vector<double> steps;
+  for (const double x : x_m) {
+    auto at = x == 0.0 ? decimals.begin() : decimals.upper_bound(decade_of(x));
+    if (at != decimals.begin()) --at;
+    steps.push_back(at->second == kMostDecimals ? 0.0 : std::pow(10.0, -at->second));
+  }
+  return steps;
+}
+
+double coarsest_step(std::span<const double> x_m) {
+  constexpr double kShare = 0.9;  // quantile: a tenth of the positions have it
+  std::vector<double> steps = written_steps(x_m);
+  return steps.empty() ? 0.0 : quantile(std::move(steps), kShare);
+}
+
 double pilot_noise(std::span<const double> t_s, std::span<const double> x_m) {
   std::vector<double> squares;
   for (std::size_t i = 2; i + 2 < t_s.size(); ++i) {
@@ -195,7 +249,7 @@ double pilot_noise(std::span<const double> t_s, std::span<const double> x_m) {
     constexpr double kOfSmallerHalf = 0.14267;
     sd = std::sqrt(sum / static_cast<double>(half) / kOfSmallerHalf);
   }
-  return std::max(sd, rounding_step(x_m) / std::sqrt(12.0));
+  return std::max(sd, std::max(rounding_step(x_m), coarsest_step(x_m)) / std::sqrt(12.0));
 }
 
 double sum_over_lags(const std::vector<double>& autocovariance) {

@@ -12,12 +12,22 @@ namespace glidelab::core {
 /// A first estimate of the standard deviation of one position, from its deviation from the cubic through its four
 /// nearest neighbours (for uniform times the fourth difference over sqrt(70)). Only the smaller half of the squares
 /// counts, so that outliers and impacts do not. If all positions are whole multiples of a step q (a rounded file), the
-/// estimate is never below q / sqrt(12): between two multiples a rounded position carries no information.
+/// estimate is never below q / sqrt(12): between two multiples a rounded position carries no information. The same
+/// holds for coarsest_step().
 double pilot_noise(std::span<const double> t_s, std::span<const double> x_m);
 
 /// The step q if all positions differ from the first by whole multiples of it (a rounded file, or counts times a length
 /// that were written with few decimals), 0 otherwise.
 double rounding_step(std::span<const double> x_m);
+
+/// The step with which each position is written, if it grows with the size of the number: a fixed number of digits, as
+/// in Tracker's default format (9.927E-2, then 0.102), makes the last decimal ten times as coarse in each decade. Empty
+/// if all decades have the same last decimal. The last decimal of a decade is that of its numbers; fewer than six
+/// different ones do not show it, and take that of the smaller numbers.
+std::vector<double> written_steps(std::span<const double> x_m);
+
+/// The coarsest of the written_steps() that one in ten positions or more have, or a coarser one; 0 if there are none.
+double coarsest_step(std::span<const double> x_m);
 
 /// Noise as a stationary process: white, or white plus a part that is correlated as c rho^|lag| (a codec's, or that of
 /// rounding a slow motion).

@@ -11,6 +11,11 @@ namespace {
 
 std::string first_to_check(const diagnose::DoubtfulUnit& of) {
   const FindingWords words = finding_words(of.found);
+  if (std::holds_alternative<core::found::FallsSlowly>(of.found)) {
+    return fmt::format(
+        "First find out why it falls so slowly ({}: {}). Unless a liquid carries it, nothing below holds.", of.clip,
+        words.found);
+  }
   const bool scale = std::holds_alternative<core::found::FallAboveGravity>(of.found);
   return fmt::format("First {} ({}: {}). {}.", words.advice, of.clip, words.found,
                      scale ? "Drag and friction cannot explain that" : "In another unit, nothing below holds");

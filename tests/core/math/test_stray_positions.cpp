@@ -91,7 +91,7 @@ TEST_CASE("at an end a short run behind a jump that no lost frames make is left 
   CHECK(stray_in(moved(run, 0, 3, 0.5)) == range(0, 3));
   CHECK(stray_in(moved(run, 97, 100, -0.5)) == range(97, 100));
   CHECK(stray_in(moved(run, 99, 100, 0.5)) == range(99, 100));
-  CHECK(stray_in(moved(run, 0, 10, 0.5)).empty());
+  CHECK(stray_in(moved(run, 0, 10, 0.5)) == range(0, 10));  // far the shorter way
   // Eight lost frames at 1.2 m/s, the times being those of a file that numbers its frames.
   CHECK(stray_in(moved(run, 3, 100, 8 * 1.2 * kStep_s)).empty());
 }
@@ -117,4 +117,44 @@ TEST_CASE("too short a series shows no strays") {
   CHECK(stray_in({}).empty());
   CHECK(stray_in(series(1, [](double t) { return t; })).empty());
   CHECK(stray_in(moved(series(8, [](double t) { return t; }), 3, 6, 1.0)).empty());
+}
+
+TEST_CASE("an echo behind which something else lies ends the motion, however long that is") {
+  // A fall onto a motion sensor below it, in whole centimetres: 40 positions, an echo, and a hand for 20 more.
+  const auto with_echo = [](double echo_m, std::size_t hand) {
+    Series made = series(41 + hand, [&](double t) {
+      const double fallen = t < 0.1 ? 0.0 : 0.5 * 5.0 * (t - 0.1) * (t - 0.1);
+      return 0.01 * std::round(100.0 * (1.1 - fallen));
+    });
+    made.x[40] = echo_m;
+    for (std::size_t i = 41; i < made.x.size(); ++i) made.x[i] = 1.07 + (i % 3 == 0 ? 0.01 : 0.0);
+    return made;
+  };
+  CHECK(stray_in(with_echo(3.06, 20)) == range(40, 61));
+  CHECK(stray_in(with_echo(10.0, 20)) == range(40, 61));
+  CHECK(stray_in(with_echo(1.07, 20)) == range(40, 61));  // no echo in between
+  CHECK(stray_in(with_echo(3.06, 60)) == range(40, 101));
+  CHECK(core::stray_positions(with_echo(3.06, 20).t_s, with_echo(3.06, 20).x)->from_s == Approx(40 * kStep_s));
+  // Before the motion as well.
+  Series before = up_and_down();
+  for (std::size_t i = 0; i < 10; ++i) before.x[i] = 3.0;
+  CHECK(stray_in(before) == range(0, 10));
+}
+
+TEST_CASE("a single echo in the motion, a launch after a long rest and two motions end nothing") {
+  Series single = up_and_down();
+  single.x[40] = 3.0;
+  CHECK(stray_in(single).empty());
+  single.x[90] = 3.0;  // with nine positions behind it
+  CHECK(stray_in(single).empty());
+  const auto kicked = [](double t) { return t < 18.5 ? 1e-4 * std::sin(900.0 * t) : 2.0 * (t - 18.5); };
+  CHECK(stray_in(series(1000, kicked)).empty());
+  CHECK(stray_in(moved(up_and_down(), 30, 100, 3.0)).empty());  // ranges of 0.5 m and 0.3 m
+  // A hand takes it 0.5 m away within a tenth of a second: 5 g.
+  Series by_hand;
+  for (int i = 0; i < 60; ++i) {
+    by_hand.t_s.push_back(0.1 * i);
+    by_hand.x.push_back(0.02 * i + (i >= 45 ? 0.5 : 0.0));
+  }
+  CHECK(stray_in(by_hand).empty());
 }

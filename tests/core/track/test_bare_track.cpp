@@ -181,3 +181,55 @@ TEST_CASE("a check of a recording whose frames are hardly marked does not ask fo
   }
   CHECK(found == 1);
 }
+
+TEST_CASE("runs one below the other are read as runs side by side, named by their number") {
+  const tests::TempDir temp;
+  const std::filesystem::path file = temp / "tidy.csv";
+  const auto rows = [](int run, double a) {
+    std::string text;
+    for (int i = 0; i < 20 + run; ++i) {
+      const double t = 0.02 * i;
+      text += fmt::format("{},{:.2f},{:.6f}\n", run, t, 0.5 * a * t * t + (i % 2 == 0 ? 1e-4 : -1e-4));
+    }
+    return text;
+  };
+  base::write_file(file, "Run,Time (s),Position (m)\n" + rows(1, 2.0) + rows(7, 3.0) + rows(4, 1.0));
+  core::TrackFileOptions options;
+  options.runs = "all";
+  options.masses_kg = {0.1, 0.2, 0.3};
+  const core::Experiment all = core::read_tracks(file, options);
+  REQUIRE(all.clips.size() == 3);
+  CHECK(all.clips[0].name == "Run 1");
+  CHECK(all.clips[1].name == "Run 7");
+  CHECK(all.clips[2].name == "Run 4");
+  CHECK(all.clips[1].mass_kg == 0.2);
+  const core::TrackData second = core::read_track_csv(file, 1, all.clips[1].column);
+  REQUIRE(second.t_s.size() == 27);
+  CHECK(second.t_s.front() == 0.0);
+  CHECK(second.x_m[10] == Approx(0.5 * 3.0 * 0.04 + 1e-4));
+  options.masses_kg = {};
+  options.runs = "1,3";
+  const core::Experiment two = core::read_tracks(file, options);
+  REQUIRE(two.clips.size() == 2);
+  CHECK(two.clips[1].name == "Run 4");
+  CHECK_THROWS_WITH(core::read_track_csv(file, 1), Contains("Position (m) Run 1") && Contains("--runs"));
+}
+
+TEST_CASE("a column of whole numbers without times that begin anew numbers no runs") {
+  const tests::TempDir temp;
+  const auto text = [](const auto& run, const auto& time) {
+    std::string rows = "Run,t (s),x (m)\n";
+    for (int i = 0; i < 30; ++i)
+      rows += fmt::format("{},{:.2f},{:.6f}\n", run(i), time(i), 0.01 * i * i + 1e-5 * (i % 3));
+    return rows;
+  };
+  const auto goes_on = [](int i) { return 0.02 * i; };
+  const auto again = [](int i) { return 0.02 * (i % 15); };
+  base::write_file(temp / "a.csv", text([](int i) { return i / 15; }, goes_on));
+  CHECK(core::read_track_csv(temp / "a.csv", 1).t_s.size() == 30);
+  // Times that begin anew where no number changes, or a number that returns.
+  base::write_file(temp / "b.csv", text([](int) { return 1; }, again));
+  CHECK_THROWS_WITH(core::read_track_csv(temp / "b.csv", 1), Contains(":17:") && Contains("a time above"));
+  base::write_file(temp / "c.csv", text([](int i) { return i / 10 % 2; }, [](int i) { return 0.02 * (i % 10); }));
+  CHECK_THROWS_WITH(core::read_track_csv(temp / "c.csv", 1), Contains("a time above"));
+}

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <random>
 
 #include "core/math/even_times.h"
 #include "core/motion/smoothing/noise.h"
@@ -109,5 +111,69 @@ TEST_CASE("an ideal motion that is written with six digits lacks nothing: a step
     const diagnose::Diagnosis diagnosis =
         diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
     CHECK(diagnosis.verdict == diagnose::Verdict::none);
+  }
+}
+
+namespace {
+
+/// Four digits below 0.1 and three decimals above, as Tracker writes numbers by default.
+double as_tracker_writes(double x) {
+  if (std::abs(x) >= 0.1 || x == 0.0) return std::round(1e3 * x) / 1e3;
+  const double digit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 3.0);
+  return digit * std::round(x / digit);
+}
+
+/// An ideal cart at 60 Hz that starts before the origin, whose positions are noisy and then written.
+tests::MadeExperiment written_by_tracker(unsigned seed) {
+  auto random = std::make_shared<std::mt19937>(seed);
+  tests::MadeEffect written;
+  written.seen = [random](double x, double) {
+    std::normal_distribution<double> noise(0.0, 6e-5);
+    return as_tracker_writes(x + noise(*random));
+  };
+  const std::vector<tests::MadeLaunch> launches = {{0.3, 3.0, -0.09, 0.02}};
+  return tests::made_experiment(launches, written, seed, 0.0, 110, 60.0, 0.1, 0.0, {.k_n_s_m = 0.02, .mu = 0.002});
+}
+
+}  // namespace
+
+TEST_CASE("positions written more coarsely beyond 0.1 m have the noise of the coarse digits") {
+  const tests::MadeExperiment made = written_by_tracker(1);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  REQUIRE(set.motions.size() == 1);
+  CHECK(diagnose::noise_is_rounding(set));
+  CHECK(set.motions[0].step_m == Approx(1e-3).epsilon(1e-9));
+  CHECK(set.motions[0].sd_m >= 1e-3 / std::sqrt(12.0) * (1.0 - 1e-9));
+}
+
+TEST_CASE("if few positions are written more coarsely, they alone have that noise") {
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0.0, 6e-5);
+  diagnose::TrackedMotion motion;
+  for (int i = 0; i < 200; ++i) {
+    motion.t_s.push_back(0.01 * i);
+    motion.x_m.push_back(as_tracker_writes(0.011 + 0.00048 * i + noise(random)));
+  }
+  motion.outlier.resize(motion.x_m.size(), 0);
+  motion.sd_m = 1e-4;
+  diagnose::add_rounding(motion);
+  CHECK(motion.step_m == 0.0);
+  CHECK(motion.sd_m == Approx(6e-5).epsilon(0.2));  // 2 sd of that of 180 correlated differences
+  for (std::size_t p = 0; p < motion.x_m.size(); ++p) {
+    const bool coarse = motion.x_m[p] > 0.0999999;
+    const double own_m = coarse ? std::hypot(motion.sd_m, 1e-3 / std::sqrt(12.0)) : motion.sd_m;
+    CHECK(motion.own_sd_of(p) == Approx(own_m).epsilon(1e-2));
+    CHECK(motion.sd_of(p) >= motion.own_sd_of(p) * (1.0 - 1e-12));
+  }
+}
+
+TEST_CASE("an ideal cart in Tracker's default number format lacks nothing") {
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    CAPTURE(seed);
+    const tests::MadeExperiment made = written_by_tracker(seed);
+    const diagnose::Diagnosis diagnosis =
+        diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+    CHECK(diagnosis.verdict == diagnose::Verdict::none);
+    CHECK(diagnosis.traces == std::vector<std::string>{"position_rounding"});
   }
 }

@@ -48,6 +48,28 @@ TEST_CASE("a diagnosis doubts the units and the scale that the check doubts, and
   CHECK(std::holds_alternative<core::found::SlowFrames>(slow[0].found));
 }
 
+TEST_CASE("a diagnosis says that a stated fall begins far below gravity, as the check does") {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = 9.81;
+  core::ConfigurationResult configuration;
+  configuration.incline_deg = 90.0;
+  configuration.clips = {"ball", "cup"};
+  core::LineFit line;
+  line.direction = 1;
+  line.a0_m_s2 = {2.05, 0.13};
+  configuration.lines = {line};
+  results.configurations = {configuration};
+  const auto doubts = diagnose::doubtful_units(results, {});
+  REQUIRE(doubts.size() == 1);
+  CHECK(doubts[0].clip == "ball");
+  CHECK(std::get<core::found::FallsSlowly>(doubts[0].found).fall.a0_m_s2.value == 2.05);
+  results.configurations[0].lines[0].a0_m_s2.value = 9.0;
+  CHECK(diagnose::doubtful_units(results, {}).empty());
+  results.configurations[0].lines[0].a0_m_s2.value = 2.05;
+  results.configurations[0].incline_deg = 12.0;
+  CHECK(diagnose::doubtful_units(results, {}).empty());
+}
+
 TEST_CASE("a motion that no incline gives is refused, with its clip") {
   CHECK_THROWS_AS(doubts_of([](double t) { return 0.1 * std::sin(30.0 * t); }), base::InputError);
 }

@@ -140,3 +140,54 @@ TEST_CASE("the noise of a series with a long gap costs what its points cost, not
   CHECK(std::isfinite(noise.sd_m));
   CHECK(noise.sd_m > 0.0);
 }
+
+namespace {
+
+/// Four digits below 0.1 and three decimals above, as Tracker writes numbers by default.
+double as_tracker_writes(double x) {
+  if (std::abs(x) >= 0.1) return std::round(1e3 * x) / 1e3;
+  const double digit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 3.0);
+  return digit * std::round(x / digit);
+}
+
+}  // namespace
+
+TEST_CASE("where the last digit grows with the number, each position has the step with which it is written") {
+  const auto t = times(200, 0.02);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0.0, 5e-5);
+  std::vector<double> x, reversed, in_mm, fixed, full;
+  for (const double time : t) {
+    const double at = 0.031 + 0.02 * time + 0.05 * time * time + normal(random);
+    full.push_back(at);
+    x.push_back(as_tracker_writes(at));
+    reversed.push_back(-x.back());
+    in_mm.push_back(0.1 * (10.0 * x.back()));  // a unit of decimetres
+    fixed.push_back(std::round(1e4 * at) / 1e4);
+  }
+  for (const auto& of : {x, reversed, in_mm}) {
+    const std::vector<double> steps = written_steps(of);
+    REQUIRE(steps.size() == of.size());
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      CHECK(steps[i] == Approx(std::abs(of[i]) < 0.0999999 ? 1e-5 : 1e-3).epsilon(1e-12));
+    }
+    CHECK(coarsest_step(of) == Approx(1e-3).epsilon(1e-12));
+    CHECK(pilot_noise(t, of) >= 1e-3 / std::sqrt(12.0) * (1.0 - 1e-12));
+  }
+  for (const auto& of : {full, fixed}) {
+    CHECK(written_steps(of).empty());
+    CHECK(coarsest_step(of) == 0.0);
+  }
+  CHECK(pilot_noise(t, full) < 1e-4);
+}
+
+TEST_CASE("a few round numbers are not written more coarsely") {
+  std::vector<double> x;
+  for (int i = 0; i < 100; ++i) x.push_back(0.903 + 0.001 * i);  // up to 1.002, and 1.000 among them
+  CHECK(written_steps(x).empty());
+  std::vector<double> rest = x;
+  rest.insert(rest.end(), 50, 1.0);
+  CHECK(written_steps(rest).empty());
+  CHECK(written_steps(std::vector<double>{}).empty());
+  CHECK(written_steps(std::vector<double>(40, 0.0)).empty());
+}

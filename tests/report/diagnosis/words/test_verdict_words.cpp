@@ -46,6 +46,9 @@ TEST_CASE(
   const std::string above = words(core::found::FallAboveGravity{1.1 * 9.80665, 9.80665});
   CHECK(above.starts_with("First measure the scale again"));
   CHECK(contains(above, "10 % above gravity: x is 10 % too long, or the frames are 5 % longer than stated). Drag"));
+  const std::string slow = words(core::found::FallsSlowly{{{2.05, 0.13}, 9.80665}});
+  CHECK(slow.starts_with("First find out why it falls so slowly (cup: the line of this fall begins with 2.05 ± 0.13"));
+  CHECK(contains(slow, "far below gravity. The times may be those of a slow-motion playback (2.2 times)"));
 }
 
 TEST_CASE("what is not ruled out is neither claimed nor called explained") {
