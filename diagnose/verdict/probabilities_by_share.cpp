@@ -67,12 +67,13 @@ void move_to_none(bool (*of)(const Hypothesis&), Comparison& comparison) {
 }
 
 void keep_drag_of_air(Comparison& comparison) {
+  const auto is_kept = [](const Hypothesis& one) {
+    return !one.unnamed && (one.effects.empty() || has(one, effect_index(ids::quadratic_drag)));
+  };
   double kept = 0.0;
-  for (Hypothesis& one : comparison.all) {
-    const bool is_kept = !one.unnamed && (one.effects.empty() || has(one, effect_index(ids::quadratic_drag)));
-    kept += one.probability *= is_kept ? 1.0 : 0.0;
-  }
-  for (Hypothesis& one : comparison.all) one.probability /= kept;
+  for (const Hypothesis& one : comparison.all) kept += is_kept(one) ? one.probability : 0.0;
+  if (!(kept > 0.0)) return;
+  for (Hypothesis& one : comparison.all) one.probability = is_kept(one) ? one.probability / kept : 0.0;
   set_probabilities(comparison);
 }
 
