@@ -13,6 +13,7 @@
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/fit/fit_neighbourhood.h"
 #include "diagnose/scan/effect_scan.h"
+#include "diagnose/tracks/neighbour_residual.h"
 #include "diagnose/tracks/whitening.h"
 
 namespace glidelab::diagnose {

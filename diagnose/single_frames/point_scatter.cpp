@@ -13,6 +13,7 @@
 #include "core/motion/smoothing/noise.h"
 #include "diagnose/fit/fit_model.h"
 #include "diagnose/fit/fit_neighbourhood.h"
+#include "diagnose/tracks/neighbour_residual.h"
 
 namespace glidelab::diagnose {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "base/math/dense.h"
 #include "core/motion/smoothing/noise.h"
-#include "diagnose/tracks/track_set.h"
+#include "diagnose/tracks/neighbour_residual.h"
 
 namespace glidelab::diagnose {
 namespace {

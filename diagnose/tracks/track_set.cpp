@@ -11,6 +11,7 @@
 #include "base/math/dense.h"
 #include "core/math/quantile.h"
 #include "core/motion/smoothing/noise.h"
+#include "diagnose/tracks/neighbour_residual.h"
 #include "diagnose/tracks/rounded_positions.h"
 #include "diagnose/tracks/tracked_motions.h"
 
@@ -281,23 +282,6 @@ void share_noise(std::vector<TrackedMotion>& motions) {
   const double own = std::clamp(1.0 - freedom / std::max(chi2, 1e-9), 0.0, 1.0);  // James-Stein shrinkage
   for (TrackedMotion& motion : motions) motion.sd_m = std::exp(mean + own * (std::log(motion.sd_m) - mean));
 }
-
-}  // namespace
-
-double neighbour_residual(const std::vector<double>& t, const std::vector<double>& x, std::size_t i) {
-  double off = x[i], gain = 1.0;
-  for (const std::size_t a : {i - 2, i - 1, i + 1, i + 2}) {
-    double weight = 1.0;
-    for (const std::size_t b : {i - 2, i - 1, i + 1, i + 2}) {
-      if (b != a) weight *= (t[i] - t[b]) / (t[a] - t[b]);
-    }
-    off -= weight * x[a];
-    gain += weight * weight;
-  }
-  return off / std::sqrt(gain);
-}
-
-namespace {
 
 /// Residuals from the neighbours, at points that are not outliers and have none beside them.
 std::vector<double> neighbour_residuals(const std::vector<double>& t_s, const std::vector<double>& x_m,

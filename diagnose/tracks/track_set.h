@@ -39,10 +39,6 @@ std::vector<std::vector<double>> without_pixel_errors(const std::vector<TrackedM
 /// positions in all, every second, third, ... is taken (thin_out()).
 TrackSet track_set(const core::AnalysisResults& results, const std::vector<core::ClipSetup>& setups, bool all);
 
-/// Distance of point i from the cubic through its four nearest neighbours, over the standard deviation that unit noise
-/// gives it: its own noise, independent of the motion. 2 <= i < n - 2.
-double neighbour_residual(const std::vector<double>& t_s, const std::vector<double>& x_m, std::size_t i);
-
 /// The noise of each motion from its neighbouring positions (`late_s`, unless empty, is the delay of each relative to
 /// its time), and one level for all if the motions' levels differ by no more than their own errors; otherwise half way
 /// between. At least 1e-7 of the longest distance covered, which no camera or sensor undercuts.
