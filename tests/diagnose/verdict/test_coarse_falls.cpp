@@ -2,7 +2,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/experiment/local_gravity.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/nominal_fit.h"
 #include "diagnose/tracks/rounded_positions.h"
@@ -62,24 +61,6 @@ TEST_CASE("where a short fall has no gap, no name that is unlikely is claimed") 
     REQUIRE_FALSE(diagnosis.effects.empty());
     const diagnose::DiagnosedEffect& first = diagnosis.effects.front();
     CHECK(std::max(first.probability, first.joint_probability) > 0.5);
-  }
-}
-
-TEST_CASE("what falls with a fifth of gravity has inertia or is held back, and no drag of size 0 explains its gap") {
-  for (unsigned seed = 1; seed <= 12; ++seed) {
-    CAPTURE(seed);  // a constant acceleration of 2 m/s², stated as a fall
-    tests::MadeExperiment made = tests::made_experiment({{1.0, 90.0, 0.05, 0.02}}, {}, seed, 1.5e-2, 32, 10.0, 0.0, 0.0,
-                                                        {.k_n_s_m = 0.0, .mu = 0.0, .gravity_m_s2 = 2.0});
-    made.results.gravity_m_s2 = kG;
-    made.results.gravity_sd_m_s2 = core::stated_gravity({}).sd_m_s2;
-    const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
-    REQUIRE(diagnosis.verdict == diagnose::Verdict::effect);
-    REQUIRE_FALSE(diagnosis.effects.empty());
-    for (const diagnose::DiagnosedEffect& effect : diagnosis.effects) {
-      CAPTURE(effect.id);
-      REQUIRE_FALSE(effect.parameters.empty());
-      CHECK(std::abs(effect.parameters.front().value) > effect.parameters.front().sd);
-    }
   }
 }
 

@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <string>
+
+#include "tests/app/run_process.h"
+#include "tests/catch.h"
+#include "tests/temp_dir.h"
+
+using namespace glidelab;
+
+TEST_CASE("diagnose: what falls with a fifth of gravity has no drag of size 0 that explains its gap") {
+  const tests::TempDir temp;
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise_m(0.0, 0.015);
+  for (int run = 0; run < 4; ++run) {
+    CAPTURE(run);
+    std::string table = "t,x\n";
+    for (int i = 0; i < 32; ++i) {
+      const double t_s = 0.1 * i;
+      table += fmt::format("{:.1f},{:.9f}\n", t_s, 0.05 + 0.02 * t_s + 0.5 * 2.005 * t_s * t_s + noise_m(random));
+    }
+    std::ofstream(temp / "falling.csv") << table;
+    const tests::ProcessResult done =
+        tests::glidelab({"diagnose", "falling.csv", "--incline", "90", "--json", "--quiet", "--no-page"}, temp.path());
+    INFO(done.err);
+    REQUIRE(done.status == 0);
+    const nlohmann::json diagnosis = nlohmann::json::parse(done.out);
+    REQUIRE(diagnosis["verdict"] == "effect");
+    REQUIRE_FALSE(diagnosis["effects"].empty());
+    for (const nlohmann::json& effect : diagnosis["effects"]) {
+      CAPTURE(effect["id"].get<std::string>());
+      REQUIRE_FALSE(effect["parameters"].empty());
+      const nlohmann::json& size = effect["parameters"].front();
+      CHECK(std::abs(size["value"].get<double>()) > size["sd"].get<double>());
+    }
+  }
+}
