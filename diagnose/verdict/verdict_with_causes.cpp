@@ -186,7 +186,6 @@ class VerdictWithCauses {
   Diagnosis verdict_beside_remainder(ImageEvidence images) const;
   Diagnosis verdict_by_noise(ImageEvidence images);
   void doubt_by_share(bool in_images);
-  void unname_what_explains_nothing();
   void move_imperfections_to_none();
   Reported reported_by(const Diagnosis& diagnosis) const;
   void add_shares(const Reported& reported, Diagnosis& diagnosis) const;
@@ -366,7 +365,6 @@ void VerdictWithCauses::doubt_by_share(bool in_images) {
     first_.unknown += std::exchange(first_.none, 0.0);
     set_unknown(std::max(by().none + by().unknown, kUnknownIfLess), first_);
   }
-  if (claims_ && !sequence_.is_gap && !in_images) unname_what_explains_nothing();
   if (weighed_ || !sequence_.is_gap) return;
   // A name that takes less than half of a gap does not explain it.
   const bool explains = !names_ || !shows_in_gap(best_) || sequence_.named_share >= kHalfOfGap;
@@ -375,16 +373,6 @@ void VerdictWithCauses::doubt_by_share(bool in_images) {
     set_unknown(std::max(first_.unknown, kUnknownIfLess), first_);
   }
   if (open_size_ && !in_images) set_unknown(std::max(first_.unknown, kOpenSize), first_);
-}
-
-/// Where nothing has to be explained, an unlikely name explains nothing, nor does one that predicts held-out positions
-/// worse.
-void VerdictWithCauses::unname_what_explains_nothing() {
-  const Hypothesis* best = best_named(set_, first_);
-  if (best == nullptr || best->fit <= 0 || !shows_in_gap(*best)) return;
-  const bool misleads = has_gap(set_, first_.fits[static_cast<std::size_t>(best->fit)]);
-  if (misleads || !is_likelier_than_not(set_, first_, *best))
-    move_to_none([](const Hypothesis& one) { return shows_in_gap(one); }, first_);
 }
 
 /// Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no parameter

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -50,18 +49,6 @@ TEST_CASE("a fall through air is braked by air, however coarsely its positions a
     }
   }
   CHECK(named >= 2);  // at odds of 3 to 1 to a viscous drag
-}
-
-TEST_CASE("where a short fall has no gap, no name that is unlikely is claimed") {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    CAPTURE(seed);
-    const tests::MadeExperiment made = coarse_fall(2e-4, 0.0, 4e-3, 0.0, 15, seed);
-    const diagnose::Diagnosis diagnosis = diagnose::diagnose_results(made.results, made.setups, {});
-    if (diagnosis.verdict != diagnose::Verdict::effect) continue;
-    REQUIRE_FALSE(diagnosis.effects.empty());
-    const diagnose::DiagnosedEffect& first = diagnosis.effects.front();
-    CHECK(std::max(first.probability, first.joint_probability) > 0.5);
-  }
 }
 
 TEST_CASE("bumper, cable and friction need something that touches the body") {
