@@ -336,7 +336,7 @@ ClipResult analyze_motion(const ClipSetup& stated, const TrackData& filed, const
   clip.position_noise_m = noise.sd_m;
   clip.noise_autocovariance_m2 = noise.autocovariance;
   clip.rounding_m = coarse_rounding(motion, noise);
-  clip.blocks = free_blocks(motion, free.stretches, track.shared_m, choice.bandwidth_s);
+  clip.blocks = free_blocks(motion, free, track.shared_m, choice.bandwidth_s);
   for (FreeBlock& block : clip.blocks) {
     if (clip.forced) block.force = force_over(block, track, setup.mass_kg, setup.mass_sd_kg);
   }

@@ -8,6 +8,7 @@
 
 #include "core/experiment/local_gravity.h"
 #include "core/math/quantile.h"
+#include "core/motion/free/fall_ends.h"
 #include "core/motion/free/motion_events.h"
 
 namespace glidelab::core {
@@ -327,29 +328,41 @@ Motion between(const Motion& motion, std::size_t from, std::size_t to) {
   return without(motion, outside);
 }
 
-/// The points before the body lies on the floor, where a fall ends there.
-std::size_t free_points(const Motion& motion, const ClipSetup& setup) {
-  if (motion.forced || !is_fall(setup.incline_rad)) return motion.t_s.size();
-  return landed_from(motion, setup.incline_rad > 0.0 ? 1 : -1);
+/// The points that may be free: what the setup states, else what lies between the release and the landing of a fall.
+PointRange within_limits(const Motion& motion, const ClipSetup& setup) {
+  const auto& t = motion.t_s;
+  const auto index = [&](auto at) { return static_cast<std::size_t>(at - t.begin()); };
+  const bool falls = !motion.forced && is_fall(setup.incline_rad);
+  const int direction = setup.incline_rad > 0.0 ? 1 : -1;
+  PointRange range{0, t.size()};
+  if (setup.end_s) {
+    range.to = index(std::upper_bound(t.begin(), t.end(), *setup.end_s));
+  } else if (falls) {
+    range.to = landed_from(motion, direction);
+  }
+  if (setup.start_s) {
+    range.from = index(std::lower_bound(t.begin(), t.end(), *setup.start_s));
+  } else if (falls) {
+    range.from = released_at(motion, direction, range.to);
+  }
+  return range;
 }
 
 }  // namespace
 
 FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup) {
-  const auto& t = motion.t_s;
-  const auto from = setup.start_s ? std::lower_bound(t.begin(), t.end(), *setup.start_s) - t.begin() : 0;
-  const auto to = setup.end_s ? std::upper_bound(t.begin(), t.end(), *setup.end_s) - t.begin()
-                              : static_cast<std::ptrdiff_t>(free_points(motion, setup));
+  const PointRange range = within_limits(motion, setup);
   FreeMotion free;
-  if (to - from >= static_cast<std::ptrdiff_t>(kLeastStretchPoints)) {
-    free = Finder(between(motion, static_cast<std::size_t>(from), static_cast<std::size_t>(to)), setup).find();
+  if (range.to >= range.from + kLeastStretchPoints) {
+    free = Finder(between(motion, range.from, range.to), setup).find();
   } else {
-    free.reason.assign(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, to - from)), LeftOut::kernel_gap);
+    free.reason.assign(range.to > range.from ? range.to - range.from : 0, LeftOut::kernel_gap);
     free.pilot_bandwidth_s = 2.0 * motion.step_s;
   }
-  free.reason.insert(free.reason.begin(), static_cast<std::size_t>(from), LeftOut::before_start);
-  free.reason.resize(t.size(), setup.end_s ? LeftOut::after_end : LeftOut::rest);
-  for (FreeStretch& stretch : free.stretches) stretch.first += static_cast<std::size_t>(from);
+  if (!setup.start_s) free.released_at = range.from;
+  free.reason.insert(free.reason.begin(), range.from, setup.start_s ? LeftOut::before_start : LeftOut::rest);
+  free.reason.resize(motion.t_s.size(), setup.end_s ? LeftOut::after_end : LeftOut::rest);
+  for (FreeStretch& stretch : free.stretches) stretch.first += range.from;
   return free;
 }
 
@@ -378,8 +391,9 @@ bool turns_into(const FreeStretch& before, const FreeStretch& after) {
          before.first + before.count == after.first;
 }
 
-std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
+std::vector<FreeBlock> free_blocks(const Motion& motion, const FreeMotion& free,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s) {
+  const std::vector<FreeStretch>& stretches = free.stretches;
   std::vector<FreeBlock> blocks;
   const auto middle_of = [&](std::size_t s) { return stretches[s].first + stretches[s].count / 2; };
   bool cut = false;  // the block starts in the middle of its first stretch
@@ -400,7 +414,7 @@ std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeS
       directions.push_back(stretches[of].direction);
     }
     s = cuts ? end - 1 : end;
-    const double first_s = motion.t_s[from] + (from > 0 && !cut ? margin_s : 0.0);
+    const double first_s = motion.t_s[from] + (from > free.released_at && !cut ? margin_s : 0.0);
     const double last_s = motion.t_s[to - 1] - (to < motion.t_s.size() && !cuts ? margin_s : 0.0);
     cut = cuts;
     while (from < to && motion.t_s[from] < first_s) ++from;

@@ -12,7 +12,8 @@
 ///    inclination of 80 degrees or more) every acceleration between 0 and g is: it speeds up towards a terminal
 ///    velocity, and where the drag grows with the square of the speed no line holds for all of it. (Of fewer than 24
 ///    points the pilot does not show that well enough. A hand that lowers the body looks the same: start_s tells.)
-///  - The end of a fall: positions of a body that lies on the floor are at rest, however few (landed_from()).
+///  - The ends of a fall (fall_ends.h): positions of a body that is held before it falls, or that lies on the floor,
+///    are at rest, however few.
 ///  - A stretch of duration T determines its acceleration with a standard deviation proportional to T^(-5/2). A stretch
 ///    whose standard deviation is four times that of the longest of its direction (T below 0.57 of it) is left out:
 ///    least squares gives all points the same weight, so its points would add noise and no information.
@@ -73,6 +74,7 @@ struct FreeMotion {
   std::vector<FreeStretch> stretches;  ///< in order of time; they share no point
   std::vector<LeftOut> reason;         ///< of every point; `used` within the stretches
   double pilot_bandwidth_s = 0.0;
+  std::size_t released_at = 0;  ///< the first point of a fall at which the body is known to be free
   std::optional<AgainstLaunch> against_launch;
 };
 
@@ -83,13 +85,13 @@ FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
 /// Free stretches joined where the motion turns.
 ///
 /// Consecutive stretches across a reversal make one block. If a block borders on something that is not free (a hand, a
-/// stop, a rest), `margin_s` of it is left out: the border is known to about a bandwidth. Blocks of fewer than
-/// kFewestBlockPoints, and those in which no stretch counts, are left out.
+/// stop, a rest), `margin_s` of it is left out: the border is known to about a bandwidth (the release of a fall
+/// better). Blocks of fewer than kFewestBlockPoints, and those in which no stretch counts, are left out.
 ///
 /// If a recorded force drives the glider to and fro, a block ends in the middle of its third stretch, where the glider
 /// is fast, and the next block begins there: over more than two turns, an incomplete law makes the fit end in a local
 /// minimum with the wrong sequence of turns.
-std::vector<FreeBlock> free_blocks(const Motion& motion, const std::vector<FreeStretch>& stretches,
+std::vector<FreeBlock> free_blocks(const Motion& motion, const FreeMotion& free,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s);
 
 inline constexpr std::size_t kFewestBlockPoints = 8;

@@ -235,33 +235,6 @@ MotionRuns find_runs(const Motion& motion, const Pilot& pilot) {
   return RunFinder(motion, pilot).find();
 }
 
-std::size_t landed_from(const Motion& motion, int direction) {
-  constexpr std::size_t kFewestSteps = 6, kMostSlow = 5;  // more positions at a lower speed are a motion
-  constexpr double kSlower = 0.7, kClearly_sd = 5.0;
-  const std::size_t n = motion.t_s.size();
-  if (n < kFewestSteps + 2) return n;
-  std::vector<double> speed;  // of each step
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    speed.push_back(direction * (motion.x_m[i + 1] - motion.x_m[i]) / (motion.t_s[i + 1] - motion.t_s[i]));
-  }
-  double falling = 0.0;
-  for (std::size_t i = 1; i + 1 < speed.size(); ++i) {
-    falling = std::max(falling, quantile({speed[i - 1], speed[i], speed[i + 1]}, 0.5));
-  }
-  std::size_t last_free = n - 1;  // a point
-  while (last_free > kFewestSteps && speed[last_free - 1] < kSlower * falling) --last_free;
-  if (last_free + 1 == n || last_free == kFewestSteps) return n;
-  const double clearly_m = kClearly_sd * std::sqrt(2.0) * motion.noise_m;
-  const double floor_m = motion.x_m[n - 1], after_s = motion.t_s[n - 1] - motion.t_s[last_free];
-  if (!(falling * after_s - direction * (floor_m - motion.x_m[last_free]) > clearly_m)) return n;
-  for (std::size_t i = last_free + 1; i < n; ++i) {
-    const bool bounces = direction * (motion.x_m[i] - floor_m) > clearly_m;
-    const bool goes_on = i > last_free + kMostSlow && std::abs(motion.x_m[i] - floor_m) > clearly_m;
-    if (bounces || goes_on) return n;
-  }
-  return last_free + 1;
-}
-
 namespace {
 
 constexpr int kSteps = 40;

@@ -69,13 +69,6 @@ struct MotionRuns {
 /// is a reversal (or a slow passage), split where the smoothed x is extreme.
 MotionRuns find_runs(const Motion& motion, const Pilot& pilot);
 
-/// The first point of a recorded fall that is no longer free, because the body has landed; the number of points if it
-/// has not. Free fall does not slow down before it lands: all steps behind the landing are slower than 0.7 of the
-/// largest speed (the median of three steps), and together fall short of it by more than five standard deviations. A
-/// body that bounces, or goes on at a lower speed for more than five positions, has not come to lie there.
-/// `direction`: the sign of v.
-std::size_t landed_from(const Motion& motion, int direction);
-
 enum class EventKind { turns, stops };
 
 struct EventTime {

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <random>
 
-#include "core/motion/free/motion_events.h"
+#include "core/motion/free/fall_ends.h"
 #include "tests/catch.h"
 
 using namespace glidelab;

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <random>
+
+#include "core/motion/free/fall_ends.h"
+#include "core/motion/free/free_motion.h"
+#include "tests/catch.h"
+
+using namespace glidelab;
+
+namespace {
+
+constexpr double kGravity_m_s2 = 9.81;
+
+struct Drop {
+  double step_s = 1.0 / 60.0;
+  double terminal_m_s = 2.0;
+  double noise_m = 1e-3;
+  double release_s = 0.0;   ///< before 0: it has been falling for a while
+  double launch_m_s = 0.0;  ///< thrown down: of the body at 0
+};
+
+/// A fall of 1.2 m with a drag in proportion to v, integrated in closed form; at rest before the release.
+core::Motion falling(const Drop& drop, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, drop.noise_m);
+  const double rate = kGravity_m_s2 / drop.terminal_m_s;
+  const auto place = [&](double t_s) {
+    const double u = std::max(0.0, t_s - drop.release_s);
+    const double of_launch = drop.launch_m_s * (1.0 - std::exp(-rate * u)) / rate;
+    return of_launch + drop.terminal_m_s * (u - (1.0 - std::exp(-rate * u)) / rate);
+  };
+  core::Motion motion;
+  motion.step_s = drop.step_s;
+  motion.noise_m = drop.noise_m;
+  for (std::size_t i = 0; i < 150; ++i) {
+    const double t_s = drop.step_s * static_cast<double>(i);
+    if (place(t_s) - place(0.0) > 1.2) break;
+    motion.t_s.push_back(t_s);
+    motion.x_m.push_back(place(t_s) + normal(random));
+    motion.point.push_back(i);
+  }
+  motion.y_m = motion.x_m;
+  return motion;
+}
+
+core::Motion upwards(core::Motion motion) {
+  for (double& x : motion.x_m) x = -x;
+  motion.y_m = motion.x_m;
+  return motion;
+}
+
+}  // namespace
+
+TEST_CASE("a body that is held for a few positions falls freely from the first one after its release") {
+  for (const double step_s : {1.0 / 30.0, 1.0 / 60.0, 1.0 / 120.0}) {
+    for (const double terminal_m_s : {0.9, 2.0, 8.0}) {
+      for (const std::size_t held : {2, 3, 5, 12}) {
+        for (unsigned seed = 1; seed <= 10; ++seed) {
+          INFO(1.0 / step_s << " fps, " << terminal_m_s << " m/s, held for " << held << ", seed " << seed);
+          const double noise_m = 0.02 * kGravity_m_s2 * step_s * step_s;  // clear within a step
+          const double last_s = step_s * static_cast<double>(held - 1);
+          const core::Motion motion =
+              falling({step_s, terminal_m_s, noise_m, last_s + (0.1 + 0.08 * seed) * step_s}, seed);
+          CHECK(core::released_at(motion, 1, motion.t_s.size()) == held);
+          CHECK(core::released_at(upwards(motion), -1, motion.t_s.size()) == held);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("no position is cut of a body that has been released, or thrown down, before the first one") {
+  std::size_t cut = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    for (const double terminal_m_s : {0.9, 2.0, 8.0}) {
+      for (const double noise_m : {1e-4, 1e-3, 5e-3}) {
+        for (const double before_s : {0.0, 0.03, 0.3}) {
+          const Drop early{1.0 / 60.0, terminal_m_s, noise_m, -before_s};
+          const Drop thrown{1.0 / 60.0, terminal_m_s, noise_m, 0.0, 4.0 * before_s};
+          for (const Drop& drop : {early, thrown}) {
+            const core::Motion motion = falling(drop, seed);
+            cut += core::released_at(motion, 1, motion.t_s.size()) != 0;
+          }
+        }
+      }
+    }
+  }
+  CHECK(cut == 0);
+}
+
+TEST_CASE("a fall is fitted from its release on, without a margin") {
+  const core::Motion motion = falling({1.0 / 60.0, 2.0, 2e-4, 2.5 / 60.0}, 1);
+  core::ClipSetup setup;
+  setup.incline_rad = 1.5707963267948966;
+  setup.mass_kg = 1e-3;
+  const core::FreeMotion free = core::find_free_motion(motion, setup);
+  REQUIRE(free.reason.size() == motion.t_s.size());
+  for (const std::size_t held : {0, 1, 2}) CHECK(free.reason[held] == core::LeftOut::rest);
+  CHECK(free.reason[3] == core::LeftOut::used);
+  const auto blocks = core::free_blocks(motion, free, {}, 3.0 / 60.0);
+  REQUIRE(blocks.size() == 1);
+  CHECK(blocks.front().t_s.front() == motion.t_s[3]);
+  // What is stated is followed.
+  setup.start_s = 0.0;
+  CHECK(core::find_free_motion(motion, setup).reason[0] == core::LeftOut::used);
+}
