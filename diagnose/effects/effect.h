@@ -3,12 +3,12 @@
 ///
 /// The nominal model and the effects together are the equation of motion
 ///
-///     (m + m_w) dv/dt = W slope - K v f l / d - against + forces - sign(v) (mu W cos(alpha) + F_0)
+///     (m + m_w) dv/dt = W slope - o (K v f l / d + D) - against + forces - sign(v) (mu W cos(alpha) + F_0)
 ///
-/// with the weight W = m g and the inertia m_w that carries no weight. `forces` are those that effects add and the
-/// recorded one. The nominal model has slope = sin(alpha), f = d = l = 1, against = 0 and F_0 = 0; the law of an effect
-/// that acts (EffectLaw) changes these terms and the way in which the motion is observed. Units are SI, x and v are
-/// positive downhill, and t is the true time since the clip's first frame.
+/// with the weight W = m g and the inertia m_w that carries no weight. D is the drag of air, `forces` are those that
+/// effects add and the recorded one. The nominal model has slope = sin(alpha), o = f = d = l = 1, D = against = 0 and
+/// F_0 = 0; the law of an effect that acts (EffectLaw) changes these terms and the way in which the motion is observed.
+/// Units are SI, x and v are positive downhill, and t is the true time since the clip's first frame.
 #pragma once
 
 #include <algorithm>
@@ -50,6 +50,8 @@ struct Resistance {
   double slope;                                  ///< sin(alpha)
   double drag_factor = 1.0, drag_divisor = 1.0;  ///< f and d
   double drag_along = 1.0;                       ///< l, a factor that depends on position
+  double own_factor = 1.0;                       ///< o, each clip's or configuration's own
+  double of_air_n = 0.0;                         ///< D, towards smaller x
   double against_n = 0.0;                        ///< a force towards smaller x, in both directions of motion
 };
 
@@ -105,6 +107,7 @@ struct MissingInTwin {
 struct TwinForces {
   double part = 1.0;               ///< m/(m + m_w)
   double k_n_s_m = 0.0, mu = 0.0;  ///< of the nominal model, times `part`
+  double own_factor = 1.0;         ///< of the configuration: of K, which has it already, and of the drag of air
   double normal_n = 0.0;           ///< m g cos(alpha)
   double along_n = 0.0;            ///< m g sin(alpha)
   std::string drag;                ///< in place of K v; empty: K v itself

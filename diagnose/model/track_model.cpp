@@ -81,8 +81,9 @@ class Mover {
       if (of.drag_factor != 1.0) viscous *= of.drag_factor;
       if (of.drag_divisor != 1.0) viscous /= of.drag_divisor;  // a division costs as much as the rest
       if (of.drag_along != 1.0) viscous *= of.drag_along;
+      viscous *= of.own_factor;
       slope = of.slope;
-      against = of.against_n;
+      against = of.against_n + of.own_factor * of.of_air_n;
     }
     double force = glider_.weight_n * slope - viscous;
     force -= against;
@@ -196,9 +197,9 @@ class Mover {
         Resistance of{.slope = sin_};
         for (const Acting& effect : laws_.resistance.all()) effect.law->resistance(effect.p, glider_, at, of);
         Held& held = held_[pushed][forward];
-        held.driving_n = glider_.weight_n * of.slope - of.against_n;
+        held.driving_n = glider_.weight_n * of.slope - of.against_n;  // a steady drag is K v alone
         for (const Acting& effect : laws_.force.all()) held.driving_n += effect.law->force_n(effect.p, glider_, at);
-        held.drag_n_s_m = m_.k_n_s_m * of.drag_factor / of.drag_divisor * of.drag_along;
+        held.drag_n_s_m = m_.k_n_s_m * of.own_factor * of.drag_factor / of.drag_divisor * of.drag_along;
         if (laws_.steady) held.friction_n = friction(at.x, at.v, at.t);
         most = std::max(most, std::abs(held.drag_n_s_m * by_inertia_));
       }
@@ -457,7 +458,7 @@ OwnLaw own_law(const TrackModel& model) {
     law.resistance(p, glider, middle, here);
     along *= here.drag_along;
   }
-  return {.k_n_s_m = model.k_n_s_m * resistance.drag_factor * along, .mu = friction.mu};
+  return {.k_n_s_m = model.k_n_s_m * resistance.own_factor * along, .mu = friction.mu};
 }
 
 }  // namespace glidelab::diagnose

@@ -8,14 +8,16 @@
 #include <set>
 
 #include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
 #include "diagnose/gap/size_uncertainty.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr Eigen::Index kDrag = 0, kMu = 1;  // indices of the common parameters
-constexpr int kPlaces = 7;                  // positions at which a friction along the track is stated
-constexpr int kDrawn = 141;                 // positions over which its mean square is taken
+constexpr EffectSlot kDragOfAir = slot_of(ids::quadratic_drag);
+constexpr int kPlaces = 7;   // positions at which a friction along the track is stated
+constexpr int kDrawn = 141;  // positions over which its mean square is taken
 
 /// A value and its derivatives with respect to the common parameters.
 struct Derived {
@@ -74,22 +76,25 @@ std::string name_of(const TrackSet& set, const Configuration& configuration) {
 }
 
 /// mu + d or K (1 + d) of each configuration or clip: their standard deviation under the parameter's key, and each
-/// under its key of single values, if it has one, followed by a name.
+/// under its key of single values, if it has one, followed by a name. Where the drag of air takes the place of K it is
+/// c (1 + d), with keys of its own.
 std::vector<DiagnosedParameter> own_values(const TrackSet& set, const MotionFit& fit,
                                            const EffectParameter& parameter) {
   const std::vector<std::size_t> globals = fit.layout->all_of(parameter.slot);
   if (globals.size() < 2) return {};
   const FittedSizes sizes(set, fit);
+  const bool of_mu = parameter.shown_as == ShownAs::of_mu, of_air = !of_mu && holds_drag(set, fit.effects);
+  if (of_air && fit.layout->all_of(kDragOfAir).empty()) return {};  // no drag at all
+  const Derived common = of_air ? sizes.at(fit.layout->all_of(kDragOfAir).front()) : sizes.at(of_mu ? kMu : kDrag);
+  const std::string_view key = of_air ? "sd_c_kg_m" : parameter.key, each_key = of_air ? "c_kg_m" : parameter.each_key;
   std::vector<Derived> values;
   for (const std::size_t g : globals) {
-    const Derived deviation = sizes.at(g);
-    values.push_back(parameter.shown_as == ShownAs::of_mu ? sum(sizes.at(kMu), deviation)
-                                                          : enlarged(sizes.at(kDrag), deviation));
+    values.push_back(of_mu ? sum(common, sizes.at(g)) : enlarged(common, sizes.at(g)));
   }
-  std::vector<DiagnosedParameter> shown = {sizes.as(std::string(parameter.key), spread(values))};
+  std::vector<DiagnosedParameter> shown = {sizes.as(std::string(key), spread(values))};
   for (std::size_t i = 0; i < globals.size() && !parameter.each_key.empty(); ++i) {
     const std::string name = name_of(set, fit.layout->globals()[globals[i]].configuration);
-    shown.push_back(sizes.as(fmt::format("{}.{}", parameter.each_key, name), values[i]));
+    shown.push_back(sizes.as(fmt::format("{}.{}", each_key, name), values[i]));
   }
   return shown;
 }

@@ -7,6 +7,9 @@
 ///     configuration_drag         sd_n_s_m: of K; k_n_s_m.NAME: K of each
 ///     clip_scatter               sd_mu, sd_k_n_s_m: standard deviations of mu and K over the clips
 ///
+/// In a fall in which the drag of air takes the place of K (fit/drag_of_air.h), sd_c_kg_m and c_kg_m.NAME stand in
+/// place of those of K.
+///
 /// Each comes with its standard deviation by the fit's covariance, to first order. For a spread this holds only if the
 /// spread is larger than the errors of the sizes themselves.
 #pragma once

@@ -1,5 +1,5 @@
-/// A dry friction mu + d and a viscous drag K (1 + e), with d and e of each clip its own. Normal priors of standard
-/// deviation 0.02 and 0.5 hold them near 0.
+/// A dry friction mu + d and a viscous drag K (1 + e), with d and e of each clip its own; a drag of air c v |v| has the
+/// factor 1 + e too. Normal priors of standard deviation 0.02 and 0.5 hold them near 0.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
@@ -10,7 +10,7 @@ void scattered_friction(const double* p, const GliderConstants&, const GliderSta
 }
 
 void scattered_drag(const double* p, const GliderConstants&, const GliderState&, Resistance& of) {
-  of.drag_factor *= 1.0 + p[1];
+  of.own_factor *= 1.0 + p[1];
 }
 
 }  // namespace

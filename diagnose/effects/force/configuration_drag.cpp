@@ -1,16 +1,17 @@
-/// A viscous drag K (1 + d), with d of each configuration (one mass on one set-up) its own. A normal prior of standard
-/// deviation 0.5 holds d near 0.
+/// A viscous drag K (1 + d), with d of each configuration (one mass on one set-up) its own; a drag of air c v |v| has
+/// the same factor. A normal prior of standard deviation 0.5 holds d near 0.
 #include "diagnose/effects/effect.h"
 
 namespace glidelab::diagnose::effects {
 namespace {
 
 void own_drag(const double* p, const GliderConstants&, const GliderState&, Resistance& of) {
-  of.drag_factor *= 1.0 + p[0];
+  of.own_factor *= 1.0 + p[0];
 }
 
 void own_drag_twin(const double* p, TwinForces& forces) {
   forces.k_n_s_m *= 1.0 + p[0];
+  forces.own_factor *= 1.0 + p[0];
 }
 
 }  // namespace

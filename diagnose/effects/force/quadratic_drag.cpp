@@ -7,11 +7,11 @@ namespace glidelab::diagnose::effects {
 namespace {
 
 void quadratic_resistance(const double* p, const GliderConstants&, const GliderState& at, Resistance& of) {
-  of.against_n += p[0] * at.v * std::abs(at.v);
+  of.of_air_n += p[0] * at.v * std::abs(at.v);
 }
 
 void quadratic_twin(const double* p, TwinForces& forces) {
-  forces.more_drag += scenario_force("quadratic", {{"c_kg_m", forces.part * p[0]}});
+  forces.more_drag += scenario_force("quadratic", {{"c_kg_m", forces.part * forces.own_factor * p[0]}});
 }
 
 /// The Reynolds number of a cup of 0.1 m in air is 700 at 0.1 m/s already. A free fall whose braking shows is therefore
