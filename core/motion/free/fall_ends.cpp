@@ -44,23 +44,23 @@ class Fall {
     for (std::size_t i = 0; i < to; ++i) x_m_.push_back(direction * (motion.x_m[i] - motion.x_m[0]));
   }
 
+  /// Each law by itself: over the time of the release, the smaller of the two has more than one valley.
   Release best_release(double from_s, double to_s) const {
-    const auto of_t = [this](double t_s) { return squares_at(t_s); };
-    const auto [t_s, squares] = boost::math::tools::brent_find_minima(of_t, from_s, to_s, kBits);
-    return {t_s, squares};
+    Release best{from_s, std::numeric_limits<double>::infinity()};
+    for (const Drag drag : {Drag::viscous, Drag::quadratic}) {
+      const auto of_t = [&](double t_s) { return squares_at(drag, t_s); };
+      const auto [t_s, squares] = boost::math::tools::brent_find_minima(of_t, from_s, to_s, kBits);
+      if (squares < best.squares) best = {t_s, squares};
+    }
+    return best;
   }
 
  private:
-  double squares_at(double release_s) const {
+  double squares_at(Drag drag, double release_s) const {
     const double longest_s = t_s_.back() - release_s;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Drag drag : {Drag::viscous, Drag::quadratic}) {
-      const auto of_log = [&](double log_w) { return squares_of(drag, std::exp(log_w), release_s); };
-      least = std::min(least, boost::math::tools::brent_find_minima(of_log, std::log(1e-2 / longest_s),
-                                                                    std::log(3.0 / step_s_), kBits)
-                                  .second);
-    }
-    return least;
+    const auto of_log = [&](double log_w) { return squares_of(drag, std::exp(log_w), release_s); };
+    return boost::math::tools::brent_find_minima(of_log, std::log(1e-2 / longest_s), std::log(3.0 / step_s_), kBits)
+        .second;
   }
 
   /// x0 and a are linear: two sums of squares and one of products give the rest.
