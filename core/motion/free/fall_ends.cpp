@@ -17,6 +17,7 @@ namespace {
 constexpr int kBits = 16;               // of a release or of a rate: far finer than the points tell
 constexpr double kClearly = 25.0;       // chi²: five standard deviations
 constexpr double kClearlyOff = 5.0;     // standard deviations of a position
+constexpr double kAsNoise = 4.0;        // largest mean square of the residuals, in squares of the noise
 constexpr std::size_t kParameters = 4;  // x0, a, w, t_r
 
 enum class Drag { viscous, quadratic };
@@ -103,9 +104,10 @@ std::size_t released_at(const Motion& motion, int direction, std::size_t to) {
   const Release held = fall.best_release(t[0], t[off]);
   const auto first = static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), held.t_s) - t.begin());
   if (to - first < kFewestBlockPoints) return 0;
-  const double variance =
-      std::max(motion.noise_m * motion.noise_m, held.squares / static_cast<double>(to - kParameters));
-  return before - held.squares > kClearly * variance ? first : 0;
+  const double noise_m2 = motion.noise_m * motion.noise_m;
+  const double variance = std::max(noise_m2, held.squares / static_cast<double>(to - kParameters));
+  const bool fits = variance <= kAsNoise * noise_m2;
+  return fits && before - held.squares > kClearly * variance ? first : 0;
 }
 
 std::size_t landed_from(const Motion& motion, int direction) {

@@ -90,6 +90,32 @@ TEST_CASE("no position is cut of a body that has been released, or thrown down, 
   CHECK(cut == 0);
 }
 
+TEST_CASE("a hand that lowers a body does not hold it") {
+  // The body falls at a part of gravity until 0.19 s, and freely from there on.
+  constexpr double kStep_s = 1.0 / 120.0, kUntil_s = 0.19;
+  for (const double part : {0.25, 0.5, 0.75}) {
+    for (const double launch_m_s : {0.0, 0.1, 0.3}) {
+      for (unsigned seed = 1; seed <= 20; ++seed) {
+        CAPTURE(part, launch_m_s, seed);
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal(0.0, 1e-3);
+        core::Motion motion;
+        motion.step_s = kStep_s;
+        motion.noise_m = 1e-3;
+        const double lowered_m_s2 = part * kGravity_m_s2;
+        for (std::size_t i = 0; i < 72; ++i) {
+          const double t_s = kStep_s * static_cast<double>(i), free_s = std::max(0.0, t_s - kUntil_s);
+          const double x_m = launch_m_s * t_s + 0.5 * lowered_m_s2 * t_s * t_s +
+                             0.5 * (kGravity_m_s2 - lowered_m_s2) * free_s * free_s;
+          motion.t_s.push_back(t_s);
+          motion.x_m.push_back(x_m + normal(random));
+        }
+        CHECK(core::released_at(motion, 1, motion.t_s.size()) == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("a fall is fitted from its release on, without a margin") {
   const core::Motion motion = falling({1.0 / 60.0, 2.0, 2e-4, 2.5 / 60.0}, 1);
   core::ClipSetup setup;
