@@ -25,21 +25,22 @@ constexpr double kOffWhole = 0.05;            // of the range of x: one parabola
 constexpr double kOverNoise = 5.0;            // a typical a must exceed this many standard deviations of a parabola's a
 constexpr double kTurnOverNoise = 20.0;       // a turn comes back by this many standard deviations of a position,
 constexpr double kTurnOverRange = 0.05;       // and by this part of the range of x
-constexpr std::size_t kManyTurns = 6;
-constexpr double kHarmonic = 0.8;                       // of the variance of a
-constexpr double kSmoothPart = 1e-7;                    // of the range of x
-constexpr double kAboveGravity = 1.05;                  // of g: a fall has 1
-constexpr double kFarAboveGravity = 2.0;                // of g: no scale or frame rate is measured that badly
-constexpr double kMedian = 2.0;                         // parabolas' sds by which the median of |a| is certain
-constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;  // of g, on an incline of less than 60 degrees
-constexpr double kSameGravity = 0.1;                    // of g
-constexpr double kMostBend = 0.08;                      // a wide lens bends a straight path by half of that
-constexpr double kGapSteps = 3.0;                       // median steps: a longer one is a gap
-constexpr double kMostUnseen = 0.2;                     // of the time
-constexpr double kLongestPush_m = 1.0;                  // at 2 g it would give 6 m/s
-constexpr double kOffStretch = 0.05;                    // of the distance that a stretch covers
-constexpr double kSureSds = 3.0;                        // of the acceleration of a stretch
-constexpr double kKeepsSpeed = 0.75;                    // of the speed at its end
+constexpr std::size_t kManyTurns = 6, kFewTurns = 2;
+constexpr double kHarmonic = 0.8, kClearlyHarmonic = 0.95;  // of the variance of a, after many turns and few
+constexpr std::size_t kFewestOfFewTurns = 8;                // parabolas
+constexpr double kSmoothPart = 1e-7;                        // of the range of x
+constexpr double kAboveGravity = 1.05;                      // of g: a fall has 1
+constexpr double kFarAboveGravity = 2.0;                    // of g: no scale or frame rate is measured that badly
+constexpr double kMedian = 2.0;                             // parabolas' sds by which the median of |a| is certain
+constexpr double kFreeFall = 0.9, kShallow_rad = 1.05;      // of g, on an incline of less than 60 degrees
+constexpr double kSameGravity = 0.1;                        // of g
+constexpr double kMostBend = 0.08;                          // a wide lens bends a straight path by half of that
+constexpr double kGapSteps = 3.0;                           // median steps: a longer one is a gap
+constexpr double kMostUnseen = 0.2;                         // of the time
+constexpr double kLongestPush_m = 1.0;                      // at 2 g it would give 6 m/s
+constexpr double kOffStretch = 0.05;                        // of the distance that a stretch covers
+constexpr double kSureSds = 3.0;                            // of the acceleration of a stretch
+constexpr double kKeepsSpeed = 0.75;                        // of the speed at its end
 
 /// Standard deviation of a by n even points over a time T: its variance is 720 s²/(n T⁴).
 double sd_of_a(double noise_m, std::size_t points, double span_s) {
@@ -190,7 +191,7 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
   look.speeding_up_m_s2 = most_speeding_up(t_s, x_m, noise_m);
   look.turns = turns_in(x_m, std::max(kTurnOverNoise * noise_m, kTurnOverRange * look.distance_m));
   // Fine enough for a swing: eight parabolas between turns.
-  if (look.turns >= kManyTurns) {
+  if (look.turns >= kFewTurns) {
     const std::size_t fine = std::max(kFewestOfParabola, x_m.size() / (8 * (look.turns + 1)));
     std::vector<double> places, accelerations;
     for (std::size_t from = 0; from + fine <= x_m.size(); from += fine) {
@@ -198,9 +199,22 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
       places.push_back(parabola.middle);
       accelerations.push_back(parabola.a);
     }
-    look.oscillates = harmonic_part(places, accelerations) > kHarmonic;
+    const double harmonic = harmonic_part(places, accelerations);
+    look.oscillates = look.turns >= kManyTurns ? harmonic > kHarmonic
+                                               : harmonic > kClearlyHarmonic && places.size() >= kFewestOfFewTurns;
   }
   return look;
+}
+
+MotionLook look_at_motion(const ClipResult& clip) {
+  std::vector<double> t_s, x_m;
+  for (const MotionPoint& point : clip.motion) {
+    const bool stated_out = point.left_out == LeftOut::before_start || point.left_out == LeftOut::after_end;
+    if (!point.measured_m || stated_out) continue;
+    t_s.push_back(point.t_s);
+    x_m.push_back(*point.measured_m);
+  }
+  return look_at_motion(t_s, x_m, clip.sightings, clip.forced);
 }
 
 namespace {

@@ -6,8 +6,9 @@
 /// which the body speeds up counts as well, over a metre or more: a body gains no more than g t, and a push that gains
 /// more is shorter. A scale or a frame rate that is somewhat off makes a fall exceed g by some per cent; a wrong unit
 /// makes it exceed g by far. An oscillation: a = -w² (x - x_c) explains four fifths of the variance of
-/// a over six turns or more. Bend: the sagitta of the marker's path in the image over its length, by a parabola.
-/// Smooth: the scatter about neighbouring positions is below 1e-7 of the distance, which no camera or sensor reaches.
+/// a over six turns or more, or 95 % of it over two to five. Bend: the sagitta of the marker's path in the image over
+/// its length, by a parabola. Smooth: the scatter about neighbouring positions is below 1e-7 of the distance, which no
+/// camera or sensor reaches.
 #pragma once
 
 #include <optional>
@@ -23,6 +24,9 @@ namespace glidelab::core {
 /// Nothing with fewer than 12 positions. Of a clip whose force was recorded only `smooth` and `bend` are looked at.
 MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x_m,
                           std::span<const MarkerSighting> sightings, bool forced);
+
+/// Of an analysed clip, without what is stated not to be free.
+MotionLook look_at_motion(const ClipResult& clip);
 
 /// The faults of the motion; Severity::unusable if no diagnosis can judge it.
 std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2);

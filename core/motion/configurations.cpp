@@ -13,6 +13,7 @@
 #include "core/motion/lines/line_law.h"
 #include "core/motion/lines/mu_and_alpha.h"
 #include "core/motion/speed_motion.h"
+#include "core/motion/steady_fall.h"
 #include "core/result/one_direction.h"
 
 namespace glidelab::core {
@@ -327,6 +328,7 @@ std::vector<ConfigurationResult> configurations_of_clips(const std::vector<ClipS
   for (const std::vector<MemberClip>& members : configurations) {
     results.push_back(join_members(members, gravity, lines));
   }
+  add_steady_falls(clips, gravity.m_s2, results);
   note_statements(results, gravity.m_s2);
   return results;
 }

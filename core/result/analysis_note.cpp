@@ -10,7 +10,8 @@ Note::~Note() = default;
 
 bool is_of_reading(const Note& note) {
   return std::holds_alternative<PositionsUnseen>(note) || std::holds_alternative<PositionsAstray>(note) ||
-         std::holds_alternative<ColumnsGuessed>(note) || std::holds_alternative<PathBends>(note);
+         std::holds_alternative<ColumnsGuessed>(note) || std::holds_alternative<PathBends>(note) ||
+         std::holds_alternative<OtherAxisUnused>(note);
 }
 
 }  // namespace glidelab::core

@@ -86,6 +86,14 @@ struct SlantedPath {
   bool along_y = false;
 };
 
+/// A requested column of x beside one of y that belongs to the same body: the path that the two make is no line along
+/// x.
+struct OtherAxisUnused {
+  std::string column;    ///< that of y
+  double off_deg = 0.0;  ///< from the path to the axis along which it is read
+  double off_m = 0.0;    ///< range of its deviation from a straight line
+};
+
 /// Heights whose sign is changed, so that x rises along the motion.
 struct CountedAlongMotion {};
 
@@ -359,6 +367,11 @@ struct MuFromIncline {
   double deg = 0.0, sd_deg = 0.0;
 };
 
+/// Falls at a constant speed, which is taken for the terminal velocity (core/motion/steady_fall.h).
+struct SteadyFall {
+  std::size_t clips = 0;
+};
+
 /// The value of gravity is that of no particular place: alpha and mu are for it, and contain its uncertainty.
 struct GravityAssumed {
   double gravity_m_s2 = 0.0, sd_m_s2 = 0.0;
@@ -387,7 +400,7 @@ using AnyNote =
                  DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
                  FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
                  GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline,
-                 GravityAssumed, RobustFit, FitScatters>;
+                 GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

@@ -446,4 +446,8 @@ ColumnTable table_of_text(std::string_view text, const std::string& name) {
   return table;
 }
 
+base::InputError wrong_column(const ColumnTable& table, const std::string& found, const std::string& expected) {
+  return base::InputError(base::Issue{table.file, 0, "column", found, expected});
+}
+
 }  // namespace glidelab::core

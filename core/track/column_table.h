@@ -20,6 +20,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include "base/errors.h"
 #include "core/track/column_header.h"
 
 namespace glidelab::core {
@@ -40,5 +41,8 @@ ColumnTable table_of_text(std::string_view text, const std::string& name);
 /// the file does not have two columns of numbers, or is no text (a spreadsheet's own format, JSON). Text between the
 /// numbers of a column is an issue for whoever uses that column.
 ColumnTable read_column_table(const std::filesystem::path& file);
+
+/// A complaint about the columns of a table.
+base::InputError wrong_column(const ColumnTable& table, const std::string& found, const std::string& expected);
 
 }  // namespace glidelab::core

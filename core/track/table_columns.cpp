@@ -8,27 +8,18 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include "base/errors.h"
-#include "base/math/angles.h"
 #include "core/experiment/file_names.h"
-#include "core/math/false_positions.h"
 #include "core/math/plane_path.h"
 #include "core/math/quantile.h"
+#include "core/track/path_columns.h"
 
 namespace glidelab::core {
 
 namespace {
-
-constexpr double kOtherAxis = 3.0;      // extent along y over that along x: above it the motion is along y
-constexpr double kStraightPath = 0.08;  // sagitta over length: a wide-angle lens bends a straight path by half of that
-constexpr double kLeastSteps = 2.0;     // of rounded coordinates: less is a staircase, and no bend
-constexpr double kBendOverNoise = 5.0, kLeastBend = 2e-3;  // of a notable bend, and over the length of the path
-constexpr double kSlanted_deg = 5.0;                       // x is then too short by 0.4 %
-constexpr std::size_t kFewestOfPath = 8;
 
 bool is_acceleration(const TableColumn& column) {
   const std::string name = lower(column.name);
@@ -69,10 +60,6 @@ std::string columns_text(const ColumnTable& table) {
   }
   const std::size_t more = table.columns.size() - names.size();
   return fmt::format("columns {}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
-}
-
-base::InputError wrong_column(const ColumnTable& table, const std::string& found, const std::string& expected) {
-  return base::InputError(base::Issue{table.file, 0, "column", found, expected});
 }
 
 bool is_asked(const TableColumn& column, std::size_t index, const std::string& asked) {
@@ -118,90 +105,6 @@ void refuse_without_positions(const ColumnTable& table) {
     throw wrong_column(table, "forces without positions, " + columns_text(table),
                        "positions over time: record where the body is, with a motion sensor or a video");
   }
-}
-
-/// Without those that say that nothing was seen: a line to them is no path.
-PlanePath path_of(const TableColumn& x, const TableColumn& y) {
-  PlanePath path;
-  std::vector<double> rows;
-  const double x_unit = metres_per(x.unit).value_or(1.0),
-               y_unit = y.unit.empty() ? x_unit : metres_per(y.unit).value_or(1.0);
-  for (std::size_t row = 0; row < x.values.size(); ++row) {
-    if (!x.values[row] || !y.values[row]) continue;
-    path.x_m.push_back(*x.values[row] * x_unit);
-    path.y_m.push_back(*y.values[row] * y_unit);
-    rows.push_back(static_cast<double>(row));
-  }
-  for (const std::vector<double>* const places : {&path.x_m, &path.y_m}) {
-    const std::optional<UnseenPositions> unseen = unseen_positions(rows, *places);
-    if (!unseen) continue;
-    return {without_flagged(path.x_m, unseen->is_unseen), without_flagged(path.y_m, unseen->is_unseen)};
-  }
-  return path;
-}
-
-double range_of(const std::vector<double>& values) {
-  return quantile(values, 0.98) - quantile(values, 0.02);
-}
-
-std::string straight_motion(const std::string& y) {
-  return fmt::format(
-      "the motion of a body along a straight line, not a free flight, a swing, a turn or a wavy track; if {} is not a "
-      "position, say which column is x (--column)",
-      y);
-}
-
-/// InputError if the path is an arc.
-void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path) {
-  const double bend = sagitta_of(path);
-  if (!(bend > kStraightPath)) return;
-  const std::string &of_x = table.columns[x].name, &of_y = table.columns[y].name;
-  throw wrong_column(
-      table, fmt::format("a curved path: the sagitta of ({}, {}) is {:.2g} % of its length", of_x, of_y, 100.0 * bend),
-      straight_motion(of_y));
-}
-
-/// A bend of any shape: InputError if it is as large as that of an arc which is refused, a note if it is clear.
-void judge_bend(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path,
-                std::vector<Note>& notes) {
-  const PathBend bend = bend_of(path);
-  if (!(bend.length_m > 0.0) || bend.range_m <= kLeastSteps * bend.step_m) return;  // at rest, or rounded
-  if (bend.range_m < kBendOverNoise * bend.noise_m || bend.range_m < kLeastBend * bend.length_m) return;
-  if (bend.range_m < kStraightPath * bend.length_m) {
-    notes.emplace_back(PathBends{bend.range_m, bend.slope_deg});
-    return;
-  }
-  throw wrong_column(
-      table,
-      fmt::format("a curved path: ({}, {}) strays over {:.2g} m across the best straight line, {:.2g} % of its length",
-                  table.columns[x].name, table.columns[y].name, bend.range_m, 100.0 * bend.range_m / bend.length_m),
-      straight_motion(table.columns[y].name));
-}
-
-/// The column, x or y, along which the body moves; both if its path makes an angle with the axes.
-ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<Note>& notes) {
-  ChosenColumns chosen;
-  chosen.place = x;
-  const TableColumn& other = table.columns[y];
-  if (!other.unit.empty() && !metres_per(other.unit)) return chosen;  // in pixels, say: no length beside x
-  const PlanePath path = path_of(table.columns[x], other);
-  if (path.x_m.size() < kFewestOfPath) return chosen;
-  refuse_curve(table, x, y, path);
-  judge_bend(table, x, y, path, notes);
-  const double range_x = range_of(path.x_m), range_y = range_of(path.y_m);
-  const bool upright = range_y > kOtherAxis * range_x;
-  if (upright) {
-    notes.emplace_back(MotionAlongY{range_y, range_x});
-    chosen.place = y;
-  }
-  const double from_x_deg = slant_deg(path);
-  const double off_deg = upright ? 90.0 - std::abs(from_x_deg) : std::abs(from_x_deg);
-  if (off_deg > kSlanted_deg) {
-    const double off = off_deg / base::kDegreesPerRad;
-    chosen.across = Across{upright ? x : y, std::cos(off), std::copysign(std::sin(off), from_x_deg)};
-    notes.emplace_back(SlantedPath{off_deg, 1.0 / std::cos(off), upright});
-  }
-  return chosen;
 }
 
 /// Whether the integral of `rate` over the times is `place`, apart from a constant: a column of speeds.
@@ -337,8 +240,19 @@ double unevenness(const TableColumn& column) {
   return std::sqrt((steps - steps.mean()).square().mean()) / std::abs(steps.mean());
 }
 
-/// Two columns without a header: t and x, unless the second increases throughout and the first often goes back. (Times
-/// with a wrong one among them keep their place, and the error names its line.) Where both increase, and the second in
+/// Whether at least half of the steps are the median one: times, some of which may be wrong.
+bool is_mostly_even(const TableColumn& column) {
+  constexpr double kSame = 0.01;  // of the median step
+  const std::vector<double> steps = steps_of(column);
+  const double middle = quantile(steps, 0.5);
+  const auto same =
+      std::ranges::count_if(steps, [&](double step) { return std::abs(step - middle) <= kSame * std::abs(middle); });
+  return 2 * static_cast<std::size_t>(same) >= steps.size();
+}
+
+/// Two columns without a header: t and x, unless the second increases throughout and the first often goes back, or goes
+/// back at all where the second has even steps. (Other times with a wrong one among them keep their place, and the
+/// error names its line.) Where both increase, and the second in
 /// far more even steps, it may be the times of a camera or the places of a picket fence.
 ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
   const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
@@ -349,7 +263,9 @@ ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
                        "which of them is x: --column 1, or column = \"1\" in experiment.toml, if the second holds the "
                        "times of a camera or a sensor; --column 2 if it holds the places of marks");
   }
-  const std::size_t time = second && !goes_back_seldom(table.columns[0]) ? 1 : 0;
+  const bool even = second && !first && steps_of(table.columns[0]).size() >= kFewestOfPath &&
+                    unevenness(table.columns[1]) < kEven && !is_mostly_even(table.columns[0]);
+  const std::size_t time = even || (second && !goes_back_seldom(table.columns[0])) ? 1 : 0;
   if (second && (first || time == 1))
     notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});
   return only(1 - time);
@@ -434,6 +350,7 @@ ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked,
   if (asked.empty() && is_height_column(table.columns[chosen.place])) {
     notes.emplace_back(HeightTaken{table.columns[chosen.place].text});
   }
+  if (!asked.empty()) note_other_axis(table, chosen.place, notes);
   note_force(table, notes);
   return chosen;
 }

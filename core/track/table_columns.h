@@ -4,16 +4,19 @@
 /// position, distance or displacement (or the equivalent in other languages), if there is just one; if there is none,
 /// the one named y or height. If both x and y are present (Tracker writes both), x is the one along which the body
 /// moves: y if its extent is three times as large. If its straight path makes an angle of more than 5 degrees with that
-/// axis, positions are taken along the path, from both columns. A curved path of the two, an arc or a wavy one, is not
-/// motion along a line, and is refused; a smaller bend that its noise does not explain is told
-/// (core/math/plane_path.h).
+/// axis, positions are taken along the path, from both columns. A curved path of the two, an arc or one that turns to
+/// and fro by more than 12 degrees, is not motion along a line, and is refused; a smaller bend that its noise does not
+/// explain is told (core/math/plane_path.h).
+///
+/// A requested x whose y stands beside it is read alone; a note says so where the path is not along x.
 ///
 /// Three columns without a header are t, x and a third: y, if it follows x along a line; a third that is neither this
 /// nor the speed dx/dt is not used, and one that makes a curve with x is refused.
 ///
 /// Its time is the nearest column to the left that is named t or time or has a unit of time, of the same run if runs
 /// are stated; otherwise the only one. In a file without a header the first column is the time; of two columns the
-/// second, if it alone increases throughout, and whichever is not asked for as x. A note says so if both could be
+/// second, if it alone increases throughout, in even steps or while the first often goes back, and whichever is not
+/// asked for as x. A note says so if both could be
 /// times; if the second then has far more even steps, x must be asked for.
 #pragma once
 

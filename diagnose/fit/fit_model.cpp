@@ -62,6 +62,13 @@ double least_filmed_jitter_s(double top_px_s) {
   return std::max(0.01 * kShortExposure_s, top_px_s > 0.0 ? kPixelError_px / top_px_s : 0.0);
 }
 
+bool is_at_end(const ParameterRange& range, double value, double absent) {
+  const double near = 1e-6 * (range.high - range.low);
+  if (!std::isfinite(near) || !(near > 0.0)) return false;
+  const auto at = [&](double end) { return std::abs(value - end) <= near && std::abs(end - absent) > near; };
+  return at(range.high) || at(range.low);
+}
+
 ParameterRange range_of_places(const TrackSet& set) {
   ParameterRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const TrackedMotion& motion : set.motions) {

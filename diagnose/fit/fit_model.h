@@ -52,6 +52,9 @@ struct ParameterRange {
   double low = 0.0, high = 0.0;
 };
 
+/// Whether a size stands at an end of its range other than the one at which it has no effect.
+bool is_at_end(const ParameterRange& range, double value, double absent);
+
 /// The range of an effect's parameter for the given data. It is the same for the scan, which averages the evidence over
 /// it, and for the fit: a fit that went further would gain from sizes that its evidence does not average over. Limits
 /// are needed, as a wave slower than the clips can imitate any drift, and a cable that tightens before the first

@@ -103,9 +103,11 @@ struct FallsThroughAir {
   bool viscous_leaves_less() const;
 };
 
-/// A fall with a wrong scale or a wrong frame rate, which slow it: a buoyancy would do the same.
+/// A fall with a wrong scale or a wrong frame rate, which slow it, or with an inertia without weight: a buoyancy would
+/// do the same.
 struct BuoyancyLooksAlike {
   double density_ratio = 0.0;  ///< of the fluid to the body
+  bool as_inertia = false;
 };
 
 /// Explanations whose fits reached the most steps that a fit may take before they reached a minimum.
@@ -128,6 +130,14 @@ struct OppositeLaunch {
 struct NegativeLoss {
   enum class Of { drag, friction } of = Of::drag;
   double value = 0.0, sd = 0.0;  ///< N s/m of drag
+};
+
+/// The likeliest explanation is impossible: with it, a drag or a friction is below zero, or a size of one of its
+/// effects stands at an end of the range that is searched.
+struct ImpossibleSizes {
+  std::vector<std::string> effects;  ///< of the explanation, ids
+  std::vector<NegativeLoss> negative;
+  std::vector<std::string> at_end;  ///< of `effects`, those with such a size
 };
 
 /// A unit of lengths or times, or a scale, that the positions of a clip make doubtful (core/check/motion_look.h).
@@ -198,7 +208,7 @@ using AnyNote =
                  PiecesHeldOut, QuartersHeldOut, LastingErrors, StatementsDisagree, NoInclination, SplitSetUps,
                  OppositeLaunch, NegativeLoss, ContradictedIncline, ContradictedReading, BeyondGravity, MeanIncline,
                  TableOfLines, OnlyFalls, FallsThroughAir, BuoyancyLooksAlike, FitsCutOff, NoMassStated, OfCamera,
-                 SensorPositions, OneOrigin, SuspectedFall, OfReading, DoubtfulUnit>;
+                 SensorPositions, OneOrigin, SuspectedFall, OfReading, DoubtfulUnit, ImpossibleSizes>;
 
 /// One note. The code that copies, moves and destroys it is compiled once (note.cpp), as for core::Note, which says
 /// why the two share no template.

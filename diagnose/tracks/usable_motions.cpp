@@ -19,18 +19,6 @@ bool is_of_units(const core::Found& found) {
          std::holds_alternative<core::found::FallAboveGravity>(found);
 }
 
-/// The motion without what is stated not to be free.
-core::MotionLook look_at(const core::ClipResult& clip) {
-  std::vector<double> t_s, x_m;
-  for (const core::MotionPoint& point : clip.motion) {
-    const bool stated_out = point.left_out == core::LeftOut::before_start || point.left_out == core::LeftOut::after_end;
-    if (!point.measured_m || stated_out) continue;
-    t_s.push_back(point.t_s);
-    x_m.push_back(*point.measured_m);
-  }
-  return core::look_at_motion(t_s, x_m, clip.sightings, clip.forced);
-}
-
 }  // namespace
 
 std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
@@ -39,7 +27,8 @@ std::vector<DoubtfulUnit> doubtful_units(const core::AnalysisResults& results,
   std::vector<DoubtfulUnit> doubtful;
   for (std::size_t c = 0; c < results.clips.size(); ++c) {
     const core::ClipResult& clip = results.clips[c];
-    for (const core::Finding& finding : core::motion_findings(look_at(clip), setups[c], results.gravity_m_s2)) {
+    for (const core::Finding& finding :
+         core::motion_findings(core::look_at_motion(clip), setups[c], results.gravity_m_s2)) {
       if (is_of_units(finding.found)) doubtful.push_back({clip.name, finding.found});
       const auto* const fault = std::get_if<core::found::MotionFault>(&finding.found);
       if (fault == nullptr) continue;

@@ -60,6 +60,26 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
   });
 }
 
+namespace {
+
+/// Each of these effects, or the likelier one that these data cannot tell from it: `best` has its names from the
+/// likeliest pair, and another name may be likelier without the second of them.
+std::set<std::size_t> by_likeliest_names(const TrackSet& set, const Comparison& comparison,
+                                         const std::set<std::size_t>& effects) {
+  std::set<std::size_t> names;
+  for (const std::size_t e : effects) {
+    std::size_t name = e;
+    for (std::size_t other = 0; other < effect_list().size(); ++other) {
+      if (effects.contains(other) || !are_alike(comparison, other, e, set.images)) continue;
+      if (comparison.effect_probability[other] > comparison.effect_probability[name] + kClearlyLikelier) name = other;
+    }
+    names.insert(name);
+  }
+  return names;
+}
+
+}  // namespace
+
 const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
   const auto probability = [&](std::size_t effect) {
     const auto alike = [&](std::size_t other) { return are_alike(comparison, other, effect, set.images); };
@@ -86,8 +106,12 @@ const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison,
   }
   likely.insert(likeliest);
   if (likely.size() == best.effects.size()) return nullptr;
-  const Hypothesis* part = find(comparison, likely);
-  return part != nullptr && part->fit > 0 ? part : nullptr;
+  const auto fitted = [&](const std::set<std::size_t>& effects) {
+    const Hypothesis* found = find(comparison, effects);
+    return found != nullptr && found->fit > 0 ? found : nullptr;
+  };
+  const Hypothesis* renamed = fitted(by_likeliest_names(set, comparison, likely));
+  return renamed != nullptr ? renamed : fitted(likely);
 }
 
 bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vector<std::size_t>& effects) {

@@ -20,8 +20,8 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
 /// The fitted explanation by those causes of `best` that are likelier than not, or by the likeliest of them: the rest
 /// of the median probability model (best_named()). A cause counts together with those that no track can tell from it
 /// and, if it has a third itself, with those that these data cannot tell from it beside the others; except where `best`
-/// has two that are alike: each is then as likely as its own name. Null if these are all causes of `best`, or if no fit
-/// has them alone.
+/// has two that are alike: each is then as likely as its own name. What remains is called by the clearly likeliest of
+/// the names that these data cannot tell apart. Null if these are all causes of `best`, or if no fit has them alone.
 const Hypothesis* likely_part(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
 
 /// Whether the size of one of these effects of a fit is larger than its standard deviation. Only sizes that all clips

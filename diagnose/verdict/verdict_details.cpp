@@ -14,6 +14,7 @@
 #include "diagnose/gap/held_out.h"
 #include "diagnose/gap/size_uncertainty.h"
 #include "diagnose/verdict/own_sizes.h"
+#include "diagnose/weigh/fit_odds.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -41,14 +42,6 @@ double px_per_m(const ImageEvidence& images) {
     most = std::max(most, clip.px_per_m);
   }
   return most > 0.0 && most < kMostScaleRatio * least ? 0.5 * (least + most) : 0.0;
-}
-
-/// Whether a size stands at an end of its range other than the one at which it has no effect.
-bool is_at_end(const ParameterRange& range, double value, double absent) {
-  const double near = 1e-6 * (range.high - range.low);
-  if (!std::isfinite(near) || !(near > 0.0)) return false;
-  const auto at = [&](double end) { return std::abs(value - end) <= near && std::abs(end - absent) > near; };
-  return at(range.high) || at(range.low);
 }
 
 }  // namespace
@@ -100,17 +93,6 @@ constexpr double kLeastNegativeSds = 5.0;  // standard deviations below 0 at whi
 constexpr double kLeastPullSds = 5.0;      // standard deviations between a statement and everything else
 constexpr double kLeastPartToTell = 0.2;   // of the motion: from here on the reader must be told that it is set aside
 
-std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
-  std::vector<NegativeLoss> found;
-  const Eigen::MatrixXd covariance = common_covariance(fit);
-  for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
-    const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
-    if (!(value < -kLeastNegativeSds * sd)) continue;
-    found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, value, sd});
-  }
-  return found;
-}
-
 std::vector<ContradictedIncline> contradicted_statements(const TrackSet& set, const MotionFit& fit) {
   std::vector<ContradictedIncline> found;
   for (const StatementPull& pull : statement_pulls(set, fit)) {
@@ -137,6 +119,25 @@ std::optional<SetAside> set_aside(const TrackSet& set) {
 }
 
 }  // namespace
+
+std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
+  std::vector<NegativeLoss> found;
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
+    const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
+    if (!(value < -kLeastNegativeSds * sd)) continue;
+    found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, value, sd});
+  }
+  return found;
+}
+
+std::optional<ImpossibleSizes> impossible_sizes(const MotionFit& fit) {
+  ImpossibleSizes found{{}, what_drives(fit), {}};
+  for (const std::size_t e : effects_at_end(fit)) found.at_end.emplace_back(effect_list()[e].id);
+  if (found.negative.empty() && found.at_end.empty()) return {};
+  for (const std::size_t e : fit.effects) found.effects.emplace_back(effect_list()[e].id);
+  return found;
+}
 
 VerdictLimits limits_of(const TrackSet& set, const MotionFit& fit) {
   return {what_drives(fit), contradicted_statements(set, fit), set_aside(set)};

@@ -2,6 +2,7 @@
 /// gap lies.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,13 @@ std::vector<DiagnosedParameter> fitted_parameters(const TrackSet& set, const Mot
 std::vector<DiagnosedParameter> derived_parameters(const TrackSet& set, const MotionFit& fit, std::size_t effect,
                                                    const ImageEvidence& images,
                                                    const std::vector<DiagnosedParameter>& known);
+
+/// Drag and friction that a fit has below zero by more than five standard deviations.
+std::vector<NegativeLoss> what_drives(const MotionFit& fit);
+
+/// What makes an explanation impossible: such a drag or friction beside its effects, or a size of theirs at an end of
+/// its range. Empty if nothing does.
+std::optional<ImpossibleSizes> impossible_sizes(const MotionFit& fit);
 
 /// Limits that a reader must know before the verdict, for the fit on which it rests: a negative drag or friction,
 /// statements that the data contradict, and the part of the data that is set aside.

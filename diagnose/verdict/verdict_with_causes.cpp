@@ -86,16 +86,24 @@ std::optional<double> evidence_over_viscous(const Comparison& comparison, const 
   return quadratic->log_evidence - viscous->log_evidence;
 }
 
-/// The ratio of densities of fluid and body with which buoyancy would slow a fall as a named wrong scale or frame rate
-/// does: g becomes (1 + e) g by the scale, and (1 + e)² g by the frame rate. Empty if none is named, or if it would be
-/// no buoyancy: the fall is faster.
-std::optional<double> ratio_of_densities(const Diagnosis& diagnosis) {
+/// The buoyancy that would slow a fall as a named effect does: with the ratio r of the densities of fluid and body, g
+/// becomes (1 - r) g. It becomes (1 + e) g by a wrong scale, (1 + e)² g by a wrong frame rate, and g m/(m + m_w) by an
+/// inertia without weight. Empty if none is named; if the fall is faster; if r is below 0.01, which is more than in
+/// air; or if the inertia may be that of the air, less than the mass beside a drag of air.
+std::optional<BuoyancyLooksAlike> buoyancy_like(const TrackSet& set, const Diagnosis& diagnosis) {
+  constexpr double kLeastRatio = 0.01, kLeastBesideAir = 0.5;
   for (const DiagnosedEffect& effect : diagnosis.effects) {
+    if (effect.id == ids::rotational_inertia && !effect.parameters.empty()) {
+      const double of_mass = effect.parameters.front().value / lightest_kg(set), ratio = of_mass / (1.0 + of_mass);
+      const bool of_air = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                      [](const auto& other) { return other.id == ids::quadratic_drag; });
+      if (ratio > (of_air ? kLeastBesideAir : kLeastRatio)) return BuoyancyLooksAlike{ratio, true};
+    }
     const bool of_rate = effect.id == ids::frame_rate_error;
     if (!of_rate && effect.id != ids::scale_error) continue;
     for (const DiagnosedParameter& parameter : effect.parameters) {
       const double factor = (1.0 + parameter.value) * (of_rate ? 1.0 + parameter.value : 1.0);
-      if (parameter.key == "e" && factor < 1.0) return 1.0 - factor;
+      if (parameter.key == "e" && factor < 1.0 - kLeastRatio) return BuoyancyLooksAlike{1.0 - factor};
     }
   }
   return {};
@@ -216,8 +224,9 @@ class VerdictWithCauses {
   TrackSet gap_set_, gap_with_;
   MotionFit gap_nominal_;
   CauseSequence sequence_;
-  Sized sized_;             // the causes that keep their name, beside their own remainder
-  bool open_size_ = false;  // a name whose effect may as well have no size at all is not confident
+  Sized sized_;                                // the causes that keep their name, beside their own remainder
+  bool open_size_ = false;                     // a name whose effect may as well have no size at all is not confident
+  std::optional<ImpossibleSizes> impossible_;  // the explanation with these sizes
   std::vector<std::string> traces_;
 };
 
@@ -284,6 +293,7 @@ void VerdictWithCauses::size_causes() {
   // Lost frames are counted one by one: their size is certain.
   open_size_ = names_ && sequence_.is_gap && shows_in_gap(best_) && !has(best_, effect_index(ids::dropped_frames)) &&
                !has_certain_size(sized_.set, sized_.fit, fit_of_gap().effects);
+  if (names_ && sequence_.is_gap && shows_in_gap(best_)) impossible_ = impossible_sizes(sized_.fit);
 }
 
 /// Whether some viscous drag is clearly likelier by the positions alone than any quadratic one and leaves less, each
@@ -318,6 +328,7 @@ bool VerdictWithCauses::settle_probabilities() {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   if (open_size_) set_unknown(std::max(comparison.unknown, kOpenSize), comparison);
+  if (impossible_) set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   if (by_air_ && viscous_leaves_less()) {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
@@ -373,6 +384,7 @@ void VerdictWithCauses::doubt_by_share(bool in_images) {
     set_unknown(std::max(first_.unknown, kUnknownIfLess), first_);
   }
   if (open_size_ && !in_images) set_unknown(std::max(first_.unknown, kOpenSize), first_);
+  if (impossible_ && !in_images) set_unknown(std::max(first_.unknown, kUnknownIfLess), first_);
 }
 
 /// Without a gap, a name must do more than small imperfections would. Scatter of single positions shifts no parameter
@@ -424,10 +436,9 @@ void VerdictWithCauses::add_notes(Diagnosis& diagnosis) const {
     if (note.viscous_leaves_less() && !viscous_leaves_less()) note.gaps.reset();
     diagnosis.notes.emplace_back(note);
   }
-  constexpr double kLeastRatio = 0.01;  // air has 0.001 of the density of what falls through it, or less
-  if (const std::optional<double> ratio = only_falls(set_) ? ratio_of_densities(diagnosis) : std::nullopt;
-      ratio && *ratio > kLeastRatio) {
-    diagnosis.notes.emplace_back(BuoyancyLooksAlike{*ratio});
+  if (impossible_ && diagnosis.verdict == Verdict::unknown) diagnosis.notes.emplace_back(*impossible_);
+  if (only_falls(set_)) {
+    if (const auto buoyancy = buoyancy_like(set_, diagnosis)) diagnosis.notes.emplace_back(*buoyancy);
   }
   if (set_.images) return;
   if (std::vector<std::string> of_camera = named_of_camera(diagnosis); !of_camera.empty()) {

@@ -1,13 +1,20 @@
 #include "diagnose/weigh/fit_odds.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/drag_of_air.h"
+#include "diagnose/gap/held_out.h"
 #include "diagnose/weigh/air_odds.h"
 
 namespace glidelab::diagnose {
 namespace {
 
+constexpr double kAtEnd = 1e-3;
+constexpr double kLeastOfLoss = 1e-3;
 constexpr double kMovesAirAlong = 1.0 / 6.0;  // relative to the drag alone: with the odds of both effects, a third
 
 }  // namespace
@@ -28,10 +35,44 @@ double log_odds_of_sizes(const MotionFit& fit) {
   return log;
 }
 
+std::vector<std::size_t> effects_at_end(const MotionFit& fit) {
+  std::vector<std::size_t> found;
+  if (!fit.layout) return found;
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    const EffectParameter* parameter = globals[g].parameter;
+    if (parameter == nullptr || parameter->each != Each::experiment) continue;
+    const EffectInfo& info = effect_list()[globals[g].effect];
+    if (info.search == Search::spread || info.id == ids::end_stop || parameter->slot.parameter != info.law.size)
+      continue;
+    if (is_at_end(globals[g].range, fit.at.global[static_cast<Eigen::Index>(g)], parameter->absent)) {
+      found.push_back(globals[g].effect);
+    }
+  }
+  return found;
+}
+
+double log_odds_of_losses(const TrackSet& set, const MotionFit& fit) {
+  if (!fit.layout) return 0.0;
+  const Eigen::MatrixXd covariance = common_covariance(fit);
+  double points = 0.0, log = 0.0;
+  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
+  const double wider = std::max(1.0, std::sqrt(fit.cost / points));
+  for (const Eigen::Index g : {0, 1}) {
+    const bool held = g == 0 ? holds_drag(set, fit.effects) : only_falls(set);
+    const double sd = wider * std::sqrt(covariance(g, g));
+    if (held || !(sd > 0.0)) continue;
+    const double positive = 0.5 * std::erfc(-fit.at.global[g] / (sd * std::numbers::sqrt2));
+    log += std::log(std::max(kLeastOfLoss, positive));
+  }
+  return log;
+}
+
 void set_fit_odds(const TrackSet& set, Comparison& comparison) {
   comparison.fit_odds.clear();
   for (const MotionFit& fit : comparison.fits) {
-    double log = log_odds_of_sizes(fit);
+    double log = log_odds_of_sizes(fit) + log_odds_of_losses(set, fit) +
+                 std::log(kAtEnd) * static_cast<double>(effects_at_end(fit).size());
     if (set.through_air) {
       log += log_odds_without_air(set, fit) + (is_drag_with_its_air(fit.effects) ? std::log(kMovesAirAlong) : 0.0);
     }

@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "base/math/angles.h"
 #include "core/math/quantile.h"
+#include "core/motion/steady_fall.h"
 #include "core/result/estimate.h"
 #include "core/result/one_direction.h"
 
@@ -141,6 +142,7 @@ core::AnalysisResults with_trajectory_fits(core::AnalysisResults results, const 
     core::note_mu_from_incline(configuration);
     note_fit(*fit, options, configuration);
   }
+  core::add_steady_falls(results.clips, results.gravity_m_s2, results.configurations);
   core::note_statements(results.configurations, results.gravity_m_s2);
   core::note_gravity(results);
   return results;

@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <variant>
 
+#include "base/math/angles.h"
 #include "base/text/number_text.h"
 #include "core/check/finding.h"
+#include "core/check/motion_look.h"
+#include "core/experiment/clip_setup.h"
 #include "core/result/quantity.h"
-#include "report/analysis/note_words.h"
+#include "report/analysis/statement_words.h"
 #include "report/text/display_text.h"
 
 namespace glidelab::report {
@@ -41,6 +46,29 @@ double longest_range_m(const core::AnalysisResults& results, const core::Configu
   return longest;
 }
 
+/// "run 2: the motion turns 4 times, …": of the first clip of a configuration that is no run along an incline; empty if
+/// all are. Units and inclinations that are wrong show in the lines.
+std::string no_run_words(const core::AnalysisResults& results, const core::ConfigurationResult& configuration) {
+  for (const core::ClipResult& clip : results.clips) {
+    if (!std::ranges::count(configuration.clips, clip.name)) continue;
+    core::ClipSetup setup;
+    setup.name = clip.name;
+    setup.incline_rad = configuration.incline_deg * base::kRadPerDegree;
+    setup.incline_assumed = configuration.incline_assumed;
+    for (const core::Finding& finding :
+         core::motion_findings(core::look_at_motion(clip), setup, results.gravity_m_s2)) {
+      const auto* const fault = std::get_if<core::found::MotionFault>(&finding.found);
+      if (fault == nullptr || !(std::holds_alternative<core::found::Oscillation>(*fault) ||
+                                std::holds_alternative<core::found::CurvedPath>(*fault))) {
+        continue;
+      }
+      const core::found::FaultWords words = core::found::fault_words(*fault);
+      return fmt::format("{}: {}; {}.", clip.name, words.found, words.advice);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 bool is_below_zero(const core::Estimate& of) {
@@ -50,6 +78,7 @@ bool is_below_zero(const core::Estimate& of) {
 std::vector<std::string> doubts_about(const core::AnalysisResults& results) {
   std::vector<std::string> doubts;
   for (const core::ConfigurationResult& c : results.configurations) {
+    if (std::string words = no_run_words(results, c); !words.empty()) doubts.push_back(std::move(words));
     const auto below_zero = [](const core::Quantity& quantity) {
       return quantity.estimate && is_below_zero(*quantity.estimate);
     };

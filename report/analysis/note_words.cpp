@@ -8,7 +8,7 @@
 #include <variant>
 #include "base/text/number_text.h"
 #include "core/result/results.h"
-#include "core/result/uphill.h"
+#include "report/analysis/statement_words.h"
 #include "report/text/why_words.h"
 
 namespace glidelab::report {
@@ -17,10 +17,6 @@ namespace {
 
 const char* sign_of(int direction) {
   return direction > 0 ? ">" : "<";
-}
-
-std::string with_sd(double deg, double sd_deg) {
-  return base::value_and_sd_text(deg, sd_deg) + "°";
 }
 
 /// A sentence for every kind; a kind without one does not compile.
@@ -113,6 +109,13 @@ struct AnalysisSentence {
         "line, or state which one is x (--column)",
         of.t, of.either ? ", which another column could be as well," : ", because it alone increases throughout,",
         of.x);
+  }
+  std::string operator()(const core::OtherAxisUnused& of) const {
+    return fmt::format(
+        "\"{}\" is not used: this column was requested alone. The path of the two makes an angle of {:.1f}° with it "
+        "and "
+        "leaves a straight line by {:.2g} m, so distances along the motion are longer",
+        of.column, of.off_deg, of.off_m);
   }
   std::string operator()(const core::PathBends& of) const {
     return fmt::format(
@@ -351,13 +354,20 @@ struct AnalysisSentence {
     return fmt::format("{}: {} (glidelab check says more)", contradiction_words(of), contradiction_causes(of));
   }
   std::string operator()(const core::MuFromIncline& of) const {
-    return fmt::format("motion in one direction: µ rests on the stated inclination, {}", with_sd(of.deg, of.sd_deg));
+    return fmt::format("motion in one direction: µ rests on the stated inclination, {}",
+                       base::value_and_sd_text(of.deg, of.sd_deg) + "°");
   }
   std::string operator()(const core::GravityAssumed& of) const {
     return fmt::format(
         "µ and α are for gravity of {:.6g} m/s²; their ± includes {:.2g} m/s² ({:.2g} %). State its value at your "
         "place, to more digits or with its uncertainty (gravity_m_s2; for files --gravity)",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
+  }
+  std::string operator()(const core::SteadyFall& of) const {
+    return fmt::format(
+        "{} at a constant speed, which is the terminal velocity. Positions from before that speed is reached would "
+        "give K/m as well",
+        of.clips == 1 ? "the body falls" : fmt::format("in all {} clips the body falls", of.clips));
   }
   std::string operator()(const core::RobustFit& of) const {
     return fmt::format("robust: {} of {} positions are outliers and are left out", of.left_out, of.positions);
@@ -378,41 +388,6 @@ struct AnalysisSentence {
 };
 
 }  // namespace
-
-std::string contradiction_words(const core::InclineContradiction& of) {
-  const core::StatedIncline& stated = of.stated;
-  const std::string says =
-      fmt::format("{} says {}", stated.by,
-                  stated.sd_deg ? with_sd(stated.deg, *stated.sd_deg) : fmt::format("{:.3g}°", stated.deg + 0.0));
-  if (of.beyond_gravity) {
-    return fmt::format("the acceleration, {:.3g} m/s² without friction, is more than gravity_m_s2 = {:.6g}; {}",
-                       *of.beyond_gravity, of.gravity_m_s2, says);
-  }
-  const char* bound = of.bound == 0 ? "" : of.bound < 0 ? "at most " : "at least ";
-  return fmt::format("the acceleration gives an inclination of {}{}, but {}", bound, with_sd(of.deg, of.sd_deg), says);
-}
-
-std::string contradiction_causes(const core::InclineContradiction& of) {
-  if (core::seems_uphill(of)) return "x seems to be positive uphill, and has to rise downhill";
-  if (of.gross || !of.stated.sd_deg) return "an angle, a length, the frame rate or gravity_m_s2 is wrong";
-  return "an angle or its uncertainty, a length, the frame rate or gravity_m_s2 is wrong; a wrong length also makes "
-         "the "
-         "terminal velocity wrong, a wrong rate K/m too";
-}
-
-std::string slow_fall_words(const core::SlowFall& fall) {
-  const core::Estimate& a0 = fall.a0_m_s2;
-  const double ratio = fall.gravity_m_s2 / a0.value;
-  const bool known = a0.value > 3.0 * a0.sd;  // otherwise it is hardly above zero, and no factor follows
-  const auto times = [&](double factor) {
-    return known ? fmt::format(" ({} times)", base::number_text(factor, 2)) : std::string();
-  };
-  return fmt::format(
-      "the line of this fall begins with {} m/s² at v = 0, far below gravity. The times may be those of a slow-motion "
-      "playback{}, x may be in a larger unit than stated{}, the body may have reached its final speed before it was "
-      "seen, a hand may have held it, or a liquid may carry most of its weight",
-      base::value_and_sd_text(a0.value, a0.sd), times(std::sqrt(ratio)), times(ratio));
-}
 
 std::string lens_words(const core::LensTerms& lens) {
   const std::string kept = fmt::format("{}", fmt::join(lens.kept, ", "));

@@ -12,19 +12,10 @@ std::string note_words(const core::Note& note);
 
 std::vector<std::string> notes_words(const std::vector<core::Note>& notes);
 
-/// "the acceleration gives an inclination of 0.42 ± 0.13°, but incline_deg says 4.30 ± 0.30°"
-std::string contradiction_words(const core::InclineContradiction& contradiction);
-/// What may be wrong then: "x seems to be positive uphill, and …", "an angle, a length, … is wrong".
-std::string contradiction_causes(const core::InclineContradiction& contradiction);
-
-/// "the line of this fall begins with 0.700 ± 0.011 m/s² at v = 0, far below gravity. …", with what may be the reason.
-std::string slow_fall_words(const core::SlowFall& fall);
-
 /// "distortion: k1, k2 (χ² of each term tested, and the threshold to keep it: k3: 1.2 of 9; …)", "fisheye: k1, k2"
 std::string lens_words(const core::LensTerms& lens);
 
 /// How a bandwidth, or the strength of a smoother, was chosen (core/result/strength.h), in one line.
-
 /// Empty if the choice is not stated.
 std::string strength_words(const core::StrengthChoice& choice);
 

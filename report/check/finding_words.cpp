@@ -13,6 +13,7 @@
 #include "core/result/results.h"
 #include "core/result/uphill.h"
 #include "report/analysis/note_words.h"
+#include "report/analysis/statement_words.h"
 #include "report/text/why_words.h"
 
 namespace glidelab::report {

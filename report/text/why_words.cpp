@@ -82,7 +82,7 @@ struct ReasonWords {
   }
   std::string operator()(const unknown::FreeFall&) const { return "a fall has no normal force, and so no friction"; }
   std::string operator()(const unknown::NoBalance&) const {
-    return "the forces do not balance at any downhill speed below 100 m/s";
+    return "the forces do not balance at any downhill speed below 1000 m/s";
   }
   std::string operator()(const unknown::DragNotViscous&) const {
     return "the drag is not viscous: it grows with the square of the speed";

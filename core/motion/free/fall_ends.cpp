@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kBits = 16;               // of a release or of a rate: far finer than the points tell
 constexpr double kClearly = 25.0;       // chi²: five standard deviations
+constexpr double kSlowly = 12.0;        // chi²: a hand that opens slowly, by a parameter more
 constexpr double kClearlyOff = 5.0;     // standard deviations of a position
 constexpr double kAsNoise = 4.0;        // largest mean square of the residuals, in squares of the noise
 constexpr std::size_t kParameters = 4;  // x0, a, w, t_r
@@ -23,13 +24,25 @@ constexpr std::size_t kParameters = 4;  // x0, a, w, t_r
 enum class Drag { viscous, quadratic };
 
 /// s(u)/a of released_at().
-double fallen(Drag drag, double w_1_s, double u_s) {
+double fallen_since(Drag drag, double w_1_s, double u_s) {
   if (u_s <= 0.0) return 0.0;
   const double z = w_1_s * u_s;
   if (z < 1e-4) return 0.5 * u_s * u_s;
   const double of_z =
       drag == Drag::viscous ? std::expm1(-z) + z : z + std::log1p(std::exp(-2.0 * z)) - std::numbers::ln2;
   return of_z / (w_1_s * w_1_s);
+}
+
+/// The same for a hand that opens within `opening_s` about the time of the release, and bears less and less of the
+/// weight meanwhile: as many small releases, each at its time.
+double fallen(Drag drag, double w_1_s, double u_s, double opening_s) {
+  if (opening_s == 0.0) return fallen_since(drag, w_1_s, u_s);
+  constexpr int kReleases = 8;
+  double sum = 0.0;
+  for (int i = 0; i < kReleases; ++i) {
+    sum += fallen_since(drag, w_1_s, u_s + opening_s * ((i + 0.5) / kReleases - 0.5));
+  }
+  return sum / kReleases;
 }
 
 struct Release {
@@ -46,10 +59,10 @@ class Fall {
   }
 
   /// Each law by itself: over the time of the release, the smaller of the two has more than one valley.
-  Release best_release(double from_s, double to_s) const {
+  Release best_release(double from_s, double to_s, double opening_s = 0.0) const {
     Release best{from_s, std::numeric_limits<double>::infinity()};
     for (const Drag drag : {Drag::viscous, Drag::quadratic}) {
-      const auto of_t = [&](double t_s) { return squares_at(drag, t_s); };
+      const auto of_t = [&](double t_s) { return squares_at(drag, t_s, opening_s); };
       const auto [t_s, squares] = boost::math::tools::brent_find_minima(of_t, from_s, to_s, kBits);
       if (squares < best.squares) best = {t_s, squares};
     }
@@ -57,19 +70,19 @@ class Fall {
   }
 
  private:
-  double squares_at(Drag drag, double release_s) const {
+  double squares_at(Drag drag, double release_s, double opening_s) const {
     const double longest_s = t_s_.back() - release_s;
-    const auto of_log = [&](double log_w) { return squares_of(drag, std::exp(log_w), release_s); };
+    const auto of_log = [&](double log_w) { return squares_of(drag, std::exp(log_w), release_s, opening_s); };
     return boost::math::tools::brent_find_minima(of_log, std::log(1e-2 / longest_s), std::log(3.0 / step_s_), kBits)
         .second;
   }
 
   /// x0 and a are linear: two sums of squares and one of products give the rest.
-  double squares_of(Drag drag, double w_1_s, double release_s) const {
+  double squares_of(Drag drag, double w_1_s, double release_s, double opening_s) const {
     const auto n = static_cast<double>(t_s_.size());
     double s1 = 0.0, x1 = 0.0, ss = 0.0, sx = 0.0, xx = 0.0;
     for (std::size_t i = 0; i < t_s_.size(); ++i) {
-      const double s = fallen(drag, w_1_s, t_s_[i] - release_s), x = x_m_[i];
+      const double s = fallen(drag, w_1_s, t_s_[i] - release_s, opening_s), x = x_m_[i];
       s1 += s;
       x1 += x;
       ss += s * s;
@@ -106,8 +119,13 @@ std::size_t released_at(const Motion& motion, int direction, std::size_t to) {
   if (to - first < kFewestBlockPoints) return 0;
   const double noise_m2 = motion.noise_m * motion.noise_m;
   const double variance = std::max(noise_m2, held.squares / static_cast<double>(to - kParameters));
-  const bool fits = variance <= kAsNoise * noise_m2;
-  return fits && before - held.squares > kClearly * variance ? first : 0;
+  if (variance > kAsNoise * noise_m2 || before - held.squares <= kClearly * variance) return 0;
+  for (const double steps : {2.0, 4.0, 8.0, 16.0}) {
+    const double opening_s = steps * motion.step_s;
+    const Release slow = fall.best_release(t[0], held.t_s + opening_s, opening_s);
+    if (held.squares - slow.squares > kSlowly * variance) return 0;
+  }
+  return first;
 }
 
 std::size_t landed_from(const Motion& motion, int direction) {

@@ -210,8 +210,9 @@ std::string largest_words(const diagnose::GapRegion& region) {
 std::string region_words(const diagnose::GapRegion& region) {
   const std::string unit = base::name_and_unit(to_text(region.variable)).unit;
   const auto range = [&](const char* of) {
-    return fmt::format("at {} from {} to {} {}", of, base::number_text(region.from, 3), base::number_text(region.to, 3),
-                       unit);
+    const std::string from = base::number_text(region.from, 3), to = base::number_text(region.to, 3);
+    if (from == to) return fmt::format("at {} of about {} {}", of, from, unit);
+    return fmt::format("at {} from {} to {} {}", of, from, to, unit);
   };
   const auto told = [&]() -> std::string {
     switch (region.variable) {
@@ -226,7 +227,7 @@ std::string region_words(const diagnose::GapRegion& region) {
       case diagnose::GapVariable::mass:
         return region.from == region.to ? fmt::format("with {:.6g} kg", region.from) : range("masses");
       case diagnose::GapVariable::time:
-        return range("times");
+        return range("times") + (region.clip.empty() ? " after the start of the clip" : " after the start");
       case diagnose::GapVariable::column:
         return range("image columns");
       case diagnose::GapVariable::speed:

@@ -10,6 +10,7 @@
 #include "base/text/number_text.h"
 #include "diagnose/result/joined_ids.h"
 #include "report/analysis/note_words.h"
+#include "report/analysis/statement_words.h"
 #include "report/check/finding_words.h"
 #include "report/html/html.h"
 #include "report/text/display_text.h"
@@ -220,6 +221,13 @@ struct Sentence {
         of.column);
   }
   std::string operator()(const diagnose::BuoyancyLooksAlike& of) const {
+    if (of.as_inertia) {
+      return fmt::format(
+          "In a fall, buoyancy looks the same as such an inertia: it lowers the driving acceleration, here as in a "
+          "fluid with {:.2g} of the density of the body, and drags are then {:.2g} times those given. The two "
+          "densities show whether this is so.",
+          of.density_ratio, 1.0 - of.density_ratio);
+    }
     return fmt::format(
         "In a fall, buoyancy looks the same as such a scale or frame rate: it lowers the driving acceleration, here as "
         "in a fluid with {:.2g} of the density of the body. The two densities show whether this is so; a ruler in the "
@@ -255,6 +263,20 @@ struct Sentence {
         "The fitted {} is below zero ({}), which would drive the glider: either the missing effect makes it negative, "
         "or the stated inclination, downhill direction or masses are wrong.",
         drag ? "drag" : "friction", base::size_and_sd_text(of.value, of.sd, drag ? "N s/m" : ""));
+  }
+  std::string operator()(const diagnose::ImpossibleSizes& of) const {
+    std::vector<std::string> why;
+    for (const diagnose::NegativeLoss& one : of.negative) {
+      const bool drag = one.of == diagnose::NegativeLoss::Of::drag;
+      why.push_back(fmt::format("{} = {} would drive the glider", drag ? "K" : "µ",
+                                base::size_and_sd_text(one.value, one.sd, drag ? "N s/m" : "")));
+    }
+    if (!of.at_end.empty()) {
+      why.push_back(
+          fmt::format("the size of {} is at the end of the range that is searched", list_of(effect_names(of.at_end))));
+    }
+    return fmt::format("The likeliest explanation, {}, cannot be right and is not named: with it, {}.",
+                       list_of(effect_names(of.effects)), list_of(why));
   }
   std::string operator()(const diagnose::ContradictedIncline& of) const {
     const auto with_sd = [](double angle_rad, double sd_rad) {

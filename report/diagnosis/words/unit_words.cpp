@@ -13,12 +13,26 @@ std::string first_to_check(const diagnose::DoubtfulUnit& of) {
   const FindingWords words = finding_words(of.found);
   if (std::holds_alternative<core::found::FallsSlowly>(of.found)) {
     return fmt::format(
-        "First find out why it falls so slowly ({}: {}). Unless a liquid carries it, nothing below holds.", of.clip,
-        words.found);
+        "First find out why it falls so slowly ({}: {}). If a liquid bears part of its weight, terminal velocities "
+        "hold, "
+        "and drags are too large by the ratio of its weight to that in the liquid; otherwise nothing below holds.",
+        of.clip, words.found);
   }
   const bool scale = std::holds_alternative<core::found::FallAboveGravity>(of.found);
   return fmt::format("First {} ({}: {}). {}.", words.advice, of.clip, words.found,
                      scale ? "Drag and friction cannot explain that" : "In another unit, nothing below holds");
+}
+
+/// A path that turns by less hardly changes gravity along it.
+std::string bent_words(const diagnose::OfReading& of) {
+  constexpr double kClearly_deg = 3.0;
+  const auto* const path = std::get_if<core::PathBends>(&of.note);
+  if (path == nullptr || path->slope_deg < kClearly_deg) return {};
+  return fmt::format(
+      "First find out whether the track is straight: in {}, the direction of the path in x and y changes by {:.1f}°. "
+      "On "
+      "a bent track gravity along the motion changes, and what is said below may be that.",
+      of.clip, path->slope_deg);
 }
 
 }  // namespace
@@ -26,6 +40,11 @@ std::string first_to_check(const diagnose::DoubtfulUnit& of) {
 std::string unit_words(const diagnose::Diagnosis& diagnosis) {
   for (const diagnose::Note& note : diagnosis.notes) {
     if (const auto* const of = std::get_if<diagnose::DoubtfulUnit>(&note)) return first_to_check(*of);
+  }
+  for (const diagnose::Note& note : diagnosis.notes) {
+    if (const auto* const of = std::get_if<diagnose::OfReading>(&note)) {
+      if (std::string words = bent_words(*of); !words.empty()) return words;
+    }
   }
   return {};
 }

@@ -127,6 +127,23 @@ TEST_CASE("a swing over many periods is an oscillation, and bounces of a cart ar
             .empty());
 }
 
+TEST_CASE("a pendulum of two swings is an oscillation, and few bounces of a cart are none") {
+  for (const double swings : {1.6, 2.0, 2.6}) {
+    CAPTURE(swings);
+    const auto found = findings(positions([=](double t) {
+      return 0.1 * std::exp(-0.05 * t) * std::cos(0.4 + 2.0 * std::acos(-1.0) * swings * t / 2.0);
+    }));
+    CHECK(only<core::found::Oscillation>(found));
+  }
+  // Flights under 0.7 m/s², each lower than the one before, between contacts with a spring of 0.1 s.
+  CHECK(findings(positions([](double t) {
+          const double flight = 0.6, contact = 0.1, u = std::fmod(t, flight + contact);
+          if (u < flight) return 0.35 * u * (flight - u);
+          const double part = (u - flight) / contact;  // the same speed at both ends
+          return -0.35 * flight * contact / std::acos(-1.0) * std::sin(std::acos(-1.0) * part);
+        })).empty());
+}
+
 TEST_CASE("a curved path in the image is not a straight track") {
   const Positions of = positions(run);
   const auto path = [&](double bend) {

@@ -123,6 +123,15 @@ TEST_CASE("of two columns without a header the one that alone increases is the t
   }
 }
 
+TEST_CASE("of two columns without a header, positions that seldom go back are not the times beside even steps") {
+  std::string text;  // at rest, to within the noise, for three frames; then at 0.6 m/s
+  const auto x = [](int i) { return i < 3 ? 0.1 - 1e-4 * i : 0.1 + 0.02 * (i - 2) + 1e-3 * (i * i % 7); };
+  for (int i = 0; i < 40; ++i) text += fmt::format("{:.4f},{:.4f}\n", x(i), i / 30.0);
+  const core::TrackData track = read_text(text);
+  CHECK(track.t_s[9] == Approx(0.3));
+  CHECK(track.x_m[9] == Approx(x(9)));
+}
+
 TEST_CASE("times without a header of which one is repeated are times all the same, and its line is named") {
   std::string text;
   for (int i = 0; i < 40; ++i) text += fmt::format("{:.2f},{:.4f}\n", 0.01 * (i == 7 ? 6 : i), 0.1 + 0.011 * i);
@@ -215,6 +224,7 @@ TEST_CASE("a wavy path is refused like an arc, a smaller bend is told, and a str
     return [height_m](double x) { return height_m * std::sin(2.0 * std::numbers::pi * x / 0.9); };
   };
   CHECK_THROWS_WITH(read_text(plane(wave(0.065))), Contains("a curved path") && Contains("strays over"));
+  CHECK_THROWS_WITH(read_text(plane(wave(0.03))), Contains("a curved path") && Contains("its direction changes by"));
   const core::TrackData bent = read_text(plane(wave(0.012)));
   const auto* const note = tests::note_of<core::PathBends>(bent.notes);
   REQUIRE(note != nullptr);
@@ -222,6 +232,25 @@ TEST_CASE("a wavy path is refused like an arc, a smaller bend is told, and a str
   CHECK(note->slope_deg > 5.0);  // the wave's slopes are ±0.084, 9.6 degrees in all; parts of 0.18 m average them
   CHECK(tests::note_of<core::PathBends>(read_text(plane([](double) { return 0.3; })).notes) == nullptr);
   CHECK(tests::note_of<core::PathBends>(read_text(plane([](double x) { return 0.5 * x; })).notes) == nullptr);
+}
+
+TEST_CASE("a requested x whose y is not level is read alone, and a note says so") {
+  const auto note_of = [](const std::string& text, const char* column) {
+    const core::TrackData track = read_text(text, column);
+    const auto* const note = tests::note_of<core::OtherAxisUnused>(track.notes);
+    return note != nullptr ? std::optional(*note) : std::nullopt;
+  };
+  const std::string slanted = plane([](double x) { return 0.5 * x; });
+  CHECK(read_text(slanted, "x").x_m.back() == Approx(1.4));
+  const auto note = note_of(slanted, "x");
+  REQUIRE(note);
+  CHECK(note->column == "y");
+  CHECK(note->off_deg == Approx(std::atan(0.5) * 180.0 / std::numbers::pi).margin(0.1));
+  const auto bent = note_of(plane([](double x) { return 0.01 * std::sin(7.0 * x); }), "2");
+  REQUIRE(bent);
+  CHECK(bent->off_m == Approx(0.02).epsilon(0.2));
+  CHECK_FALSE(note_of(plane([](double) { return 0.3; }), "x"));
+  CHECK_FALSE(note_of(slanted, "y"));
 }
 
 TEST_CASE("rows that say that nothing was seen are no part of a path") {

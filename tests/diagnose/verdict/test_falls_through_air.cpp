@@ -190,6 +190,25 @@ TEST_CASE("a fall with a buoyancy is a wrong scale, and a note says which densit
   CHECK(std::abs(ratio - 0.16) < 0.02);  // the fit may put up to 0.005 of it into g, and has noise
 }
 
+TEST_CASE("a fall in a liquid of nearly its own density is an inertia without weight, and a note says so") {
+  Fall fall;
+  fall.masses_kg = {2e-3, 2e-3, 2e-3};
+  fall.gravity_m_s2 = 0.1 * 9.80665;
+  fall.k_n_s_m = 2e-3 * fall.gravity_m_s2 / 0.2;
+  fall.noise_m = 1e-4;
+  fall.rate_hz = 60.0;
+  fall.frames = 80;
+  const diagnose::Diagnosis diagnosis = diagnosed(fallen(fall, 23));
+  CAPTURE(names(diagnosis));
+  const diagnose::BuoyancyLooksAlike* of = nullptr;
+  for (const diagnose::Note& note : diagnosis.notes) {
+    if (of == nullptr) of = std::get_if<diagnose::BuoyancyLooksAlike>(&note);
+  }
+  REQUIRE(of != nullptr);
+  CHECK(of->as_inertia);
+  CHECK(std::abs(of->density_ratio - 0.9) < 0.03);
+}
+
 TEST_CASE("the g of a drag-free fall is that of a parabola and the spread over the Earth") {
   Fall fall;
   fall.gravity_m_s2 = 9.83;

@@ -1,6 +1,8 @@
 #include "report/analysis/analysis_report.h"
 #include "report/analysis/doubts.h"
 
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <sstream>
 
@@ -65,6 +67,24 @@ TEST_CASE("a drag or a friction below zero by more than chance is doubted, by le
   CHECK(report::doubts_about(results).empty());
   CHECK(report::meaning_of(results).find("cannot be distinguished from zero (µ = -0.0100 ± 0.0020)") !=
         std::string::npos);
+}
+
+TEST_CASE("a clip that swings is doubted before anything else") {
+  core::AnalysisResults results = one_clip();
+  core::ClipResult& clip = results.clips[0];
+  results.configurations[0].clips = {clip.name};
+  clip.sightings.clear();
+  clip.motion.assign(200, {});
+  for (std::size_t i = 0; i < clip.motion.size(); ++i) {
+    const double t_s = 0.02 * static_cast<double>(i), wobble = i % 2 == 0 ? 1e-4 : -1e-4;
+    clip.motion[i].t_s = t_s;
+    clip.motion[i].measured_m = 0.3 * std::cos(3.0 * t_s) + wobble;
+  }
+  results.configurations[0].k_over_m_1_s = tests::known(-0.367, 0.055);
+  const std::vector<std::string> doubts = report::doubts_about(results);
+  REQUIRE(doubts.size() >= 2);
+  CHECK(doubts.front().starts_with("up: the motion turns"));
+  CHECK(any_has(doubts, "this is an oscillation, not a run along an incline"));
 }
 
 TEST_CASE("a downhill line that begins above gravity is doubted: no slope and no friction can cause it") {

@@ -52,6 +52,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "\"column 2\" is taken as the time, because it alone increases throughout, and \"column 1\" as x"},
       {core::ColumnsGuessed{"column 2", "column 1", true},
        "\"column 1\" is taken as the time, which another column could be as well, and \"column 2\" as x"},
+      {core::OtherAxisUnused{"y (m)", 12.3, 0.004}, "\"y (m)\" is not used: this column was requested alone"},
       {core::PathBends{0.024, 5.04}, "leaves its line by 0.024 m, and its direction changes by 5.0°"},
       {core::RoundedTimes{0.01, 1.0 / 30.0}, "multiples of 0.01 s and taken as even, 0.03333 s apart"},
       {core::NoLengthUnit{}, "no unit of length"},
@@ -131,6 +132,8 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "the acceleration gives an inclination of at most 4.712 ± 0.013°, but the plumb line says 10°: an angle"},
       {beyond, "12.3 m/s² without friction, is more than gravity_m_s2 = 9.80665; incline_deg says 4.30 ± 0.30°"},
       {core::RobustFit{4, 400}, "robust: 4 of 400 positions"},
+      {core::SteadyFall{1}, "the body falls at a constant speed, which is the terminal velocity"},
+      {core::SteadyFall{3}, "in all 3 clips the body falls at a constant speed"},
       {core::FitScatters{1.234, 17.0, false}, "scatter 1.23 times"},
       {core::FitScatters{1.03, 5.0, true},
        "the motions fitted together differ from one another by more than their noise explains"}};

@@ -116,6 +116,30 @@ TEST_CASE("a hand that lowers a body does not hold it") {
   }
 }
 
+TEST_CASE("a hand that opens slowly has not let go at once") {
+  // It bears the weight until 0.05 s and a part of it, which falls to 0, for 0.1 s more; the drag is quadratic.
+  constexpr double kStep_s = 0.01, kInner_s = 1e-5, kHeld_s = 0.05, kOpens_s = 0.1, kTerminal_m_s = 1.6;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0.0, 5e-4);
+    core::Motion motion;
+    motion.step_s = kStep_s;
+    motion.noise_m = 5e-4;
+    double x_m = 0.0, v_m_s = 0.0, t_s = 0.0;
+    for (std::size_t i = 0; i < 100; ++i) {
+      motion.t_s.push_back(kStep_s * static_cast<double>(i));
+      motion.x_m.push_back(x_m + normal(random));
+      for (; t_s < kStep_s * static_cast<double>(i + 1); t_s += kInner_s) {
+        const double free = std::clamp((t_s - kHeld_s) / kOpens_s, 0.0, 1.0);
+        v_m_s += kInner_s * kGravity_m_s2 * (free - v_m_s * v_m_s / (kTerminal_m_s * kTerminal_m_s));
+        x_m += kInner_s * v_m_s;
+      }
+    }
+    CHECK(core::released_at(motion, 1, motion.t_s.size()) == 0);
+  }
+}
+
 TEST_CASE("a fall is fitted from its release on, without a margin") {
   const core::Motion motion = falling({1.0 / 60.0, 2.0, 2e-4, 2.5 / 60.0}, 1);
   core::ClipSetup setup;

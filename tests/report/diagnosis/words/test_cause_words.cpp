@@ -156,7 +156,7 @@ TEST_CASE("where no cause takes half, the answer says so, what helps, and where 
   CHECK(report::verdict_words(of).starts_with(
       "Something is missing, and no known effect is likely to explain half of the held-out gap: uneven frame times "
       "explain 31 % (20 to 42 %); 69 % remains, 4.44 times the noise. What is left is clearest at times from 0 to "
-      "0.1 s of clip m2-up: force of up to 1.20 ± 0.10 mN after 50 ms."));
+      "0.1 s after the start of clip m2-up: force of up to 1.20 ± 0.10 mN after 50 ms."));
   of.explained.clear();
   of.remainder->share = 1.0;
   of.remainder->gap = 5.3;

@@ -48,7 +48,24 @@ TEST_CASE(
   CHECK(contains(above, "10 % above gravity: x is 10 % too long, or the frames are 5 % longer than stated). Drag"));
   const std::string slow = words(core::found::FallsSlowly{{{2.05, 0.13}, 9.80665}});
   CHECK(slow.starts_with("First find out why it falls so slowly (cup: the line of this fall begins with 2.05 ± 0.13"));
-  CHECK(contains(slow, "far below gravity. The times may be those of a slow-motion playback (2.2 times)"));
+  CHECK(contains(slow, "If a liquid bears part of its weight, terminal velocities hold, and drags are too large"));
+  CHECK(contains(slow, "far below gravity. The body may have reached its final speed"));
+  CHECK(contains(slow, "the times may be those of a slow-motion playback (2.2 times)"));
+  const std::string sinks = words(core::found::FallsSlowly{{{0.0205, 0.0013}, 9.80665}});
+  CHECK_FALSE(contains(sinks, "slow-motion"));
+  CHECK(contains(sinks, "a larger unit than stated (480 times)"));
+}
+
+TEST_CASE("a diagnosis of a bent path begins with the path") {
+  diagnose::Diagnosis of;
+  of.verdict = diagnose::Verdict::none;
+  of.none = 0.99;
+  of.notes = {diagnose::OfReading{"ball", core::PathBends{0.02, 2.0}}};
+  CHECK_FALSE(contains(report::verdict_words(of), "First"));
+  of.notes = {diagnose::OfReading{"ball", core::PathBends{0.02, 6.3}}};
+  CHECK(
+      report::verdict_words(of).starts_with("First find out whether the track is straight: in ball, the direction of "
+                                            "the path in x and y changes by 6.3°."));
 }
 
 TEST_CASE("what is not ruled out is neither claimed nor called explained") {

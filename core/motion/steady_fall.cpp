@@ -1,0 +1,87 @@
+#include "core/motion/steady_fall.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <variant>
+
+#include "base/math/angles.h"
+#include "core/experiment/clip_setup.h"
+#include "core/math/parabola.h"
+#include "core/motion/lines/line_fit.h"
+#include "core/result/estimate.h"
+
+namespace glidelab::core {
+namespace {
+
+constexpr std::size_t kFewestOfSteady = 5;
+constexpr double kSteady = 0.05;  // of g
+constexpr double kSds = 2.0;
+
+struct Measured {
+  double value = 0.0, variance = 0.0;
+};
+
+/// v_lim of one clip; empty if it does not fall at a constant speed.
+std::optional<Measured> steady_speed(const ClipResult& clip, double gravity_m_s2) {
+  std::vector<double> t_s, x_m;
+  for (const MotionPoint& point : clip.motion) {
+    if (point.left_out != LeftOut::used || !point.measured_m) continue;
+    t_s.push_back(point.t_s);
+    x_m.push_back(*point.measured_m);
+  }
+  if (t_s.size() < kFewestOfSteady) return {};
+  const Parabola parabola = parabola_through(t_s, x_m);
+  const auto n = static_cast<double>(t_s.size());
+  double squares = 0.0;
+  for (std::size_t i = 0; i < t_s.size(); ++i) squares += std::pow(x_m[i] - parabola.at(t_s[i]), 2);
+  const double noise2 = std::max(std::pow(clip.position_noise_m, 2), squares / (n - 3.0));
+  const double span_s = t_s.back() - t_s.front();
+  const double var_v = 12.0 * noise2 / (n * span_s * span_s), var_a = 720.0 * noise2 / (n * std::pow(span_s, 4));
+  const double v = parabola.v, by_g = parabola.a / gravity_m_s2, sd_by_g = std::sqrt(var_a) / gravity_m_s2;
+  if (!(v > 0.0) || !(std::abs(by_g) + kSds * sd_by_g < kSteady)) return {};
+  return Measured{v * (1.0 + 0.75 * by_g), var_v + std::pow(0.75 * v * sd_by_g, 2) + std::pow(0.25 * v * by_g, 2)};
+}
+
+std::optional<Quantity> steady_fall(const std::vector<const ClipResult*>& clips, double gravity_m_s2) {
+  double weights = 0.0, sum = 0.0, scale = 0.0;
+  std::vector<Measured> speeds;
+  for (const ClipResult* clip : clips) {
+    const std::optional<Measured> speed = steady_speed(*clip, gravity_m_s2);
+    if (!speed) return {};
+    speeds.push_back(*speed);
+    weights += 1.0 / speed->variance;
+    sum += speed->value / speed->variance;
+    scale = std::max(scale, clip->scale_sd_relative);
+  }
+  if (speeds.empty()) return {};
+  const double mean = sum / weights, degrees = static_cast<double>(speeds.size()) - 1.0;
+  double chi2 = 0.0;
+  for (const Measured& speed : speeds) chi2 += std::pow(speed.value - mean, 2) / speed.variance;
+  KnownVariance random{1.0 / weights, std::numeric_limits<double>::infinity()};
+  if (degrees > 0.0 && chi2 > degrees * chi2_ratio_limit(degrees)) random = {chi2 / degrees / weights, degrees};
+  return determined(estimate(mean, random, (scale * scale + kClockSdRelative * kClockSdRelative) * mean * mean),
+                    std::sqrt(random.value));
+}
+
+}  // namespace
+
+void add_steady_falls(const std::vector<ClipResult>& clips, double gravity_m_s2,
+                      std::vector<ConfigurationResult>& configurations) {
+  for (ConfigurationResult& configuration : configurations) {
+    std::erase_if(configuration.notes, [](const Note& note) { return std::holds_alternative<SteadyFall>(note); });
+    if (configuration.v_lim_m_s.estimate || !is_fall(configuration.incline_deg * base::kRadPerDegree)) continue;
+    std::vector<const ClipResult*> members;
+    for (const ClipResult& clip : clips) {
+      const auto& names = configuration.clips;
+      if (std::find(names.begin(), names.end(), clip.name) != names.end()) members.push_back(&clip);
+    }
+    const std::optional<Quantity> speed = steady_fall(members, gravity_m_s2);
+    if (!speed) continue;
+    configuration.v_lim_m_s = *speed;
+    configuration.notes.emplace_back(SteadyFall{members.size()});
+  }
+}
+
+}  // namespace glidelab::core

@@ -1,0 +1,24 @@
+/// The terminal velocity of a body that is seen at it from the first position on, where no line a(v) has a slope.
+#pragma once
+
+#include <vector>
+
+#include "core/result/results.h"
+
+namespace glidelab::core {
+
+/// Gives configurations of falls their terminal velocity from the mean speed, where the lines or the fit of the whole
+/// motion gave none, and notes that (SteadyFall), in place of notes that it added before.
+///
+/// A parabola through the used positions of each clip has the speed v and the acceleration a at their middle. The fall
+/// is steady if a + 2 sd < 0.05 g and a - 2 sd > -0.05 g in every clip. At such a speed, a drag in proportion to v or
+/// to v² leaves
+///
+///     v_lim = v (1 + a/g)    or    v_lim = v (1 + a/(2 g)),
+///
+/// and half of the difference is an uncertainty. Clips count by their inverse variances; where they differ by more than
+/// these allow, by a factor of the root of chi²/(n - 1) less. One scale and one clock are common to all. Units are SI.
+void add_steady_falls(const std::vector<ClipResult>& clips, double gravity_m_s2,
+                      std::vector<ConfigurationResult>& configurations);
+
+}  // namespace glidelab::core

@@ -1,0 +1,33 @@
+/// The path that two columns of an exported table make, x and y of one body, and which of them a motion is read along.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/math/plane_path.h"
+#include "core/result/analysis_note.h"
+#include "core/track/column_table.h"
+#include "core/track/table_columns.h"
+
+namespace glidelab::core {
+
+inline constexpr double kOtherAxis = 3.0;  ///< extent along y over that along x: above it the motion is along y
+inline constexpr std::size_t kFewestOfPath = 8;
+
+/// Without rows that say that nothing was seen: a line to them is no path.
+PlanePath path_of(const TableColumn& x, const TableColumn& y);
+
+/// Of nearly all values.
+double range_of(const std::vector<double>& values);
+
+/// InputError if the path is an arc.
+void refuse_curve(const ColumnTable& table, std::size_t x, std::size_t y, const PlanePath& path);
+
+/// A note (OtherAxisUnused) if a requested column of x has its y beside it, and the motion is not along x alone.
+void note_other_axis(const ColumnTable& table, std::size_t x, std::vector<Note>& notes);
+
+/// The column, x or y, along which the body moves; both if its path makes an angle with the axes. InputError for a
+/// curved path.
+ChosenColumns along_path(const ColumnTable& table, std::size_t x, std::size_t y, std::vector<Note>& notes);
+
+}  // namespace glidelab::core
