@@ -87,29 +87,7 @@ std::vector<std::size_t> shapes_of(const ParameterLayout& layout) {
 std::optional<MotionFit> fit_with(const TrackSet& set, const MotionFit& from, const std::vector<std::size_t>& effects,
                                   const Lateness& late) {
   const ParameterLayout layout(set, effects);
-  FitPoint start;
-  start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
-  const auto& of = from.layout->globals();
-  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
-    const auto& global = layout.globals()[g];
-    for (std::size_t k = 0; k < of.size(); ++k) {
-      if (ParameterLayout::same(of[k], global)) {
-        start.global[static_cast<Eigen::Index>(g)] = from.at.global[static_cast<Eigen::Index>(k)];
-      }
-    }
-  }
-  for (const Eigen::VectorXd& own : from.at.own) {
-    Eigen::VectorXd kept = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 + layout.own().size()));
-    kept.head(2) = own.head(2);
-    for (std::size_t o = 0; o < layout.own().size(); ++o) {
-      for (std::size_t k = 0; k < from.layout->own().size(); ++k) {
-        if (from.layout->own()[k] == layout.own()[o]) {
-          kept[static_cast<Eigen::Index>(2 + o)] = own[static_cast<Eigen::Index>(2 + k)];
-        }
-      }
-    }
-    start.own.push_back(kept);
-  }
+  const FitPoint start = with_some_effects(layout, from);
   const bool is_part = effects.size() < from.effects.size();
   MotionFit fit = fit_held(set, effects, start, late, is_part ? shapes_of(layout) : std::vector<std::size_t>());
   if (!std::isfinite(fit.cost)) return {};

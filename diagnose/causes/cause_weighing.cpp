@@ -1,6 +1,7 @@
 #include "diagnose/causes/cause_weighing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,6 +16,8 @@
 #include "diagnose/causes/explanation_profile.h"
 #include "diagnose/causes/further_causes.h"
 #include "diagnose/causes/remainder.h"
+#include "diagnose/causes/scatter_structure.h"
+#include "diagnose/causes/unnamed_profile.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/nominal_fit.h"
@@ -25,45 +28,10 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kCostOfTakingTheBest = 3.0;  // ln 20: the likeliest of some twenty functions without a name is taken
-constexpr double kRemainderCost = 3.0;        // log evidence that a remainder costs, its sizes being unknown
-constexpr std::size_t kWithHand = 4;          // explanations that are weighed together with a hand,
-constexpr std::size_t kWithStated = 2;        // and with each cause that is known by stated inclinations
-constexpr double kNotWeighed = 1e3;           // log evidence by which an explanation without a fit is behind
-
-/// The columns of a family in units of the noise alone: undoes the part of the whitening that the remainder caused.
-RemainderExtra extra_of(const TrackSet& with, const UnnamedFamily& family) {
-  RemainderExtra extra{family.columns, family.tau};
-  Eigen::Index row = 0;
-  for (const TrackedMotion& motion : with.motions) {
-    const auto n = static_cast<Eigen::Index>(motion.t_s.size());
-    extra.columns.middleRows(row, n) = without_remainder(motion, extra.columns.middleRows(row, n));
-    row += n;
-  }
-  if (!std::isfinite(extra.sd)) {  // one bump of fixed size
-    double largest = 0.0;
-    for (const double size : family.size) largest = std::max(largest, std::abs(size));
-    extra.sd = largest;
-  }
-  return extra;
-}
-
-/// Log evidence of a fit with the likeliest function without a name beside it: one that all clips share, or one with a
-/// size for each clip. Empty if there is none.
-std::optional<double> unnamed_profile(const TrackSet& set, const TrackSet& with, const Profile& nominal,
-                                      const MotionFit& noise_alone, const std::vector<UnnamedFamily>& families,
-                                      const RemainderSizes& start) {
-  std::optional<double> log;
-  for (const UnnamedFamily* family : {likeliest_shared(families), likeliest_of_clips(families)}) {
-    if (family == nullptr || !(family->tau > 0.0)) continue;
-    const RemainderExtra extra = extra_of(with, *family);
-    if (!(extra.sd > 0.0) || !extra.columns.allFinite()) continue;
-    Profile profile = profile_of(set, noise_alone, &start, &extra);
-    allow_for_unknown_noise(set, nominal, profile);
-    log = std::max(log.value_or(-std::numeric_limits<double>::infinity()), profile.log_evidence - kCostOfTakingTheBest);
-  }
-  return log;
-}
+constexpr double kRemainderCost = 3.0;  // log evidence that a remainder costs, its sizes being unknown
+constexpr std::size_t kWithHand = 4;    // explanations that are weighed together with a hand,
+constexpr std::size_t kWithStated = 2;  // and with each cause that is known by stated inclinations
+constexpr double kNotWeighed = 1e3;     // log evidence by which an explanation without a fit is behind
 
 /// Adds the explanations that are likeliest by the noise alone, so that they are weighed beside a remainder too.
 /// Returns the indices of the added fits.
@@ -153,6 +121,7 @@ class CauseWeighing {
     find_causes_by_stated();
     done(0.9);
     take_own_evidence();
+    find_structure_in_scatter();
     if (searched_ && !without_.contains(scatter_)) add_laws_with_clip_scatter();
     if (searched_ && !without_.contains(hand_))
       add_all(beside_likeliest({hand_}, kWithHand, [](const MotionFit&) { return true; }));
@@ -179,10 +148,12 @@ class CauseWeighing {
   void count_first_remainder_as_noise();
   void compare_again(const ImageEvidence* images, const std::function<void(double)>& done);
   void start_from_noise_alone();
+  void share_lost_frames();
   void profile_each();
   void measure_excess();
   void find_causes_by_stated();
   void take_own_evidence();
+  void find_structure_in_scatter();
   void add_laws_with_clip_scatter();
   std::vector<WithFurther> scatter_beside(const std::vector<Hypothesis>& laws) const;
   std::vector<WithFurther> beside_scatter_alone(const std::vector<Hypothesis>& laws);
@@ -235,6 +206,7 @@ void CauseWeighing::compare_again(const ImageEvidence* images, const std::functi
     });
   }
   if (searched_) start_from_noise_alone();
+  if (searched_) share_lost_frames();
   likeliest_before_ = add_likeliest_of(first_, comparison());
 }
 
@@ -256,6 +228,30 @@ void CauseWeighing::start_from_noise_alone() {
     MotionFit anew = fit_motions(weighed_.set, from.effects, from.at, from.late);
     if (anew.cost < fits[f].cost) fits[f] = std::move(anew);
   });
+}
+
+/// A remainder may hide missing frames that were found beside another effect, or by the noise alone. Of all that were
+/// found, those are taken with which missing frames alone follow the motion best by the noise alone.
+void CauseWeighing::share_lost_frames() {
+  std::vector<MotionFit>& fits = comparison().fits;
+  const auto alone = std::find_if(fits.begin(), fits.end(),
+                                  [](const MotionFit& fit) { return fit.effects.empty() && !fit.late.empty(); });
+  if (alone == fits.end()) return;
+  std::vector<const MotionFit*> found;
+  for (const std::vector<MotionFit>* of : std::array<const std::vector<MotionFit>*, 2>{&fits, &first_.fits}) {
+    for (const MotionFit& fit : *of) {
+      if (!fit.late.empty() && std::isfinite(fit.cost)) found.push_back(&fit);
+    }
+  }
+  std::vector<MotionFit> anew(found.size());
+  base::for_each_parallel(found.size(), jobs_, [&](std::size_t k) {
+    anew[k] = fit_motions(set_, {}, with_some_effects(ParameterLayout(set_, {}), *found[k]), found[k]->late);
+  });
+  const MotionFit* best = nullptr;
+  for (const MotionFit& fit : anew) {
+    if (std::isfinite(fit.cost) && (best == nullptr || fit.cost < best->cost)) best = &fit;
+  }
+  if (best != nullptr && best->late != alone->late) *alone = linearise_again(weighed_.set, *best);
 }
 
 /// A remainder of its own for each explanation that is worth it.
@@ -330,6 +326,20 @@ void CauseWeighing::take_own_evidence() {
   }
   std::erase_if(all, [](const Hypothesis& one) { return one.unnamed; });
   set_fit_odds(weighed_.set, comparison());
+}
+
+/// A drift, or a friction or drag of each configuration, together with clips that scatter about it: the evidence of
+/// clips that scatter, if their sizes follow it.
+void CauseWeighing::find_structure_in_scatter() {
+  const Hypothesis* clips = find(comparison(), {scatter_});
+  if (clips == nullptr || !is_weighed(clips->fit)) return;
+  const MotionFit& fit = noise_alone_[static_cast<std::size_t>(clips->fit)];
+  const double of_clips = clips->log_evidence;
+  for (Hypothesis& one : comparison().all) {
+    if (one.unnamed || one.effects.size() != 1 || !is_weighed(one.fit)) continue;
+    const std::optional<double> gain = gain_of_structure(set_, fit, sizes_of(*clips), one.effects.front());
+    if (gain) one.log_evidence = std::max(one.log_evidence, of_clips + *gain);
+  }
 }
 
 /// The likeliest laws that leave much of the gap, each together with clip scatter.

@@ -25,8 +25,8 @@ namespace {
 // Standard deviations of what is not known (of a rate: unknown_rate()). Motion in one direction shows only
 // mu - tan(alpha), so that the two are unknown together.
 constexpr double kUnknownAngle_rad = 0.1, kUnknownMu = kUnknownAngle_rad, kUnknownRate = 1.0;
-constexpr double kNoLoad = 0.02;        // cos(alpha) below which there is no normal force to speak of
-constexpr double kInstant_s = 1e-4;     // time step over which an acceleration is taken
+constexpr double kNoLoad = 0.02;         // cos(alpha) below which there is no normal force to speak of
+constexpr double kInstant_s = 1e-4;      // time step over which an acceleration is taken
 constexpr double kFastest_m_s = 1000.0;  // upper limit of a terminal velocity
 
 /// The standard deviation from which K/m counts as not known: 1/s or, if larger, K/m itself.

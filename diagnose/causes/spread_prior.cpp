@@ -18,12 +18,15 @@ constexpr int kRoundsOfWidths = 4;
 
 class Density {
  public:
-  Density(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& kinds)
-      : sizes_(sizes), covariance_(covariance), kinds_(kinds) {}
+  Density(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& kinds,
+          const SharedPart* shared)
+      : sizes_(sizes), covariance_(covariance), kinds_(kinds), shared_(shared) {}
 
-  /// -log det(C + W)/2 - s' (C + W)⁻¹ s/2, evaluated with each size in units of its own standard deviation.
+  /// -log det(C + W)/2 - s' (C + W)⁻¹ s/2, evaluated with each size in units of its own standard deviation. The last
+  /// width is that of the shared part, if there is one.
   double operator()(const std::vector<double>& widths) const {
     Eigen::MatrixXd sum = covariance_;
+    if (shared_ != nullptr) sum += widths.back() * widths.back() * shared_->shape;
     Eigen::VectorXd unit(sizes_.size());
     for (Eigen::Index i = 0; i < sizes_.size(); ++i) {
       const double width = widths[kinds_[static_cast<std::size_t>(i)]];
@@ -42,6 +45,7 @@ class Density {
   const Eigen::VectorXd& sizes_;
   const Eigen::MatrixXd& covariance_;
   const std::vector<std::size_t>& kinds_;
+  const SharedPart* shared_;
 };
 
 /// Standard deviation of the best known combination of the sizes of one kind.
@@ -59,13 +63,14 @@ double least_sd(const Eigen::MatrixXd& covariance, const std::vector<std::size_t
 }  // namespace
 
 double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
-                        const std::vector<std::size_t>& kinds) {
-  const std::size_t many = kinds.empty() ? 0 : *std::max_element(kinds.begin(), kinds.end()) + 1;
-  const Density density(sizes, covariance, kinds);
+                        const std::vector<std::size_t>& kinds, const SharedPart* shared) {
+  const std::size_t own = kinds.empty() ? 0 : *std::max_element(kinds.begin(), kinds.end()) + 1;
+  const std::size_t many = own + (shared != nullptr ? 1 : 0);
+  const Density density(sizes, covariance, kinds, shared);
   std::vector<std::vector<double>> tried(many);
   std::vector<double> widths;
   for (std::size_t k = 0; k < many; ++k) {
-    const double least = kLeastWidth_sd * least_sd(covariance, kinds, k);
+    const double least = kLeastWidth_sd * least_sd(covariance, kinds, k < own ? k : shared->kind);
     for (int w = 0; w < kWidthsTried; ++w) tried[k].push_back(least * std::pow(10.0, w / 3.0));
     widths.push_back(tried[k].front());
   }

@@ -19,7 +19,14 @@ namespace glidelab::diagnose {
 ///
 /// The widths of each kind are averaged over with those of the other kinds at their best. `kinds` has the kind of each
 /// size, counted from 0.
+///
+/// With `shared`, sizes of one kind have a part in common: W also has width² times its shape, and this width is
+/// averaged over like the others.
+struct SharedPart {
+  std::size_t kind = 0;
+  Eigen::MatrixXd shape;  ///< over all sizes; 0 for those of other kinds
+};
 double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
-                        const std::vector<std::size_t>& kinds);
+                        const std::vector<std::size_t>& kinds, const SharedPart* shared = nullptr);
 
 }  // namespace glidelab::diagnose

@@ -363,4 +363,31 @@ FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effe
   return point;
 }
 
+FitPoint with_some_effects(const ParameterLayout& layout, const MotionFit& from) {
+  FitPoint start;
+  start.global = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(layout.globals().size()));
+  const auto& of = from.layout->globals();
+  for (std::size_t g = 0; g < layout.globals().size(); ++g) {
+    const auto& global = layout.globals()[g];
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      if (ParameterLayout::same(of[k], global)) {
+        start.global[static_cast<Eigen::Index>(g)] = from.at.global[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+  for (const Eigen::VectorXd& own : from.at.own) {
+    Eigen::VectorXd kept = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 + layout.own().size()));
+    kept.head(2) = own.head(2);
+    for (std::size_t o = 0; o < layout.own().size(); ++o) {
+      for (std::size_t k = 0; k < from.layout->own().size(); ++k) {
+        if (from.layout->own()[k] == layout.own()[o]) {
+          kept[static_cast<Eigen::Index>(2 + o)] = own[static_cast<Eigen::Index>(2 + k)];
+        }
+      }
+    }
+    start.own.push_back(kept);
+  }
+  return start;
+}
+
 }  // namespace glidelab::diagnose

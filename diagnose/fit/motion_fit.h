@@ -91,4 +91,7 @@ MotionFit no_worse_than(const TrackSet& set, const MotionFit& base, std::size_t 
 FitPoint with_effect(const TrackSet& set, const MotionFit& fit, std::size_t effect, const std::vector<double>& values,
                      const std::vector<std::vector<double>>& own);
 
+/// The parameters of a fit that a layout has too, those of its effects among them; 0 for others.
+FitPoint with_some_effects(const ParameterLayout& layout, const MotionFit& from);
+
 }  // namespace glidelab::diagnose

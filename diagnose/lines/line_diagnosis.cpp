@@ -262,6 +262,35 @@ NextStep next_of(const std::vector<TableLine>& lines, const LineData& data) {
   return TellLinesApart{heavy, force_n, force_n / heavy, bias_s2_m_s2 * (drag / heavy) * (drag / heavy)};
 }
 
+std::vector<LineCause> causes_named(const LineExplanation& leader, const std::vector<LineCause>& causes) {
+  std::vector<LineCause> named;
+  for (const std::size_t c : leader.causes) named.push_back(causes[c]);
+  return named;
+}
+
+/// The leader without those of its causes that take less than a hundredth of the gap beside one that takes half, if it
+/// was weighed; their ids go to `traces`. However certain such a cause is, it is none of the gap.
+const LineExplanation* without_traces(const LineExplanation* leader, const std::vector<LineExplanation>& all,
+                                      const std::vector<LineCause>& causes,
+                                      const std::vector<ExplainedCause>& explained, std::vector<std::string>& traces) {
+  constexpr double kLeastShare = 0.01, kHalf = 0.5;
+  std::vector<std::string> lesser;
+  bool one_explains = false;
+  for (const ExplainedCause& cause : explained) {
+    one_explains = one_explains || cause.share > kHalf;
+    if (cause.share < kLeastShare) lesser.push_back(cause.id);
+  }
+  if (lesser.empty() || !one_explains) return leader;
+  std::vector<std::size_t> kept;
+  for (const std::size_t c : leader->causes) {
+    if (std::find(lesser.begin(), lesser.end(), causes[c].id) == lesser.end()) kept.push_back(c);
+  }
+  const auto rest = std::find_if(all.begin(), all.end(), [&](const LineExplanation& e) { return e.causes == kept; });
+  if (rest == all.end() || rest->solution.left_out) return leader;
+  traces = lesser;
+  return &*rest;
+}
+
 }  // namespace
 
 Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const std::vector<std::string>& without) {
@@ -280,6 +309,11 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
   table.chi2_before = table.candidates.front().chi2;
   weigh_up(all, table, diagnosis);
   const bool is_effect = diagnosis.verdict == Verdict::effect;
+  const auto explained = [&] {
+    const double error = line_gap(lines, g, nominal, leader->solution, scatter).sizes.standard_error;
+    return explained_by(data, causes_named(*leader, causes), nominal, scatter, error);
+  };
+  if (is_effect && scatter.known()) leader = without_traces(leader, all, causes, explained(), diagnosis.traces);
   if (is_effect) {
     const std::vector<std::size_t> equals = equals_of(*leader, all, causes, scatter);
     tell_either(all, causes, equals, table);
@@ -294,11 +328,7 @@ Diagnosis diagnose_lines(const std::vector<TableLine>& lines, double g, const st
     diagnosis.notes = std::move(gap.notes);
     diagnosis.isolability = line_isolability(data, causes, scatter.slope, scatter.intercept_m_s2);
     diagnosis.levels = line_levels(lines, data, nominal, scatter, diagnosis.gap->standard_error);
-    if (is_effect) {
-      std::vector<LineCause> named;
-      for (const std::size_t c : leader->causes) named.push_back(causes[c]);
-      diagnosis.explained = explained_by(data, named, nominal, scatter, diagnosis.gap->standard_error);
-    }
+    if (is_effect) diagnosis.explained = explained();
   }
   table.off = lines_off(lines, nominal);
   table.curves = curves_of(lines, data, causes, all);

@@ -168,6 +168,7 @@ std::vector<std::size_t> named_effects(const Hypothesis& best, const NoiseAlone*
     if (!shows_in_motion(effect_list()[e].search) && std::find(effects.begin(), effects.end(), e) == effects.end())
       effects.push_back(e);
   }
+  if (effects.empty()) return best.effects;  // none takes a part of the gap by itself
   return effects;
 }
 

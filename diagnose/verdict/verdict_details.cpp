@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/gap/held_out.h"
@@ -120,15 +121,30 @@ std::optional<SetAside> set_aside(const TrackSet& set) {
 
 }  // namespace
 
-std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
+namespace {
+
+std::vector<NegativeLoss> negative_of(const Eigen::VectorXd& values, const Eigen::VectorXd& variances) {
   std::vector<NegativeLoss> found;
-  const Eigen::MatrixXd covariance = common_covariance(fit);
   for (Eigen::Index g = 0; g < 2; ++g) {  // K, mu
-    const double value = fit.at.global[g], sd = std::sqrt(std::max(0.0, covariance(g, g)));
-    if (!(value < -kLeastNegativeSds * sd)) continue;
-    found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, value, sd});
+    const double sd = std::sqrt(std::max(0.0, variances[g]));
+    if (!(values[g] < -kLeastNegativeSds * sd)) continue;
+    found.push_back({g == 0 ? NegativeLoss::Of::drag : NegativeLoss::Of::friction, values[g], sd});
   }
   return found;
+}
+
+}  // namespace
+
+std::vector<NegativeLoss> what_drives(const MotionFit& fit) {
+  return negative_of(fit.at.global, common_covariance(fit).diagonal());
+}
+
+void count_remainder(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes, Diagnosis& diagnosis) {
+  const RemainderSpace::Solution solution = RemainderSpace(set, fit).solve(sizes);
+  diagnosis.limits.driving = negative_of(fit.at.global + solution.change,
+                                         solution.covariance.diagonal().cwiseMax(solution.between_clips.diagonal()));
+  std::erase_if(diagnosis.notes, [](const Note& note) { return std::holds_alternative<NegativeLoss>(note); });
+  for (const NegativeLoss& one : diagnosis.limits.driving) diagnosis.notes.emplace_back(one);
 }
 
 std::optional<ImpossibleSizes> impossible_sizes(const MotionFit& fit) {

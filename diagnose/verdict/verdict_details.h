@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/causes/remainder.h"
 #include "diagnose/fit/motion_fit.h"
 #include "diagnose/pictures/image_evidence.h"
 #include "diagnose/result/diagnosis.h"
@@ -41,6 +42,10 @@ std::vector<NegativeLoss> what_drives(const MotionFit& fit);
 /// What makes an explanation impossible: such a drag or friction beside its effects, or a size of theirs at an end of
 /// its range. Empty if nothing does.
 std::optional<ImpossibleSizes> impossible_sizes(const MotionFit& fit);
+
+/// Puts what drives the glider beside this remainder in place of what does by the noise alone: `recovered` counts the
+/// remainder too. `fit` is linearised with the noise alone.
+void count_remainder(const TrackSet& set, const MotionFit& fit, const RemainderSizes& sizes, Diagnosis& diagnosis);
 
 /// Limits that a reader must know before the verdict, for the fit on which it rests: a negative drag or friction,
 /// statements that the data contradict, and the part of the data that is set aside.

@@ -8,12 +8,14 @@
 #include <string>
 #include <utility>
 
+#include "base/math/log_sum.h"
 #include "diagnose/causes/cause_odds.h"
 #include "diagnose/causes/cause_sequence.h"
 #include "diagnose/causes/cause_weighing.h"
 #include "diagnose/causes/gap_levels.h"
 #include "diagnose/causes/recovered.h"
 #include "diagnose/causes/remainder.h"
+#include "diagnose/causes/scatter_structure.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/nominal_fit.h"
@@ -28,6 +30,7 @@
 #include "diagnose/verdict/unnamed_trifle.h"
 #include "diagnose/verdict/verdict.h"
 #include "diagnose/verdict/verdict_details.h"
+#include "diagnose/verdict/verdict_notes.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -86,40 +89,9 @@ std::optional<double> evidence_over_viscous(const Comparison& comparison, const 
   return quadratic->log_evidence - viscous->log_evidence;
 }
 
-/// The buoyancy that would slow a fall as a named effect does: with the ratio r of the densities of fluid and body, g
-/// becomes (1 - r) g. It becomes (1 + e) g by a wrong scale, (1 + e)² g by a wrong frame rate, and g m/(m + m_w) by an
-/// inertia without weight. Empty if none is named; if the fall is faster; if r is below 0.01, which is more than in
-/// air; or if the inertia may be that of the air, less than the mass beside a drag of air.
-std::optional<BuoyancyLooksAlike> buoyancy_like(const TrackSet& set, const Diagnosis& diagnosis) {
-  constexpr double kLeastRatio = 0.01, kLeastBesideAir = 0.5;
-  for (const DiagnosedEffect& effect : diagnosis.effects) {
-    if (effect.id == ids::rotational_inertia && !effect.parameters.empty()) {
-      const double of_mass = effect.parameters.front().value / lightest_kg(set), ratio = of_mass / (1.0 + of_mass);
-      const bool of_air = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
-                                      [](const auto& other) { return other.id == ids::quadratic_drag; });
-      if (ratio > (of_air ? kLeastBesideAir : kLeastRatio)) return BuoyancyLooksAlike{ratio, true};
-    }
-    const bool of_rate = effect.id == ids::frame_rate_error;
-    if (!of_rate && effect.id != ids::scale_error) continue;
-    for (const DiagnosedParameter& parameter : effect.parameters) {
-      const double factor = (1.0 + parameter.value) * (of_rate ? 1.0 + parameter.value : 1.0);
-      if (parameter.key == "e" && factor < 1.0 - kLeastRatio) return BuoyancyLooksAlike{1.0 - factor};
-    }
-  }
-  return {};
-}
-
-/// The named effects that a motion sensor cannot have.
-std::vector<std::string> named_of_camera(const Diagnosis& diagnosis) {
-  std::vector<std::string> named;
-  for (const DiagnosedEffect& effect : diagnosis.effects) {
-    if (effect_list()[effect_index(effect.id)].of_camera) named.push_back(effect.id);
-  }
-  return named;
-}
-
 /// Whether the nominal model has a gap and the likeliest explanation by the noise alone leaves one too, or leaves a
-/// doubt although sizes of each clip or a second cause help it to follow the motion.
+/// doubt although sizes of each clip or a second cause help it to follow the motion, or has sizes of each clip that
+/// follow a law.
 bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
   const MotionFit& nominal = by_noise.fits.front();
   if (!has_gap(set, nominal)) return false;
@@ -127,7 +99,8 @@ bool leaves_a_gap(const TrackSet& set, const Comparison& by_noise) {
   if (best == nullptr || best->fit <= 0) return true;
   const bool is_law = best->effects.size() == 1 && !follows_each_clip(best->effects.front());
   if (!is_law && by_noise.none + by_noise.unknown > kLeastDoubt) return true;
-  return has_gap(set, by_noise.fits[static_cast<std::size_t>(best->fit)]);
+  const MotionFit& fit = by_noise.fits[static_cast<std::size_t>(best->fit)];
+  return has_gap(set, fit) || (has(*best, effect_index(ids::clip_scatter)) && follows_structure(set, fit));
 }
 
 /// The fit that a diagnosis reports, and the remainder beside it.
@@ -155,6 +128,9 @@ class VerdictWithCauses {
         beside_remainder ? verdict_beside_remainder(std::move(images)) : verdict_by_noise(std::move(images));
     const Reported reported = reported_by(diagnosis);
     add_shares(reported, diagnosis);
+    if (weighed_ && diagnosis.verdict == Verdict::unknown && !diagnosis.limits.driving.empty()) {
+      count_remainder(set_, reported.fit, reported.sizes, diagnosis);
+    }
     diagnosis.next =
         beside_remainder ? next_experiment(with(), by(), diagnosis) : next_experiment(set_, first_, diagnosis);
     add_notes(diagnosis);
@@ -178,8 +154,9 @@ class VerdictWithCauses {
   const MotionFit& fit_of_gap() const { return sequence_.named.effects.empty() ? fit_of(best_) : sequence_.named; }
   /// What brakes a fall through air is known without positions too coarse to show it (keep_drag_of_air()).
   bool drag_is_known() const { return set_.through_air && noise_is_rounding(set_); }
+  const MotionFit& best_start(const Hypothesis& one) const;
   CauseSequence sequence_with(const Hypothesis& one) const {
-    return sequence_of(gap_set_, gap_nominal_, gap_with_, fit_of(one), without_, weighed_ ? kLeastNamed : 0.0);
+    return sequence_of(gap_set_, gap_nominal_, gap_with_, best_start(one), without_, weighed_ ? kLeastNamed : 0.0);
   }
   bool viscous_leaves_less() const;
   FallsThroughAir::Gaps gaps_of_fall(double named) const { return {held_out_gap(set_, nominal()).value, named}; }
@@ -193,6 +170,7 @@ class VerdictWithCauses {
   bool settle_probabilities();
   Diagnosis verdict_beside_remainder(ImageEvidence images) const;
   Diagnosis verdict_by_noise(ImageEvidence images);
+  void trust_stated();
   void doubt_by_share(bool in_images);
   void move_imperfections_to_none();
   Reported reported_by(const Diagnosis& diagnosis) const;
@@ -256,6 +234,20 @@ void VerdictWithCauses::choose_explanation() {
   const Hypothesis* sized = with_certain_sizes(with(), by(), best_);
   resized_ = sized != nullptr && !weighed_;
   if (sized != nullptr) best_ = *sized;
+}
+
+/// Of the two fits of an explanation, beside the common remainder and by the noise alone, the one from which a fit by
+/// the noise alone fits better.
+const MotionFit& VerdictWithCauses::best_start(const Hypothesis& one) const {
+  const MotionFit& with = fit_of(one);
+  if (!weighed_ || !names_) return with;
+  const std::optional<WeighedFit>& own = weighed_->fits[static_cast<std::size_t>(one.fit)];
+  if (!own || !std::isfinite(own->noise_alone.cost)) return with;
+  const auto cost_from = [&](const MotionFit& from) {
+    return fit_motions(set_, from.effects, from.at, from.late).cost;
+  };
+  const double of_own = cost_from(own->noise_alone), of_with = cost_from(with);
+  return of_own < of_with || !std::isfinite(of_with) ? own->noise_alone : with;
 }
 
 /// K of the nominal model imitates a drag of air. The gap that such a drag explains is that of a fall without any.
@@ -349,6 +341,7 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
   if (below_noise) {
     move_to_none([](const Hypothesis&) { return true; }, first_);
     first_.none += std::exchange(first_.unknown, 0.0);
+    trust_stated();
   }
   doubt_by_share(in_images);
   const bool by_name = first_.unknown < kUnknownIfLess;
@@ -367,6 +360,30 @@ Diagnosis VerdictWithCauses::verdict_by_noise(ImageEvidence images) {
     diagnosis.ranking = ranking_of(with(), by(), &noise);
   }
   return diagnosis;
+}
+
+/// Where nothing is claimed of the positions, a contradiction of stated inclinations is still none of their noise: the
+/// single effects that resolve it share what an unknown cause, the wrong statement among them, leaves.
+void VerdictWithCauses::trust_stated() {
+  constexpr double kWrongStatement = 0.1;
+  std::vector<double> logs;
+  std::vector<Hypothesis*> resolving;
+  for (Hypothesis& one : first_.all) {
+    if (one.unnamed || one.effects.size() != 1 || one.fit <= 0) continue;
+    if (gain_in_stated(nominal(), first_.fits[static_cast<std::size_t>(one.fit)]) < kClearInStated) continue;
+    resolving.push_back(&one);
+    logs.push_back(one.log_evidence + log_prior_odds(first_, one));
+  }
+  if (resolving.empty()) return;
+  const double all = base::log_sum(logs);
+  for (std::size_t k = 0; k < resolving.size(); ++k) {
+    resolving[k]->probability = (1.0 - kWrongStatement) * std::exp(logs[k] - all);
+    first_.effect_probability[resolving[k]->effects.front()] += resolving[k]->probability;
+  }
+  first_.none = 0.0;
+  first_.unknown = kWrongStatement;
+  std::stable_sort(first_.all.begin(), first_.all.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
 /// Raises the probability of an unknown cause where the named ones do not explain the gap, by the noise alone.

@@ -204,6 +204,30 @@ bool is_scatter_alone(const Hypothesis& hypothesis) {
          std::all_of(hypothesis.effects.begin(), hypothesis.effects.end(), is_scatter);
 }
 
+namespace {
+
+/// The leading cause, and one after another those that act in more than half of what has all of them so far.
+Causes with_likely_others(std::size_t leading, const std::map<Causes, double>& sums) {
+  Causes likely = {leading};
+  while (true) {
+    double all = 0.0;
+    std::map<std::size_t, double> beside;
+    for (const auto& [causes, probability] : sums) {
+      if (!std::includes(causes.begin(), causes.end(), likely.begin(), likely.end())) continue;
+      all += probability;
+      for (auto cause = causes.begin(); cause != causes.end(); cause = causes.upper_bound(*cause)) {
+        if (!likely.contains(*cause)) beside[*cause] += probability;
+      }
+    }
+    const auto next = std::max_element(beside.begin(), beside.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (next == beside.end() || next->second <= 0.5 * all) return likely;
+    likely.insert(next->first);
+  }
+}
+
+}  // namespace
+
 const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) {
   const std::map<std::size_t, double> of_cause = probabilities_of_causes(comparison, set.images);
   if (of_cause.empty()) return nullptr;
@@ -214,13 +238,14 @@ const Hypothesis* best_named(const TrackSet& set, const Comparison& comparison) 
   for (const Hypothesis& hypothesis : comparison.all) {
     if (is_named(hypothesis)) sums[causes_of(comparison, hypothesis, set.images)] += hypothesis.probability;
   }
+  const Causes likely = with_likely_others(leading, sums);
   const Hypothesis* best = nullptr;  // the likeliest name of the likeliest causes: they are sorted by decreasing
                                      // probability
   double most = -1.0;
   for (const Hypothesis& hypothesis : comparison.all) {
     if (!is_named(hypothesis)) continue;
     const Causes of = causes_of(comparison, hypothesis, set.images);
-    if (!of.contains(leading) || sums[of] <= most) continue;
+    if (!std::includes(of.begin(), of.end(), likely.begin(), likely.end()) || sums[of] <= most) continue;
     most = sums[of];
     best = &hypothesis;
   }

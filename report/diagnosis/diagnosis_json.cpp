@@ -12,6 +12,7 @@
 #include "report/diagnosis/line_report.h"
 #include "report/diagnosis/words/diagnosis_words.h"
 #include "report/diagnosis/words/image_words.h"
+#include "report/diagnosis/words/line_words.h"
 #include "report/diagnosis/words/next_step_words.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "report/text/found_json.h"

@@ -14,6 +14,7 @@
 #include "report/diagnosis/diagnosis_answer.h"
 #include "report/diagnosis/diagnosis_plots.h"
 #include "report/diagnosis/words/diagnosis_words.h"
+#include "report/diagnosis/words/line_words.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "report/html/gnuplot.h"
 #include "report/html/plot.h"

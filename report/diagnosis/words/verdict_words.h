@@ -12,16 +12,6 @@ namespace glidelab::report {
 /// The question answered by a diagnosis page.
 inline constexpr std::string_view kDiagnosisQuestion = "What does the simple law leave out?";
 
-/// The result for a table of lines in plain words: a paragraph for a reader who knows the experiment but no statistics.
-/// `diagnosis.lines` must be set.
-std::string line_words(const diagnose::Diagnosis& diagnosis);
-
-/// "a separate µ for each mass", for each form; empty if an explanation has none.
-std::string forms_words(const diagnose::LineCandidate& candidate);
-
-/// Why an explanation was not weighed: "force would have to be -3.1 mN, and it cannot be below zero".
-std::string impossible_words(const diagnose::ImpossibleSize& size);
-
 /// The verdict for clips or published lines in plain words: a paragraph for a reader who knows the experiment but no
 /// statistics.
 std::string verdict_words(const diagnose::Diagnosis& diagnosis);

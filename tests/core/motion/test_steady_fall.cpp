@@ -36,10 +36,12 @@ ConfigurationResult analysed(const Fall& fall, unsigned seed) {
     setup.incline_rad = fall.incline_deg * std::acos(-1.0) / 180.0;
     setups.push_back(setup);
     TrackData track;
+    track.frame_rate_hz = 60.0;
     const double terminal = fall.terminal_m_s * (1.0 + (clip % 2 == 0 ? fall.spread : -fall.spread));
-    const double rate = kGravity.m_s2 / terminal;
+    const double rate = kGravity / terminal;
     for (int i = 0; i < 60; ++i) {
       const double t_s = i / 60.0, u = t_s + fall.since_s;
+      track.frame.push_back(track.t_s.size());
       track.t_s.push_back(t_s);
       track.x_m.push_back(terminal * (u - (1.0 - std::exp(-rate * u)) / rate) + normal(random));
     }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "report/diagnosis/diagnosis_plots.h"
+#include "report/diagnosis/words/line_words.h"
 #include "report/diagnosis/words/verdict_words.h"
 #include "tests/catch.h"
 

@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "diagnose/effects/effect_library.h"
+#include "diagnose/fit/fit_model.h"
+#include "diagnose/fit/motion_fit.h"
+#include "diagnose/fit/nominal_fit.h"
+#include "diagnose/tracks/track_set.h"
+#include "diagnose/verdict/diagnose.h"
+#include "diagnose/verdict/verdict_details.h"
+#include "diagnose/weigh/fit_odds.h"
+#include "tests/catch.h"
+#include "tests/diagnose/made_motions.h"
+
+using namespace glidelab;
+
+namespace {
+
+/// A fit with one effect whose size is put at this part of its range.
+diagnose::MotionFit with_size_at(const diagnose::TrackSet& set, const diagnose::MotionFit& nominal, const char* id,
+                                 double part, std::vector<double> start) {
+  const std::size_t effect = diagnose::effect_index(id);
+  diagnose::MotionFit fit = diagnose::fit_with_effect(
+      set, nominal, effect, diagnose::with_effect(set, nominal, effect, std::move(start), {}));
+  const auto& globals = fit.layout->globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter == nullptr || globals[g].parameter->slot.parameter != 0) continue;
+    fit.at.global[static_cast<Eigen::Index>(g)] =
+        globals[g].range.low + part * (globals[g].range.high - globals[g].range.low);
+  }
+  return fit;
+}
+
+diagnose::Diagnosis diagnosed(const tests::MadeExperiment& made) {
+  return diagnose::diagnose_results(made.results, made.setups, {.without = {}, .jobs = 2});
+}
+
+}  // namespace
+
+TEST_CASE("a size at the end of its range is impossible and costs odds, within the range it is neither") {
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 1, 2e-4);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  const diagnose::MotionFit nominal = diagnose::fit_nominal(set);
+  CHECK_FALSE(diagnose::impossible_sizes(nominal));
+  diagnose::Comparison comparison;
+  comparison.fits = {nominal, with_size_at(set, nominal, "rotational_inertia", 0.2, {0.01}),
+                     with_size_at(set, nominal, "rotational_inertia", 1.0, {0.01})};
+  diagnose::set_fit_odds(set, comparison);
+  CHECK(comparison.fit_odds[2] - comparison.fit_odds[1] == Approx(-std::log(1000.0)).margin(1e-6));
+  CHECK_FALSE(diagnose::impossible_sizes(comparison.fits[1]));
+  const auto impossible = diagnose::impossible_sizes(comparison.fits[2]);
+  REQUIRE(impossible);
+  CHECK(impossible->at_end == std::vector<std::string>{"rotational_inertia"});
+  CHECK(impossible->negative.empty());
+  // At the end at which it has no effect, and a bumper that is too stiff to tell how stiff, are neither.
+  CHECK_FALSE(diagnose::impossible_sizes(with_size_at(set, nominal, "rotational_inertia", 0.0, {0.01})));
+  CHECK_FALSE(diagnose::impossible_sizes(with_size_at(set, nominal, "end_stop", 1.0, {10.0, 0.2})));
+}
+
+TEST_CASE("a negative drag or friction costs odds by how sure it is, to a thousandth at most") {
+  const tests::MadeExperiment made = tests::made_experiment(tests::made_launches(), {}, 2, 2e-4);
+  const diagnose::TrackSet set = diagnose::track_set(made.results, made.setups, true);
+  diagnose::MotionFit fit = diagnose::fit_nominal(set);
+  CHECK(diagnose::log_odds_of_losses(set, fit) == Approx(0.0).margin(1e-6));
+  fit.at.global[0] = 0.0;
+  CHECK(diagnose::log_odds_of_losses(set, fit) == Approx(-std::log(2.0)).margin(1e-6));
+  fit.at.global[1] = 0.0;
+  CHECK(diagnose::log_odds_of_losses(set, fit) == Approx(-std::log(4.0)).margin(1e-6));
+  fit.at.global[1] = -1.0;
+  CHECK(diagnose::log_odds_of_losses(set, fit) == Approx(-std::log(2000.0)).margin(1e-6));
+  const auto impossible = diagnose::impossible_sizes(fit);
+  REQUIRE(impossible);
+  REQUIRE(impossible->negative.size() == 1);
+  CHECK(impossible->negative.front().of == diagnose::NegativeLoss::Of::friction);
+}
+
+TEST_CASE("no cause of a fall under a drag of v^0.67 has a size at the end of its range") {
+  // 15 g with a terminal velocity of 1 m/s. An inertia of 12 kg and a scale to match follow such positions nearly.
+  constexpr double kMass_kg = 0.015, kTerminal_m_s = 1.0;
+  tests::MadeEffect drag;
+  drag.force = [](double m, double, double v, double) {
+    return -m * 9.80665 * std::copysign(std::pow(std::abs(v) / kTerminal_m_s, 0.67), v);
+  };
+  for (const unsigned seed : {1u, 2u}) {
+    CAPTURE(seed);
+    const std::vector<tests::MadeLaunch> launches(4, {kMass_kg, 90.0, 0.0, 0.02});
+    const tests::MadeExperiment made = tests::made_experiment(launches, drag, seed, 5e-4, 60, 60.0, 0.0, 0.0,
+                                                              {.k_n_s_m = 0.0, .mu = 0.0, .gravity_m_s2 = 9.80665});
+    for (const auto& effect : diagnosed(made).effects) {
+      CAPTURE(effect.id);
+      CHECK(std::none_of(effect.parameters.begin(), effect.parameters.end(),
+                         [](const auto& parameter) { return parameter.at_end; }));
+    }
+  }
+}
+
+TEST_CASE("a drag that is called negative is negative in the table of recovered values too") {
+  // Friction that varies along the track in a way that no law has, and motions so slow that K hardly shows.
+  tests::MadeEffect bumps;
+  bumps.force = [](double m, double x, double, double) {
+    return m * (0.03 * std::sin(9.0 * x) + 0.02 * std::sin(23.0 * x + 1.0) + 0.02 * std::cos(41.0 * x));
+  };
+  std::size_t told = 0;
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    CAPTURE(seed);
+    const std::vector<tests::MadeLaunch> launches = {{0.4, 0.5, 0.0, 0.3}, {0.4, 0.5, 0.05, 0.4}, {0.4, 0.5, 0.1, 0.5}};
+    const diagnose::Diagnosis diagnosis = diagnosed(
+        tests::made_experiment(launches, bumps, seed, 5e-5, 120, 60.0, 0.0, 0.0, {.k_n_s_m = -0.05, .mu = 0.004}));
+    if (diagnosis.verdict != diagnose::Verdict::unknown || !diagnosis.remainder) continue;
+    for (const diagnose::Note& note : diagnosis.notes) {
+      const auto* const loss = std::get_if<diagnose::NegativeLoss>(&note);
+      if (loss == nullptr || loss->of != diagnose::NegativeLoss::Of::drag) continue;
+      ++told;
+      REQUIRE(diagnosis.recovered.size() == 1);
+      const auto& k = diagnosis.recovered.front().k_over_m_1_s.estimate;
+      REQUIRE(k);
+      CHECK(k->value * 0.4 == Approx(loss->value).epsilon(0.2));
+      CHECK(k->value < -3.0 * k->sd);
+    }
+  }
+  INFO(told << " were called negative");
+  SUCCEED();
+}
