@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include <boost/math/tools/minima.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -110,19 +112,33 @@ SeriesWave strongest_wave(const std::vector<Series>& all) {
   const double lowest = kFewestPeriods / shortest, highest = 0.5 * rate;
   const auto many =
       std::min<std::size_t>(kMostFrequencies, static_cast<std::size_t>(std::max(8.0, kFineness * span * highest)));
+  const auto gain_at = [&](double f_hz) {
+    double gain = 0.0;
+    for (const Flat& one : series) {
+      const double left = std::max(1e-9, 1.0 - one.at(f_hz).explained / one.squares());
+      gain -= 0.5 * one.count() * std::log(left);
+    }
+    return gain;
+  };
+  const double step = (highest - lowest) / static_cast<double>(many);
   std::vector<double> gains;
   double best = 0.0;
   for (std::size_t k = 0; k <= many; ++k) {
-    const double f = lowest + (highest - lowest) * static_cast<double>(k) / static_cast<double>(many);
-    double gain = 0.0;
-    for (const Flat& one : series) {
-      const double left = std::max(1e-9, 1.0 - one.at(f).explained / one.squares());
-      gain -= 0.5 * one.count() * std::log(left);
-    }
+    const double f = lowest + step * static_cast<double>(k), gain = gain_at(f);
     gains.push_back(gain);
     if (gain <= best) continue;
     best = gain;
     wave.f_hz = f;
+  }
+  if (best > 0.0) {  // the peak between the frequencies tried
+    constexpr int kBits = 30;
+    const auto [f, loss] = boost::math::tools::brent_find_minima([&](double at) { return -gain_at(at); },
+                                                                 std::max(lowest, wave.f_hz - step),
+                                                                 std::min(highest, wave.f_hz + step), kBits);
+    if (-loss > best) {
+      best = -loss;
+      wave.f_hz = f;
+    }
   }
   double penalty = std::log(static_cast<double>(many) / kFineness), squares = 0.0, variance = 0.0;
   for (const Flat& one : series) {

@@ -1,7 +1,6 @@
 #include "diagnose/causes/cause_weighing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -237,21 +236,10 @@ void CauseWeighing::share_lost_frames() {
   const auto alone = std::find_if(fits.begin(), fits.end(),
                                   [](const MotionFit& fit) { return fit.effects.empty() && !fit.late.empty(); });
   if (alone == fits.end()) return;
-  std::vector<const MotionFit*> found;
-  for (const std::vector<MotionFit>* of : std::array<const std::vector<MotionFit>*, 2>{&fits, &first_.fits}) {
-    for (const MotionFit& fit : *of) {
-      if (!fit.late.empty() && std::isfinite(fit.cost)) found.push_back(&fit);
-    }
-  }
-  std::vector<MotionFit> anew(found.size());
-  base::for_each_parallel(found.size(), jobs_, [&](std::size_t k) {
-    anew[k] = fit_motions(set_, {}, with_some_effects(ParameterLayout(set_, {}), *found[k]), found[k]->late);
-  });
-  const MotionFit* best = nullptr;
-  for (const MotionFit& fit : anew) {
-    if (std::isfinite(fit.cost) && (best == nullptr || fit.cost < best->cost)) best = &fit;
-  }
-  if (best != nullptr && best->late != alone->late) *alone = linearise_again(weighed_.set, *best);
+  std::vector<MotionFit> found = fits;
+  found.insert(found.end(), first_.fits.begin(), first_.fits.end());
+  const std::optional<MotionFit> best = lost_frames_alone(set_, found, jobs_);
+  if (best && best->late != alone->late) *alone = linearise_again(weighed_.set, *best);
 }
 
 /// A remainder of its own for each explanation that is worth it.
@@ -314,14 +302,15 @@ void CauseWeighing::take_own_evidence() {
   std::vector<Hypothesis>& all = comparison().all;
   std::erase_if(all, [](const Hypothesis& one) { return one.unnamed && one.fit > 0; });
   const auto fit_of = [](const Hypothesis& one) { return one.fit >= 0 ? one.fit : one.effects.empty() ? 0 : -1; };
+  const auto by_positions = [](const Hypothesis& one) { return one.log_evidence - one.of_images; };
   for (Hypothesis& one : all) {
     const Hypothesis* pure = fit_of(one) >= 0 ? pure_of(comparison(), fit_of(one)) : nullptr;
-    one.unnamed_log_evidence = pure != nullptr && !one.unnamed ? one.log_evidence - pure->log_evidence : 0.0;
+    one.unnamed_log_evidence = pure != nullptr && !one.unnamed ? by_positions(one) - by_positions(*pure) : 0.0;
   }
   for (Hypothesis& one : all) {
     const bool known = !one.unnamed && is_weighed(fit_of(one));
     one.log_evidence = known ? profiles_[static_cast<std::size_t>(fit_of(one))].log_evidence - evidence_of_nominal() +
-                                   std::exchange(one.unnamed_log_evidence, 0.0)
+                                   std::exchange(one.unnamed_log_evidence, 0.0) + one.of_images
                              : -kNotWeighed;
   }
   std::erase_if(all, [](const Hypothesis& one) { return one.unnamed; });
@@ -334,11 +323,11 @@ void CauseWeighing::find_structure_in_scatter() {
   const Hypothesis* clips = find(comparison(), {scatter_});
   if (clips == nullptr || !is_weighed(clips->fit)) return;
   const MotionFit& fit = noise_alone_[static_cast<std::size_t>(clips->fit)];
-  const double of_clips = clips->log_evidence;
+  const double of_clips = clips->log_evidence - clips->of_images;
   for (Hypothesis& one : comparison().all) {
     if (one.unnamed || one.effects.size() != 1 || !is_weighed(one.fit)) continue;
     const std::optional<double> gain = gain_of_structure(set_, fit, sizes_of(*clips), one.effects.front());
-    if (gain) one.log_evidence = std::max(one.log_evidence, of_clips + *gain);
+    if (gain) one.log_evidence = std::max(one.log_evidence, of_clips + *gain + one.of_images);
   }
 }
 
@@ -432,7 +421,8 @@ void CauseWeighing::add(WithFurther with, Settled settled) {
   both.fit = fit;
   both.converged = with.both.converged;
   both.gain += std::max(0.0, 0.5 * (with.chi2_without - with.both.cost));
-  both.log_evidence = is_weighed(fit) ? profiles_.back().log_evidence - evidence_of_nominal() : -kNotWeighed;
+  both.log_evidence =
+      is_weighed(fit) ? profiles_.back().log_evidence - evidence_of_nominal() + both.of_images : -kNotWeighed;
   std::erase_if(comparison().all, [&](const Hypothesis& one) {
     return std::set(one.effects.begin(), one.effects.end()) == std::set(both.effects.begin(), both.effects.end());
   });
@@ -454,7 +444,7 @@ void CauseWeighing::add_functions_without_name() {
     Hypothesis both = leaders[k];
     both.unnamed = true;
     both.unnamed_log_evidence = *logs[k] - profiles_[static_cast<std::size_t>(both.fit)].log_evidence;
-    both.log_evidence = *logs[k] - evidence_of_nominal();
+    both.log_evidence = *logs[k] - evidence_of_nominal() + both.of_images;
     if (both.fit > 0 && comparison().beside_fit == 0) {
       comparison().beside_fit = comparison().left_fit = both.fit;
       comparison().unnamed_left = std::move(found[k]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/long_work.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/scan/effect_scan.h"
 
@@ -77,6 +78,22 @@ std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit&
     if (std::isfinite(fit.cost)) fits.push_back(std::move(fit));
   }
   return fits;
+}
+
+std::optional<MotionFit> lost_frames_alone(const TrackSet& set, const std::vector<MotionFit>& fits, int jobs) {
+  std::vector<const MotionFit*> found;
+  for (const MotionFit& fit : fits) {
+    if (!fit.late.empty() && std::isfinite(fit.cost)) found.push_back(&fit);
+  }
+  const ParameterLayout layout(set, {});
+  std::vector<MotionFit> anew(found.size());
+  base::for_each_parallel(found.size(), jobs, [&](std::size_t k) {
+    anew[k] = fit_motions(set, {}, with_some_effects(layout, *found[k]), found[k]->late);
+  });
+  const auto best = std::min_element(anew.begin(), anew.end(),
+                                     [](const MotionFit& a, const MotionFit& b) { return a.cost < b.cost; });
+  if (best == anew.end() || !std::isfinite(best->cost)) return {};
+  return std::move(*best);
 }
 
 }  // namespace glidelab::diagnose

@@ -36,4 +36,8 @@ std::optional<MotionFit> with_further(const TrackSet& set, const MotionFit& law,
 std::vector<MotionFit> laws_beside_scatter(const TrackSet& set, const MotionFit& scatter, const RemainderSizes& sizes,
                                            const std::set<std::size_t>& without);
 
+/// Missing frames without any effect: of those that were found with these fits, the ones with which the motion is
+/// followed best by the noise alone. Empty if none has any, or if no fit succeeds.
+std::optional<MotionFit> lost_frames_alone(const TrackSet& set, const std::vector<MotionFit>& fits, int jobs);
+
 }  // namespace glidelab::diagnose

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -208,8 +209,11 @@ void add_sway(const std::vector<FilmedClip>& clips, ImageEvidence& evidence) {
   const double of_drift = log_deviation_evidence(drift.size / drift_sd, 100.0 / drift_sd);
   if (shakes) {
     finding.log_evidence = std::max(wave.log_evidence, of_drift);
-    finding.parameters = {{"amplitude_px", wave.amplitude, wave.sd}, {"f_hz", wave.f_hz, wave.sd_hz}};
-    finding.fact = image::Sway{image::Sway::How::shakes, wave.amplitude, wave.f_hz};
+    // The wave is one of both axes alike, and a camera may sway along one of them.
+    const double amplitude_px = std::numbers::sqrt2 * wave.amplitude;
+    finding.parameters = {{"amplitude_px", amplitude_px, std::numbers::sqrt2 * wave.sd},
+                          {"f_hz", wave.f_hz, wave.sd_hz}};
+    finding.fact = image::Sway{image::Sway::How::shakes, amplitude_px, wave.f_hz};
   } else if (of_drift > kSeenInImages) {
     finding.log_evidence = of_drift;
     finding.parameters = {{"amplitude_px", 0.5 * drift.size, 0.5 * drift_sd}};

@@ -19,13 +19,6 @@ constexpr double kLikelyAmongEquals = 1.0 / 3.0;
 constexpr double kAboutAsLikely = 1.0 / 3.0;
 constexpr double kClearlyLikelier = 0.1;  // difference of probability: a smaller one is no reason to name another cause
 
-/// The probability of an effect of an explanation or of one that the data cannot tell from it.
-double probability_of(const Comparison& comparison, const Hypothesis& best, std::size_t effect, bool filmed) {
-  std::vector<std::size_t> any = not_told_apart(comparison, best, effect, filmed);
-  any.push_back(effect);
-  return probability_of_any(comparison, any);
-}
-
 /// Whether one of the two laws is the other with one parameter held: a quadratic drag is a power law of exponent 2.
 bool is_same_law(std::size_t one, std::size_t other) {
   const std::set<std::size_t> drags = {effect_index(ids::quadratic_drag), effect_index(ids::power_law_drag)};
@@ -54,9 +47,15 @@ bool shows_in_images_alone(const Hypothesis& explanation) {
   return in_images;
 }
 
-bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best) {
+bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best,
+                          const Hypothesis* part_of) {
   return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
-    return probability_of(comparison, best, e, set.images) >= kLikelierThanNot;
+    std::vector<std::size_t> any = not_told_apart(comparison, best, e, set.images);
+    if (part_of != nullptr && has(*part_of, e)) {
+      for (const std::size_t other : not_told_apart(comparison, *part_of, e, set.images)) any.push_back(other);
+    }
+    any.push_back(e);
+    return probability_of_any(comparison, any) >= kLikelierThanNot;
   });
 }
 

@@ -14,8 +14,10 @@ namespace glidelab::diagnose {
 bool shows_in_images_alone(const Hypothesis& explanation);
 
 /// Whether the likeliest effect of an explanation, together with those that the data cannot tell from it, is likelier
-/// than not. A name that is less likely is no answer.
-bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
+/// than not. A name that is less likely is no answer. `part_of`: the explanation of which `best` is a part, where
+/// others may take the place of an effect that do not without the rest of it.
+bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, const Hypothesis& best,
+                          const Hypothesis* part_of = nullptr);
 
 /// The fitted explanation by those causes of `best` that are likelier than not, or by the likeliest of them: the rest
 /// of the median probability model (best_named()). A cause counts together with those that no track can tell from it

@@ -302,9 +302,16 @@ Diagnosis verdict_of(const TrackSet& set, const Comparison& comparison, ImageEvi
     if (explanation == nullptr) explanation = best;
     for (const std::size_t e : named) {
       const EffectInfo& info = effect_list()[e];
+      std::vector<std::size_t> others = not_told_apart(comparison, *explanation, e, set.images);
+      if (has(*best, e)) {  // beside a cause that is not named, others may take its place
+        for (const std::size_t other : not_told_apart(comparison, *best, e, set.images)) {
+          const bool known = std::find(others.begin(), others.end(), other) != others.end() ||
+                             std::find(named.begin(), named.end(), other) != named.end();
+          if (!known) others.push_back(other);
+        }
+      }
       std::vector<std::string> alike;
-      for (const std::size_t other : not_told_apart(comparison, *explanation, e, set.images))
-        alike.emplace_back(effect_list()[other].id);
+      for (const std::size_t other : others) alike.emplace_back(effect_list()[other].id);
       diagnosis.effects.push_back({std::string(info.id), info.stage, std::string(info.words),
                                    comparison.effect_probability[e], std::move(alike),
                                    parameters_of(sized_set, comparison, images, sized, e)});

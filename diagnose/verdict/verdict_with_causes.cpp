@@ -267,7 +267,7 @@ void VerdictWithCauses::put_causes_in_order() {
   if (likely != nullptr) sequence_ = sequence_with(*likely);
   const bool by_share =
       likely != nullptr && (sequence_.named_share >= kHalfOfGap || needs_no_share(sequence_, *likely, by()));
-  if (by_share && is_likelier_than_not(with(), by(), *likely)) {
+  if (by_share && is_likelier_than_not(with(), by(), *likely, &best_)) {
     best_ = *likely;
   } else {
     sequence_ = sequence_with(best_);
@@ -316,7 +316,7 @@ bool VerdictWithCauses::settle_probabilities() {
   if (!is_settled()) return false;
   Comparison& comparison = weighed_->comparison;
   hold_to_share(sequence_, best_.effects, by_air_, comparison);
-  if (!is_likelier_than_not(with(), comparison, named_by(comparison, sequence_, best_))) {
+  if (!is_likelier_than_not(with(), comparison, named_by(comparison, sequence_, best_), found_ ? &*found_ : nullptr)) {
     set_unknown(std::max(comparison.unknown, kUnknownIfLess), comparison);
   }
   if (open_size_) set_unknown(std::max(comparison.unknown, kOpenSize), comparison);

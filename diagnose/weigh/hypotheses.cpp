@@ -14,6 +14,7 @@
 #include "diagnose/weigh/fit_odds.h"
 #include "diagnose/weigh/hypothesis_pairs.h"
 #include "diagnose/weigh/joined_evidence.h"
+#include "diagnose/weigh/twin_fits.h"
 #include "diagnose/weigh/unknown_noise.h"
 
 namespace glidelab::diagnose {
@@ -195,6 +196,7 @@ Comparison compare_hypotheses(const TrackSet& set, const std::vector<std::size_t
   }
   add_pairs(set, space, left_out, work.at(0.5), comparison);
   add_losses_beside(set, nominal, left_out, work.at(0.75), comparison);
+  add_twins(set, left_out, work.at(0.78), comparison);
   add_unnamed(set, work.at(0.8), comparison);
   const MotionFit& best = comparison.fits[static_cast<std::size_t>(comparison.left_fit)];
   for (const FrameEffect& frame : {scan_jitter(set, best), scan_tails(set, best)}) {

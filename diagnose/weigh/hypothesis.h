@@ -24,6 +24,7 @@ struct Hypothesis {
   int fit = -1;                       ///< index in Comparison::fits
   bool converged = true;              ///< false: its fit did not reach a minimum; its gain is then a lower bound
   double unnamed_log_evidence = 0.0;  ///< the part of it due to something unnamed, beside effects or alone
+  double of_images = 0.0;             ///< the part of it that the images add (joined_evidence.h)
   std::optional<double> left = {};    ///< the part of the gap's excess that it leaves, if a remainder was weighed
 };
 

@@ -157,6 +157,7 @@ void join_images(const TrackSet& set, const ImageEvidence& images, const std::se
         if (effect == rows) support = line_support(images, *finding, fit, rows);
       }
       hypothesis.log_evidence += support;
+      hypothesis.of_images += support;
     }
     for (const Hypothesis& other : so_far) {
       if (has(other, effect) || other.effects.size() >= kMostTogether) continue;
@@ -193,6 +194,7 @@ void join_images(const TrackSet& set, const ImageEvidence& images, const std::se
       if (finding->id == ids::exposure_blur && finding->seen) of_tracks = scatter;
       if (of_images + of_tracks < kWorthJoining) continue;
       with.log_evidence += of_images + of_tracks;
+      with.of_images += of_images + of_tracks;
       with.gain += std::max(0.0, of_images);
       comparison.all.push_back(std::move(with));
     }

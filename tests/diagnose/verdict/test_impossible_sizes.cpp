@@ -121,6 +121,5 @@ TEST_CASE("a drag that is called negative is negative in the table of recovered 
       CHECK(k->value < -3.0 * k->sd);
     }
   }
-  INFO(told << " were called negative");
-  SUCCEED();
+  CHECK(told >= 1);
 }

@@ -1,0 +1,145 @@
+#include "diagnose/weigh/twin_fits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string_view>
+
+#include "base/long_work.h"
+#include "diagnose/effects/effect_library.h"
+
+namespace glidelab::diagnose {
+namespace {
+
+constexpr std::size_t kMostTwins = 4;  // fits
+constexpr double kNoWorse = 2.0;       // of chi²: a fit that is worse than its twin by less is as good
+
+std::optional<std::string_view> twin_of(std::string_view id) {
+  if (id == ids::tether) return ids::end_stop;
+  if (id == ids::end_stop) return ids::tether;
+  if (id == ids::camera_motion) return ids::base_vibration;
+  if (id == ids::base_vibration) return ids::camera_motion;
+  return {};
+}
+
+/// The index of one of an effect's parameters among the common ones of a layout.
+std::optional<Eigen::Index> global_of(const ParameterLayout& layout, EffectSlot slot) {
+  const auto& globals = layout.globals();
+  for (std::size_t g = 0; g < globals.size(); ++g) {
+    if (globals[g].parameter != nullptr && globals[g].parameter->slot == slot) return static_cast<Eigen::Index>(g);
+  }
+  return {};
+}
+
+/// The index of a wave's phase in each motion's own parameters.
+std::optional<Eigen::Index> phase_of(const ParameterLayout& layout, std::size_t effect) {
+  const auto& own = layout.own();
+  for (std::size_t o = 0; o < own.size(); ++o) {
+    if (own[o]->slot.effect == effect) return static_cast<Eigen::Index>(2 + o);
+  }
+  return {};
+}
+
+/// The start for `to` in place of `from` in a fit. Empty if the sizes have no counterpart within its range.
+std::optional<FitPoint> start_of(const TrackSet& set, const MotionFit& fit, std::size_t from, std::size_t to,
+                                 const ParameterLayout& layout) {
+  FitPoint start = with_some_effects(layout, fit);
+  const std::string_view from_id = effect_list()[from].id, to_id = effect_list()[to].id;
+  const auto size = global_of(*fit.layout, slot_of(from_id)), size_to = global_of(layout, slot_of(to_id));
+  const auto shape = global_of(*fit.layout, slot_of(from_id, 1)), shape_to = global_of(layout, slot_of(to_id, 1));
+  if (!size || !size_to || !shape || !shape_to) return {};
+  double value = fit.at.global[*size];
+  const double of_shape = fit.at.global[*shape];
+  if (to_id == ids::end_stop && !(of_shape > set.x_mid_m)) return {};
+  if (to_id == ids::tether && !(of_shape > set.x_mid_m)) return {};
+  const bool wave = effect_list()[from].search == Search::wave;
+  if (wave) {
+    const double per = std::pow(2.0 * std::numbers::pi * of_shape, 2);
+    value = to_id == ids::base_vibration ? value * per : value / per;
+    const auto phase = phase_of(*fit.layout, from), phase_to = phase_of(layout, to);
+    if (!phase || !phase_to) return {};
+    for (std::size_t i = 0; i < start.own.size(); ++i) {
+      start.own[i][*phase_to] = fit.at.own[i][*phase] + std::numbers::pi;
+    }
+  }
+  const ParameterRange& range = layout.globals()[static_cast<std::size_t>(*size_to)].range;
+  if (!(value < range.high)) return {};
+  start.global[*size_to] = value;
+  start.global[*shape_to] = of_shape;
+  return start;
+}
+
+/// A bumper and a cable whose fits are as good are one cause for these data.
+void join_names(Comparison& comparison) {
+  const std::size_t cable = effect_index(ids::tether), bumper = effect_index(ids::end_stop);
+  const Hypothesis *one = find(comparison, {cable}), *other = find(comparison, {bumper});
+  if (comparison.alike.empty() || one == nullptr || other == nullptr || one->fit <= 0 || other->fit <= 0) return;
+  const auto cost = [&](const Hypothesis& of) { return comparison.fits[static_cast<std::size_t>(of.fit)].cost; };
+  if (!(std::abs(cost(*one) - cost(*other)) < kNoWorse)) return;
+  const std::size_t first = std::min(comparison.alike[cable], comparison.alike[bumper]),
+                    last = std::max(comparison.alike[cable], comparison.alike[bumper]);
+  std::replace(comparison.alike.begin(), comparison.alike.end(), last, first);
+}
+
+struct TriedTwin {
+  Hypothesis of;
+  std::size_t from = 0, to = 0;
+};
+
+}  // namespace
+
+void add_twins(const TrackSet& set, const std::set<std::size_t>& left_out, const Work& work, Comparison& comparison) {
+  std::vector<Hypothesis> likeliest;
+  for (const Hypothesis& one : comparison.all) {
+    if (one.fit > 0 && !one.unnamed) likeliest.push_back(one);
+  }
+  std::sort(likeliest.begin(), likeliest.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+  std::vector<TriedTwin> tried;
+  for (const Hypothesis& one : likeliest) {
+    for (const std::size_t e : one.effects) {
+      const auto twin = twin_of(effect_list()[e].id);
+      if (!twin || (tried.size() >= kMostTwins && one.effects.size() > 1)) continue;
+      const std::size_t to = effect_index(*twin);
+      if (left_out.contains(to) || has(one, to)) continue;
+      const MotionFit& fit = comparison.fits[static_cast<std::size_t>(one.fit)];
+      if (std::find(fit.effects.begin(), fit.effects.end(), e) == fit.effects.end()) continue;
+      std::set<std::size_t> effects(one.effects.begin(), one.effects.end());
+      effects.erase(e);
+      effects.insert(to);
+      const Hypothesis* known = find(comparison, effects);
+      const bool as_good = known != nullptr && known->fit > 0 &&
+                           comparison.fits[static_cast<std::size_t>(known->fit)].cost < fit.cost + kNoWorse;
+      if (!as_good) tried.push_back({one, e, to});
+    }
+  }
+  std::vector<std::optional<Found>> found(tried.size());
+  base::for_each_parallel(tried.size(), work.jobs, [&](std::size_t k) {
+    work.look();
+    const auto& [of, from, to] = tried[k];
+    const MotionFit& fit = comparison.fits[static_cast<std::size_t>(of.fit)];
+    std::vector<std::size_t> effects = fit.effects;
+    std::replace(effects.begin(), effects.end(), from, to);
+    const std::optional<FitPoint> start = start_of(set, fit, from, to, ParameterLayout(set, effects));
+    if (!start) return;
+    Found twin{of, fit_motions(set, effects, *start, fit.late)};
+    if (!std::isfinite(twin.fit.cost)) return;
+    std::replace(twin.hypothesis.effects.begin(), twin.hypothesis.effects.end(), from, to);
+    const double gained = 0.5 * (fit.cost - twin.fit.cost);
+    twin.hypothesis.gain += gained;
+    twin.hypothesis.log_evidence += gained;
+    found[k] = std::move(twin);
+  });
+  for (std::optional<Found>& one : found) {
+    if (!one) continue;
+    const std::vector<std::size_t>& effects = one->hypothesis.effects;
+    std::erase_if(comparison.all, [&](const Hypothesis& other) {  // by its scan alone
+      return !other.unnamed && other.fit < 0 && other.effects == effects;
+    });
+    add(comparison, std::move(*one));
+  }
+  join_names(comparison);
+}
+
+}  // namespace glidelab::diagnose
