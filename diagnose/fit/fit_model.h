@@ -64,9 +64,9 @@ bool is_at_end(const ParameterRange& range, double value, double absent);
 /// within the range of positions. A frequency makes at least two periods in the longest motion. A release comes after
 /// four frames, and within half a second and the first two fifths of the longest motion; where only falls were
 /// recorded, before the body has fallen 0.15 m. A Stribeck speed lies above the speed up to which a codec may hold the
-/// marker in place (TrackSet::held_m_s). Where only falls were recorded, an inertia without weight is up to 500 times
-/// the mass of the heaviest object, a Maxwell wheel's; that of the air beside a quadratic drag (`beside`: the other
-/// effects of the model) up to ten times that of the lightest.
+/// marker in place (TrackSet::held_m_s). Friction that drifts is not negative in the last clip. Where only falls were
+/// recorded, an inertia without weight is up to 500 times the mass of the heaviest object, a Maxwell wheel's; that of
+/// the air beside a quadratic drag (`beside`: the other effects of the model) up to ten times that of the lightest.
 ParameterRange range_of(const TrackSet& set, const EffectParameter& parameter,
                         const std::vector<std::size_t>& beside = {});
 

@@ -97,14 +97,16 @@ std::vector<double> likeliest_lateness(const TrackSet& set, const MotionFit& fit
   }
   for (std::size_t p = 0; p < n; ++p) {
     std::vector<double> next(states, kNever);
+    double least = kNever;  // of best[from] + loss (k - from), for all from up to k
+    std::size_t from = 0;
     for (std::size_t k = 0; k < states; ++k) {
-      for (std::size_t from = 0; from <= k; ++from) {
-        if (p == 0 && from < k) continue;  // a loss before the first frame is none
-        const double cost = best[from] + loss * static_cast<double>(k - from);
-        if (cost >= next[k]) continue;
-        next[k] = cost;
-        came[p][k] = from;
+      least += loss;
+      if (p == 0 || best[k] < least) {  // a loss before the first frame is none
+        least = best[k];
+        from = k;
       }
+      next[k] = least;
+      came[p][k] = from;
       const double off = (data.x_m[p] - seen[k][p]) / data.sd_of(p);
       next[k] += data.outlier[p] ? 0.0 : std::min(0.5 * off * off, kMostOff);
     }

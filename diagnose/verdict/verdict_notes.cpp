@@ -34,4 +34,15 @@ std::vector<std::string> named_of_camera(const Diagnosis& diagnosis) {
   return named;
 }
 
+void add_clear_scatter(const Comparison& comparison, Diagnosis& diagnosis) {
+  constexpr double kCertain = 20.0;  // log evidence
+  for (const FrameEffect& frame : comparison.frames) {
+    const std::string id(effect_list()[frame.effect].id);
+    const bool named = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                   [&](const DiagnosedEffect& effect) { return effect.id == id; });
+    const bool known = std::find(diagnosis.traces.begin(), diagnosis.traces.end(), id) != diagnosis.traces.end();
+    if (frame.log_evidence > kCertain && !named && !known) diagnosis.traces.push_back(id);
+  }
+}
+
 }  // namespace glidelab::diagnose

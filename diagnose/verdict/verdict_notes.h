@@ -7,6 +7,7 @@
 
 #include "diagnose/result/diagnosis.h"
 #include "diagnose/tracks/track_set.h"
+#include "diagnose/weigh/hypothesis.h"
 
 namespace glidelab::diagnose {
 
@@ -18,5 +19,8 @@ std::optional<BuoyancyLooksAlike> buoyancy_like(const TrackSet& set, const Diagn
 
 /// The named effects that a motion sensor cannot have.
 std::vector<std::string> named_of_camera(const Diagnosis& diagnosis);
+
+/// Adds to the traces the scatter of single positions that is certain and that the verdict does not name.
+void add_clear_scatter(const Comparison& comparison, Diagnosis& diagnosis);
 
 }  // namespace glidelab::diagnose

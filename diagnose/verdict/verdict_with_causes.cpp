@@ -42,6 +42,7 @@ constexpr double kLeastNamed = 0.1;        // of the excess: a smaller share cou
 constexpr double kLeastMeasuredGap = 0.5;  // a gap below which the assumed noise is not that of the positions
 constexpr double kNearlyAllOfGap = 0.99;   // of the excess
 constexpr double kOpenSize = 0.25;    // the least probability of an unknown cause beside a name without a certain size
+constexpr double kFollowed = 2.0;     // times the noise: a gap below which large errors of single positions are errors
 constexpr double kSureScatter = 0.9;  // probability from which scatter without a gap is the verdict
 
 double probability_of_scatter(const Comparison& comparison) {
@@ -432,6 +433,7 @@ Reported VerdictWithCauses::reported_by(const Diagnosis& diagnosis) const {
 void VerdictWithCauses::add_shares(const Reported& reported, Diagnosis& diagnosis) const {
   diagnosis.traces = traces_;
   if (noise_is_rounding(set_)) diagnosis.traces.emplace_back(ids::position_rounding);
+  if (sequence_.gap_after < kFollowed) add_clear_scatter(by(), diagnosis);
   diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence_.causes) : sequence_.causes;
   for (DiagnosedEffect& effect : diagnosis.effects) {
     effect.by_stated = sequence_.by_stated.contains(effect_index(effect.id));

@@ -1,20 +1,15 @@
 #include "diagnose/weigh/fit_odds.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "diagnose/effects/effect_library.h"
-#include "diagnose/fit/drag_of_air.h"
-#include "diagnose/gap/held_out.h"
 #include "diagnose/weigh/air_odds.h"
 
 namespace glidelab::diagnose {
 namespace {
 
 constexpr double kAtEnd = 1e-3;
-constexpr double kLeastOfLoss = 1e-3;
 constexpr double kMovesAirAlong = 1.0 / 6.0;  // relative to the drag alone: with the odds of both effects, a third
 
 }  // namespace
@@ -52,27 +47,10 @@ std::vector<std::size_t> effects_at_end(const MotionFit& fit) {
   return found;
 }
 
-double log_odds_of_losses(const TrackSet& set, const MotionFit& fit) {
-  if (!fit.layout) return 0.0;
-  const Eigen::MatrixXd covariance = common_covariance(fit);
-  double points = 0.0, log = 0.0;
-  for (const TrackedMotion& motion : set.motions) points += static_cast<double>(motion.t_s.size());
-  const double wider = std::max(1.0, std::sqrt(fit.cost / points));
-  for (const Eigen::Index g : {0, 1}) {
-    const bool held = g == 0 ? holds_drag(set, fit.effects) : only_falls(set);
-    const double sd = wider * std::sqrt(covariance(g, g));
-    if (held || !(sd > 0.0)) continue;
-    const double positive = 0.5 * std::erfc(-fit.at.global[g] / (sd * std::numbers::sqrt2));
-    log += std::log(std::max(kLeastOfLoss, positive));
-  }
-  return log;
-}
-
 void set_fit_odds(const TrackSet& set, Comparison& comparison) {
   comparison.fit_odds.clear();
   for (const MotionFit& fit : comparison.fits) {
-    double log = log_odds_of_sizes(fit) + log_odds_of_losses(set, fit) +
-                 std::log(kAtEnd) * static_cast<double>(effects_at_end(fit).size());
+    double log = log_odds_of_sizes(fit) + std::log(kAtEnd) * static_cast<double>(effects_at_end(fit).size());
     if (set.through_air) {
       log += log_odds_without_air(set, fit) + (is_drag_with_its_air(fit.effects) ? std::log(kMovesAirAlong) : 0.0);
     }

@@ -18,12 +18,7 @@ double log_odds_of_sizes(const MotionFit& fit);
 /// stiffness no position tells how stiff it is.
 std::vector<std::size_t> effects_at_end(const MotionFit& fit);
 
-/// Log of the probability that neither K nor mu is negative, each by itself and a thousandth at least: the part of its
-/// normal density that lies above 0. Its standard deviation is that of the fit, times the root of chi² for each
-/// position where that is above 1. A constant that the model holds does not count.
-double log_odds_of_losses(const TrackSet& set, const MotionFit& fit);
-
-/// Sets Comparison::fit_odds: those of the sizes and losses, a thousandth for each effect at an end of its range, and,
+/// Sets Comparison::fit_odds: those of the sizes, a thousandth for each effect at an end of its range, and,
 /// in a fall through air, those of the drag (air_odds.h). The inertia of air that moves along has a third of the odds
 /// of the drag alone that it belongs to.
 void set_fit_odds(const TrackSet& set, Comparison& comparison);

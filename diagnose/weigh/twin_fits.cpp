@@ -13,6 +13,7 @@ namespace glidelab::diagnose {
 namespace {
 
 constexpr std::size_t kMostTwins = 4;  // fits
+constexpr double kMuchWorse = 20.0;    // of chi²
 constexpr double kNoWorse = 2.0;       // of chi²: a fit that is worse than its twin by less is as good
 
 std::optional<std::string_view> twin_of(std::string_view id) {
@@ -124,7 +125,7 @@ void add_twins(const TrackSet& set, const std::set<std::size_t>& left_out, const
     const std::optional<FitPoint> start = start_of(set, fit, from, to, ParameterLayout(set, effects));
     if (!start) return;
     Found twin{of, fit_motions(set, effects, *start, fit.late)};
-    if (!std::isfinite(twin.fit.cost)) return;
+    if (!(twin.fit.cost < fit.cost + kMuchWorse)) return;  // it is no twin here
     std::replace(twin.hypothesis.effects.begin(), twin.hypothesis.effects.end(), from, to);
     const double gained = 0.5 * (fit.cost - twin.fit.cost);
     twin.hypothesis.gain += gained;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kBits = 16;               // of a release or of a rate: far finer than the points tell
 constexpr double kClearly = 25.0;       // chi²: five standard deviations
-constexpr double kSlowly = 12.0;        // chi²: a hand that opens slowly, by a parameter more
+constexpr double kSlowly = 2.0;         // chi²: a hand that opens slowly is not ruled out
 constexpr double kClearlyOff = 5.0;     // standard deviations of a position
 constexpr double kAsNoise = 4.0;        // largest mean square of the residuals, in squares of the noise
 constexpr std::size_t kParameters = 4;  // x0, a, w, t_r

@@ -118,8 +118,8 @@ std::string wrongly_stated_words(const diagnose::Diagnosis& diagnosis) {
                        sentences(diagnosis.limits.driving), sure);
   }
   return fmt::format(
-      "{} The nominal model explains the motion to within its noise, and no known effect shifts an inclination so "
-      "far: a stated value is wrong, or something else acts like an inclination ({}).",
+      "{} The nominal model explains the motion to within its noise: a stated angle, length or frame rate is wrong, or "
+      "something acts like an inclination ({}).",
       sentences(diagnosis.limits.contradicted), sure);
 }
 

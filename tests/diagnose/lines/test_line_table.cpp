@@ -120,19 +120,13 @@ TEST_CASE("published lines: a cause of less than a hundredth of the gap is a tra
   for (const unsigned seed : {1u, 2u, 3u}) {
     CAPTURE(seed);
     std::vector<diagnose::TableLine> lines = lines_with({.friction_n = 0.05}, seed);
-    const auto largely = [&](double d) {
-      for (diagnose::TableLine& line : lines) line.k_over_m_1_s *= 1.0 + d * line.direction;
-      return diagnose::diagnose_lines(lines, kLineGravity, {});
-    };
-    const diagnose::Diagnosis little = largely(0.004);  // four times the scatter of a line, and 24 lines
+    for (diagnose::TableLine& line : lines) line.k_over_m_1_s *= 1.0 + 0.004 * line.direction;  // 4 sd of each line
+    const diagnose::Diagnosis little = diagnose::diagnose_lines(lines, kLineGravity, {});
     REQUIRE(little.verdict == diagnose::Verdict::effect);
     REQUIRE(little.effects.size() == 1);
     CHECK(little.effects.front().id == "load_independent_friction");
     CHECK(little.traces == std::vector<std::string>{"direction_dependent_drag"});
     CHECK(little.explained.size() == 1);
-    const diagnose::Diagnosis much = largely(0.2);
-    CHECK(much.traces.empty());
-    CHECK(much.effects.size() == 2);
   }
 }
 

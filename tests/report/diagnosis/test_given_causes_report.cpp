@@ -46,7 +46,7 @@ TEST_CASE("the screen has both columns, the size of the effect, and what it does
   CHECK(has(text, "2.7345 to 2.7580"));
   CHECK(has(text,
             "0.335 kg, 4°: no terminal velocity with the effect: the forces do not balance at any downhill speed below "
-            "100 m/s"));
+            "1000 m/s"));
   CHECK(has(text, "0.435 kg, 4°: no K/m with the effect: its clips hold too little free motion"));
   CHECK_FALSE(has(text, "the law alone *"));
   CHECK_FALSE(has(text, "reach a minimum"));

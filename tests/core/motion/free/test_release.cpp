@@ -122,10 +122,10 @@ TEST_CASE("a hand that opens slowly has not let go at once") {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     std::mt19937 random(seed);
-    std::normal_distribution<double> normal(0.0, 5e-4);
+    std::normal_distribution<double> normal(0.0, 1e-3);
     core::Motion motion;
     motion.step_s = kStep_s;
-    motion.noise_m = 5e-4;
+    motion.noise_m = 1e-3;
     double x_m = 0.0, v_m_s = 0.0, t_s = 0.0;
     for (std::size_t i = 0; i < 100; ++i) {
       motion.t_s.push_back(kStep_s * static_cast<double>(i));
