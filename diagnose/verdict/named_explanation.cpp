@@ -183,6 +183,13 @@ const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comp
   if (uncertain.empty() || uncertain.size() == named.effects.size()) return renamed;
   std::set<std::size_t> certain(named.effects.begin(), named.effects.end());
   for (const std::size_t e : uncertain) certain.erase(e);
+  // A size may be uncertain because sizes of each clip can do the same: the law is then no less likely than without.
+  const auto most = [&](const auto& effects) {
+    double likeliest = 0.0;
+    for (const std::size_t e : effects) likeliest = std::max(likeliest, comparison.effect_probability[e]);
+    return likeliest;
+  };
+  if (most(uncertain) > most(certain) + kClearlyLikelier) return renamed;
   const Hypothesis* others = find(comparison, certain);
   return others != nullptr && others->fit > 0 && leaves_no_more(*others, named) ? others : renamed;
 }

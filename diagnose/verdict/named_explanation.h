@@ -33,8 +33,8 @@ bool has_certain_size(const TrackSet& set, const MotionFit& fit, const std::vect
 /// If some effects of an explanation have no certain size: the explanation in which others that the data cannot tell
 /// from them have one in their place (a cable for a bumper that was barely touched). If none has, the explanation of
 /// those with a size alone, since a drag of size 0 beside a wrong frame rate is no cause, unless they leave more of the
-/// gap: of two uncertain parameters together the effect can be certain. Null if all have a size, or if there is no such
-/// fit.
+/// gap: of two uncertain parameters together the effect can be certain. Nor are those left out that are clearly
+/// likelier than what would remain. Null if all have a size, or if there is no such fit.
 const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comparison, const Hypothesis& best);
 
 /// If some of several causes do not take their part, the cause that is clearly likelier keeps its name, rather than the
