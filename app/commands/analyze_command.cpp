@@ -16,6 +16,7 @@
 #include "base/text/nearest_word.h"
 #include "core/analysis/analyze.h"
 #include "core/analysis/preview.h"
+#include "core/check/motion_look.h"
 #include "core/motion/bandwidth/bandwidth_rule.h"
 #include "core/motion/smoothing/smoother_list.h"
 #include "core/track/bare_track.h"
@@ -120,8 +121,9 @@ void analyze(const AnalyzeOptions& options) {
   how.smoother = options.smoother;
   how.images = !options.with.empty();
   how.without_marker = core::WithoutMarker::left_out;
-  const core::AnalysisResults results =
+  core::AnalysisResults results =
       fit::estimate_and_compare(estimator, core::analyze(folders, how, progress), {.robust = options.robust});
+  core::note_no_runs(results);
   const std::optional<diagnose::GivenCauses> given = with_causes(options, folders, results, progress);
   const report::Json with = given ? report::given_causes_json(*given) : report::Json(nullptr);
   report::write_analysis_files(results, staged.dir(), with);

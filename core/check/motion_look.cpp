@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <variant>
 
 #include "base/math/angles.h"
 #include "base/math/dense.h"
@@ -290,6 +292,29 @@ std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& se
   if (look.bend > kMostBend) book.add(Severity::unusable, found::CurvedPath{look.bend});
   if (look.smooth) book.add(Severity::change, found::Smoothed{kSmoothPart});
   return findings;
+}
+
+void note_no_runs(AnalysisResults& results) {
+  for (const ConfigurationResult& configuration : results.configurations) {
+    for (ClipResult& clip : results.clips) {
+      if (std::find(configuration.clips.begin(), configuration.clips.end(), clip.name) == configuration.clips.end()) {
+        continue;
+      }
+      ClipSetup setup;
+      setup.name = clip.name;
+      setup.incline_rad = configuration.incline_deg * base::kRadPerDegree;
+      setup.incline_assumed = configuration.incline_assumed;
+      for (const Finding& finding : motion_findings(look_at_motion(clip), setup, results.gravity_m_s2)) {
+        const auto* const fault = std::get_if<found::MotionFault>(&finding.found);
+        if (fault == nullptr || !(std::holds_alternative<found::Oscillation>(*fault) ||
+                                  std::holds_alternative<found::CurvedPath>(*fault))) {
+          continue;
+        }
+        found::FaultWords words = found::fault_words(*fault);
+        clip.notes.emplace_back(NoRun{std::move(words.found), std::move(words.advice)});
+      }
+    }
+  }
 }
 
 }  // namespace glidelab::core

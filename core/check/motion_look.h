@@ -28,6 +28,10 @@ MotionLook look_at_motion(std::span<const double> t_s, std::span<const double> x
 /// Of an analysed clip, without what is stated not to be free.
 MotionLook look_at_motion(const ClipResult& clip);
 
+/// Adds a note (NoRun) to each clip that is an oscillation, or whose path in the image is curved. Units and
+/// inclinations that are wrong show in the lines.
+void note_no_runs(AnalysisResults& results);
+
 /// The faults of the motion; Severity::unusable if no diagnosis can judge it.
 std::vector<Finding> motion_findings(const MotionLook& look, const ClipSetup& setup, double gravity_m_s2);
 

@@ -21,6 +21,7 @@ constexpr double kSds = 2.0;
 
 struct Measured {
   double value = 0.0, variance = 0.0;
+  double by_law = 0.0;  ///< half of the difference between the two laws of drag, common to all clips
 };
 
 /// v_lim of one clip; empty if it does not fall at a constant speed.
@@ -41,11 +42,12 @@ std::optional<Measured> steady_speed(const ClipResult& clip, double gravity_m_s2
   const double var_v = 12.0 * noise2 / (n * span_s * span_s), var_a = 720.0 * noise2 / (n * std::pow(span_s, 4));
   const double v = parabola.v, by_g = parabola.a / gravity_m_s2, sd_by_g = std::sqrt(var_a) / gravity_m_s2;
   if (!(v > 0.0) || !(std::abs(by_g) + kSds * sd_by_g < kSteady)) return {};
-  return Measured{v * (1.0 + 0.75 * by_g), var_v + std::pow(0.75 * v * sd_by_g, 2) + std::pow(0.25 * v * by_g, 2)};
+  const Measured speed{v * (1.0 + 0.75 * by_g), var_v + std::pow(0.75 * v * sd_by_g, 2), 0.25 * v * by_g};
+  return speed.variance > 0.0 ? std::optional(speed) : std::nullopt;
 }
 
 std::optional<Quantity> steady_fall(const std::vector<const ClipResult*>& clips, double gravity_m_s2) {
-  double weights = 0.0, sum = 0.0, scale = 0.0;
+  double weights = 0.0, sum = 0.0, scale = 0.0, by_law = 0.0;
   std::vector<Measured> speeds;
   for (const ClipResult* clip : clips) {
     const std::optional<Measured> speed = steady_speed(*clip, gravity_m_s2);
@@ -53,6 +55,7 @@ std::optional<Quantity> steady_fall(const std::vector<const ClipResult*>& clips,
     speeds.push_back(*speed);
     weights += 1.0 / speed->variance;
     sum += speed->value / speed->variance;
+    by_law += speed->by_law / speed->variance;
     scale = std::max(scale, clip->scale_sd_relative);
   }
   if (speeds.empty()) return {};
@@ -61,8 +64,8 @@ std::optional<Quantity> steady_fall(const std::vector<const ClipResult*>& clips,
   for (const Measured& speed : speeds) chi2 += std::pow(speed.value - mean, 2) / speed.variance;
   KnownVariance random{1.0 / weights, std::numeric_limits<double>::infinity()};
   if (degrees > 0.0 && chi2 > degrees * chi2_ratio_limit(degrees)) random = {chi2 / degrees / weights, degrees};
-  return determined(estimate(mean, random, (scale * scale + kClockSdRelative * kClockSdRelative) * mean * mean),
-                    std::sqrt(random.value));
+  const double of_scale = std::hypot(scale, kClockSdRelative) * mean, of_law = by_law / weights;
+  return determined(estimate(mean, random, of_scale * of_scale + of_law * of_law), std::sqrt(random.value));
 }
 
 }  // namespace

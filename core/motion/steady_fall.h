@@ -16,8 +16,10 @@ namespace glidelab::core {
 ///
 ///     v_lim = v (1 + a/g)    or    v_lim = v (1 + a/(2 g)),
 ///
-/// and half of the difference is an uncertainty. Clips count by their inverse variances; where they differ by more than
-/// these allow, by a factor of the root of chi²/(n - 1) less. One scale and one clock are common to all. Units are SI.
+/// and half of the difference is an uncertainty that all clips share, as they do the scale and the clock. Clips count
+/// by their inverse variances; where they differ by more than these allow, the standard deviation is larger by the root
+/// of chi²/(n - 1). A body that a liquid bears nearly whole speeds up as little at any speed: `g` is taken as what
+/// drives it. Units are SI.
 void add_steady_falls(const std::vector<ClipResult>& clips, double gravity_m_s2,
                       std::vector<ConfigurationResult>& configurations);
 

@@ -367,6 +367,11 @@ struct MuFromIncline {
   double deg = 0.0, sd_deg = 0.0;
 };
 
+/// A motion that is no run along an incline: what it is, and what to do (core/check/finding.h, fault_words()).
+struct NoRun {
+  std::string found, advice;
+};
+
 /// Falls at a constant speed, which is taken for the terminal velocity (core/motion/steady_fall.h).
 struct SteadyFall {
   std::size_t clips = 0;
@@ -400,7 +405,7 @@ using AnyNote =
                  DarkMarker, DiscMarker, NotOfStatedSize, NoRay, SlantedLine, ExactScale, CodecDragSubtracted,
                  FramesMissing, OutliersLeftOut, CorrelatedNoise, LineScatters, NoiseGrowsWithSpeed, CoarseRounding,
                  GeneralisedLine, NoGeneralisedLine, AgainstLaunch, MassInGrams, InclineContradiction, MuFromIncline,
-                 GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused>;
+                 GravityAssumed, RobustFit, FitScatters, SteadyFall, OtherAxisUnused, NoRun>;
 
 /// One remark. The code that copies, moves and destroys so many kinds is compiled once (analysis_note.cpp), not
 /// wherever results are used.

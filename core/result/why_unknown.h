@@ -96,7 +96,7 @@ struct ExplanationsDiffer {};
 /// A fall has no normal force, and so no friction.
 struct FreeFall {};
 
-/// The forces balance at no speed downhill below 100 m/s, the fastest that is looked for.
+/// The forces balance at no speed downhill below 1000 m/s, the fastest that is looked for.
 struct NoBalance {};
 
 /// A body that falls through air: its drag grows with the square of the speed.

@@ -240,14 +240,16 @@ double unevenness(const TableColumn& column) {
   return std::sqrt((steps - steps.mean()).square().mean()) / std::abs(steps.mean());
 }
 
-/// Whether at least half of the steps are the median one: times, some of which may be wrong.
-bool is_mostly_even(const TableColumn& column) {
+/// The part of the steps that are the median one, to within a hundredth: nearly all of a camera's times, of which some
+/// frames may be missing, and few of any positions.
+double even_part(const TableColumn& column) {
   constexpr double kSame = 0.01;  // of the median step
   const std::vector<double> steps = steps_of(column);
+  if (steps.empty()) return 0.0;
   const double middle = quantile(steps, 0.5);
   const auto same =
       std::ranges::count_if(steps, [&](double step) { return std::abs(step - middle) <= kSame * std::abs(middle); });
-  return 2 * static_cast<std::size_t>(same) >= steps.size();
+  return static_cast<double>(same) / static_cast<double>(steps.size());
 }
 
 /// Two columns without a header: t and x, unless the second increases throughout and the first often goes back, or goes
@@ -256,15 +258,16 @@ bool is_mostly_even(const TableColumn& column) {
 /// far more even steps, it may be the times of a camera or the places of a picket fence.
 ChosenColumns unnamed_pair(const ColumnTable& table, std::vector<Note>& notes) {
   const bool first = increases(table.columns[0]), second = increases(table.columns[1]);
-  constexpr double kFarLess = 0.1, kEven = 1e-3;
+  constexpr double kFarLess = 0.1, kEven = 1e-3, kNearlyAll = 0.9, kHalf = 0.5;
   const double uneven = first && second ? unevenness(table.columns[0]) : 0.0;
-  if (uneven > kEven && unevenness(table.columns[1]) < kFarLess * uneven) {
+  const bool frames = even_part(table.columns[1]) >= kNearlyAll && even_part(table.columns[0]) < kHalf;
+  if (uneven > kEven && (frames || unevenness(table.columns[1]) < kFarLess * uneven)) {
     throw wrong_column(table, "two columns without a header that both increase, the second in even steps",
                        "which of them is x: --column 1, or column = \"1\" in experiment.toml, if the second holds the "
                        "times of a camera or a sensor; --column 2 if it holds the places of marks");
   }
   const bool even = second && !first && steps_of(table.columns[0]).size() >= kFewestOfPath &&
-                    unevenness(table.columns[1]) < kEven && !is_mostly_even(table.columns[0]);
+                    even_part(table.columns[1]) >= kNearlyAll && even_part(table.columns[0]) < kHalf;
   const std::size_t time = even || (second && !goes_back_seldom(table.columns[0])) ? 1 : 0;
   if (second && (first || time == 1))
     notes.emplace_back(ColumnsGuessed{table.columns[1 - time].text, table.columns[time].text, first});

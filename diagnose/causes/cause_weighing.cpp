@@ -20,7 +20,6 @@
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/fit/drag_of_air.h"
 #include "diagnose/fit/nominal_fit.h"
-#include "diagnose/tracks/whitening.h"
 #include "diagnose/unnamed/unnamed.h"
 #include "diagnose/weigh/fit_odds.h"
 

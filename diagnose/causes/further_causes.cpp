@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/long_work.h"
 #include "diagnose/effects/effect_library.h"
 #include "diagnose/scan/effect_scan.h"
+#include "diagnose/single_frames/missing_frames.h"
 
 namespace glidelab::diagnose {
 namespace {
@@ -90,8 +92,13 @@ std::optional<MotionFit> lost_frames_alone(const TrackSet& set, const std::vecto
   base::for_each_parallel(found.size(), jobs, [&](std::size_t k) {
     anew[k] = fit_motions(set, {}, with_some_effects(layout, *found[k]), found[k]->late);
   });
-  const auto best = std::min_element(anew.begin(), anew.end(),
-                                     [](const MotionFit& a, const MotionFit& b) { return a.cost < b.cost; });
+  // As in their search, a loss has to be worth its price.
+  const auto with_price = [&](const MotionFit& fit) {
+    return std::isfinite(fit.cost) ? fit.cost + 2.0 * kLeastFrameGain * static_cast<double>(missing_in(set, fit))
+                                   : std::numeric_limits<double>::infinity();
+  };
+  const auto best = std::min_element(
+      anew.begin(), anew.end(), [&](const MotionFit& a, const MotionFit& b) { return with_price(a) < with_price(b); });
   if (best == anew.end() || !std::isfinite(best->cost)) return {};
   return std::move(*best);
 }

@@ -7,6 +7,12 @@
 
 namespace glidelab::diagnose {
 
+/// A part that sizes of one kind have in common.
+struct SharedPart {
+  std::size_t kind = 0;
+  Eigen::MatrixXd shape;  ///< over all sizes; 0 for those of other kinds
+};
+
 /// Log prior density of sizes, averaged over what the data leave open. Sizes of one kind are drawn from one normal
 /// distribution about 0. Its width is uniform in its logarithm over four decades, which begin at twice the standard
 /// deviation of the best known combination. With s the fitted sizes and C their joint covariance under flat priors,
@@ -22,10 +28,6 @@ namespace glidelab::diagnose {
 ///
 /// With `shared`, sizes of one kind have a part in common: W also has width² times its shape, and this width is
 /// averaged over like the others.
-struct SharedPart {
-  std::size_t kind = 0;
-  Eigen::MatrixXd shape;  ///< over all sizes; 0 for those of other kinds
-};
 double log_spread_prior(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& covariance,
                         const std::vector<std::size_t>& kinds, const SharedPart* shared = nullptr);
 

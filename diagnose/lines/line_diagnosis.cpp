@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "diagnose/effects/effect_library.h"
@@ -285,7 +286,10 @@ const LineExplanation* without_traces(const LineExplanation* leader, const std::
   for (const std::size_t c : leader->causes) {
     if (std::find(lesser.begin(), lesser.end(), causes[c].id) == lesser.end()) kept.push_back(c);
   }
-  const auto rest = std::find_if(all.begin(), all.end(), [&](const LineExplanation& e) { return e.causes == kept; });
+  const std::set<std::size_t> wanted(kept.begin(), kept.end());
+  const auto rest = std::find_if(all.begin(), all.end(), [&](const LineExplanation& e) {
+    return std::set<std::size_t>(e.causes.begin(), e.causes.end()) == wanted;
+  });
   if (rest == all.end() || rest->solution.left_out) return leader;
   traces = lesser;
   return &*rest;

@@ -15,9 +15,8 @@
 namespace glidelab::diagnose {
 namespace {
 
-constexpr double kLeastFrameGain = 12.0;  // log likelihood that a missing frame must gain
-constexpr int kMostMissing = 60;          // of those that only the whole fit shows: rounds of one more in each motion
-constexpr double kMostOffWhole = 0.5;     // frames
+constexpr int kMostMissing = 60;       // of those that only the whole fit shows: rounds of one more in each motion
+constexpr double kMostOffWhole = 0.5;  // frames
 constexpr int kRounds = 8;
 constexpr std::size_t kMostMoreInMotion = 4;
 constexpr double kMostOff = 50.0;          // log likelihood that one position may cost

@@ -13,6 +13,8 @@
 
 namespace glidelab::diagnose {
 
+inline constexpr double kLeastFrameGain = 12.0;  ///< log likelihood that a missing frame must gain
+
 /// How many frames are missing according to a fit, over all clips.
 std::size_t missing_in(const TrackSet& set, const MotionFit& fit);
 

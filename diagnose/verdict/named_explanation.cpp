@@ -52,7 +52,9 @@ bool is_likelier_than_not(const TrackSet& set, const Comparison& comparison, con
   return std::any_of(best.effects.begin(), best.effects.end(), [&](std::size_t e) {
     std::vector<std::size_t> any = not_told_apart(comparison, best, e, set.images);
     if (part_of != nullptr && has(*part_of, e)) {
-      for (const std::size_t other : not_told_apart(comparison, *part_of, e, set.images)) any.push_back(other);
+      for (const std::size_t other : not_told_apart(comparison, *part_of, e, set.images)) {
+        if (!has(best, other)) any.push_back(other);
+      }
     }
     any.push_back(e);
     return probability_of_any(comparison, any) >= kLikelierThanNot;

@@ -129,7 +129,7 @@ class VerdictWithCauses {
         beside_remainder ? verdict_beside_remainder(std::move(images)) : verdict_by_noise(std::move(images));
     const Reported reported = reported_by(diagnosis);
     add_shares(reported, diagnosis);
-    if (weighed_ && diagnosis.verdict == Verdict::unknown && !diagnosis.limits.driving.empty()) {
+    if (weighed_ && sequence_.is_gap && diagnosis.verdict == Verdict::unknown && !diagnosis.limits.driving.empty()) {
       count_remainder(set_, reported.fit, reported.sizes, diagnosis);
     }
     diagnosis.next =
@@ -385,6 +385,11 @@ void VerdictWithCauses::trust_stated() {
   first_.unknown = kWrongStatement;
   std::stable_sort(first_.all.begin(), first_.all.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  const Hypothesis* named = best_named(set_, first_);  // in the comparison whose fits are reported
+  const Hypothesis* reported = named == nullptr ? nullptr : find(by(), {named->effects.begin(), named->effects.end()});
+  if (reported == nullptr || reported->fit <= 0) return;
+  best_ = *reported;
+  names_ = claims_ = true;
 }
 
 /// Raises the probability of an unknown cause where the named ones do not explain the gap, by the noise alone.

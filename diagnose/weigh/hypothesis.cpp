@@ -216,7 +216,7 @@ Causes with_likely_others(std::size_t leading, const std::map<Causes, double>& s
       if (!std::includes(causes.begin(), causes.end(), likely.begin(), likely.end())) continue;
       all += probability;
       for (auto cause = causes.begin(); cause != causes.end(); cause = causes.upper_bound(*cause)) {
-        if (!likely.contains(*cause)) beside[*cause] += probability;
+        if (!likely.contains(*cause) && !is_scatter(*cause)) beside[*cause] += probability;
       }
     }
     const auto next = std::max_element(beside.begin(), beside.end(),

@@ -42,7 +42,8 @@ std::optional<Eigen::Index> phase_of(const ParameterLayout& layout, std::size_t 
   return {};
 }
 
-/// The start for `to` in place of `from` in a fit. Empty if the sizes have no counterpart within its range.
+/// The start for `to` in place of `from` in a fit. Empty if a bumper is at the other end, or if the size is
+/// beyond its range.
 std::optional<FitPoint> start_of(const TrackSet& set, const MotionFit& fit, std::size_t from, std::size_t to,
                                  const ParameterLayout& layout) {
   FitPoint start = with_some_effects(layout, fit);
@@ -52,9 +53,8 @@ std::optional<FitPoint> start_of(const TrackSet& set, const MotionFit& fit, std:
   if (!size || !size_to || !shape || !shape_to) return {};
   double value = fit.at.global[*size];
   const double of_shape = fit.at.global[*shape];
-  if (to_id == ids::end_stop && !(of_shape > set.x_mid_m)) return {};
-  if (to_id == ids::tether && !(of_shape > set.x_mid_m)) return {};
   const bool wave = effect_list()[from].search == Search::wave;
+  if (!wave && !(of_shape > set.x_mid_m)) return {};
   if (wave) {
     const double per = std::pow(2.0 * std::numbers::pi * of_shape, 2);
     value = to_id == ids::base_vibration ? value * per : value / per;

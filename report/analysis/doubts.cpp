@@ -8,12 +8,10 @@
 #include <utility>
 #include <variant>
 
-#include "base/math/angles.h"
 #include "base/text/number_text.h"
 #include "core/check/finding.h"
-#include "core/check/motion_look.h"
-#include "core/experiment/clip_setup.h"
 #include "core/result/quantity.h"
+#include "report/analysis/note_words.h"
 #include "report/analysis/statement_words.h"
 #include "report/text/display_text.h"
 
@@ -47,23 +45,12 @@ double longest_range_m(const core::AnalysisResults& results, const core::Configu
 }
 
 /// "run 2: the motion turns 4 times, …": of the first clip of a configuration that is no run along an incline; empty if
-/// all are. Units and inclinations that are wrong show in the lines.
+/// all are.
 std::string no_run_words(const core::AnalysisResults& results, const core::ConfigurationResult& configuration) {
   for (const core::ClipResult& clip : results.clips) {
     if (!std::ranges::count(configuration.clips, clip.name)) continue;
-    core::ClipSetup setup;
-    setup.name = clip.name;
-    setup.incline_rad = configuration.incline_deg * base::kRadPerDegree;
-    setup.incline_assumed = configuration.incline_assumed;
-    for (const core::Finding& finding :
-         core::motion_findings(core::look_at_motion(clip), setup, results.gravity_m_s2)) {
-      const auto* const fault = std::get_if<core::found::MotionFault>(&finding.found);
-      if (fault == nullptr || !(std::holds_alternative<core::found::Oscillation>(*fault) ||
-                                std::holds_alternative<core::found::CurvedPath>(*fault))) {
-        continue;
-      }
-      const core::found::FaultWords words = core::found::fault_words(*fault);
-      return fmt::format("{}: {}; {}.", clip.name, words.found, words.advice);
+    for (const core::Note& note : clip.notes) {
+      if (std::holds_alternative<core::NoRun>(note)) return fmt::format("{}: {}.", clip.name, note_words(note));
     }
   }
   return {};

@@ -363,6 +363,7 @@ struct AnalysisSentence {
         "place, to more digits or with its uncertainty (gravity_m_s2; for files --gravity)",
         of.gravity_m_s2, of.sd_m_s2, 100.0 * of.sd_m_s2 / of.gravity_m_s2);
   }
+  std::string operator()(const core::NoRun& of) const { return of.found + "; " + of.advice; }
   std::string operator()(const core::SteadyFall& of) const {
     return fmt::format(
         "{} at a constant speed, which is the terminal velocity. Positions from before that speed is reached would "

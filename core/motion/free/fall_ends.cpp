@@ -19,6 +19,7 @@ constexpr double kClearly = 25.0;       // chi²: five standard deviations
 constexpr double kSlowly = 2.0;         // chi²: a hand that opens slowly is not ruled out
 constexpr double kClearlyOff = 5.0;     // standard deviations of a position
 constexpr double kAsNoise = 4.0;        // largest mean square of the residuals, in squares of the noise
+constexpr double kMostOpening = 0.4;    // of the time after the release: a longer one is not told from the drag
 constexpr std::size_t kParameters = 4;  // x0, a, w, t_r
 
 enum class Drag { viscous, quadratic };
@@ -122,6 +123,7 @@ std::size_t released_at(const Motion& motion, int direction, std::size_t to) {
   if (variance > kAsNoise * noise_m2 || before - held.squares <= kClearly * variance) return 0;
   for (const double steps : {2.0, 4.0, 8.0, 16.0}) {
     const double opening_s = steps * motion.step_s;
+    if (opening_s > kMostOpening * (t[to - 1] - held.t_s)) break;
     const Release slow = fall.best_release(t[0], held.t_s + opening_s, opening_s);
     if (held.squares - slow.squares > kSlowly * variance) return 0;
   }

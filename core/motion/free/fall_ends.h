@@ -17,9 +17,9 @@ namespace glidelab::core {
 /// with t_r before it. Both are fitted to all points before `to`; the body counts as held where the best t_r after the
 /// first point has a chi² that is smaller by 25 than the best one before it, with the noise of the points or their
 /// scatter about the better fit where that is larger. That scatter may be twice the noise at most, and a hand that
-/// opens within 2 to 16 steps may not fit better by 2: a hand that lowers the body, or lets it go slowly, is left to
-/// the diagnosis. Nothing is cut if fewer than kFewestBlockPoints (free_motion.h) would be left. `direction`: the sign
-/// of v.
+/// opens within 2 to 16 steps, and 0.4 of the rest of the fall, may not fit better by 2: a hand that lowers the body,
+/// or lets it go slowly, is left to the diagnosis. Nothing is cut if fewer than kFewestBlockPoints (free_motion.h)
+/// would be left. `direction`: the sign of v.
 std::size_t released_at(const Motion& motion, int direction, std::size_t to);
 
 /// The first point of a recorded fall that is no longer free, because the body has landed; the number of points if it

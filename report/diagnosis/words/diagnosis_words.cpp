@@ -273,7 +273,7 @@ struct Sentence {
     }
     if (!of.at_end.empty()) {
       why.push_back(
-          fmt::format("the size of {} is at the end of the range that is searched", list_of(effect_names(of.at_end))));
+          fmt::format("the size of {} is at the limit of the range searched", list_of(effect_names(of.at_end))));
     }
     return fmt::format("The likeliest explanation, {}, cannot be right and is not named: with it, {}.",
                        list_of(effect_names(of.effects)), list_of(why));

@@ -13,9 +13,10 @@ std::string first_to_check(const diagnose::DoubtfulUnit& of) {
   const FindingWords words = finding_words(of.found);
   if (std::holds_alternative<core::found::FallsSlowly>(of.found)) {
     return fmt::format(
-        "First find out why it falls so slowly ({}: {}). If a liquid bears part of its weight, terminal velocities "
-        "hold, "
-        "and drags are too large by the ratio of its weight to that in the liquid; otherwise nothing below holds.",
+        "First find out why it falls so slowly ({}: {}). If it was at its final speed from the start, terminal "
+        "velocities "
+        "hold. If a liquid bears part of its weight, they hold as well, and drags are too large by the ratio of its "
+        "weight to that in the liquid. Otherwise nothing below holds.",
         of.clip, words.found);
   }
   const bool scale = std::holds_alternative<core::found::FallAboveGravity>(of.found);
@@ -31,7 +32,7 @@ std::string bent_words(const diagnose::OfReading& of) {
   return fmt::format(
       "First find out whether the track is straight: in {}, the direction of the path in x and y changes by {:.1f}°. "
       "On "
-      "a bent track gravity along the motion changes, and what is said below may be that.",
+      "a bent track gravity along the motion changes, and the causes named below may be an effect of that.",
       of.clip, path->slope_deg);
 }
 

@@ -144,6 +144,29 @@ TEST_CASE("a pendulum of two swings is an oscillation, and few bounces of a cart
         })).empty());
 }
 
+TEST_CASE("a clip that swings is noted in the results of an analysis, and a run is not") {
+  core::AnalysisResults results;
+  results.gravity_m_s2 = kGravity_m_s2;
+  const auto add = [&](const char* name, const Positions& of) {
+    core::ClipResult& clip = results.clips.emplace_back();
+    clip.name = name;
+    for (std::size_t i = 0; i < of.t_s.size(); ++i) {
+      core::MotionPoint& point = clip.motion.emplace_back();
+      point.t_s = of.t_s[i];
+      point.measured_m = of.x_m[i];
+    }
+  };
+  add("run", positions(run));
+  add("swing", positions([](double t) { return 0.1 * std::cos(0.4 + 6.0 * t); }));
+  core::ConfigurationResult& configuration = results.configurations.emplace_back();
+  configuration.incline_deg = 4.0;
+  configuration.clips = {"run", "swing"};
+  core::note_no_runs(results);
+  CHECK(results.clips[0].notes.empty());
+  REQUIRE(results.clips[1].notes.size() == 1);
+  CHECK(std::get<core::NoRun>(results.clips[1].notes[0]).found.find("this is an oscillation") != std::string::npos);
+}
+
 TEST_CASE("a curved path in the image is not a straight track") {
   const Positions of = positions(run);
   const auto path = [&](double bend) {

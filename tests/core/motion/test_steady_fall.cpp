@@ -45,6 +45,7 @@ ConfigurationResult analysed(const Fall& fall, unsigned seed) {
       track.t_s.push_back(t_s);
       track.x_m.push_back(terminal * (u - (1.0 - std::exp(-rate * u)) / rate) + normal(random));
     }
+    track.frame_t_s = track.t_s;
     tracks.push_back(track);
   }
   const AnalysisResults results = analyze_tracks(setups, tracks, kGravity, {}, 1);

@@ -123,6 +123,17 @@ TEST_CASE("of two columns without a header the one that alone increases is the t
   }
 }
 
+TEST_CASE("two columns without a header that both increase, the second in even steps but for lost frames") {
+  // A bead that sinks ever more slowly, seen at 30 Hz; two frames are missing.
+  std::string text;
+  for (int i = 0; i < 60; ++i) {
+    if (i == 17 || i == 40) continue;
+    text += fmt::format("{:.5f},{:.5f}\n", 0.3 * std::pow(i + 1.0, 0.8) + 4e-3 * std::sin(2.4 * i * i), i / 30.0);
+  }
+  CHECK_THROWS_WITH(read_text(text), Contains("both increase") && Contains("--column 1"));
+  CHECK(read_text(text, "1").t_s[10] == Approx(1.0 / 3.0).margin(1e-5));
+}
+
 TEST_CASE("of two columns without a header, positions that seldom go back are not the times beside even steps") {
   std::string text;  // at rest, to within the noise, for three frames; then at 0.6 m/s
   const auto x = [](int i) { return i < 3 ? 0.1 - 1e-4 * i : 0.1 + 0.02 * (i - 2) + 1e-3 * (i * i % 7); };

@@ -132,6 +132,7 @@ TEST_CASE("every kind of note of an analysis has words, with its data in the uni
        "the acceleration gives an inclination of at most 4.712 ± 0.013°, but the plumb line says 10°: an angle"},
       {beyond, "12.3 m/s² without friction, is more than gravity_m_s2 = 9.80665; incline_deg says 4.30 ± 0.30°"},
       {core::RobustFit{4, 400}, "robust: 4 of 400 positions"},
+      {core::NoRun{"the motion turns 4 times", "select one stretch"}, "the motion turns 4 times; select one stretch"},
       {core::SteadyFall{1}, "the body falls at a constant speed, which is the terminal velocity"},
       {core::SteadyFall{3}, "in all 3 clips the body falls at a constant speed"},
       {core::FitScatters{1.234, 17.0, false}, "scatter 1.23 times"},

@@ -65,7 +65,7 @@ TEST_CASE("every kind of note is a sentence, and names what it is of") {
       {diagnose::SensorPositions{"Position, Ch 1 (m)"}, "\"Position, Ch 1 (m)\" is how a motion sensor's program"},
       {diagnose::ImpossibleSizes{{"track_bow"}, {{diagnose::NegativeLoss::Of::friction, -0.536, 0.012}}, {"track_bow"}},
        "The likeliest explanation, bowed track, cannot be right and is not named: with it, µ = -0.536 ± 0.012 would "
-       "drive the glider and the size of bowed track is at the end of the range that is searched."},
+       "drive the glider and the size of bowed track is at the limit of the range searched."},
       {diagnose::BuoyancyLooksAlike{0.9, true},
        "here as in a fluid with 0.9 of the density of the body, and drags are then 0.1 times those given."},
       {diagnose::BuoyancyLooksAlike{0.163}, "0.16 of the density of the body"},
