@@ -2,14 +2,25 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/math/plane_path.h"
 #include "core/result/analysis_note.h"
 #include "core/track/column_table.h"
-#include "core/track/table_columns.h"
 
 namespace glidelab::core {
+
+/// The second column of a path at an angle to the axes: positions are cos * place + sin * this column.
+struct Across {
+  std::size_t column = 0;
+  double cos = 1.0, sin = 0.0;
+};
+
+struct ChosenColumns {
+  std::size_t place = 0, time = 0;
+  std::optional<Across> across = {};
+};
 
 inline constexpr double kOtherAxis = 3.0;  ///< extent along y over that along x: above it the motion is along y
 inline constexpr std::size_t kFewestOfPath = 8;

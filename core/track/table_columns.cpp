@@ -15,7 +15,6 @@
 #include "core/experiment/file_names.h"
 #include "core/math/plane_path.h"
 #include "core/math/quantile.h"
-#include "core/track/path_columns.h"
 
 namespace glidelab::core {
 

@@ -27,19 +27,9 @@
 #include <vector>
 #include "core/result/analysis_note.h"
 #include "core/track/column_table.h"
+#include "core/track/path_columns.h"
 
 namespace glidelab::core {
-
-/// The second column of a path at an angle to the axes: positions are cos * place + sin * this column.
-struct Across {
-  std::size_t column = 0;
-  double cos = 1.0, sin = 0.0;
-};
-
-struct ChosenColumns {
-  std::size_t place = 0, time = 0;
-  std::optional<Across> across = {};
-};
 
 /// InputError: no or several candidates for x or t, a curved path.
 ChosenColumns choose_columns(const ColumnTable& table, const std::string& asked, std::vector<Note>& notes);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/math/quantile.h"
-#include "core/motion/free/free_motion.h"
 
 namespace glidelab::core {
 namespace {

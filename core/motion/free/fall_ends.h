@@ -7,6 +7,8 @@
 
 namespace glidelab::core {
 
+inline constexpr std::size_t kFewestBlockPoints = 8;  ///< of a fall, or of any block that is fitted (free_motion.h)
+
 /// The first point of a recorded fall at which the body falls freely; 0 if it does so from the first point on.
 ///
 /// A body that is held before t_r and falls from rest then, against a drag that grows with v or with v^2, moves by
@@ -18,8 +20,8 @@ namespace glidelab::core {
 /// first point has a chi² that is smaller by 25 than the best one before it, with the noise of the points or their
 /// scatter about the better fit where that is larger. That scatter may be twice the noise at most, and a hand that
 /// opens within 2 to 16 steps, and 0.4 of the rest of the fall, may not fit better by 2: a hand that lowers the body,
-/// or lets it go slowly, is left to the diagnosis. Nothing is cut if fewer than kFewestBlockPoints (free_motion.h)
-/// would be left. `direction`: the sign of v.
+/// or lets it go slowly, is left to the diagnosis. Nothing is cut if fewer than kFewestBlockPoints would be left.
+/// `direction`: the sign of v.
 std::size_t released_at(const Motion& motion, int direction, std::size_t to);
 
 /// The first point of a recorded fall that is no longer free, because the body has landed; the number of points if it

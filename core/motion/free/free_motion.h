@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "core/experiment/clip_setup.h"
+#include "core/motion/free/fall_ends.h"
 #include "core/motion/free/motion.h"
 #include "core/result/results.h"
 
@@ -93,8 +94,6 @@ FreeMotion find_free_motion(const Motion& motion, const ClipSetup& setup);
 /// minimum with the wrong sequence of turns.
 std::vector<FreeBlock> free_blocks(const Motion& motion, const FreeMotion& free,
                                    const std::vector<std::vector<double>>& shared_m, double margin_s);
-
-inline constexpr std::size_t kFewestBlockPoints = 8;
 
 /// The force of a track divided by the mass, at its samples from the block's first point to its last.
 RecordedForce force_over(const FreeBlock& block, const TrackData& track, double mass_kg, double mass_sd_kg);
