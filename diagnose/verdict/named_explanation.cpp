@@ -188,7 +188,13 @@ const Hypothesis* with_certain_sizes(const TrackSet& set, const Comparison& comp
   // A size may be uncertain because sizes of each clip can do the same: the law is then no less likely than without.
   const auto most = [&](const auto& effects) {
     double likeliest = 0.0;
-    for (const std::size_t e : effects) likeliest = std::max(likeliest, comparison.effect_probability[e]);
+    for (const std::size_t e : effects) {
+      std::vector<std::size_t> any;  // its names
+      for (std::size_t other = 0; other < effect_list().size(); ++other) {
+        if (other == e || are_alike(comparison, other, e, set.images)) any.push_back(other);
+      }
+      likeliest = std::max(likeliest, probability_of_any(comparison, any));
+    }
     return likeliest;
   };
   if (most(uncertain) > most(certain) + kClearlyLikelier) return renamed;

@@ -438,7 +438,7 @@ Reported VerdictWithCauses::reported_by(const Diagnosis& diagnosis) const {
 void VerdictWithCauses::add_shares(const Reported& reported, Diagnosis& diagnosis) const {
   diagnosis.traces = traces_;
   if (noise_is_rounding(set_)) diagnosis.traces.emplace_back(ids::position_rounding);
-  if (sequence_.gap_after < kFollowed) add_clear_scatter(by(), diagnosis);
+  if (!noise_is_rounding(set_) && sequence_.gap_after < kFollowed) add_clear_scatter(by(), diagnosis);
   diagnosis.explained = diagnosis.verdict == Verdict::unknown ? helpful(sequence_.causes) : sequence_.causes;
   for (DiagnosedEffect& effect : diagnosis.effects) {
     effect.by_stated = sequence_.by_stated.contains(effect_index(effect.id));
